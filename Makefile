@@ -2,13 +2,11 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-# What is installed already: what serving and every command need, the rest of development, peers,
-# what puts faults into code; what is compiled.
+# What is installed already: what serving and every command need, the rest of development; what is
+# compiled.
 SERVING := $(VENV)/.serving
 DEVELOPING := $(VENV)/.developing
 COMPILED := $(VENV)/.compiled
-PEERS := $(VENV)/.peers
-MUTANTS := $(VENV)/.mutants
 WORKERS ?= 2
 PORT ?= 8000
 # Bytecode is left to the first import of a module: most of it would never be read.
@@ -42,7 +40,7 @@ $(SERVING): requirements.lock pyproject.toml
 	touch $@
 
 $(DEVELOPING): $(SERVING) requirements-dev.lock
-	$(PIP) --require-hashes -r requirements-dev.lock
+	$(PIP) --require-hashes -r requirements.lock -r requirements-dev.lock
 	touch $@
 
 # Numerical kernels, compiled once and kept: else every first call of a test would wait for its own.
@@ -51,19 +49,12 @@ $(COMPILED): $(DEVELOPING)
 	touch $@
 
 # The guide, kept in the user's cache; quick where its pages have not changed.
-guide: $(SERVING) ## build the guide (served at /guide; `make serve` builds it beside the service)
+guide: $(SERVING) ## build the guide (served at /guide; `make serve` builds it first)
 	$(BIN)/sunatlas guide build --strict
 
-$(PEERS): $(DEVELOPING) requirements-peers.lock
-	$(PIP) --require-hashes -r requirements-peers.lock
-	touch $@
-
-$(MUTANTS): $(DEVELOPING) requirements-mutants.lock
-	$(PIP) --require-hashes -r requirements-mutants.lock
-	touch $@
-
-serve: $(SERVING) ## serve the page and the API on http://127.0.0.1:8000 (installs only what that needs)
-	$(BIN)/sunatlas serve --port $(PORT) --times
+serve: $(SERVING) ## serve page, guide and API on http://127.0.0.1:8000 (installs only what that needs)
+	$(BIN)/sunatlas guide build --quiet
+	$(BIN)/sunatlas serve --port $(PORT)
 
 test: $(COMPILED) ## run the tests, the slow ones left out
 	$(TEST) -m "not slow"
@@ -87,13 +78,13 @@ lint: $(DEVELOPING) ## ruff, mypy (strict), the floors, the guide without warnin
 	$(BIN)/lint-imports
 	$(BIN)/sunatlas guide build --strict --out out/guide
 
-bench: $(PEERS) ## every speed and accuracy limit, as ratios measured in the same run; lists the broken ones (SEED=N repeats its frames)
+bench: $(COMPILED) ## every speed and accuracy limit, as ratios measured in the same run; lists the broken ones (SEED=N repeats its frames)
 	$(BIN)/python -m tools.bench $(if $(SEED),--seed $(SEED))
 
 load: $(COMPILED) ## thousands of random requests, then 200 clients at once, against a running service
 	$(BIN)/python -m tools.load $(if $(SEED),--seed $(SEED))
 
-mutants: $(MUTANTS) ## put small faults into the code, one at a time; list those that no test notices
+mutants: $(COMPILED) ## put small faults into the code, one at a time; list those that no test notices
 	mkdir -p out
 	$(BIN)/python -m tools.mutation --workers $(WORKERS) --report out/mutants.md
 
@@ -117,19 +108,16 @@ docs: $(DEVELOPING) ## regenerate the generated parts of docs/
 	$(BIN)/python -m api.docs.documentation
 
 # `make lock UPGRADE=--upgrade` takes the newest versions; without it, pins that still fit stay.
-COMPILE := uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
-	--no-emit-index-url --no-header --no-strip-extras $(UPGRADE)
+COMPILE := uv pip compile --quiet --python-version 3.11 --no-header --no-strip-extras pyproject.toml
+LOCK := $(COMPILE) --generate-hashes --no-emit-index-url --no-annotate $(UPGRADE)
+EXTRAS := --extra deposit --extra distributed --extra guide
 lock: ## renew the lock files from pyproject.toml (needs uv on the PATH)
-	$(COMPILE) --extra build --extra guide -o requirements.lock pyproject.toml
-	$(COMPILE) --extra build --extra dev --extra distributed --extra guide --extra deposit --constraints requirements.lock -o requirements-dev.lock pyproject.toml
-	$(COMPILE) --extra peers --constraints requirements-dev.lock -o requirements-peers.lock pyproject.toml
-	$(COMPILE) --extra mutants --constraints requirements-dev.lock -o requirements-mutants.lock pyproject.toml
+	$(LOCK) --universal --group build --extra guide -o requirements.lock
+	$(LOCK) --universal --group dev $(EXTRAS) --constraints requirements.lock -o requirements-dev.lock
+	$(PYTHON) -m tools.lock_beyond requirements.lock requirements-dev.lock
 	mkdir -p out
-	uv pip compile --quiet --python-version 3.11 --no-header --upgrade --resolution lowest-direct \
-		--extra build --extra guide -o out/lowest.txt pyproject.toml
-	uv pip compile --quiet --python-version 3.11 --generate-hashes --no-emit-index-url --no-header --no-strip-extras \
-		$(UPGRADE) --extra build --extra dev --extra distributed --extra guide --extra deposit --constraints out/lowest.txt \
-		-o requirements-lowest.lock pyproject.toml
+	$(COMPILE) --upgrade --resolution lowest-direct --group build --extra guide -o out/lowest.txt
+	$(LOCK) --group checked $(EXTRAS) --constraints out/lowest.txt -o requirements-lowest.lock
 
 clean: ## remove the virtual environment and caches
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache .coverage out/coverage

@@ -4,11 +4,10 @@ Drawing simulates, which takes up to 20 s of a processor, as optics are tabulate
 picture lies in `PUBLISHED`, named by what it shows: the data set's digest and that of the code that
 draws. `python -m api.pictures --publish` draws those that lack and removes those of other code.
 
-Where the code has been changed since, pictures are drawn by processes of their own, within the
-service it would hold up all other answers, and kept in the working store.
-`python -m api.pictures DIRECTORY [NAME...]` draws what is not there yet; without names all, giving
-way to everything else on the machine once the slowest are there. What is kept there lies below a
-digest of all code that makes it; it may be deleted at any time.
+Where the code has been changed since, a picture is drawn when somebody asks for it, by a process
+of its own (within the service it would hold up all other answers), and kept in the working store:
+`python -m api.pictures DIRECTORY NAME...` draws those that are not there yet. What is kept there
+lies below a digest of all code that makes it; it may be deleted at any time.
 """
 
 from __future__ import annotations
@@ -34,8 +33,6 @@ from files.temporary import temporary_directory
 #: Pictures that come with the code, ``<data set>.<digest of what it shows>.png``.
 PUBLISHED = Path(__file__).resolve().parents[1] / "benchmark" / "datasets" / "pictures"
 FOLDER = "pictures"
-#: What takes longest is drawn first: it is what somebody would wait for longest.
-SLOWEST = ("cmos-encoded-sizes", "ccd-orbit", "ccd-multi-aperture", "cmos-compound-eye")
 #: Pictures of other code that are left where they are: another checkout may serve them.
 OTHERS_KEPT = 3
 #: Pictures that are drawn at once for whoever asks.
@@ -167,29 +164,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     end_with_coordinator()
     parser = argparse.ArgumentParser(prog="python -m api.pictures", description="Draw data sets.")
     parser.add_argument("directory", nargs="?", type=Path, help="of the working store")
-    parser.add_argument("names", nargs="*", metavar="NAME", help="data sets (default: all)")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="data sets")
     parser.add_argument("--publish", action="store_true", help="those that come with the code")
     given = parser.parse_args(arguments)
-    if given.publish == (given.directory is not None):
-        parser.error("either --publish or a directory has to be given")
+    if given.publish == bool(given.names):
+        parser.error("either --publish, or a directory and names have to be given")
     if given.publish:
         publish()
         return 0
-    directory, names = given.directory, given.names
-    if names:
-        draw(directory, names)
-        return 0
-    from benchmark import datasets  # noqa: PLC0415 - as in `draw`
-
-    every = [name for name in datasets.names() if not published(name).is_file()]
-    if not every:
-        return 0
-    draw(directory, (name for name in SLOWEST if name in every))
-    # For those somebody may be waiting; of the others none takes long.
-    with suppress(OSError):
-        os.nice(10)
-    draw(directory, every)
-    forget_others(directory)
+    draw(given.directory, given.names)
+    forget_others(given.directory)
     return 0
 
 

@@ -48,7 +48,9 @@ def _head(document: Mapping[str, Any], width: int) -> Iterator[str]:
         yield from _paragraph("this order", document["regret"]["sentence"], width)
     if document["untimed"]:
         said = f"{_many(document['untimed'], 'pipeline')}, which a limit on latency leaves out"
-        yield from _paragraph("not timed", f"{said}: `sunatlas serve --times` times them", width)
+        yield from _paragraph(
+            "not timed", f"{said}: `sunatlas leaderboard times` times them", width
+        )
     for hazard, pairs in document["untried"].items():
         if pairs:
             named = ", ".join(f"{pair['detector']} + {pair['mask']}" for pair in pairs)

@@ -44,6 +44,7 @@ COMMANDS: dict[str, str] = {
     "verify": "Measure published cells drawn at random again, and compare.",
     "gc": "Drop from the working store what no cell refers to.",
     "benchmark": "Score pipelines on the standard datasets.",
+    "rank": "Check one algorithm, measure it and show it on a board.",
     "leaderboard": "Show the leaderboard, bring it up to date or check it.",
     "curves": "Show how many calibration poses the leaders need.",
     "assess": "Show the survey's scores of extractors beside measured ones.",

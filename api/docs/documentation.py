@@ -28,7 +28,7 @@ from api.docs.parts import (
     models,
     resolutions,
 )
-from api.guide import dictionary, found, python_page, words
+from api.guide import dictionary, found, words
 from api.guide.blocks import rerun
 from benchmark.processes import call_to_end
 from files.atomic import replace_file
@@ -102,7 +102,6 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
         "facts": dictionary.facts,
         "measurements": dictionary.measurements,
     },
-    "guide/python.md": {"interface": python_page.interface},
 }
 #: Pages whose blocks are run, and what they print renewed.
 RUN = tuple(

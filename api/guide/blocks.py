@@ -23,9 +23,8 @@ from api.guide.commands import CommandError, run
 NOT_RUN: Mapping[tuple[str, ...], str] = {
     ("make",): "sets up an environment or measures for minutes; CI runs these targets",
     ("git", "clone"): "fetches the repository",
-    (".venv/bin/python", "-m", "pytest"): "the recipes' test runs it in a copy of the tree",
     ("sunatlas", "leaderboard", "--check"): "measures every cell again: hours",
-    ("sunatlas", "benchmark", "--extractor"): "measures for minutes; the recipes' test does so",
+    ("sunatlas", "rank"): "needs the page's file: the recipes' test runs it in a copy of the tree",
     ("sunatlas", "deposit", "build"): "half a minute; tests/api/deposit builds it",
     ("sunatlas", "run"): "measures for a minute; tests/api/cli/test_cli_measuring.py runs it",
 }

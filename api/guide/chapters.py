@@ -2,7 +2,21 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 ROOT = "index"
+
+_HERE = Path(__file__).resolve().parent
+
+
+def _decisions() -> tuple[str, ...]:
+    """Return the pages of decisions, their list first: of a checkout, else of the wheel."""
+    for docs in (_HERE.parents[1] / "docs", _HERE / "source"):
+        names = sorted(path.stem for path in docs.glob("decisions/*.md"))
+        if names:
+            return tuple(f"decisions/{name}" for name in names)  # README: capitals sort first
+    return ()
+
 
 #: Caption of the sidebar, and its pages in docs/ without their suffix.
 CHAPTERS: dict[str, tuple[str, ...]] = {
@@ -28,7 +42,7 @@ CHAPTERS: dict[str, tuple[str, ...]] = {
         "models/neural-network",
         "filters",
     ),
-    "Data": ("datasets", "survey", "guide/data-dictionary"),
+    "Data": ("datasets", "survey", "guide/data-dictionary", "nomenclature"),
     "Interfaces": ("http", "guide/python", "command-line", "deposit"),
     "Adding to it": (
         "guide/add-an-algorithm",
@@ -38,6 +52,7 @@ CHAPTERS: dict[str, tuple[str, ...]] = {
         "faults",
         "faults-kills",
     ),
+    "Decisions": _decisions(),
 }
 
 

@@ -32,6 +32,7 @@ KEPT = 4
 
 _PROJECT = "Sun Sensor Atlas"
 _UNWRITTEN = re.compile(r"error writing file|cannot copy |Failed to copy ")
+_DOCUMENTED = re.compile(r"^\.\. automodule:: (\S+)$", re.MULTILINE)
 _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 _HERE = Path(__file__).resolve().parent
 _CHECKOUT = _HERE.parents[1] / "docs"
@@ -69,6 +70,17 @@ def missing_builders() -> tuple[str, ...]:
     return tuple(missing)
 
 
+def documented() -> list[str]:
+    """Name the modules whose docstrings are on the page of the Python interface."""
+    page = source() / "guide" / "python.md"
+    return _DOCUMENTED.findall(page.read_text("utf-8")) if page.is_file() else []
+
+
+def _file_of(module: str) -> Path:
+    path = _HERE.parents[1].joinpath(*module.split("."))
+    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+
+
 @cache
 def digest() -> str:
     """Return what the site depends on as a digest: pages, this code, and what builds it."""
@@ -78,6 +90,8 @@ def digest() -> str:
             if path.is_file() and path.suffix in {".md", ".svg", ".png", ".py", ".css"}:
                 summed.update(f"\0{path.relative_to(root).as_posix()}\0".encode())
                 summed.update(path.read_bytes())
+    for module in documented():
+        summed.update(f"\0{module}\0".encode() + _file_of(module).read_bytes())
     for name in (*BUILDERS, "latex2mathml"):
         summed.update(f"{name} {version(name)}\n".encode())
     return summed.hexdigest()
@@ -199,7 +213,17 @@ def _settings() -> dict[str, Any]:
     return {
         "project": _PROJECT,
         "html_title": _PROJECT,
-        "extensions": ["myst_parser", "api.guide.extension"],
+        "extensions": [
+            *("myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"),
+            "api.guide.extension",
+        ],
+        # Docstrings of the Python interface: names in backquotes are code, types are no links.
+        "default_role": "code",
+        "autodoc_default_options": {"members": True},
+        "autodoc_member_order": "bysource",
+        "autodoc_preserve_defaults": True,
+        "napoleon_google_docstring": False,
+        "nitpick_ignore_regex": [("py:.*", ".*")],
         "root_doc": ROOT,
         "source_suffix": {".md": "markdown"},
         "myst_enable_extensions": ["dollarmath"],

@@ -1,4 +1,4 @@
-"""The guide's site as it is served: files of a directory that may be built while we serve."""
+"""The guide's site as it is served: files of a directory, once it is built."""
 
 from __future__ import annotations
 
@@ -13,15 +13,11 @@ from api.http.problems import Problem, Violation
 from api.http.representations import Representation
 
 INDEX = "index.html"
-#: Seconds after which whoever waits for the guide asks again.
-PATIENCE_S = 3
-
-_WAITING = """<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><title>The guide is being built</title>
-<meta name="viewport" content="width=device-width"><meta http-equiv="refresh" content="{again}">
-</head><body><h1>The guide is being built</h1>
-<p>This takes some seconds, once. The page loads again by itself; <a href="/">the atlas</a> is there
-meanwhile.</p></body></html>
+_UNBUILT = """<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><title>The guide is not built</title>
+<meta name="viewport" content="width=device-width"></head><body><h1>The guide is not built</h1>
+<p>Run <code>sunatlas guide build</code>, which takes half a minute, then load this page again;
+<a href="/">the atlas</a> is there meanwhile.</p></body></html>
 """
 _MISSING = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>The guide is not installed</title>
@@ -32,7 +28,7 @@ _MISSING = """<!doctype html>
 
 
 def respond(request: Request, name: str) -> Response:
-    """Give a file of the guide; where it is not built yet, a page that says so and waits (503).
+    """Give a file of the guide; where it is not built, a page that says how (503).
 
     Parameters
     ----------
@@ -46,10 +42,9 @@ def respond(request: Request, name: str) -> Response:
     """
     place = site.kept()
     if place is None:
-        return _unavailable(_MISSING.format(install=site.INSTALL), {})
+        return _unavailable(_MISSING.format(install=site.INSTALL))
     if not place.is_dir():
-        again = str(PATIENCE_S)
-        return _unavailable(_WAITING.format(again=again), {"Retry-After": again})
+        return _unavailable(_UNBUILT)
     return _file(place, name or INDEX).respond(request)
 
 
@@ -68,6 +63,6 @@ def _file(place: Path, name: str) -> Representation:
     )
 
 
-def _unavailable(text: str, headers: dict[str, str]) -> Response:
-    kept = {"Content-Type": "text/html; charset=utf-8", "Cache-Control": "no-store", **headers}
-    return Response(text, 503, headers=kept)
+def _unavailable(text: str) -> Response:
+    headers = {"Content-Type": "text/html; charset=utf-8", "Cache-Control": "no-store"}
+    return Response(text, 503, headers=headers)

@@ -90,7 +90,7 @@ export function showFindings(answer) {
         show({ sort: "measured" });
         byId("architectures").focus();
       } }, "Order by measurement")),
-    untimed > 0 && finding("Not timed", `${plural(untimed, "pipeline")} not timed on this machine; a limit on latency leaves them out.`),
+    untimed > 0 && finding("Not timed", `${plural(untimed, "pipeline")} not timed on this machine; a limit on latency leaves them out. To time them run \`sunatlas leaderboard times\`, then start the service again.`),
     ...Object.entries(untried).filter(([, pairs]) => pairs.length).map(([hazard, pairs]) => notTried(hazard, pairs)),
   ].filter(Boolean));
 }

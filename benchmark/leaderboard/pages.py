@@ -6,7 +6,7 @@ Only the page of the best is committed; the others are derived where they are wa
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -206,8 +206,18 @@ def _rule(column: str) -> str:
     return " --- " if column in ("extractor", "model") else " ---: "
 
 
-def to_html(board: Board) -> str:
-    """Write every table as a page that needs nothing beside itself."""
+def to_html(board: Board, *, marked: Collection[tuple[str, str]] = (), note: str = "") -> str:
+    """Write every table as a page that needs nothing beside itself.
+
+    Parameters
+    ----------
+    board
+        The leaderboard.
+    marked
+        Extractor and model of pipelines whose rows are marked.
+    note
+        A sentence below the legend.
+    """
     import jinja2  # noqa: PLC0415 - only writing the page needs it
 
     environment = jinja2.Environment(
@@ -220,7 +230,8 @@ def to_html(board: Board) -> str:
     )
     template = environment.get_template("leaderboard.html")
     return template.render(
-        tables=list(_tables(board)),
+        tables=list(_tables(board, marked)),
+        note=note,
         headings=SHOWN,
         legend=LEGEND,
         sweeps=sweep_tables.tables(board["sweeps"]),
@@ -229,7 +240,9 @@ def to_html(board: Board) -> str:
     )
 
 
-def _tables(board: Board) -> Iterator[tuple[Mapping[str, Any], list[dict[str, Any]]]]:
+def _tables(
+    board: Board, marked: Collection[tuple[str, str]] = ()
+) -> Iterator[tuple[Mapping[str, Any], list[dict[str, Any]]]]:
     """Give each dataset with its conditions; of each, rows of (column, text) that share its id."""
     for dataset in board["datasets"]:
         conditions = [
@@ -242,6 +255,7 @@ def _tables(board: Board) -> Iterator[tuple[Mapping[str, Any], list[dict[str, An
                             for name in ("dataset", "condition", "extractor", "model")
                         ),
                         "reason": row["reason"],
+                        "marked": (row["extractor"], row["model"]) in marked,
                         "behind": not row["best_of_extractor"],
                         "columns": [(column, shown(column, row)) for column in SHOWN],
                     }

@@ -119,7 +119,7 @@ def is_available(row: Mapping[str, object]) -> bool:
 def separation_deg(first: ArrayLike, second: ArrayLike) -> Floats:
     """Angle (N,) in degrees between unit vectors (N, 3); exact for tiny angles, NaN for NaN rows.
 
-    The arc tangent of |a x b| over a . b: the arc cosine loses everything below 1e-6 degrees.
+    The arc tangent of ``|a x b|`` over ``a . b``: the arc cosine loses all below 1e-6 degrees.
     """
     a = np.asarray(first, dtype=np.float64)
     b = np.asarray(second, dtype=np.float64)

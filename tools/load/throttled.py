@@ -21,14 +21,14 @@ from dataclasses import dataclass
 
 from playwright.sync_api import Browser, sync_playwright
 
-from api.pictures import SLOWEST
 from benchmark import datasets
 from tests.api.page.conftest import NAMES, QUIET
 from tools.load.__main__ import SERVICE, running
 
 BYTES_PER_S, LATENCY_MS = 1.6e6 / 8, 150
 FIRST_S, WHOLE_S = 1.0, 6.0
-#: Pictures that take longest to draw first, so that they are asked for soonest after the start.
+#: Pictures that take longest to draw, asked for first: soonest after the start.
+SLOWEST = ("cmos-encoded-sizes", "ccd-orbit", "ccd-multi-aperture", "cmos-compound-eye")
 PAGES = (
     *(f"/datasets/{name}" for name in dict.fromkeys((*SLOWEST, *datasets.names()))),
     *("/", "/figures", "/studies/Liebe2001", "/algorithms/feic", "/claims/C04", "/leaderboard"),

@@ -7,7 +7,6 @@ import os
 import socket
 import sys
 import tempfile
-from functools import partial
 from typing import Annotated, Any
 
 import typer
@@ -15,18 +14,11 @@ import uvicorn
 from uvicorn.supervisors import Multiprocess
 
 from api.cli.working import working_directory
-from api.cli.wrong_call import WrongCallError
-from api.guide import site
 from api.http.server import serving
 from api.http.server.connections import bounds
-from api.http.server.renewal import Renewed, beside, renewed_after
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
-_SUNATLAS = (sys.executable, "-m", "api.cli.command_line")
-_TIMES = (*_SUNATLAS, "leaderboard", "times", "--format", "json")
-_GUIDE = (*_SUNATLAS, "guide", "build", "--quiet")
-_PICTURES = (sys.executable, "-m", "api.pictures")
 _QUIET: dict[str, Any] = {"log_level": "warning", "access_log": False}
 
 
@@ -36,14 +28,6 @@ def serve(
     port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port to listen on; 0 takes a free one.")
     ] = 8000,
-    times: Annotated[
-        bool,
-        typer.Option(
-            "--times",
-            help="Time every pipeline on this machine meanwhile, where that is not done yet, and "
-            "serve the times as soon as they are there.",
-        ),
-    ] = False,
     workers: Annotated[
         int,
         typer.Option(min=1, max=64, help="Processes that answer, each with all data loaded."),
@@ -55,22 +39,16 @@ def serve(
     """Serve the page, the guide and the HTTP interface.
 
     The page is at /, the guide at /guide, the API under /v1, its reference at /docs, its
-    description at /openapi.json, counts and times of requests for Prometheus at /metrics. A guide
-    that is not built yet is built meanwhile. Ctrl-C stops.
+    description at /openapi.json, counts and times of requests for Prometheus at /metrics. Nothing
+    runs beside it: `sunatlas guide build` builds the guide, `sunatlas leaderboard times` times
+    pipelines on this machine. Ctrl-C stops.
     """
-    if times and workers > 1:
-        raise WrongCallError("--times goes with one worker: time first, then serve with several")
     os.environ[serving.TIMES] = str(working_directory())
     os.environ[serving.ACCESS_LOG] = "1" if access_log else ""
     listener = listen(host, port)
     with listener, contextlib.ExitStack() as stack:
-        # What takes longest is drawn while we load: who comes first shall not wait for it.
-        stack.enter_context(beside((*_PICTURES, str(working_directory()))))
         # Loaded before anything is served: damaged facts are refused in one sentence.
-        application = Renewed(serving.application(loaded=True))
-        guide = site.kept()
-        if guide is not None and not guide.is_dir():
-            stack.enter_context(beside(_GUIDE))
+        application = serving.application(loaded=True)
         typer.echo(f"Sun Sensor Atlas: {address(host, listener.getsockname()[1])} (Ctrl-C stops)")
         sys.stdout.flush()  # who reads a pipe waits for the address
         if workers > 1:
@@ -80,9 +58,6 @@ def serve(
             _serve_by_many(listener, workers)
             return
         config = uvicorn.Config(application, **_QUIET, **bounds())
-        if times:
-            renew = partial(serving.application, loaded=True)
-            stack.enter_context(renewed_after(_TIMES, application, renew))
         uvicorn.Server(config).run(sockets=[listener])
 
 

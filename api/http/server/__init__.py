@@ -1,1 +1,1 @@
-"""What serves the service: an application a process, bounded connections, renewal in place."""
+"""What serves the service: an application a process, bounded connections."""

@@ -86,12 +86,6 @@ def test_the_url_is_one_a_browser_opens(host, url):
     assert address(host, 80) == url
 
 
-def test_times_are_for_one_worker():
-    shown = CliRunner().invoke(app, ["serve", "--times", "--workers", "2", "--port", "0"])
-    assert shown.exit_code == 2
-    assert "--times" in shown.stderr
-
-
 def running(group):
     """Command lines of a group's processes; zombies, which nobody has reaped, do not run."""
     found = []

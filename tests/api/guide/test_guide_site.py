@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+import survey_data
 from api.guide import extension, site
 from api.guide.chapters import CHAPTERS, ROOT, toctrees
 from api.mathml import mathml
@@ -88,6 +89,17 @@ def test_every_link_between_built_pages_leads_to_a_heading(built: Built) -> None
             assert not anchor or anchor in ids[there], (page, target)
             followed += 1
     assert followed > 1000
+
+
+@pytest.mark.slow
+def test_the_page_of_the_python_interface_has_the_docstrings(built: Built) -> None:
+    out, _ = built
+    ids = set(re.findall(r' id="([^"]+)"', (out / "guide" / "python.html").read_text("utf-8")))
+    modules = site.documented()
+    assert len(modules) > 20
+    assert {f"module-{name}" for name in modules} <= ids
+    assert {f"survey_data.{name}" for name in survey_data.__all__} <= ids
+    assert {"algorithms.pipeline.Pipeline.predict_features", "benchmark.datasets.get"} <= ids
 
 
 @pytest.mark.slow

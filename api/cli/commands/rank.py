@@ -1,0 +1,102 @@
+"""`sunatlas rank`: one algorithm checked, measured and shown on the board of a data set."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from api.cli import completion
+from api.cli.contract import GUIDE, checked, name_of
+from api.cli.measuring import (
+    AVAILABLE_WORKERS,
+    ManyWorkersOption,
+    StoreOption,
+    interruptible,
+    stores_of,
+)
+from api.cli.tables import Format, FormatOption, emit, say
+from api.columns import LEADERBOARD
+from benchmark.leaderboard import candidate
+from benchmark.leaderboard.pages import to_html
+from files.atomic import replace_file
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
+
+COLUMNS = (
+    *("new", "rank", "group", "extractor", "model", "own_deg", "low_deg", "high_deg"),
+    *("on_bench_deg", "over_bound", "over_bound_unit", "availability", "false_sun"),
+)
+#: Marks the rows of the algorithm.
+MARK = "*"
+
+
+@app.command()
+def rank(
+    algorithm: Annotated[
+        str,
+        typer.Argument(
+            autocompletion=completion.extractors,
+            help="Its name, such as squared-centroid, or its file.",
+            show_default=False,
+        ),
+    ],
+    *,
+    dataset: Annotated[
+        str,
+        typer.Option(autocompletion=completion.datasets, help="The data set.", show_default=False),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="The page to write; by default out/ALGORITHM-DATASET.html.",
+            dir_okay=False,
+            show_default=False,
+        ),
+    ] = None,
+    workers: ManyWorkersOption = AVAILABLE_WORKERS,
+    store: StoreOption = None,
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Check one algorithm, measure it and show it on a board.
+
+    An extractor, a model or a compensation is found by its name or its file and checked by the
+    common test suite; what fails is printed, and nothing is measured. Then its pipelines are
+    scored under the first condition, all on the standard unit, the best one also on the other
+    units and drawn benches that the board's rule gives it. Nothing else is measured: all other
+    rows are those of the published record. The board is printed with the rows of the algorithm
+    marked, and written as a page. New scores are kept in the working store (see --store).
+    """
+    name = name_of(algorithm)
+    result = checked(name)
+    if result is None:
+        typer.echo("contract: not checked, the tests are in a checkout only", err=True)
+    elif result.failed:
+        for line in result.failed:
+            typer.echo(f"contract: {line}", err=True)
+        typer.echo(
+            f"sunatlas: {name} fails {len(result.failed)} of {result.ran} checks; the rules are in "
+            f"{GUIDE}",
+            err=True,
+        )
+        raise typer.Exit(1)
+    else:
+        typer.echo(f"contract: {result.ran} checks passed", err=True)
+    record, work = stores_of(store)
+    with interruptible():
+        ranked = candidate.ranked(name, dataset, record, work, workers=workers)
+    page = out or Path("out") / f"{name}-{dataset}.html"
+    replace_file(page, to_html(ranked.board, marked=ranked.pipelines, note=ranked.scope))
+    rows = [{**row, "new": MARK if ranked.has(row) else None} for row in ranked.rows]
+    if form is Format.TABLE:
+        shown = [row for row in rows if row["new"] or (row["best_of_extractor"] and row["rank"])]
+        emit(shown, COLUMNS, form, title=f"{dataset}: best of each extractor, and {name} ({MARK})")
+        say(ranked.scope)
+    else:
+        emit(rows, ("new", *LEADERBOARD), form, document={"items": rows, "scope": ranked.scope})
+    failed = [row for row in rows if row["new"] and row["reason"]]
+    for row in failed:
+        typer.echo(f"no score: {row['extractor']} + {row['model']}: {row['reason']}", err=True)
+    typer.echo(f"{ranked.measured} cells measured now, kept in {work.directory}", err=True)
+    typer.echo(f"page: {page}", err=True)

@@ -1,0 +1,99 @@
+"""Habits that files of the repository state: commit subjects, lock files, pinned actions."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from tools import commit_subject
+from tools.lock_beyond import PIN, beyond
+
+ROOT = Path(__file__).parents[1]
+LOCKS = {path.name: path.read_text("utf-8") for path in ROOT.glob("requirements*.lock")}
+
+
+@pytest.mark.parametrize(
+    "subject",
+    [
+        "store: refuse a second writer",
+        "files, docs: write each file whole",
+        "http: address slow clients",
+        "Merge branch 'main' of elsewhere",
+        'Revert "store: refuse a second writer"',
+        "fixup! store: refuse a second writer",
+        "a: " + "b" * 69,
+    ],
+)
+def test_a_subject_of_the_form_passes(subject: str) -> None:
+    assert commit_subject.faults(subject) == []
+
+
+@pytest.mark.parametrize(
+    ("subject", "fault"),
+    [
+        ("Refuse a second writer", "expected `area: imperative`"),
+        ("", "expected `area: imperative`"),
+        ("store: ", "expected `area: imperative`"),
+        ("store: refuse a second writer.", "no full stop"),
+        ("store: refused a second writer", "a past tense"),
+        ("store: refuses a second writer", "a third person"),
+        ("store: refusing a second writer", "a participle"),
+        ("a: " + "b" * 70, "73 characters; at most 72"),
+    ],
+)
+def test_a_subject_of_another_form_is_refused(subject: str, fault: str, tmp_path: Path) -> None:
+    assert any(fault in found for found in commit_subject.faults(subject))
+    message = tmp_path / "COMMIT_EDITMSG"
+    message.write_text(f"{subject}\n\nWhy.\n")
+    assert commit_subject.main([str(message)]) == 1
+
+
+def test_only_the_first_line_of_a_message_is_judged(tmp_path: Path) -> None:
+    message = tmp_path / "COMMIT_EDITMSG"
+    message.write_text("# what git says\nstore: refuse a second writer\n\nIt lost rows.\n")
+    assert commit_subject.main([str(message)]) == 0
+
+
+def test_every_pin_has_a_hash_no_name_is_pinned_twice_over_and_no_index_is_named() -> None:
+    assert set(LOCKS) == {
+        "requirements.lock",
+        "requirements-dev.lock",
+        "requirements-lowest.lock",
+    }
+    for name, text in LOCKS.items():
+        pins = list(PIN.finditer(text))
+        assert "".join(pin[0] for pin in pins) == text, f"{name} holds more than pins"
+        assert all(re.search(r"--hash=sha256:[0-9a-f]{64}", pin[0]) for pin in pins)
+        assert "://" not in text
+    serving = {(p["name"], p["where"]) for p in PIN.finditer(LOCKS["requirements.lock"])}
+    developing = {(p["name"], p["where"]) for p in PIN.finditer(LOCKS["requirements-dev.lock"])}
+    assert not serving & developing
+
+
+def test_what_one_lock_holds_is_left_out_of_the_other() -> None:
+    hashed = " \\\n    --hash=sha256:0\n"
+    first = f"a==1{hashed}b==2 ; x{hashed}"
+    assert beyond(first, f"a==1{hashed}c==3{hashed}") == f"c==3{hashed}"
+    assert beyond(first, f"b==2{hashed}") == f"b==2{hashed}", "of more platforms"
+    with pytest.raises(ValueError, match="a is pinned to different versions"):
+        beyond(first, f"a==2{hashed}")
+
+
+def test_extras_are_for_users_and_groups_for_development() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
+    assert set(project["project"]["optional-dependencies"]) == {"deposit", "distributed", "guide"}
+    wanted = [one for group in project["dependency-groups"].values() for one in group]
+    names = {re.split(r"[<>=]", one)[0].lower() for one in wanted if isinstance(one, str)}
+    pinned = {pin["name"] for text in LOCKS.values() for pin in PIN.finditer(text)}
+    assert names <= pinned
+
+
+def test_actions_of_others_are_pinned_by_digest_with_their_version() -> None:
+    files = [*ROOT.glob(".github/workflows/*.yml"), *ROOT.glob(".github/actions/*/*.yml")]
+    used = [use for path in files for use in re.findall(r"uses: (\S.*)", path.read_text("utf-8"))]
+    assert len(used) > 20
+    for use in used:
+        assert use.startswith("./") or re.fullmatch(r"\S+@[0-9a-f]{40} # v\d+\.\d+\.\d+", use)
