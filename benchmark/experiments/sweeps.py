@@ -12,8 +12,7 @@ from benchmark.results.row_file import Row
 from benchmark.running.experiment import Recorded
 from benchmark.sweeps.measure import Task, measure
 from benchmark.sweeps.plan import SERIES, Planned, planned
-from benchmark.sweeps.points import Point
-from benchmark.sweeps.record import RECORD, point_of
+from benchmark.sweeps.record import RECORD, Point, point_of
 
 #: Modules between series and methods.
 _CODE = ("algorithms.pipeline", "benchmark.metrics.score", "benchmark.sweeps.measure")
