@@ -10,7 +10,6 @@ from typing import Any, cast
 
 from algorithms.chain import Scored
 from algorithms.contract import Extractor
-from benchmark.canonical import digest
 from benchmark.contract import Cell
 from benchmark.datasets.preset import Preset
 from benchmark.error_budget.measure import held
@@ -18,7 +17,7 @@ from benchmark.error_budget.record import RECORD, SCORE
 from benchmark.metrics.ranking import order
 from benchmark.metrics.score import stored
 from benchmark.results.components import current
-from benchmark.results.digests import modules_digest
+from benchmark.results.digests import modules_digest, short_digest
 from benchmark.results.row_file import Row
 from benchmark.results.store import Store
 from benchmark.running.experiment import Recorded
@@ -35,7 +34,6 @@ _CODE = (
     "benchmark.error_budget.perfected",
     "benchmark.metrics.score",
 )
-_DIGITS = 16
 #: Less is none: another machine's rounding, and where iterations stop.
 _NOTHING_DEG = 1e-6
 #: Data set, extractor, model.
@@ -72,7 +70,7 @@ class ErrorBudget(Recorded[str]):
         ]
         components, code = current(self.parts.only(cells)), modules_digest(*_CODE)
         return {
-            cell.dataset: digest(
+            cell.dataset: short_digest(
                 [
                     code,
                     *(self.leading[cell.dataset][column] for column in SCORE),
@@ -80,7 +78,7 @@ class ErrorBudget(Recorded[str]):
                     components.digest("extractors", cell.extractor),
                     components.digest("models", cell.model),
                 ]
-            )[:_DIGITS]
+            )
             for cell in cells
         }
 

@@ -6,14 +6,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby
 
-from benchmark.canonical import digest
 from benchmark.contract import Cell
 from benchmark.learning_curves.leaders import Leader, leaders
 from benchmark.learning_curves.measure import Task, measure
 from benchmark.learning_curves.outcome import row_of
 from benchmark.learning_curves.record import RECORD
 from benchmark.results.components import current
-from benchmark.results.digests import modules_digest
+from benchmark.results.digests import modules_digest, short_digest
 from benchmark.results.row_file import Row
 from benchmark.results.store import Store
 from benchmark.running.experiment import Recorded
@@ -31,7 +30,6 @@ _CODE = (
     "benchmark.learning_curves.outcome",
     "benchmark.metrics.score",
 )
-_DIGITS = 16
 
 
 class LearningCurves(Recorded[Leader]):
@@ -57,7 +55,7 @@ class LearningCurves(Recorded[Leader]):
         components = current(self.parts.only(_cell(leader) for leader in wanted))
         code = modules_digest(*_CODE)
         return {
-            leader: digest(
+            leader: short_digest(
                 [
                     code,
                     leader.condition,
@@ -65,7 +63,7 @@ class LearningCurves(Recorded[Leader]):
                     components.digest("extractors", leader.extractor),
                     components.digest("models", leader.model),
                 ]
-            )[:_DIGITS]
+            )
             for leader in wanted
         }
 

@@ -6,19 +6,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby
 
-from benchmark.canonical import digest
 from benchmark.results.components import current
-from benchmark.results.digests import modules_digest, series_digest
+from benchmark.results.digests import modules_digest, series_digest, short_digest
 from benchmark.results.row_file import Row
 from benchmark.running.experiment import Recorded
 from benchmark.sweeps.measure import Task, measure
 from benchmark.sweeps.plan import SERIES, Planned, planned
-from benchmark.sweeps.points import Point
-from benchmark.sweeps.record import RECORD, point_of
+from benchmark.sweeps.record import RECORD, Point, point_of
 
 #: Modules between series and methods.
 _CODE = ("algorithms.pipeline", "benchmark.metrics.score", "benchmark.sweeps.measure")
-_DIGITS = 16
 
 
 def series_digests() -> dict[str, str]:
@@ -42,13 +39,13 @@ class Sweeps(Recorded[Point]):
         code, series = modules_digest(*_CODE), series_digests()
         extractors = current(self.parts.of_extractors())
         return {
-            point: digest(
+            point: short_digest(
                 [
                     code,
                     series.get(point.series, ""),
                     extractors.digest("extractors", point.extractor),
                 ]
-            )[:_DIGITS]
+            )
             for point in sorted({*self.plan.settings, *self.plan.refused})
         }
 

@@ -43,7 +43,7 @@ def dataset_digest(preset: Preset) -> str:
     code = closure_digest(*modules_of(preset))
     if (known := _known.get(id(preset))) and known[0]() is preset and known[1] == code:
         return known[2]
-    found = _component(
+    found = short_digest(
         {
             "dataset": preset.name,
             "version": preset.version,
@@ -57,13 +57,13 @@ def dataset_digest(preset: Preset) -> str:
 
 def series_digest(series: object) -> str:
     """Digest of a series of synthetic features: of what it holds, and of the code of it all."""
-    return _component({"holds": series, "code": closure_digest(*modules_of(series))})
+    return short_digest({"holds": series, "code": closure_digest(*modules_of(series))})
 
 
 def method_digest(method: type[Extractor] | Scored) -> str:
     """Digest of an implementation: its name, its version, the code it reaches."""
     modules = method.modules if isinstance(method, Chain) else (method.__module__,)
-    return _component(
+    return short_digest(
         {
             "name": method.about.name,
             "version": method.about.version,
@@ -85,7 +85,7 @@ def modules_digest(*names: str) -> str:
     FileNotFoundError
         When one of them has no source file.
     """
-    return _component([_syntax(name) for name in names])
+    return short_digest([_syntax(name) for name in names])
 
 
 def _syntax(module: str) -> str:
@@ -95,7 +95,8 @@ def _syntax(module: str) -> str:
     return syntax_digest(path)
 
 
-def _component(value: object) -> str:
+def short_digest(value: object) -> str:
+    """Digest of a value in as many digits as a component's has."""
     return digest(value)[:_COMPONENT_DIGITS]
 
 

@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, TypeVar
 
 from benchmark.results import recorded
 from benchmark.results.store import PUBLISHED
@@ -18,26 +18,6 @@ from files.strict_json import read_json, require_members, require_type
 Row = dict[str, Any]
 #: What a row is of: hashable and ordered.
 C = TypeVar("C")
-
-
-class Record(Protocol[C]):
-    """Where an experiment keeps its rows."""
-
-    @property
-    def name(self) -> str:
-        """Return the name of the file, in the folder of a record."""
-
-    def read(self, directory: Path | str = PUBLISHED) -> dict[C, Row]:
-        """Return rows by cell, in order; none where there is no file.
-
-        Raises
-        ------
-        StoreError
-            For a file that holds anything else; the message names the row.
-        """
-
-    def write(self, rows: Mapping[C, Row], directory: Path | str = PUBLISHED) -> bool:
-        """Write the file, whole or not at all; True when it changed."""
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ from typing import Any, ClassVar, Generic
 from benchmark.contract import UnknownNameError
 from benchmark.plan.parts import Parts, installed
 from benchmark.progress import ProgressCallback, terminal_progress
-from benchmark.results.row_file import C, Record, Row
+from benchmark.results.row_file import C, Row, RowFile, TableFile
 from benchmark.results.store import PUBLISHED
 from files.locks import lock_or_refuse
 
@@ -103,7 +103,7 @@ class Recorded(Experiment[C]):
         The file.
     """
 
-    record: ClassVar[Record[Any]]
+    record: ClassVar[RowFile[Any] | TableFile[Any]]
 
     @abstractmethod
     def keys(self) -> Mapping[C, str]:
