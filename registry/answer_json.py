@@ -19,7 +19,7 @@ from registry.contradiction import against_literature, regret_words
 from registry.design_arrays import design_arrays
 from registry.designs import DesignTable
 from registry.judging import Question, advice_for
-from registry.path_arrays import path_arrays, unpacked
+from registry.path_arrays import MOST_SETS, StudySets, path_arrays, unpacked
 from registry.paths import PATH_LEVELS, path_table
 from registry.pipelines import PipelineErrors
 from registry.ranking import TaskMeasure, support
@@ -50,6 +50,7 @@ class AnswerTexts:
         self._left_out = encoded([left.to_dict() for left in self._table.left_out])
         self._places = table.places
         self._studies = lru_cache(MOST_TEXTS)(self._studies_text)
+        self._behind = lru_cache(MOST_SETS)(self._behind_text)
         self._path = lru_cache(MOST_TEXTS)(self._path_text)
         self._node = lru_cache(MOST_TEXTS)(self._node_text)
         self._link = lru_cache(MOST_TEXTS)(self._link_text)
@@ -83,10 +84,7 @@ class AnswerTexts:
             *(b'],"contradictions":', encoded(answer.contradictions), b',"regret":'),
             encoded(None if regret is None else regret.to_dict(regret_words(regret))),
             *(b',"untried":', encoded(untried), b',"untimed":%d' % answer.untimed),
-            *(b',"paths":[', b",".join(map(self._path, sets.paths))),
-            *(b'],"nodes":[', b",".join(map(self._node, sets.nodes))),
-            *(b'],"links":[', b",".join(map(self._link, sets.links))),
-            *(b'],"left_out":', self._left_out),
+            *(b',"paths":[', self._behind(sets), b'],"left_out":', self._left_out),
             *(b',"blocked":', encoded(None if blocked is None else blocked.to_dict()), b"}"),
         ]
 
@@ -114,9 +112,11 @@ class AnswerTexts:
             of_shown: list[bytes] = []
             for at, design in enumerate((place.best_at, *shown)):
                 row = rows[design]
-                within = units[first_row[design] : first_row[design + 1]]
-                counted = studies if row >= 0 else stated
-                text = calibration(design, row, counted, studies, errors, finest, within)
+                if row < 0:
+                    text = calibration(design, row, stated, studies, None, -1, b"")
+                else:
+                    within = units[first_row[design] : first_row[design + 1]]
+                    text = calibration(design, row, studies, studies, errors, finest, within)
                 of_shown += (
                     b',{"rank":%d' % (at or answer.rank_of_best(place)),
                     text,
@@ -198,7 +198,7 @@ class AnswerTexts:
         row: int,
         studies: int,
         of_place: int,
-        errors: PipelineErrors,
+        errors: PipelineErrors | None,
         finer: int,
         units_within: bytes,
     ) -> bytes:
@@ -209,7 +209,8 @@ class AnswerTexts:
         design, row : its position, and that of its best pipeline; -1 for none
         studies : studies of its architecture that count (bits)
         of_place : studies of its architecture with what is asked of studies (bits)
-        errors, finer, units_within : as `PipelineErrors.document` takes them, of all its pipelines
+        errors, finer, units_within : as `PipelineErrors.document` takes them, of all its
+            pipelines; errors are None for none
         """
         of = self.arrays.designs[design]
         with_model, taken = of.with_model & studies, of.taken & studies
@@ -233,10 +234,10 @@ class AnswerTexts:
         return b',%b,"studies":[' % encoded(members)[1:-1]
 
     def _measured_text(
-        self, design: int, row: int, errors: PipelineErrors, finer: int, units_within: bytes
+        self, design: int, row: int, errors: PipelineErrors | None, finer: int, units_within: bytes
     ) -> bytes:
         """Return the best pipeline of a calibration, and its best on each other data set."""
-        if row < 0:
+        if errors is None:
             return b'null,"other_datasets":[]'
         arrays, first = self.arrays, self.arrays.first_row[design]
         others: dict[str, int] = {}
@@ -260,6 +261,14 @@ class AnswerTexts:
     def _studies_text(self, studies: int) -> bytes:
         """Return the keys of studies (bits), with commas between them."""
         return encoded(self._table.studies(studies))[1:-1]
+
+    def _behind_text(self, sets: StudySets) -> bytes:
+        """Return paths, nodes and links."""
+        texts = (
+            b",".join(map(text, packed))
+            for text, packed in zip((self._path, self._node, self._link), sets, strict=True)
+        )
+        return b'%b],"nodes":[%b],"links":[%b' % tuple(texts)
 
     def _path_text(self, packed: bytes) -> bytes:
         at, studies = unpacked(packed)

@@ -52,6 +52,7 @@ class PathArrays:
         self.arrays = arrays
         self._size = len(table.paths)
         self._among = lru_cache(MOST_SETS)(self._studies_among)
+        self._sets = lru_cache(MOST_SETS)(self._present)
         self._studies = arrays.words_of(table.sets)
         # Paths that lead to each design, as bits.
         leading = [sum(1 << at for at in table.of(d)) if d.taken else 0 for d in arrays.designs]
@@ -87,8 +88,8 @@ class PathArrays:
                 (question.meeting & measured, question.studies),
                 (question.meeting & ~measured, question.all_stated),
             ]
-        studies = [self._among(of) * (self._led_to(designs) & among) for designs, of in parts]
-        return self._present(studies[0] if len(studies) == 1 else studies[0] | studies[1])
+        led = [((self._led_to(designs) & among).tobytes(), of) for designs, of in parts]
+        return self._sets(tuple(led))
 
     def _led_to(self, designs: Flags) -> Flags:
         """Return the paths that lead to one of some designs."""
@@ -109,15 +110,23 @@ class PathArrays:
         """Return those of some studies (bits) that took each path."""
         return self._studies & self.arrays.words_of([studies])
 
-    def _present(self, studies: Words) -> StudySets:
-        """Return the sets that are not empty; `studies` is of paths, shape (words, paths)."""
+    def _present(self, led: tuple[tuple[bytes, int], ...]) -> StudySets:
+        """Return the sets that are not empty.
+
+        Parameters
+        ----------
+        led : flags of the paths that designs lead to, and the studies (bits) that count on them
+        """
+        found = [self._among(of) * np.frombuffer(flags, bool) for flags, of in led]
+        studies = np.bitwise_or.reduce(found, axis=0)
         words = np.bitwise_or.reduceat(studies.take(self._paths, axis=1), self._starts, axis=1)
         at = np.bitwise_or.reduce(words, axis=0).nonzero()[0]
         rows = self._packed.take(at, axis=0)
         rows[:, 1:] = words.take(at, axis=1).T
         sets = rows.view(f"V{rows.itemsize * rows.shape[1]}").ravel().tolist()
         first_node, first_link = at.searchsorted(self._firsts).tolist()
-        return StudySets(sets[:first_node], sets[first_node:first_link], sets[first_link:])
+        parts = (sets[:first_node], sets[first_node:first_link], sets[first_link:])
+        return StudySets(*map(tuple, parts))
 
 
 def unpacked(packed: bytes) -> tuple[int, int]:
