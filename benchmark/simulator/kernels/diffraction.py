@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from benchmark.simulator.kernels.fresnel import cubic_shares
 
 Four = tuple[float, float, float, float]
 Rays = tuple[float, float, float]
@@ -21,18 +22,6 @@ Singles = NDArray[np.float32]
 
 #: Points that are looked up together.
 _W = 16
-
-
-@compiled
-def _shares(fraction: float) -> Four:
-    """Weights of the four nodes -1, 0, 1, 2 in Lagrange's cubic through them."""
-    t = fraction
-    return (
-        -t * (t - 1.0) * (t - 2.0) / 6.0,
-        (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0,
-        -(t + 1.0) * t * (t - 2.0) / 2.0,
-        (t + 1.0) * t * (t - 1.0) / 6.0,
-    )
 
 
 @compiled
@@ -48,7 +37,7 @@ def _blended(out: Floats, tables: Floats, place: float, slope: float) -> None:
         seen = row if there >= 0.0 else out.shape[0] - 1 - row
         here = min(abs(there), last)
         first = min(max(int(here), 1), tables.shape[0] - 3)
-        a, b, c, d = _shares(here - first)
+        a, b, c, d = cubic_shares(here - first)
         one, two = tables[first - 1], tables[first]
         three, four = tables[first + 1], tables[first + 2]
         for column in range(out.shape[1]):
@@ -65,9 +54,10 @@ def _look(work: Floats, y: float, weight: float, way: Floats, last: int) -> None
     """Find where tables hold the light at points of a line, and with which weights.
 
     `work` (13 W,) has first the points' x from the aperture; it is given the places' rows and
-    columns, weights of four rows and of four columns (`_shares`), a factor of the light and by how
-    much it falls beyond the table, with the cube of the distance, as Airy's envelope does. `last`
-    column of the table. Nothing is decided point by point: the compiler takes several at a time.
+    columns, weights of four rows and of four columns (`cubic_shares`), a factor of the light and by
+    how much it falls beyond the table, with the cube of the distance, as Airy's envelope does.
+    `last` column of the table. Nothing is decided point by point: the compiler takes several at a
+    time.
     """
     e, f, chief, row_step, column_step = way[0], way[1], way[2], way[3], way[4]
     c0, c1, c2, c3, c4 = way[5], way[6], way[7], way[8], way[9]

@@ -11,24 +11,10 @@ import numpy as np
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from benchmark.simulator.kernels.fresnel import cubic_shares
 
 Complex = tuple[float, float]
 Four = tuple[float, float, float, float]
-
-
-@compiled
-def _shares(fraction: float) -> Four:
-    """Weights of the four nodes -1, 0, 1, 2 in Lagrange's cubic, as `diffraction.shares`.
-
-    A copy: kernels call only their own file (see `compiled`).
-    """
-    t = fraction
-    return (
-        -t * (t - 1.0) * (t - 2.0) / 6.0,
-        (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0,
-        -(t + 1.0) * t * (t - 2.0) / 2.0,
-        (t + 1.0) * t * (t - 1.0) / 6.0,
-    )
 
 
 @compiled
@@ -38,7 +24,7 @@ def _corners(patches: Floats, tables: Floats, places: Complex) -> None:
     patches[:] = 0.0
     first = min(max(int(places[0]), 1), nodes - 3)
     other = min(max(int(places[1]), 1), nodes - 3)
-    outer, inner = _shares(places[0] - first), _shares(places[1] - other)
+    outer, inner = cubic_shares(places[0] - first), cubic_shares(places[1] - other)
     size = tables.shape[3]
     for i in range(4):
         for j in range(4):

@@ -11,6 +11,7 @@ import numpy as np
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from benchmark.simulator.kernels.fresnel import cubic_shares
 
 Four = tuple[float, float, float, float]
 
@@ -172,18 +173,6 @@ def turned(cosines: Floats, sines: Floats, argument: Floats) -> None:
 
 
 @compiled
-def _shares(fraction: float) -> Four:
-    """Weights of the four nodes -1, 0, 1, 2 in Lagrange's cubic through them."""
-    t = fraction
-    return (
-        -t * (t - 1.0) * (t - 2.0) / 6.0,
-        (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0,
-        -(t + 1.0) * t * (t - 2.0) / 2.0,
-        (t + 1.0) * t * (t - 1.0) / 6.0,
-    )
-
-
-@compiled
 def stencil(shifts: Floats, weights: Floats, cell: tuple[Floats, Floats], margin: int) -> Floats:
     """Weights (2 margin + 1, 2 margin + 1) of a grid's values around a node, by cubics.
 
@@ -198,8 +187,8 @@ def stencil(shifts: Floats, weights: Floats, cell: tuple[Floats, Floats], margin
             x, y = shifts[k, 0] + places[m, 0], shifts[k, 1] + places[m, 1]
             first, second = math.floor(-x), math.floor(-y)
             weight = weights[k] * shares[m]
-            a, b, c, d = _shares(-x - first)
-            e, f, g, h = _shares(-y - second)
+            a, b, c, d = cubic_shares(-x - first)
+            e, f, g, h = cubic_shares(-y - second)
             row, column = margin + first - 1, margin + second - 1
             for i, share in enumerate((a, b, c, d)):
                 line = found[row + i]

@@ -11,6 +11,7 @@ import numpy as np
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from benchmark.simulator.kernels.fresnel import cubic_shares
 
 Complex = tuple[float, float]
 Four = tuple[float, float, float, float]
@@ -19,21 +20,6 @@ Three = tuple[float, float, float]
 #: bend adds, and edges at two depths (`slit_integrals`); the first row's Fresnel number, rows a
 #: unit of it, and steps a half width.
 Slits = tuple[Floats, float, float, float]
-
-
-@compiled
-def _shares(fraction: float) -> Four:
-    """Weights of the four nodes -1, 0, 1, 2 in Lagrange's cubic, as `diffraction.shares`.
-
-    A copy: kernels call only their own file (see `compiled`).
-    """
-    t = fraction
-    return (
-        -t * (t - 1.0) * (t - 2.0) / 6.0,
-        (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0,
-        -(t + 1.0) * t * (t - 2.0) / 2.0,
-        (t + 1.0) * t * (t - 1.0) / 6.0,
-    )
 
 
 @compiled
@@ -47,7 +33,7 @@ def _blended_row(out: Floats, slits: Slits, number: float, shares: Three) -> Non
     sums, soft, bent, apart = both[0], both[1], both[2], both[3]
     place = min(max((number - first_number) * per_row, 0.0), sums.shape[0] - 1.0)
     first = min(max(int(place), 1), sums.shape[0] - 3)
-    a, b, c, d = _shares(place - first)
+    a, b, c, d = cubic_shares(place - first)
     middle = out.shape[0] // 2
     one, two, three, four = sums[first - 1], sums[first], sums[first + 1], sums[first + 2]
     for i in range(middle + 1):
@@ -208,8 +194,8 @@ def _cubic(table: Floats, x: float, y: float) -> float:
     column, row = math.floor(x), math.floor(y)
     if column < 1 or row < 1 or column > table.shape[1] - 3 or row > table.shape[0] - 3:
         return 0.0
-    a, b, c, d = _shares(x - column)
-    shares = _shares(y - row)
+    a, b, c, d = cubic_shares(x - column)
+    shares = cubic_shares(y - row)
     total = 0.0
     for i in range(4):
         line = table[row - 1 + i]

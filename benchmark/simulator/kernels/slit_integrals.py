@@ -11,56 +11,13 @@ import numpy as np
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from benchmark.simulator.kernels.fresnel import Table, fresnel
 
 Complex = tuple[float, float]
 Four = tuple[float, float, float, float]
-#: (2, M) auxiliary functions of the Fresnel integrals from -1 step on, and steps a unit.
-Table = tuple[Floats, float]
 #: Half waves from an edge at which its terms of first order fade out: fringes further out have
 #: turned by more than they describe, and neither Sun nor colours leave any.
 _SKEWED = 8.0
-
-
-@compiled
-def _shares(fraction: float) -> Four:
-    """Weights of the four nodes -1, 0, 1, 2 in Lagrange's cubic, as `diffraction.shares`.
-
-    A copy: kernels call only their own file (see `compiled`).
-    """
-    t = fraction
-    return (
-        -t * (t - 1.0) * (t - 2.0) / 6.0,
-        (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0,
-        -(t + 1.0) * t * (t - 2.0) / 2.0,
-        (t + 1.0) * t * (t - 1.0) / 6.0,
-    )
-
-
-@compiled
-def _fresnel(u: float, table: Table) -> Complex:
-    """Fresnel's C and S of u by their smooth auxiliary functions f and g.
-
-    Beyond the table the asymptotic series is used.
-    """
-    auxiliary, per_unit = table
-    size = abs(u)
-    place = size * per_unit + 1.0
-    if place < auxiliary.shape[1] - 3.0:
-        first = int(place)
-        a, b, c, d = _shares(place - first)
-        line = auxiliary[0]
-        f = a * line[first - 1] + b * line[first] + c * line[first + 1] + d * line[first + 2]
-        line = auxiliary[1]
-        g = a * line[first - 1] + b * line[first] + c * line[first + 1] + d * line[first + 2]
-    else:
-        q = 1.0 / (math.pi * size * size) ** 2
-        f = (1.0 - 3.0 * q) / (math.pi * size)
-        g = (1.0 - 15.0 * q) / (math.pi * math.pi * size * size * size)
-    phase = math.pi / 2.0 * size * size
-    sine, cosine = math.sin(phase), math.cos(phase)
-    re = 0.5 + f * sine - g * cosine
-    im = 0.5 - f * cosine - g * sine
-    return (re, im) if u >= 0.0 else (-re, -im)
 
 
 @compiled
@@ -71,8 +28,8 @@ def _slit(position: float, number: float, softness: float, table: Table) -> floa
     `softness` moves both edges inwards by an imaginary length, in the Fresnel integrals' unit.
     """
     root = math.sqrt(2.0 * number)
-    re, im = _fresnel(root * (position + 1.0), table)
-    other_re, other_im = _fresnel(root * (position - 1.0), table)
+    re, im, _, _ = fresnel(root * (position + 1.0), table)
+    other_re, other_im, _, _ = fresnel(root * (position - 1.0), table)
     re, im = re - other_re, im - other_im
     if softness > 0.0:
         # each edge adds -i softness exp(i pi w^2 / 2)
@@ -100,7 +57,7 @@ def running_integrals(
     softness
         Of the edges, as of `_slit`.
     table
-        For `_fresnel`.
+        For `fresnel`.
     """
     profile = np.empty(sums.shape[1] + 2)
     for row in range(sums.shape[0]):
@@ -121,8 +78,8 @@ def _skew(position: float, number: float, table: Table) -> Complex:
     """
     root = math.sqrt(2.0 * number)
     first, second = position + 1.0, position - 1.0
-    re, im = _fresnel(root * first, table)
-    other_re, other_im = _fresnel(root * second, table)
+    re, im, _, _ = fresnel(root * first, table)
+    other_re, other_im, _, _ = fresnel(root * second, table)
     re, im = (re - other_re) / root, (im - other_im) / root
     bent_re, bent_im, apart_re, apart_im = 0.0, 0.0, 0.0, 0.0
     for side, rho in ((1.0, first), (-1.0, second)):

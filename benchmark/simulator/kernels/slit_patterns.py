@@ -13,43 +13,14 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from benchmark.simulator.kernels.fresnel import Table, fresnel
 
 Pair = tuple[float, float]
 Four = tuple[float, float, float, float]
-#: (2, M) auxiliary functions of the Fresnel integrals from -1 step on, and steps a unit.
-Table = tuple[Floats, float]
 
 #: Values a period of the finest fringe, but so many a half width at least; widths of an edge
 #: outside a shadow that are computed, beyond which light falls with the square of the distance.
 _FINE, _COARSEST, _OUTSIDE = 4.0, 8, 4.5
-
-
-@compiled
-def _fresnel(u: float, table: Table) -> Four:
-    """Fresnel's C and S of u by their smooth auxiliary functions, and ``exp(i pi u^2 / 2)``.
-
-    As in `diffraction_slits`: kernels call only their own file (see `compiled`).
-    """
-    auxiliary, per_unit = table
-    size = abs(u)
-    place = size * per_unit + 1.0
-    if place < auxiliary.shape[1] - 3.0:
-        first = int(place)
-        t = place - first
-        a, b = -t * (t - 1.0) * (t - 2.0) / 6.0, (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0
-        c, d = -(t + 1.0) * t * (t - 2.0) / 2.0, (t + 1.0) * t * (t - 1.0) / 6.0
-        line = auxiliary[0]
-        f = a * line[first - 1] + b * line[first] + c * line[first + 1] + d * line[first + 2]
-        line = auxiliary[1]
-        g = a * line[first - 1] + b * line[first] + c * line[first + 1] + d * line[first + 2]
-    else:
-        q = 1.0 / (math.pi * size * size) ** 2
-        f = (1.0 - 3.0 * q) / (math.pi * size)
-        g = (1.0 - 15.0 * q) / (math.pi * math.pi * size * size * size)
-    phase = math.pi / 2.0 * size * size
-    sine, cosine = math.sin(phase), math.cos(phase)
-    re, im = 0.5 + f * sine - g * cosine, 0.5 - f * cosine - g * sine
-    return (re, im, cosine, sine) if u >= 0.0 else (-re, -im, cosine, sine)
 
 
 @compiled
@@ -63,7 +34,7 @@ def _rim(foil: float, apart: float, wavelength: float, table: Table) -> Pair:
         return 0.0, 0.0
     size = math.sqrt(wavelength * foil)
     u = apart * math.sqrt(2.0) / size
-    c, s, cosine, sine = _fresnel(u, table)
+    c, s, cosine, sine = fresnel(u, table)
     # (i / pi) exp(i pi u^2 / 2) - u ((1 + i) / 2 - F(u)), turned by -45 deg
     re, im = -sine / math.pi - u * (0.5 - c), cosine / math.pi - u * (0.5 - s)
     half = size / 2.0 / math.sqrt(2.0)
@@ -87,7 +58,7 @@ def _intensity(light: Floats, spread: Four, steps: int, spectrum: Floats, table:
         for i in range(parts.shape[1]):
             place = (i - reach) / steps
             u = unit * place * (1.0 + cubic * place)
-            here = _fresnel(u, table)
+            here = fresnel(u, table)
             for k in range(4):
                 parts[k, i] = here[k]
             parts[4, i] = u
