@@ -110,8 +110,7 @@ faults-load: $(COMPILED) ## 20 mixed requests a second on the service for MINUTE
 
 leaderboard: $(SERVING) ## bring scores and leaderboard up to date with code and data
 	$(BIN)/sunatlas leaderboard update --workers $(WORKERS)
-	$(BIN)/python -m benchmark.leaderboard.holding --workers $(WORKERS)
-	$(BIN)/python -m benchmark.curves benchmark/published $(WORKERS)
+	$(BIN)/python -m benchmark.experiments --workers $(WORKERS)
 	$(BIN)/python -m api.pictures --publish
 
 docs: $(DEVELOPING) ## regenerate the generated parts of docs/

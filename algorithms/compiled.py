@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core.registry import CPUDispatcher
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
@@ -16,10 +17,30 @@ def compiled(function: Kernel) -> Kernel:
     Arithmetic is neither reordered nor contracted (``fastmath`` off), so a frame gives the same
     numbers alone, in a batch and on every run. The machine code is cached beside the source, else
     in the user's cache directory; where neither can be written, it is compiled in each process.
-    Numba does not notice a change in a kernel of another file: kernels call only their own file.
+    A kernel may call kernels that its module imports: it is compiled again when their files change.
+    Numbers that a module imports from another one do not count.
     """
     try:
         kernel = numba.njit(cache=True, nogil=True, fastmath=False)(function)
     except RuntimeError:  # Numba: "cannot cache function: no locator available"
-        kernel = numba.njit(cache=False, nogil=True, fastmath=False)(function)
+        return cast("Kernel", numba.njit(cache=False, nogil=True, fastmath=False)(function))
+    index = _index(kernel)
+    stamps = {
+        other.py_func.__module__: _index(other)._source_stamp for other in _imported(function)
+    }
+    index._source_stamp = (index._source_stamp, stamps)
     return cast("Kernel", kernel)
+
+
+def _imported(function: Callable[..., Any]) -> list[Any]:
+    """Kernels of other modules among the names that a kernel can call."""
+    values = function.__globals__.values()
+    kernels = [value for value in values if isinstance(value, CPUDispatcher)]
+    return [kernel for kernel in kernels if kernel.py_func.__module__ != function.__module__]
+
+
+# Numba stamps machine code with its kernel's own file alone, and has no public way to add to that.
+# ruff: noqa: SLF001
+def _index(kernel: Any) -> Any:
+    """Index of a kernel's machine code on disk, which is stale where the stamps differ."""
+    return kernel._cache._cache_file

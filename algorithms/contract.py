@@ -94,11 +94,11 @@ class Extractor(Protocol):
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
         """Return the extractor with the parameters this sensor's design asks for.
 
-        By default those of the published method, whatever the sensor. UnsuitableDesignError where
-        it does not read sensors of this design, or where a field it needs is None.
+        By default those that the design has under the same names, of what ``about.needs`` names;
+        all others are the published method's. UnsuitableDesignError where it does not read sensors
+        of this design, or where a field it needs is None.
         """
-        geometry.require(*cls.about.needs, by=cls.about.name)
-        return cls()
+        return cls(**_drawn(cls, geometry))
 
     @abstractmethod
     def extract(self, observations: ArrayLike) -> Floats:
@@ -126,11 +126,11 @@ class Compensation(Protocol):
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the unfitted stage for this sensor's design and this kind of features.
 
-        UnsuitableDesignError where `kind` is not accepted or a field it takes is None.
+        Parameters as `Extractor.for_sensor` has them. UnsuitableDesignError where `kind` is not
+        accepted or a field it takes is None.
         """
         cls.about.require_kind(kind)
-        geometry.require(*cls.about.needs, by=cls.about.name)
-        return cls()
+        return cls(**_drawn(cls, geometry))
 
     @abstractmethod
     def fit(self, features: ArrayLike, sun: ArrayLike, context: Context | None = None) -> Self:
@@ -161,12 +161,11 @@ class Model(Protocol):
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the unfitted model for this sensor's design and this kind of features.
 
-        By default the published model, whatever the sensor. UnsuitableDesignError where `kind` is
-        not accepted or a field it takes is None.
+        Parameters as `Extractor.for_sensor` has them. UnsuitableDesignError where `kind` is not
+        accepted or a field it takes is None.
         """
         cls.about.require_kind(kind)
-        geometry.require(*cls.about.needs, by=cls.about.name)
-        return cls()
+        return cls(**_drawn(cls, geometry))
 
     @abstractmethod
     def fit(self, features: ArrayLike, sun: ArrayLike, context: Context | None = None) -> Self:
@@ -181,6 +180,14 @@ class Model(Protocol):
     def predict(self, features: ArrayLike, context: Context | None = None) -> Floats:
         """(N, 3) unit vectors; NaN rows where undefined. NotFittedError before fit."""
         ...
+
+
+def _drawn(implementation: Any, geometry: SensorGeometry) -> dict[str, Any]:
+    """Return the parameters that the design has under the same names, of those needed."""
+    about = implementation.about
+    geometry.require(*about.needs, by=about.name)
+    given = {field.name for field in dataclasses.fields(implementation) if field.init}
+    return {name: getattr(geometry, name) for name in about.needs if name in given}
 
 
 def parameters(implementation: Extractor | Compensation | Model) -> dict[str, Any]:

@@ -7,22 +7,19 @@ from collections.abc import Callable, Sequence
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
-from registry.designs import Kept
-from registry.judging import KeptPlace
+from registry.designs import Candidate
 from registry.ranking import Regret
 from registry.taxonomy import NO_IMPLEMENTATION_STATED as NONE
 
 if TYPE_CHECKING:
-    from registry.ranked_designs import RankedPlace
+    from registry.answer import Answer, RankedPlace
+    from registry.pipelines import Numbers
 
 LEAST_RATIO = 1.1
 """Errors nearer to each other than this contradict nothing."""
 
 #: How methods begin that take signals as they are, and what that is called.
 _DIRECT, _AS_READ = "direct", "no extraction"
-
-Reached = tuple[float, int]
-"""A number reached on an architecture, infinite where none is, and the position of the design."""
 
 
 def calibration_words(extractor: str, stages: Sequence[str], run_by: str | None) -> str:
@@ -36,37 +33,34 @@ def calibration_words(extractor: str, stages: Sequence[str], run_by: str | None)
     return " > ".join((extractor, *("no model" if stage == NONE else stage for stage in stages)))
 
 
-def design_words(kept: Kept) -> str:
-    """Return a calibration that is kept in words."""
-    run_by = None if kept.row is None else kept.row.extractor
-    return calibration_words(kept.design.extractor, kept.design.stages, run_by)
+def design_words(candidate: Candidate) -> str:
+    """Return a calibration in words."""
+    run_by = None if candidate.row is None else candidate.row.extractor
+    design = candidate.design
+    return calibration_words(design.extractor, design.stages, run_by)
 
 
-def against_literature(place: KeptPlace, usual: Kept | None) -> str | None:
-    """Say that what most studies stand for on an architecture is not what errs least there.
+def against_literature(usual: Candidate, used: int, best: Candidate, tried: int) -> str | None:
+    """Say that the calibration that most studies used is not the one with the smallest error.
 
     Parameters
     ----------
-    place : KeptPlace
-    usual : Kept
-        Of its measured calibrations the one that most studies stand for; None for none.
+    usual, used
+        The measured calibration that most studies used on an architecture, and how many did.
+    best, tried
+        The one with the smallest error there, and how many studies used that.
     """
-    best = place.best
-    if usual is None or not math.isfinite(best.error_deg):
+    if not math.isfinite(best.error_deg) or usual.error_deg < LEAST_RATIO * best.error_deg:
         return None
-    if usual.error_deg < LEAST_RATIO * best.error_deg:
-        return None
-    many = place.taken(usual).bit_count()
-    who = f"{many} {'studies stand' if many > 1 else 'study stands'} for {design_words(usual)}"
-    others = place.taken(best).bit_count()
-    tried = f"{others} {'studies' if others > 1 else 'study'}" if others else "no study"
+    who = f"{used} {'studies stand' if used > 1 else 'study stands'} for {design_words(usual)}"
+    others = f"{tried} {'studies' if tried > 1 else 'study'}" if tried else "no study"
     return (
-        f"{who}, measured {_error(usual)}; {design_words(best)}, which {tried} stands for, "
+        f"{who}, measured {_error(usual)}; {design_words(best)}, which {others} stands for, "
         f"reaches {_error(best)}{_times(usual, best)}"
     )
 
 
-def against_advice(places: Sequence[RankedPlace], tasks: Sequence[str]) -> tuple[str, ...]:
+def against_advice(answer: Answer, tasks: Sequence[str]) -> tuple[str, ...]:
     """Say where an architecture that is not advised does better at a task than those advised.
 
     Of the tasks, accuracy, precision and field of view are measured here: by the error over the
@@ -74,31 +68,33 @@ def against_advice(places: Sequence[RankedPlace], tasks: Sequence[str]) -> tuple
 
     Parameters
     ----------
-    places : sequence of RankedPlace
+    answer : Answer
     tasks : sequence of str
         Those asked for; none means all.
     """
     found = []
-    for task, reached, unit in _MEASURED:
+    places = answer.places
+    for task, values_of, scale, unit in _MEASURED:
         if tasks and task not in tasks:
             continue
-        advised = [place for place in places if task in place.advised_tasks]
+        advised = [at for at, place in enumerate(places) if task in place.advised_tasks]
         if not advised or len(advised) == len(places):
             continue
-        others = [place for place in places if task not in place.advised_tasks]
-        of_advised, of_others = ([reached(at)[0] for at in side] for side in (advised, others))
-        mine, theirs = min(of_advised), min(of_others)
+        others = [at for at, place in enumerate(places) if task not in place.advised_tasks]
+        values = values_of(answer)
+        reached = [scale * number for number in answer.reached(values)]
+        first, other = (min(side, key=reached.__getitem__) for side in (advised, others))
+        mine, theirs = reached[first], reached[other]
         if math.isinf(mine) or mine <= theirs or abs(mine) == abs(theirs):
             continue
         ratio = mine / theirs if mine > 0 else theirs / mine
         if ratio < LEAST_RATIO:
             continue
-        first, other = advised[of_advised.index(mine)], others[of_others.index(theirs)]
-        named = ", ".join(at.words for at in advised if math.isfinite(reached(at)[0]))
+        named = ", ".join(_words(places[at]) for at in advised if math.isfinite(reached[at]))
         found.append(
             f"The survey advises {named} for {task}; the best of them measured here, "
-            f"{_where(first, reached(first)[1])}, reaches {abs(mine):.3g} {unit}; "
-            f"{_where(other, reached(other)[1])}, which it does not advise for that, "
+            f"{_where(answer, places[first], values)}, reaches {abs(mine):.3g} {unit}; "
+            f"{_where(answer, places[other], values)}, which it does not advise for that, "
             f"{abs(theirs):.3g}"
         )
     return tuple(found)
@@ -120,16 +116,20 @@ def regret_words(regret: Regret) -> str:
     )
 
 
-def _where(place: KeptPlace, design: int) -> str:
-    row = place.judged.pipeline(design)
+def _words(place: RankedPlace) -> str:
+    return " + ".join(place.place.architecture)
+
+
+def _where(answer: Answer, place: RankedPlace, values: Numbers) -> str:
+    row = answer.best.pipeline(answer.reached_by(place, values))
     pipeline = "" if row is None else f"{row.extractor} > {row.model} on {row.dataset}"
-    return f"{place.words} ({pipeline})"
+    return f"{_words(place)} ({pipeline})"
 
 
-def _error(kept: Kept) -> str:
-    judged = kept.judged
+def _error(candidate: Candidate) -> str:
+    judged = candidate.judged
     if not math.isfinite(judged.error_deg):
-        nominal = None if kept.row is None else kept.row.nominal
+        nominal = None if candidate.row is None else candidate.row.nominal
         if nominal is None or nominal.rms_deg is None or nominal.availability is None:
             return "without an error over the field and conditions asked for"
         return (
@@ -140,19 +140,15 @@ def _error(kept: Kept) -> str:
     return f"{judged.error_deg:.3g} deg{over}"
 
 
-def _times(worse: Kept, better: Kept) -> str:
+def _times(worse: Candidate, better: Candidate) -> str:
     if not math.isfinite(worse.error_deg):
         return ""
     return f", {worse.error_deg / better.error_deg:.3g} times less"
 
 
-def _least_error(place: RankedPlace) -> Reached:
-    return place.error_deg, place.best_at
-
-
-_MEASURED: tuple[tuple[str, Callable[[RankedPlace], Reached], str], ...] = (
-    ("Accuracy", _least_error, "deg"),
-    ("Precision", attrgetter("repeatability"), "deg of repeatability"),
-    ("FOV", attrgetter("field"), "deg of field"),
+_MEASURED: tuple[tuple[str, Callable[[Answer], Numbers], float, str], ...] = (
+    ("Accuracy", attrgetter("best.error"), 1.0, "deg"),
+    ("Precision", attrgetter("best.repeatability_deg"), 1.0, "deg of repeatability"),
+    ("FOV", attrgetter("best.negated_half_field_deg"), 2.0, "deg of field"),
 )
-"""Tasks that are measured here: what of an architecture tells, the least the best, and in what."""
+"""Tasks that are measured here: their values of each design, the least the best, and the unit."""

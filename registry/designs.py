@@ -16,7 +16,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from registry.kept_answers import KeptAnswers
 from registry.mapping.advice import Advice
 from registry.measured import Judged, Measured, Measurements
 from registry.studies import Facts, Study
@@ -26,9 +25,6 @@ COMPENSATIONS = "Physics-Informed"
 """The category of models that compensate: beside them a study may state no other."""
 
 Stages = tuple[str, ...]
-
-AdviceFor = tuple[tuple[Advice, ...], frozenset[str]]
-"""Advice for what is asked, and the tasks that it is for."""
 
 NOTHING = Judged(math.inf, "", None)
 """What is not measured."""
@@ -67,20 +63,14 @@ class Design:
 
 
 @dataclass(frozen=True, eq=False)
-class Kept:
-    """A design and its best measured pipeline; None, erring without limit, if none is measured.
+class Candidate:
+    """A design and its best measured pipeline; without one the error is infinite."""
 
-    ``at`` is the position of the design among the columns of its table, ``row_at`` that of the
-    pipeline; -1 for none.
-    """
-
-    at: int
-    row_at: int
     design: Design
     row: Measured | None
     judged: Judged
 
-    @cached_property
+    @property
     def error_deg(self) -> float:
         """The error it is judged by; infinite where there is none."""
         return self.judged.error_deg
@@ -162,11 +152,6 @@ class DesignTable:
             )
             for architecture in architectures
         )
-
-    @cached_property
-    def advice(self) -> KeptAnswers[list[AdviceFor]]:
-        """Advice by place, for the tasks and accuracies asked for."""
-        return KeptAnswers()
 
     def _place(
         self,

@@ -85,12 +85,18 @@ def one_at_confidence(
     return float(found[0])
 
 
-def units_meeting(
-    own_deg: float, ratios: Sequence[float], bench_deg: float, limit_deg: float, share: float
-) -> int:
-    """Return how many of the units meet a limit on a share of the benches each."""
-    draws = drawn_deg(np.array([own_deg]), np.array([ratios]), np.array([bench_deg]))[0]
-    return int(((draws <= limit_deg).mean(axis=1) >= share - 1e-9).sum())
+def unit_errors(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers, share: float) -> Numbers:
+    """Return the error (R, units) that each unit keeps on a share of the benches.
+
+    Parameters as `drawn_deg`. Infinite where a pipeline has no own error.
+    """
+    shares = np.arange(len(BENCHES) + 1) / len(BENCHES)
+    fewest = int(np.argmax(shares >= share - 1e-9))
+    found = np.full(ratios.shape, np.inf)
+    known = np.isfinite(own_deg)
+    draws = drawn_deg(own_deg[known], ratios[known], bench_deg[known])
+    found[known] = np.partition(draws, fewest - 1, axis=2)[:, :, fewest - 1]
+    return found
 
 
 def bench_for(own_deg: float, ratios: Sequence[float], limit_deg: float, share: float) -> float:

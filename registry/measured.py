@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Generic, TypeVar
 
-from registry.requirements import UNITS, Requirements
+from registry.requirements import UNITS
 
 Draws = tuple[float | None, float]
 """A bench's fixed error in degrees, None for a data set's own, and a share of units and benches."""
@@ -248,18 +248,31 @@ class Measured:
         return None if judged or share is None else Partly(max(errors), share, self)
 
     def to_dict(
-        self, requirements: Requirements, partly: Iterable[Partly[Measured]] = ()
+        self,
+        judged: Judged,
+        own: Judged,
+        hazards: Iterable[str] = (),
+        half_field_deg: float | None = None,
+        *,
+        bench_deg: float | None = None,
+        units_within: int | None = None,
+        partly: Iterable[Partly[Measured]] = (),
     ) -> dict[str, object]:
-        """Return the pipeline as in the HTTP answer, judged by the requirements.
+        """Return the pipeline as in the HTTP answer.
 
         Parameters
         ----------
+        judged, own
+            The error that it is judged by, and the one with true directions.
+        hazards, half_field_deg
+            What both hold under and over.
+        bench_deg
+            Fixed error of the bench asked for; None for the data set's own.
+        units_within
+            How many of ten units keep the largest error asked for; None where none is asked.
         partly
             Pipelines on the same sensor that answer too seldom, of which one may be far finer.
         """
-        field = requirements.half_field_deg
-        judged = self.judged(requirements.survive, field, requirements.draws)
-        own = self.judged(requirements.survive, field)
         units = self.unit_own_deg
         return {
             "dataset": self.dataset,
@@ -268,42 +281,30 @@ class Measured:
             "error_deg": _finite(judged.error_deg),
             "condition": judged.condition,
             "field_deg": judged.field_deg if math.isfinite(judged.error_deg) else None,
-            "nominal_deg": _finite(self.over(self.nominal, requirements.half_field_deg).error_deg),
+            "nominal_deg": _finite(self.over(self.nominal, half_field_deg).error_deg),
             "nominal": self.nominal.to_dict(),
             "conditions": {
-                score.condition: _finite(self.over(score, requirements.half_field_deg).error_deg)
-                for name in requirements.survive
+                score.condition: _finite(self.over(score, half_field_deg).error_deg)
+                for name in hazards
                 for score in self.hazards.get(name, ())
             },
             "fov_deg": None if self.half_fov_deg is None else 2 * self.half_fov_deg,
-            "availability": self.availability(requirements.survive),
+            "availability": self.availability(hazards),
             "latency_us": self.latency_us,
             "own_deg": _finite(own.error_deg),
-            "bench_deg": self.bench_deg
-            if requirements.bench_deg is None
-            else requirements.bench_deg,
+            "bench_deg": self.bench_deg if bench_deg is None else bench_deg,
             "needs": list(self.needs),
             "units": {
                 "count": len(units),
                 "least_deg": min(units),
                 "largest_deg": max(units),
-                "meeting": self._meeting(requirements, own.error_deg),
+                "meeting": units_within,
                 "of": UNITS,
             }
             if units
             else None,
             "finer": _finer(finer_for(judged.error_deg, partly)),
         }
-
-    def _meeting(self, requirements: Requirements, own_deg: float) -> int | None:
-        """Return how many of ten units meet the error asked for; None where none is."""
-        limit, draws = requirements.largest_deg, requirements.draws
-        if limit is None or draws is None or math.isinf(own_deg):
-            return None
-        from registry.draws import units_meeting  # noqa: PLC0415 - NumPy
-
-        bench = self.bench_deg if draws[0] is None else draws[0]
-        return units_meeting(own_deg, self.unit_ratios, bench, limit, draws[1])
 
 
 def _finer(found: Partly[Measured] | None) -> dict[str, object] | None:

@@ -7,34 +7,13 @@ from __future__ import annotations
 
 import itertools
 import weakref
-from collections.abc import Iterable, Iterator
-from typing import NamedTuple, TypeVar
+from collections.abc import Iterator
 
 from registry.designs import Design
-from registry.flows import LeftOut, Link, Node
+from registry.flows import LeftOut
 from registry.studies import Facts, Study
 
 PATH_LEVELS = ("task", "detector", "mask", "model", "extractor")
-
-_MOST_KEPT = 4096
-
-Key = TypeVar("Key")
-Made = TypeVar("Made")
-
-
-class StudyPath(NamedTuple):
-    """A path that studies behind an answer took; ``studies`` are those that meet it."""
-
-    task: str
-    detector: str
-    mask: str
-    model: str
-    extractor: str
-    studies: tuple[str, ...]
-
-    def to_dict(self) -> dict[str, object]:
-        """Return the path as in the HTTP answer."""
-        return {**self._asdict(), "studies": list(self.studies)}
 
 
 class PathTable:
@@ -69,9 +48,6 @@ class PathTable:
         self.left_out = tuple(
             LeftOut(lv, tuple(missing[lv])) for lv in PATH_LEVELS if lv in missing
         )
-        self._keys_of: dict[int, tuple[str, ...]] = {}
-        self._nodes_of: dict[tuple[int, int], Node] = {}
-        self._links_of: dict[tuple[int, int], Link] = {}
 
     def _lay_out(self, order: list[dict[str, int]]) -> None:
         """Give every node and link of the paths a number, in chart order."""
@@ -105,30 +81,7 @@ class PathTable:
 
     def studies(self, bits: int) -> tuple[str, ...]:
         """Return the keys of a study set."""
-        found = self._keys_of.get(bits)
-        if found is None:
-            found = tuple(self.keys[at] for at in positions(bits))
-            _keep(self._keys_of, bits, found)
-        return found
-
-    def node(self, at: int, bits: int) -> Node:
-        """Return node number `at` with the studies it has."""
-        found = self._nodes_of.get((at, bits))
-        if found is None:
-            level, value, name = self.nodes[at]
-            keys = self.studies(bits)
-            found = Node(f"{level}:{value}", level, value, name, len(keys), keys)
-            _keep(self._nodes_of, (at, bits), found)
-        return found
-
-    def link(self, at: int, bits: int) -> Link:
-        """Return link number `at` with the studies it has."""
-        found = self._links_of.get((at, bits))
-        if found is None:
-            keys = self.studies(bits)
-            found = Link(*self.links[at], len(keys), keys)
-            _keep(self._links_of, (at, bits), found)
-        return found
+        return tuple(self.keys[at] for at in positions(bits))
 
     def of(self, design: Design) -> tuple[int, ...]:
         """Return the paths that lead to a design."""
@@ -137,17 +90,6 @@ class PathTable:
             at
             for at in self._on.get((*design.architecture, design.extractor), ())
             if not set(kinds("model", self.paths[at][3])).isdisjoint(design.stages)
-        )
-
-    def study_paths(self, taken: Iterable[tuple[int, int]]) -> tuple[StudyPath, ...]:
-        """Return paths, given by position, with the studies (bits) that took them."""
-        return tuple(
-            StudyPath(
-                *(task, detector, mask, model, extractor),
-                studies=self.studies(bits),
-            )
-            for at, bits in taken
-            for task, detector, mask, model, extractor in (self.paths[at],)
         )
 
 
@@ -167,13 +109,6 @@ def path_table(facts: Facts) -> PathTable:
     if table is None:
         table = _TABLES[facts] = PathTable(facts)
     return table
-
-
-def _keep(kept: dict[Key, Made], key: Key, made: Made) -> None:
-    """Keep what was made for the next question, without ever keeping much."""
-    if len(kept) >= _MOST_KEPT:
-        kept.clear()
-    kept[key] = made
 
 
 def positions(bits: int) -> Iterator[int]:

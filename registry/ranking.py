@@ -14,15 +14,12 @@ from dataclasses import dataclass
 from functools import cache
 from statistics import median
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-from registry.designs import Kept
-from registry.judging import KeptPlace
+from registry.designs import Candidate
+from registry.measured import Measured
 from registry.taxonomy import Architecture
 from survey_data.hardware import hardware
-
-if TYPE_CHECKING:
-    from registry.design_columns import Best
 
 Sort = Literal["advice", "support", "measured"]
 SORTS: tuple[Sort, ...] = ("advice", "support", "measured")
@@ -35,18 +32,14 @@ MOST_CREDIT = 2.0
 _HALF_STUDIES = 5.0
 
 
-def support(kept: Kept, place: KeptPlace) -> float:
+def support(architecture: int, with_model: int, taken: int) -> float:
     """Return how the literature backs a calibration on an architecture.
 
     The geometric mean of three numbers of studies that meet the requirements: those of the
-    architecture, those of them that stand for its stages, and those that extract features as it
-    does too. Each step counts alike.
+    architecture, those of them that use its compensations and model, and those that use its
+    extractor too. Each step counts alike.
     """
-    taken = place.taken(kept)
-    if not taken:
-        return 0.0
-    counts = (place.studies, place.with_model(kept), taken)
-    return float(math.prod(bits.bit_count() for bits in counts) ** (1 / 3))
+    return float((architecture * with_model * taken) ** (1 / 3)) if taken else 0.0
 
 
 def key_of(
@@ -80,11 +73,10 @@ def key_of(
     return (unadvised, tier, cost / MOST_CREDIT**credit, not advised, -backing)
 
 
-def pareto(places: Sequence[KeptPlace]) -> frozenset[int]:
-    """Return the positions of the architectures that none beats in both support and error."""
-    costs = [(-place.backing, place.error_deg) for place in places]
+def pareto(costs: Sequence[tuple[float, float]]) -> frozenset[int]:
+    """Return the positions of the costs that no other beats in both of their numbers."""
     least = math.nan
-    unbeaten: set[tuple[int, float]] = set()
+    unbeaten: set[tuple[float, float]] = set()
     for cost in sorted(set(costs)):  # whoever beats one comes before it
         if not least <= cost[1]:
             unbeaten.add(cost)
@@ -100,8 +92,8 @@ class Regret:
     is not measured.
     """
 
-    first: Kept
-    best: Kept
+    first: Candidate
+    best: Candidate
 
     @property
     def ratio(self) -> float | None:
@@ -121,14 +113,14 @@ class Regret:
         }
 
 
-def regret(places: Sequence[KeptPlace], first: Kept | None) -> Regret | None:
+def regret(first: Candidate, best: Candidate) -> Regret | None:
     """Return the regret of an answer; None where nothing in it is measured.
 
-    ``first`` is the first calibration of the first of its architectures.
+    Parameters
+    ----------
+    first, best
+        The first calibration of the first architecture, and the one with the smallest error.
     """
-    if first is None:
-        return None
-    best = min(places, key=lambda place: place.error_deg).best
     if not math.isfinite(best.error_deg):
         return None
     return Regret(first, first if first.error_deg == best.error_deg else best)
@@ -210,7 +202,7 @@ class TaskMeasure:
 
 
 def task_measures(
-    tasks: Iterable[str], architecture: Architecture, best: Best, design: int
+    tasks: Iterable[str], architecture: Architecture, row: Measured | None, error_deg: float
 ) -> tuple[TaskMeasure, ...]:
     """Return the own measures of tasks, in their order.
 
@@ -220,10 +212,10 @@ def task_measures(
         Of the taxonomy.
     architecture
         Detector and mask.
-    best, design
-        What designs are judged by, and the position of the one that errs least on it.
+    row, error_deg
+        The pipeline with the smallest error there, and that error; infinite where it is not judged.
     """
-    return tuple(_measure(task, architecture, best, design) for task in tasks)
+    return tuple(_measure(task, architecture, row, error_deg) for task in tasks)
 
 
 def joint_cost(measures: Sequence[TaskMeasure]) -> float:
@@ -237,20 +229,23 @@ def joint_cost(measures: Sequence[TaskMeasure]) -> float:
     return math.exp(math.fsum(map(math.log, costs)) / len(costs))
 
 
-def _measure(task: str, architecture: Architecture, best: Best, design: int) -> TaskMeasure:
+def _measure(
+    task: str, architecture: Architecture, row: Measured | None, error_deg: float
+) -> TaskMeasure:
     unit = _UNITS[task]
     if task in _PUBLISHED:
         value, built = _published().get(architecture, {}).get(task, (None, 0))
         return TaskMeasure(task, unit, value, built)
-    row = best.pipeline(design)
+    judged = row if math.isfinite(error_deg) else None
+    half_fov_deg = None if judged is None else judged.half_fov_deg
     found = {
-        "Accuracy": best.error[design],
-        "Precision": best.repeatability_deg[design],
-        "FOV": -2.0 * best.negated_half_field_deg[design],
-        "Latency": math.inf if row is None or row.latency_us is None else row.latency_us,
+        "Accuracy": error_deg,
+        "Precision": None if judged is None else judged.nominal.repeatability_deg,
+        "FOV": None if half_fov_deg is None else 2.0 * half_fov_deg,
+        "Latency": None if row is None else row.latency_us,
     }[task]
-    known = math.isfinite(found) and found > 0.0
-    return TaskMeasure(task, unit, float(found) if known else None)
+    known = found is not None and math.isfinite(found) and found > 0.0
+    return TaskMeasure(task, unit, found if known else None)
 
 
 @cache

@@ -15,7 +15,7 @@ from registry.paths import positions
 from registry.requirements import EXCLUDE, LIMITS, LISTS, Requirements
 
 if TYPE_CHECKING:
-    from registry.design_columns import DesignColumns, Flags
+    from registry.design_arrays import DesignArrays, Flags
 
 MOST_CHANGES = 5
 """Changes of value offered for one categorical constraint."""
@@ -171,10 +171,10 @@ def _broken(question: Question, names: tuple[str, ...]) -> frozenset[int]:
     a choice of those that are given up.
     """
     bit = {name: 1 << at for at, name in enumerate(names)}
-    columns = question.columns
+    arrays = question.arrays
     by_study = _broken_by_studies(question, names, bit)
-    by_design = columns.broken({bit[name]: has for name, has in question.having.items()})
-    by_row = columns.broken_by_place(by_design, _broken_by_rows(question, bit))
+    by_design = arrays.broken({bit[name]: has for name, has in question.having.items()})
+    by_row = arrays.broken_by_place(by_design, _broken_by_rows(question, bit))
     by_limit = [
         sum(bit[n] for n in question.limits if not question.stated(n) >> at & 1)
         for at in range(len(by_study))
@@ -190,9 +190,9 @@ def _broken(question: Question, names: tuple[str, ...]) -> frozenset[int]:
         if not place.studies:
             ways.add(sum(bit[n] for n in included))
         found.update(bits | way for bits in by_row[number] for way in ways)
-    for design_at in columns.unmeasured.tolist():
+    for design_at in arrays.unmeasured.tolist():
         bits = int(by_design[design_at])
-        for at in positions(columns.designs[design_at].taken):
+        for at in positions(arrays.designs[design_at].taken):
             found.update(bits | by_limit[at] | way for way in by_study[at])
     return frozenset(found)
 
@@ -202,20 +202,20 @@ def _broken_by_rows(question: Question, bit: Mapping[str, int]) -> list[tuple[in
 
     Of each pipeline the smallest sets. What is left is judged without what is given up.
     """
-    asked, columns = question.asked, question.columns
+    asked, arrays = question.asked, question.arrays
     # A class of accuracy is a limit on what is measured, too.
     alone = asked.without(*(n for n in asked.names if n not in (*_TOGETHER, "accuracy")))
     found: list[tuple[int, Flags]] = []
     for size in range(len(alone.names) + 1):
         for dropped in itertools.combinations(alone.names, size):
             given_up = sum(bit[n] for n in dropped)
-            keeping = _keeping(columns, alone.without(*dropped))
+            keeping = _keeping(arrays, alone.without(*dropped))
             for less, kept in found:
                 if given_up & less == less:
                     keeping = keeping & ~kept  # less is enough
             found.append((given_up, keeping))
     if asked.max_latency_us is not None:
-        slow = ~(columns.latency_us <= asked.max_latency_us)
+        slow = ~(arrays.latency_us <= asked.max_latency_us)
         also = bit["max_latency_us"]
         found = [
             part
@@ -225,10 +225,10 @@ def _broken_by_rows(question: Question, bit: Mapping[str, int]) -> list[tuple[in
     return found
 
 
-def _keeping(columns: DesignColumns, asked: Requirements) -> Flags:
+def _keeping(arrays: DesignArrays, asked: Requirements) -> Flags:
     """Say of each measured pipeline whether it keeps all limits asked for."""
     limits = Question.limits_of(asked)
-    judged = columns.judgements(limits.hazards, limits.half_field_deg, limits.draws)
+    judged = arrays.errors(limits.hazards, limits.half_field_deg, limits.draws)
     return judged.keeping(limits, asked.largest_deg)
 
 
@@ -297,12 +297,12 @@ def _nearest_limit(table: DesignTable, requirements: Requirements, limit: str) -
     if limit == "min_fov_deg":
         return _widest(table, requirements)
     question = Question(table, requirements)
-    columns = question.columns
-    rows = columns.rows_of(question.meeting) & _keeping(columns, requirements)
+    arrays = question.arrays
+    rows = question.meeting[arrays.design_of] & _keeping(arrays, requirements)
     values = {
-        "max_error_deg": question.judgements.error_deg,
-        "min_availability": question.judgements.availability,
-        "max_latency_us": columns.latency_us,
+        "max_error_deg": question.errors.error_deg,
+        "min_availability": question.errors.availability,
+        "max_latency_us": arrays.latency_us,
     }[limit][rows]
     numbers: list[float] = [n for n in values.tolist() if math.isfinite(n) and n > 0]
     if limit == "max_error_deg":
@@ -314,9 +314,11 @@ def _nearest_limit(table: DesignTable, requirements: Requirements, limit: str) -
 
 def _stated(question: Question, attribute: str) -> list[float]:
     """Return a number stated by the studies behind the designs of an answer not measured."""
-    designs = question.columns.designs
+    designs = question.arrays.designs
     bits = 0
-    for at in positions(question.meeting & question.columns.not_measured):
+    for at in question.arrays.unmeasured.tolist():
+        if not question.meeting[at]:
+            continue
         bits |= designs[at].taken
     bits &= question.all_stated
     return [number for at, number in question.table.stated[attribute] if bits >> at & 1]
@@ -326,12 +328,12 @@ def _widest(table: DesignTable, requirements: Requirements) -> float | None:
     """Return the widest field that something has which meets all else over that field."""
     # What is judged over the field is left to the rows.
     rest = Question(table, requirements.without(*_TOGETHER))
-    columns = rest.columns
-    rows = columns.rows_of(rest.meeting)
+    arrays = rest.arrays
+    rows = rest.meeting[arrays.design_of]
     widest = 0.0
-    for half, having in columns.cone_edges:
+    for half, having in arrays.cone_edges:
         over = requirements.changed("min_fov_deg", 2.0 * half)
-        if (rows & having & _keeping(columns, over)).any():
+        if (rows & having & _keeping(arrays, over)).any():
             widest = 2.0 * half
             break
     return max(widest, *_stated(Question(table, requirements), "fov_deg"), 0.0) or None
@@ -347,12 +349,12 @@ def _bench_that_would_do(table: DesignTable, requirements: Requirements) -> floa
     from registry.draws import bench_for  # noqa: PLC0415 - NumPy
 
     question = Question(table, replace(requirements, bench_deg=0.0))
-    designs = question.meeting & ~question.columns.not_measured
-    rows = question.columns.rows_of(designs) & _keeping(question.columns, question.asked)
-    own = question.judgements.own_deg
+    rows = question.meeting[question.arrays.design_of]
+    rows &= _keeping(question.arrays, question.asked)
+    own = question.errors.own_deg
     return max(
         (
-            bench_for(float(own[at]), question.columns.rows[at].unit_ratios, limit, draws[1])
+            bench_for(float(own[at]), question.arrays.rows[at].unit_ratios, limit, draws[1])
             for at in np.flatnonzero(rows).tolist()
         ),
         default=None,
@@ -361,17 +363,17 @@ def _bench_that_would_do(table: DesignTable, requirements: Requirements) -> floa
 
 def _has_evidence(table: DesignTable, requirements: Requirements, name: str) -> bool:
     """Say whether anything measured or stated tells of a requirement at all."""
-    columns = Question(table, requirements).columns
+    arrays = Question(table, requirements).arrays
     if name == "max_latency_us":
-        return bool((columns.latency_us < math.inf).any())
+        return bool((arrays.latency_us < math.inf).any())
     if name == "min_availability":
-        return bool(columns.rows)
+        return bool(arrays.rows)
     if name == "survive":
-        return all(bool(columns.tried(hazard).any()) for hazard in requirements.survive)
+        return all(bool(arrays.tried(hazard).any()) for hazard in requirements.survive)
     if name == "max_error_deg":
-        return bool(columns.rows or table.stated["accuracy_deg"])
+        return bool(arrays.rows or table.stated["accuracy_deg"])
     if name == "min_fov_deg":
-        return bool(columns.rows or table.stated["fov_deg"])
+        return bool(arrays.rows or table.stated["fov_deg"])
     return True
 
 

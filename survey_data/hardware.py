@@ -13,8 +13,6 @@ from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.problems import SurveyDataError
 
 _TABLE = "hardware"
-#: By how much a claim is divided for a root mean square; a largest error counts as three sigma.
-_SIGMAS = MappingProxyType({"3sigma": 3.0, "max": 3.0, "1sigma": 1.0, "rms": 1.0})
 
 
 @dataclass(frozen=True)
@@ -33,13 +31,6 @@ class Hardware:
     mass_g: float | None
     basis: str
     source: str
-
-    @property
-    def rms_deg(self) -> float | None:
-        """Accuracy as a root mean square, by what it is claimed to be; unspecified ones as is."""
-        if self.accuracy_deg is None:
-            return None
-        return self.accuracy_deg / _SIGMAS.get(self.accuracy_kind, 1.0)
 
 
 @cache

@@ -52,14 +52,14 @@ class CalibratedModel(Model):
     Attributes
     ----------
     quality_ : FitQuality
-        Residuals, parameters with standard errors, settings chosen.
+        Residuals, those of samples held out too, parameters with standard errors, settings chosen.
     hull_ : Hull
-        Where answers are given.
+        Where answers are given: of the calibrated features where there are two, else the cone of
+        the calibrated directions.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
+    Notes
+    -----
+    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
     """
 
     #: Whether the Sun must be in front of the detector (``s_z > 0``).

@@ -20,8 +20,8 @@ from algorithms.inputs import as_calibration_rows, as_features, require_fitted, 
 class CalibratedCompensation(Compensation):
     """A compensation that checks what it is given and refuses what does not settle it.
 
-    A subclass is a dataclass that writes `about`, `learn` and `apply`. It is told only rows with
-    features; a refused fit leaves it as it was.
+    A subclass is a dataclass that writes `about`, `apply` and, unless its drawing says all,
+    `learn`. It is told only rows with features; a refused fit leaves it as it was.
 
     Attributes
     ----------
@@ -41,10 +41,11 @@ class CalibratedCompensation(Compensation):
         """Features of a sample; two unless the subclass says otherwise."""
         return 2
 
-    @abstractmethod
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Set the fitted attributes; UnusableDataError where the samples do not settle them."""
-        ...
+        """Set the fitted attributes; UnusableDataError where the samples do not settle them.
+
+        By default nothing is learnt: the drawing says all.
+        """
 
     @abstractmethod
     def apply(self, features: Floats, context: Columns) -> Floats:

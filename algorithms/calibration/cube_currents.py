@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.compensated import CalibratedCompensation
-from algorithms.contract import FeatureKind, Floats, SensorGeometry, UnusableDataError
+from algorithms.contract import Floats, UnusableDataError
 from algorithms.models.geometric.detector_faces import Normals, axis_faces
 
 SURELY_LIT = 0.3
@@ -40,13 +40,6 @@ class CubeCurrents(CalibratedCompensation):
 
     def __post_init__(self) -> None:
         axis_faces(self.face_normals, self.about.name)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the compensation of the sensor's cube; UnsuitableDesignError where it is none."""
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
 
     def columns(self) -> int:
         """Six faces."""

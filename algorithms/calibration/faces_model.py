@@ -19,6 +19,15 @@ class FacesModel(CalibratedModel):
     Its region is the cone of the directions that it gives for the calibration samples, not of
     those that are true: a model whose response is not quite the sensor's would else leave the
     rim of its own calibration unanswered.
+
+    Attributes
+    ----------
+    hull_ : Hull
+        Cone of the directions it gives for the calibration.
+
+    Notes
+    -----
+    Shapes: signals (N, K), in any common unit, to unit vectors (N, 3), all directions.
     """
 
     frontal: ClassVar[bool] = False

@@ -43,17 +43,17 @@ class SlitModel(ForwardModel):
     Parameters
     ----------
     focal_length_mm : float
-        Distance from the slits' middle to the detector.
+        Nominal distance from the slits' middle to the lines, positive.
     pixel_pitch_mm : float
-        Distance of two pixels.
+        Distance of two pixels, positive.
     centre_px : tuple of two float
-        Spot when the Sun is on the boresight.
+        Spot (x, y) when the Sun is on the boresight.
     line_axes : tuple of {"x", "y"}
         The detector axis along which each line lies.
     slits : tuple of (float, float, float)
         Position mm, slant deg and width mm of each slit, the same over all lines.
     cover_glass : tuple of (float, float)
-        Thickness mm and index of each plate between slits and detector.
+        Thickness mm and index of each plate between slits and lines; none leaves refraction out.
     """
 
     about: ClassVar[AboutModel]
@@ -96,14 +96,8 @@ class SlitModel(ForwardModel):
         """
         cls.about.require_kind(kind)
         geometry.require(*cls.about.needs, by=cls.about.name)
-        return cls(
-            focal_length_mm=geometry.focal_length_mm or 0.0,
-            pixel_pitch_mm=geometry.pixel_pitch_mm or 0.0,
-            centre_px=geometry.centre_px or (0.0, 0.0),
-            line_axes=geometry.line_axes or (),
-            slits=geometry.slits or (),
-            cover_glass=geometry.cover_glass or (),
-        )
+        design = {name: getattr(geometry, name) for name in cls.about.needs}
+        return cls(**design, cover_glass=geometry.cover_glass or ())
 
     @abstractmethod
     def require_slits(self) -> None:

@@ -62,7 +62,40 @@ def innovation_covariance(covariance: Floats, sensitivity: Floats, noise: Floats
 
 
 @compiled
-def updated(  # noqa: C901, PLR0912, PLR0915 - one pass, nothing allocated between
+def _rooted(matrix: Floats, root: Floats) -> float:
+    """Write the lower root of a matrix (m, m) into `root`; return its log-determinant.
+
+    They may be the same array. NaN where there is no root.
+    """
+    determinant = 0.0
+    for i in range(len(matrix)):
+        for j in range(i + 1):
+            total = matrix[i, j]
+            for k in range(j):
+                total -= root[i, k] * root[j, k]
+            if i == j:
+                root[i, i] = math.sqrt(total) if total > 0.0 else math.nan
+                determinant += 2.0 * math.log(root[i, i])
+            else:
+                root[i, j] = total / root[j, j]
+    return determinant
+
+
+@compiled
+def _whitened(root: Floats, innovation: Floats, white: Floats) -> float:
+    """Write an innovation (m,) in units of its deviations into `white`; return its square."""
+    squares = 0.0
+    for i in range(len(innovation)):
+        total = innovation[i]
+        for k in range(i):
+            total -= root[i, k] * white[k]
+        white[i] = total / root[i, i]
+        squares += white[i] * white[i]
+    return squares
+
+
+@compiled
+def updated(  # noqa: C901, PLR0912 - one pass, nothing allocated between
     covariance: Floats,
     sensitivity: Floats,
     noise: Floats,
@@ -82,11 +115,7 @@ def updated(  # noqa: C901, PLR0912, PLR0915 - one pass, nothing allocated betwe
     left, half = np.empty((n, n)), np.empty((n, n))
     root = np.empty((m, m))
     for b in range(count):
-        heard = True
-        for i in range(m):
-            if not math.isfinite(innovation[b, i]):
-                heard = False
-        if not heard:
+        if not np.isfinite(innovation[b]).all():
             continue
         for i in range(n):
             for j in range(m):
@@ -94,26 +123,14 @@ def updated(  # noqa: C901, PLR0912, PLR0915 - one pass, nothing allocated betwe
                 for k in range(n):
                     total += covariance[b, i, k] * sensitivity[b, j, k]
                 shape[i, j] = total
-        determinant = 0.0
         for i in range(m):
             for j in range(i + 1):
                 total = 0.5 * (noise[b, i, j] + noise[b, j, i])
                 for k in range(n):
                     total += sensitivity[b, i, k] * shape[k, j]
-                for k in range(j):
-                    total -= root[i, k] * root[j, k]
-                if i == j:
-                    root[i, i] = math.sqrt(total) if total > 0.0 else math.nan
-                    determinant += 2.0 * math.log(root[i, i])
-                else:
-                    root[i, j] = total / root[j, j]
-        squares = 0.0
-        for i in range(m):
-            total = innovation[b, i]
-            for k in range(i):
-                total -= root[i, k] * white[k]
-            white[i] = total / root[i, i]
-            squares += white[i] * white[i]
+                root[i, j] = total
+        determinant = _rooted(root, root)
+        squares = _whitened(root, innovation[b], white)
         squared[b] = squares
         likelihood[b] = -0.5 * (squares + determinant + m * math.log(2.0 * math.pi))
         for i in range(n):  # rows of K = P H' S^-1 by the two triangles
@@ -163,22 +180,8 @@ def foretold(spread: Floats, innovation: Floats) -> tuple[Floats, Floats]:
     squared, likelihood = np.full(count, np.nan), np.full(count, np.nan)
     root, white = np.zeros((m, m)), np.empty(m)
     for b in range(count):
-        determinant, squares = 0.0, 0.0
-        for i in range(m):
-            for j in range(i + 1):
-                total = spread[b, i, j]
-                for k in range(j):
-                    total -= root[i, k] * root[j, k]
-                if i == j:
-                    root[i, i] = math.sqrt(total) if total > 0.0 else math.nan
-                    determinant += 2.0 * math.log(root[i, i])
-                else:
-                    root[i, j] = total / root[j, j]
-            total = innovation[b, i]
-            for k in range(i):
-                total -= root[i, k] * white[k]
-            white[i] = total / root[i, i]
-            squares += white[i] * white[i]
+        determinant = _rooted(spread[b], root)
+        squares = _whitened(root, innovation[b], white)
         if math.isfinite(squares):
             squared[b] = squares
             likelihood[b] = -0.5 * (squares + determinant + m * math.log(2.0 * math.pi))
@@ -186,7 +189,7 @@ def foretold(spread: Floats, innovation: Floats) -> tuple[Floats, Floats]:
 
 
 @compiled
-def gained(  # noqa: C901, PLR0912 - one pass, nothing allocated between
+def gained(
     covariance: Floats, crossed: Floats, spread: Floats, innovation: Floats
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """As `updated`, of sigma points: ``K = C S^-1``, ``P - K S K'``; C (B, n, m), S (B, m, m)."""
@@ -195,30 +198,10 @@ def gained(  # noqa: C901, PLR0912 - one pass, nothing allocated between
     squared, likelihood = np.full(count, np.nan), np.full(count, np.nan)
     half, white, root = np.empty((n, m)), np.empty(m), np.empty((m, m))
     for b in range(count):
-        heard = True
-        for i in range(m):
-            if not math.isfinite(innovation[b, i]):
-                heard = False
-        if not heard:
+        if not np.isfinite(innovation[b]).all():
             continue
-        determinant = 0.0
-        for i in range(m):
-            for j in range(i + 1):
-                total = spread[b, i, j]
-                for k in range(j):
-                    total -= root[i, k] * root[j, k]
-                if i == j:
-                    root[i, i] = math.sqrt(total) if total > 0.0 else math.nan
-                    determinant += 2.0 * math.log(root[i, i])
-                else:
-                    root[i, j] = total / root[j, j]
-        squares = 0.0
-        for i in range(m):
-            total = innovation[b, i]
-            for k in range(i):
-                total -= root[i, k] * white[k]
-            white[i] = total / root[i, i]
-            squares += white[i] * white[i]
+        determinant = _rooted(spread[b], root)
+        squares = _whitened(root, innovation[b], white)
         squared[b] = squares
         likelihood[b] = -0.5 * (squares + determinant + m * math.log(2.0 * math.pi))
         for i in range(n):  # C L'^-1, whose square is K S K'
@@ -263,15 +246,7 @@ def sigma_errors(covariance: Floats, scale: float) -> Floats:
     out = np.zeros((count, 2 * n + 1, n))
     root = np.zeros((n, n))
     for b in range(count):
-        for i in range(n):
-            for j in range(i + 1):
-                total = covariance[b, i, j]
-                for k in range(j):
-                    total -= root[i, k] * root[j, k]
-                if i == j:
-                    root[i, i] = math.sqrt(total) if total > 0.0 else math.nan
-                else:
-                    root[i, j] = total / root[j, j]
+        _rooted(covariance[b], root)
         for p in range(n):
             for i in range(p, n):
                 out[b, 1 + p, i] = scale * root[i, p]

@@ -93,8 +93,21 @@ class Filter(Protocol):
         ...
 
 
+class _OneBelief:
+    """A rule whose belief is one state a run."""
+
+    def begin(self, space: StateSpace, states: Floats, covariance: Floats) -> Belief:
+        """Belief before anything is read."""
+        return begun(space, states, covariance)
+
+    def estimate(self, space: StateSpace, belief: Belief) -> tuple[Floats, Floats]:
+        """States and covariances of the belief."""
+        del space
+        return belief.states, belief.covariance
+
+
 @dataclass(frozen=True)
-class ExtendedKalman:
+class ExtendedKalman(_OneBelief):
     """EKF: dynamics and readings linearised at the estimate, covariance in Joseph's form.
 
     Parameters
@@ -115,15 +128,6 @@ class ExtendedKalman:
     """
 
     considered: tuple[int, ...] = ()
-
-    def begin(self, space: StateSpace, states: Floats, covariance: Floats) -> Belief:
-        """Belief before anything is read."""
-        return begun(space, states, covariance)
-
-    def estimate(self, space: StateSpace, belief: Belief) -> tuple[Floats, Floats]:
-        """States and covariances of the belief."""
-        del space
-        return belief.states, belief.covariance
 
     def predict(self, space: StateSpace, belief: Belief, known: Floats, step_s: float) -> Belief:
         """Belief one step on."""
@@ -238,7 +242,7 @@ class RobustKalman(ExtendedKalman):
 
 
 @dataclass(frozen=True)
-class SigmaPointKalman:
+class SigmaPointKalman(_OneBelief):
     """UKF and CKF: covariances by points on both sides of the estimate, without derivatives.
 
     The n errors have 2 n points at ``sqrt(n + kappa)`` standard deviations, and the estimate
@@ -267,15 +271,6 @@ class SigmaPointKalman:
     def weights(self, n: int) -> tuple[Floats, Floats]:
         """(2 n + 1,) of means and of covariances, the middle first."""
         return _weights(self.kappa, self.beta, n)
-
-    def begin(self, space: StateSpace, states: Floats, covariance: Floats) -> Belief:
-        """Belief before anything is read."""
-        return begun(space, states, covariance)
-
-    def estimate(self, space: StateSpace, belief: Belief) -> tuple[Floats, Floats]:
-        """States and covariances of the belief."""
-        del space
-        return belief.states, belief.covariance
 
     def predict(self, space: StateSpace, belief: Belief, known: Floats, step_s: float) -> Belief:
         """Belief one step on: the points' mean and spread, and the process noise."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar, Self
@@ -17,6 +16,7 @@ from algorithms.context import Context, as_context, complete
 from algorithms.contract import FeatureKind, Floats, Model, SensorGeometry, UnusableDataError
 from algorithms.filtering.drift import GAINS, HEAD_SHIFTS, LEVEL, MOTION, Drift, Gyroscope
 from algorithms.filtering.reading_noise import correlated_steps, heard
+from algorithms.filtering.track import Track
 from algorithms.inputs import (
     as_calibration_rows,
     as_features,
@@ -54,40 +54,6 @@ _ROOT_HOUR = _HOUR_S**0.5
 _LEAST_AGED = 1e-9
 
 
-@dataclass(frozen=True)
-class Track:
-    """What a filter makes of samples, row by row.
-
-    Attributes
-    ----------
-    sun : ndarray, shape (N, 3)
-        Unit vectors, dead reckoning where nothing is read; NaN before a series' first reading.
-    deviation_deg : ndarray, shape (N,)
-        1-sigma of a tangent axis.
-    read : ndarray of bool, shape (N,)
-        Whether the row's features were used.
-    squared_innovation : ndarray, shape (N,)
-        In units of its covariance; NaN where nothing was read, and at a series' start.
-    series : ndarray of int, shape (N,)
-        Number of the row's series, from 0.
-    drift : ndarray, shape (N, p)
-        The sensor's parameters in the state.
-    drift_deviation : ndarray, shape (N, p)
-        Their 1-sigma.
-    bias_deg_h : ndarray, shape (N, 3)
-        Of the gyroscope.
-    """
-
-    sun: Floats
-    deviation_deg: Floats
-    read: NDArray[np.bool_]
-    squared_innovation: Floats
-    series: NDArray[np.int64]
-    drift: Floats
-    drift_deviation: Floats
-    bias_deg_h: Floats
-
-
 @dataclass
 class SunFilter(Model):
     """Base of the filters: learns how the sensor reads a Sun, then follows it from row to row.
@@ -96,21 +62,26 @@ class SunFilter(Model):
     new series begins and what was known is forgotten. A row is read where it has features and
     light; any other is answered NaN, and the filter goes on by dead reckoning beneath it.
 
+    A subclass writes `about`, and `rule` unless the extended filter's serves it.
+
     Parameters
     ----------
     face_normals : tuple of K vectors
-        Of faces, in the order of the features; none for spots and balances.
-    angle_walk_deg_sqrt_h, bias_deg_h, bias_walk_deg_h_sqrt_h : float
-        The gyroscope's data sheet, positive: angle random walk, bias when switched on, and what
-        the bias moves in an hour.
+        Nominal unit normals of faces in the order of the features; none for spots and balances.
+    angle_walk_deg_sqrt_h : float
+        The gyroscope's angle random walk, positive.
+    bias_deg_h : float
+        Standard deviation of its bias when switched on, positive.
+    bias_walk_deg_h_sqrt_h : float
+        Of what its bias moves in an hour, positive.
     reference_deg : float
         1-sigma, about each axis, of a fixed turn of what told the calibration's directions,
-        positive: of a star tracker against the sensor.
+        positive.
     gain_ageing_per_year, shift_ageing_per_year : float
         1-sigma of what a year changes, positive: a face's gain against the others', and a spot's
         offsets over the focal length.
     worst_deg : float
-        1-sigma beyond which a direction is not answered, positive.
+        1-sigma of a direction beyond which it is not answered, positive.
 
     Attributes
     ----------
@@ -129,6 +100,23 @@ class SunFilter(Model):
         Between its samples.
     quality_ : FitQuality
         Of the filter on its own calibration.
+
+    Notes
+    -----
+    State: the Sun's direction in the body frame, the gyroscope's bias and, before faces, the
+    light's strength; ``s' = exp(-[(w - b) dt]) s``, ``z = h(s) + v`` with h as the calibration
+    found it, warmth and the Earth's light by nadir included. The turn of the calibration's
+    reference is considered, not estimated, and so is what ages.
+
+    Shapes: signals (N, K), or spots or balances (N, 2), in the order of time, with the context's
+    columns, to unit vectors (N, 3).
+
+    Failure: a NaN row for a NaN feature row, in eclipse and in the dark, at the first reading of a
+    series, and where the 1-sigma is beyond `worst_deg`. A series ends where time does not go on by
+    a step. fit raises UnusableDataError for fewer than 60 samples in sunlight, or where these do
+    not settle how the sensor reads a Sun.
+
+    Cost: 40 us a step of the machine this was written on.
     """
 
     face_normals: Normals = ()
@@ -175,10 +163,11 @@ class SunFilter(Model):
         geometry.require("face_normals", by=cls.about.name)
         return cls(face_normals=geometry.face_normals or ())
 
-    @abstractmethod
-    def filter(self) -> Filter:
-        """How beliefs go on."""
-        ...
+    def rule(self) -> Filter:
+        """How beliefs go on: linearised at the estimate."""
+        from algorithms.filtering.filters import ExtendedKalman  # noqa: PLC0415 - Numba
+
+        return ExtendedKalman(self.considered())
 
     def drifts(self) -> Sequence[Drift]:
         """Parameters of the sensor in the state: the light's strength before faces."""
@@ -319,7 +308,7 @@ class SunFilter(Model):
     def _followed(
         self, found: Floats, time_s: Floats, known: Floats, usable: NDArray[np.bool_]
     ) -> Track:
-        space, by = self.space(), self.filter()
+        space, by = self.space(), self.rule()
         drifts = len(self.drifts()) + len(self.uncertain(0.0))
         known = known - np.array([0.0] * 6 + [self.readings_.middle_k])
         count = len(found)

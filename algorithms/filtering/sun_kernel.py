@@ -20,6 +20,23 @@ _SMALL = 1e-4
 
 
 @compiled
+def _turn(state: Floats, x: float, y: float, z: float, out: Floats) -> None:
+    """Write into `out` (S,) axes and direction of a state (S,) after a turn, a rotation vector."""
+    squared = x * x + y * y + z * z
+    angle = math.sqrt(squared)
+    if angle > _SMALL:
+        sine, versine = math.sin(angle) / angle, (1.0 - math.cos(angle)) / squared
+    else:
+        sine, versine = 1.0 - squared / 6.0, 0.5 - squared / 24.0
+    for start in range(0, 9, 3):
+        u, v, w = state[start], state[start + 1], state[start + 2]
+        cu, cv, cw = y * w - z * v, z * u - x * w, x * v - y * u
+        out[start] = u + sine * cu + versine * (y * cw - z * cv)
+        out[start + 1] = v + sine * cv + versine * (z * cu - x * cw)
+        out[start + 2] = w + sine * cw + versine * (x * cv - y * cu)
+
+
+@compiled
 def propagated(states: Floats, rate: Floats, step_s: float) -> Floats:
     """States (B, S) after a body turned at `rate` (3,), rad/s as read, less its bias."""
     out = states.copy()
@@ -28,18 +45,7 @@ def propagated(states: Floats, rate: Floats, step_s: float) -> Floats:
         x = -(rate[0] - states[b, 9]) * step_s
         y = -(rate[1] - states[b, 10]) * step_s
         z = -(rate[2] - states[b, 11]) * step_s
-        squared = x * x + y * y + z * z
-        angle = math.sqrt(squared)
-        if angle > _SMALL:
-            sine, versine = math.sin(angle) / angle, (1.0 - math.cos(angle)) / squared
-        else:
-            sine, versine = 1.0 - squared / 6.0, 0.5 - squared / 24.0
-        for start in range(0, 9, 3):
-            u, v, w = states[b, start], states[b, start + 1], states[b, start + 2]
-            cu, cv, cw = y * w - z * v, z * u - x * w, x * v - y * u
-            out[b, start] = u + sine * cu + versine * (y * cw - z * cv)
-            out[b, start + 1] = v + sine * cv + versine * (z * cu - x * cw)
-            out[b, start + 2] = w + sine * cw + versine * (x * cv - y * cu)
+        _turn(states[b], x, y, z, out[b])
     return out
 
 
@@ -89,18 +95,7 @@ def moved(states: Floats, errors: Floats) -> Floats:
         x = states[b, 3] * errors[b, 0] - states[b, 0] * errors[b, 1]
         y = states[b, 4] * errors[b, 0] - states[b, 1] * errors[b, 1]
         z = states[b, 5] * errors[b, 0] - states[b, 2] * errors[b, 1]
-        squared = x * x + y * y + z * z
-        angle = math.sqrt(squared)
-        if angle > _SMALL:
-            sine, versine = math.sin(angle) / angle, (1.0 - math.cos(angle)) / squared
-        else:
-            sine, versine = 1.0 - squared / 6.0, 0.5 - squared / 24.0
-        for start in range(0, 9, 3):
-            u, v, w = states[b, start], states[b, start + 1], states[b, start + 2]
-            cu, cv, cw = y * w - z * v, z * u - x * w, x * v - y * u
-            out[b, start] = u + sine * cu + versine * (y * cw - z * cv)
-            out[b, start + 1] = v + sine * cv + versine * (z * cu - x * cw)
-            out[b, start + 2] = w + sine * cw + versine * (x * cv - y * cu)
+        _turn(states[b], x, y, z, out[b])
         # unit and across each other to the last bits, however many steps there were
         length = math.sqrt(out[b, 6] ** 2 + out[b, 7] ** 2 + out[b, 8] ** 2)
         for k in range(6, 9):
@@ -125,20 +120,9 @@ def headed(states: Floats, first: int) -> Floats:
     out = states.copy()
     for b in range(len(states)):
         x, y, z = states[b, first], states[b, first + 1], states[b, first + 2]
-        squared = x * x + y * y + z * z
-        if squared == 0.0:
+        if x * x + y * y + z * z == 0.0:
             continue
-        angle = math.sqrt(squared)
-        if angle > _SMALL:
-            sine, versine = math.sin(angle) / angle, (1.0 - math.cos(angle)) / squared
-        else:
-            sine, versine = 1.0 - squared / 6.0, 0.5 - squared / 24.0
-        for start in range(0, 9, 3):
-            u, v, w = states[b, start], states[b, start + 1], states[b, start + 2]
-            cu, cv, cw = y * w - z * v, z * u - x * w, x * v - y * u
-            out[b, start] = u + sine * cu + versine * (y * cw - z * cv)
-            out[b, start + 1] = v + sine * cv + versine * (z * cu - x * cw)
-            out[b, start + 2] = w + sine * cw + versine * (x * cv - y * cu)
+        _turn(states[b], x, y, z, out[b])
     return out
 
 

@@ -14,9 +14,10 @@ from api.deposit import claims, told
 from api.deposit.fields import schema
 from benchmark import datasets
 from benchmark.claims.ledger import Entry, ledger
-from benchmark.curves import record as curves
 from benchmark.leaderboard.board import build
+from benchmark.learning_curves import record as curves
 from benchmark.results.store import Store
+from benchmark.sweeps import record as sweeps
 from files.csv_writing import csv_text
 from registry.catalogue import catalogue
 from registry.taxonomy import exported
@@ -76,7 +77,7 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
         )
     names = {"extractor": ("algorithms", "name"), "model": ("algorithms", "name")}
     foreign = {"dataset": ("datasets", "name"), **names}
-    swept = store.swept()
+    swept = sweeps.swept(published)
     return [
         _algorithms(),
         _datasets(),
@@ -94,7 +95,7 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
         *([_sweeps(swept)] if swept else []),
         *_curves(curves.shown(published), foreign),
         *_told(foreign),
-        *_claims(ledger(published / "claims")),
+        *_claims(ledger(published)),
     ]
 
 

@@ -11,11 +11,11 @@ from api.docs.markdown import table as _table
 from benchmark.assessment import assess as assessment
 from benchmark.assessment import former
 from benchmark.assessment.definitions import DEFINITIONS
-from benchmark.results.store import Store
 from benchmark.results.tables import Row
 from benchmark.sweeps import pictures as sweep_pictures
 from benchmark.sweeps import tables as sweep_tables
 from benchmark.sweeps.plan import SERIES
+from benchmark.sweeps.record import swept
 
 _MARKS = {"agrees": "=", "near": "~", "opposed": "x", "not judged": " ·", "not measured": " –"}
 
@@ -163,7 +163,7 @@ PICTURES: Mapping[str, Callable[[], str]] = {
 
 @cache
 def _rows() -> list[Row]:
-    return Store().swept()
+    return swept()
 
 
 @cache

@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from api.docs.markdown import table
-from benchmark.curves import pictures, record
+from benchmark.learning_curves import pictures, record
 
 Row = Mapping[str, Any]
 

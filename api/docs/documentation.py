@@ -91,7 +91,7 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
     "command-line.md": {"help": command_line},
     "guide/found.md": {
         "findings": found.findings,
-        "held-back": found.held_back,
+        "error-budget": found.error_budget,
         "poses": curves.counts,
         "tallies": found.tallies,
         "refuted": found.refuted,

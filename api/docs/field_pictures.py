@@ -12,7 +12,7 @@ import numpy as np
 
 from algorithms.contract import Floats
 from benchmark.drawing import svg
-from benchmark.leaderboard.holding.measure import directions
+from benchmark.error_budget.measure import directions
 from benchmark.metrics.score import separation_deg
 from benchmark.plan.parts import installed
 
@@ -52,7 +52,7 @@ def residuals(shown: Shown) -> tuple[Floats, Mapping[str, Floats]]:
     """Return true directions (N, 3) of the test split and answers by variant.
 
     Under the data set's first condition; variants as
-    `benchmark.leaderboard.holding.measure.directions` gives them.
+    `benchmark.error_budget.measure.directions` gives them.
     """
     parts = installed()
     preset = cast("Preset", parts.preset(shown.dataset))

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 from api.docs.knowledge import knowledge
 from benchmark.claims.ledger import Entry, ledger, tally
 from benchmark.drawing import svg
+from benchmark.error_budget.record import RECORD as ERROR_BUDGET
+from benchmark.error_budget.sentences import NEAR, PARTS, verdict
 from benchmark.leaderboard import summaries
 from benchmark.leaderboard.architectures import architectures, first_boards
-from benchmark.leaderboard.holding import table as holding
-from benchmark.leaderboard.holding.sentences import NEAR, PARTS, verdict
 from benchmark.metrics.score import is_available
 from registry.fidelity.grading import tally_text
 from registry.recommendation import recommend
@@ -169,7 +169,7 @@ def _best_used(dataset: str) -> float | None:
 
 
 def _distance() -> str:
-    judged = [verdict(row) for row in holding.rows().values()]
+    judged = [verdict(row) for row in ERROR_BUDGET.read().values()]
     near = sum(one.near for one in judged)
     held = Counter(PARTS[one.leading] for one in judged if not one.near)
     (most, count), *_ = held.most_common()
@@ -215,7 +215,7 @@ def _advice() -> str:
         first = recommend({"task": [task]}, knowledge().measured, limit=1).architectures[0]
         by_data: dict[object, list[tuple[float, bool]]] = {}
         for one in first.calibrations:
-            for measured in filter(None, (one.measured, *one.others)):
+            for measured in filter(None, (one.measured, *one.other_datasets)):
                 error = measured["own_deg"]
                 if isinstance(error, float):
                     evident = bool(one.advised or one.studies)

@@ -7,10 +7,10 @@ from functools import cache
 from typing import Any
 
 from api.docs.markdown import table
+from benchmark.error_budget.record import RECORD as ERROR_BUDGET
+from benchmark.error_budget.sentences import NEAR, PARTS, bound_of, verdict
+from benchmark.error_budget.variants import WORSE
 from benchmark.leaderboard.headlines import headlines
-from benchmark.leaderboard.holding import table as holding
-from benchmark.leaderboard.holding.sentences import NEAR, PARTS, bound_of, verdict
-from benchmark.leaderboard.holding.variants import WORSE
 from benchmark.leaderboard.realism import realism
 from benchmark.results.store import Store
 
@@ -19,7 +19,7 @@ def standings() -> str:
     """Set every data set's best pipeline beside its bound and the built sensors' accuracy."""
     built, pins = _built(), Store().pins()
     rows = []
-    for name, row in holding.rows().items():
+    for name, row in ERROR_BUDGET.read().items():
         judged, bound = verdict(row), bound_of(row)
         pin = pins.get((name, row["condition"], "test"))
         rows.append(
@@ -48,7 +48,7 @@ def standings() -> str:
 def contributions() -> str:
     """Write what each part of the chain contributes, a row a data set."""
     rows = []
-    for name, row in holding.rows().items():
+    for name, row in ERROR_BUDGET.read().items():
         parts = verdict(row).parts_deg
         errors = (_number(row[f"{variant}_deg"]) for variant in ("as_is", *WORSE))
         rows.append((name, *errors, *(_number(parts.get(part)) for part in PARTS)))
@@ -59,11 +59,11 @@ def contributions() -> str:
 def sentences() -> str:
     """Say of every data set what was measured, and of the built sensors what is different."""
     built, lines = _built(), []
-    for name, row in holding.rows().items():
+    for name, row in ERROR_BUDGET.read().items():
         said = verdict(row).sentence
         explained = (built.get(name) or {}).get("sentence")
         lines.append(f"- {said}" + (f" Beside built sensors: {explained}" if explained else ""))
-    near = sum(verdict(row).near for row in holding.rows().values())
+    near = sum(verdict(row).near for row in ERROR_BUDGET.read().values())
     counted = f"{near} of {len(lines)} best pipelines are within {NEAR:g} times their bounds."
     return counted + "\n\n" + "\n".join(lines)
 
@@ -108,7 +108,7 @@ def _built() -> Mapping[str, Mapping[str, Any]]:
 
 
 def _conditions() -> Mapping[str, str]:
-    return {name: row["condition"] for name, row in holding.rows().items()}
+    return {name: row["condition"] for name, row in ERROR_BUDGET.read().items()}
 
 
 def _sensors(beside: Mapping[str, Any] | None) -> str:

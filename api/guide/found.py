@@ -7,8 +7,8 @@ from collections import Counter
 from api.docs import front
 from api.docs.markdown import table
 from benchmark.claims.ledger import Entry, ledger
-from benchmark.leaderboard.holding import table as holding
-from benchmark.leaderboard.holding.sentences import NEAR, PARTS, verdict
+from benchmark.error_budget.record import RECORD as ERROR_BUDGET
+from benchmark.error_budget.sentences import NEAR, PARTS, verdict
 
 #: Claims that came out and that change what one builds; a choice, the others stand on their page.
 USEFUL = ("C04", "C15", "C24", "C29", "C32", "C34", "C45", "C46", "C47", "C51", "C53")
@@ -53,9 +53,9 @@ def useful() -> str:
     return table(("what the survey says", "what decides it", "mean [95 %]", "claim"), rows)
 
 
-def held_back() -> str:
+def error_budget() -> str:
     """Count by which part of the chain the best pipelines are held back."""
-    judged = [verdict(row) for row in holding.rows().values()]
+    judged = [verdict(row) for row in ERROR_BUDGET.read().values()]
     near = sum(one.near for one in judged)
     counted = Counter(PARTS[one.leading] for one in judged if not one.near)
     rows = [(part, str(number)) for part, number in sorted(counted.items(), key=_most_first)]

@@ -13,7 +13,6 @@ from pydantic_core import to_json
 
 from api import citations
 from api.columns import csv_of, flat
-from api.http.direct import direct
 from api.http.negotiation import (
     CITATIONS,
     CONTENT_TYPES,
@@ -278,7 +277,6 @@ class AnswerRoute(StrictRoute):
     def get_route_handler(self) -> Handler:
         """Return what handles a request."""
         compute = super().get_route_handler()
-        straight = None if self.dependencies else direct(self.endpoint)
         offered = cast("type[Kept]", self.response_class).offered
         whole = issubclass(cast("type[Kept]", self.response_class), Linked)
 
@@ -293,8 +291,7 @@ class AnswerRoute(StrictRoute):
             asked = (request.scope["path"], query, wanted, str(request.base_url) if whole else "")
             found = kept.get(asked)
             if found is None:
-                made = await straight(request) if straight else None
-                made = cast("Kept", made or await compute(request))
+                made = cast("Kept", await compute(request))
                 found = as_asked(made.representation(wanted), wanted, request)
                 kept.put(asked, found)
             return found.respond(request)

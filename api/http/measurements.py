@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 from api.columns import SAMPLE_ERRORS
 from api.deposit.identity import version
-from benchmark.curves import record as curves
 from benchmark.datasets.pins import Pin
 from benchmark.leaderboard.board import build
 from benchmark.leaderboard.scope import Studied, studies_of_pipelines
+from benchmark.learning_curves import record as curves
 from benchmark.results import recorded, samples
 from benchmark.results.pipelines import pipelines, standard_benches
 from benchmark.results.store import PUBLISHED, Store
+from benchmark.sweeps.record import swept
 from files import manifest
 from files.reading import read_bytes
 from registry.measured import Measured
@@ -119,7 +120,7 @@ class Measurements:
     @cached_property
     def sweeps(self) -> Sequence[Row]:
         """Rows of the sweeps on reference features, in order."""
-        return self._store.swept()
+        return swept(self._store.directory)
 
     @cached_property
     def curves(self) -> Sequence[Row]:
@@ -143,7 +144,7 @@ class Measurements:
         """The survey's claims with their verdicts, by id."""
         from benchmark.claims.ledger import ledger  # noqa: PLC0415 - SciPy's distributions
 
-        return {entry.claim.id: entry for entry in ledger(self._store.directory / "claims")}
+        return {entry.claim.id: entry for entry in ledger(self._store.directory)}
 
     @cached_property
     def realism(self) -> Sequence[Row]:

@@ -6,7 +6,7 @@ import csv
 import inspect
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fastapi import FastAPI, Request
@@ -19,7 +19,7 @@ from api.http.knowledge import Knowledge
 from api.http.models.problems import ProblemDocument
 from api.http.negotiation import CITATIONS, CSV, JSON
 from api.http.problems import MEDIA_TYPE, Problem
-from api.http.refusals import refusal, schemas
+from api.http.refusals import asked_models, refusal, schemas
 from files.csv_writing import csv_text
 
 LONGEST_TEXT = 160  # characters of a text in an example
@@ -65,6 +65,8 @@ def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> N
     """Add the example, its answer, and the refusals to an operation."""
     declared = schemas(route.endpoint)
     example = _example(route)
+    if declared["query"] and "parameters" not in operation:
+        operation["parameters"] = [_query_parameter(*one) for one in declared["query"].items()]
     for parameter in operation.get("parameters", ()):
         given = example if parameter["in"] == "path" else example.get("query", {})
         if parameter["name"] in given:
@@ -87,6 +89,12 @@ def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> N
     refused = {str(status): _refused(status, route, example, known) for status in sorted(statuses)}
     same = {"304": NOT_MODIFIED} if "body" not in declared else {}
     operation["responses"] = {"200": success, **same, **refused}
+
+
+def _query_parameter(name: str, schema: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a parameter of a query that a dependency reads, as FastAPI documents its own."""
+    described = {"name": name, "in": "query", "required": False, "schema": dict(schema)}
+    return {**described, "description": schema["description"]}
 
 
 def _answered(route: APIRoute, known: Knowledge, example: dict[str, Any]) -> Answer | None:
@@ -137,9 +145,9 @@ def _example(route: APIRoute) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for parameter in route.dependant.path_params:
         found[parameter.name] = (parameter.field_info.examples or [None])[0]
-    for model in (*route.dependant.query_params, *route.dependant.body_params):
-        described: Any = model.field_info.annotation
-        found[model.name] = described.model_config["json_schema_extra"]["examples"][0]
+    for name, model in asked_models(route.endpoint).items():
+        described: Any = model.model_config
+        found[name] = described["json_schema_extra"]["examples"][0]
     return found
 
 

@@ -18,7 +18,7 @@ from api.http.problems import Problem, Violation
 
 Row = TypeVar("Row")
 
-SHOWN_BY = {"limit", "cursor", "format", "fields", "safe"}
+SHOWN_BY = {"limit", "cursor", "format", "fields", "safe", "whole"}
 """Parameters that do not change which items a list has, or their order."""
 
 

@@ -62,13 +62,23 @@ def schemas(endpoint: Callable[..., Any]) -> Mapping[str, Mapping[str, Schema]]:
     Arguments whose type is a model are called after the place they come from.
     """
     found: dict[str, dict[str, Schema]] = {"path": {}, "query": {}}
+    for name, model in asked_models(endpoint).items():
+        found[name] = model.model_json_schema().get("properties", {})
     for name, hint in get_type_hints(endpoint, include_extras=True).items():
-        kind = get_args(hint)[0] if get_origin(hint) is Annotated else hint
-        if isinstance(kind, type) and issubclass(kind, BaseModel):
-            found[name] = kind.model_json_schema().get("properties", {})
-        elif kind is str:
+        if _kind(hint) is str:
             found["path"][name] = TypeAdapter(hint).json_schema()
     return found
+
+
+def asked_models(endpoint: Callable[..., Any]) -> Mapping[str, type[BaseModel]]:
+    """Return the models that a path function is asked by, by the name of the argument."""
+    hints = get_type_hints(endpoint, include_extras=True)
+    kinds = {name: _kind(hint) for name, hint in hints.items()}
+    return {n: k for n, k in kinds.items() if isinstance(k, type) and issubclass(k, BaseModel)}
+
+
+def _kind(hint: Any) -> Any:
+    return get_args(hint)[0] if get_origin(hint) is Annotated else hint
 
 
 def _violation(error: Mapping[str, Any], declared: Mapping[str, Mapping[str, Schema]]) -> Violation:

@@ -7,8 +7,8 @@ from typing import Any
 
 from api import columns
 from api.deposit.errors import DIRECTIONS, ERRORS
-from api.deposit.fields import described
 from api.deposit.identity import Identity
+from api.dictionary import COLUMNS
 from api.metadata.croissant import PARQUET, Column, Described, File, Table
 from benchmark.results import samples
 
@@ -130,7 +130,7 @@ def table_of_data(content: bytes, name: str, base: str) -> tuple[File, Table]:
         "Hash of each split in each condition, and its Cramer-Rao bound.",
     )
     said = "A split of the data set in a condition."
-    known = [(column, *described(column)) for column in columns.DATASET]
+    known = [(column, *COLUMNS[column]) for column in columns.DATASET]
     return file, Table("splits", file.name, said, known, ("condition", "split"))
 
 
@@ -145,12 +145,12 @@ def table_of_ranks(content: bytes, base: str) -> tuple[File, Table]:
     file = File.of(
         content,
         "leaderboard.csv",
-        f"{base}v1/leaderboard?format=csv",
+        f"{base}v1/leaderboard?format=csv&whole=true",
         CSV,
         "Every pipeline on every data set and condition, ranked.",
     )
     known: Sequence[Column] = [
-        (column, *(RANKED.get(column) or described(column))) for column in columns.LEADERBOARD
+        (column, *(RANKED.get(column) or COLUMNS[column])) for column in columns.LEADERBOARD
     ]
     key = ("dataset", "condition", "extractor", "model")
     return file, Table("ranks", file.name, "A pipeline on a data set in a condition.", known, key)

@@ -173,7 +173,7 @@ def landing_of_record(who: Identity) -> Landing:
         "MIT",
         persistent(who.citation),
         authors_of(who),
-        (Link("item", f"{at}?format=csv", "text/csv"),),
+        (Link("item", f"{at}?format=csv&whole=true", "text/csv"),),
         (
             Link("describedby", f"{at}/croissant.json", LD_JSON, CONFORMS_TO),
             Link("describedby", "/leaderboard.json", "application/json"),

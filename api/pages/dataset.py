@@ -25,8 +25,9 @@ from api.pages import boards
 from api.pages.charts.heat import heat_map
 from api.pages.charts.lines import Line, LineChart
 from api.pages.serving import PageRouter, View
+from benchmark.error_budget import sentences
+from benchmark.error_budget.record import RECORD as ERROR_BUDGET
 from benchmark.leaderboard.architectures import architectures as best_of_each
-from benchmark.leaderboard.holding import sentences, table
 from benchmark.metrics.score import AVAILABLE
 from benchmark.results import samples
 from survey_data.nearest import nearest
@@ -90,7 +91,7 @@ async def dataset(
     shown = board if query.rows == "all" else unfolded[:FIRST]
     every_board = known.measurements.leaderboard["datasets"]
     document = {**card, "condition": condition, "board": board}
-    held = table.rows().get(name)
+    held = ERROR_BUDGET.read().get(name)
     realism = next((r for r in known.measurements.realism if r["dataset"] == name), None)
     landing = landing_of_dataset(known, name)
     return View(

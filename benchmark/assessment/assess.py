@@ -23,6 +23,7 @@ from benchmark.metrics.score import stored
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.results.tables import Row
 from benchmark.running.times import Place, Time
+from benchmark.sweeps.record import swept
 from survey_data.tables import load
 
 if TYPE_CHECKING:
@@ -120,7 +121,7 @@ def assess(
     """
     known = discover_extractors() if extractors is None else extractors
     store = Store(directory)
-    evidence = _Evidence(store.swept(), store.rows(), list((times or {}).values()))
+    evidence = _Evidence(swept(store.directory), store.rows(), list((times or {}).values()))
     tables = load()
     table = tables.feature_assessment
     methods = list(dict.fromkeys(zip(table["extractor"], table["case_study"], strict=True)))

@@ -1,13 +1,12 @@
 """Networks on orbits and units they were not trained on, beside an albedo model and nothing.
 
-``python -m benchmark.assessment.networks`` prints all of it, in some minutes. Everything that is
+``python -m benchmark.experiments networks`` prints all of it, in some minutes. Everything that is
 compared is calibrated on the same samples with their true directions, and on readings corrected by
 the unit's references: errors are own errors.
 """
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import cast
@@ -280,12 +279,5 @@ def line(row: Measured) -> str:
     """Spell a number as it is printed."""
     return (
         f"{row.question:7s} {row.case:24s} {row.method:24s} rms {row.rms_deg:.4f} "
-        f"p95 {row.p95_deg:.4f} max {row.max_deg:.3f} answered {row.answered:.3f}\n"
+        f"p95 {row.p95_deg:.4f} max {row.max_deg:.3f} answered {row.answered:.3f}"
     )
-
-
-if __name__ == "__main__":
-    for measure in (orbits, units, seeds, spans, fields):
-        for measured in measure():
-            sys.stdout.write(line(measured))
-            sys.stdout.flush()

@@ -1,20 +1,18 @@
 """What it costs to follow an answer: its first calibration beside the best one by brute force.
 
-``python -m benchmark.assessment.regret [number] [seed]``. Requirement sets are drawn: tasks,
+``python -m benchmark.experiments regret [SEED ...]``. Requirement sets are drawn: tasks,
 exclusions, limits of error and field, hazards, availability. Of each, every stored pipeline is
 looked at for the one that errs least of those that meet all, from the stored rows alone, without
 what answers. By measurement the answer must name it first; in its usual order the answer must say
-by how much its first calibration errs more. The exit status is 1 unless it always does.
+by how much its first calibration errs more. The exit code is 1 unless it always does.
 """
 
 from __future__ import annotations
 
-import argparse
 import math
-import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from statistics import geometric_mean, median
+from statistics import geometric_mean
 from typing import Any
 
 import numpy as np
@@ -50,7 +48,7 @@ _DRAWN = (
 #: Requirements that the studies of an architecture have to meet.
 _OF_STUDIES = ("task", "error", "accuracy")
 #: Relative difference of two numbers that are the same one.
-_SAME = 1e-12
+SAME = 1e-12
 
 
 @dataclass(frozen=True)
@@ -83,13 +81,13 @@ class Drawn:
     @property
     def kept(self) -> bool:
         """Whether the best is named first by measurement, and the usual answer tells its regret."""
-        if not math.isclose(self.first_deg["measured"], self.best_deg, rel_tol=_SAME):
+        if not math.isclose(self.first_deg["measured"], self.best_deg, rel_tol=SAME):
             return False
         told = self.told["advice"]
         if math.isinf(self.first_deg["advice"]):
             return told is None
         ratio = self.first_deg["advice"] / self.best_deg
-        return told is not None and math.isclose(told, ratio, rel_tol=_SAME)
+        return told is not None and math.isclose(told, ratio, rel_tol=SAME)
 
 
 def drawn_requirements(number: int, seed: int, known: Facts) -> Iterator[Asked]:
@@ -325,54 +323,3 @@ def _first(answer: Recommendation) -> float:
     measured = answer.architectures[0].calibrations[0].measured
     error = None if measured is None else measured["error_deg"]
     return float(error) if isinstance(error, float) else math.inf
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Print what was found, and return the exit status."""
-    parser = argparse.ArgumentParser(prog="python -m benchmark.assessment.regret")
-    parser.add_argument("number", nargs="?", type=int, default=NUMBER, help="of requirement sets")
-    parser.add_argument("seed", nargs="?", type=int, default=SEED, help="of the draw")
-    asked = parser.parse_args(arguments)
-    number, seed = asked.number, asked.seed
-    if number < 1:
-        parser.error(f"number: expected a positive number of requirement sets, got {number}")
-    found = list(regrets(Store(), number, seed))
-    met = [one for one in found if math.isfinite(one.best_deg)]
-    first = sum(math.isclose(one.first_deg["measured"], one.best_deg, rel_tol=_SAME) for one in met)
-    known = [one.told["advice"] for one in met if one.told["advice"] is not None]
-    broken = [one for one in found if not one.kept]
-    owned = [one for one in met if not math.isnan(one.own_ratio)]
-    there = sum(one.first_deg["advice"] <= 1.2 * one.best_there_deg for one in met)
-    told = _spread([ratio for ratio in known if ratio > 1.0])
-    usual = (
-        f"sort=advice: the first calibration named is the best one in {known.count(1.0)}, is not "
-        f"measured or answers too seldom in {len(met) - len(known)}; the others err {told}"
-    )
-    lines = [
-        f"{number} requirement sets (seed {seed}): {len(met)} are met by a measured pipeline",
-        f"sort=measured: the first calibration named is the best one in {first} of {len(met)}",
-        usual,
-        (
-            f"sort=advice: it errs at most 1.2 times the best one of its architecture in {there} "
-            f"of {len(met)}; by the measure of the tasks its architecture is within twice the best "
-            f"of those with advice or studies in {sum(one.own_ratio <= 2.0 for one in owned)} of "
-            f"the {len(owned)} where one of those has it"
-        ),
-        f"the answer tells another regret than brute force finds in {len(broken)} of {number}",
-        *(
-            f"  {dict(one.asked)}: {one.first_deg}, best {one.best_deg}, told {one.told}"
-            for one in broken
-        ),
-    ]
-    sys.stdout.write("\n".join(lines) + "\n")
-    return 1 if broken else 0
-
-
-def _spread(ratios: Sequence[float]) -> str:
-    if not ratios:
-        return "no more"
-    return f"{min(ratios):.3g} to {max(ratios):.3g} times as much (median {median(ratios):.3g})"
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,6 +1,6 @@
 """Settings that models choose from their calibration beside the best fixed ones in hindsight.
 
-``python -m benchmark.assessment.selection [dataset ...]``. Of every data set at nominal and every
+``python -m benchmark.experiments selection [dataset ...]``. Of every data set at nominal and every
 model that chooses settings and fits it: the error of the test split with the settings chosen, over
 the smallest of all fixed ones. A choice that sees the calibration alone cannot always be the best;
 it should not be far off.
@@ -8,7 +8,6 @@ it should not be far off.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -24,7 +23,7 @@ from algorithms.models.lut.error_tables import SMOOTHINGS
 from algorithms.models.non_physical.fourier_balance import MAX_HARMONICS
 from algorithms.models.non_physical.polynomial import MAX_DEGREE
 from algorithms.models.non_physical.signal_polynomial import MAX_DEGREE as MAX_SIGNAL_DEGREE
-from benchmark.contract import Cell, Preset, UnknownNameError
+from benchmark.contract import Cell, Preset
 from benchmark.datasets.corrected import correction
 from benchmark.datasets.features import features_of
 from benchmark.plan.combinations import cells
@@ -155,24 +154,3 @@ def chosen_and_best(
     sizes = np.sqrt(np.mean(errors[:, both] ** 2, axis=1))
     best = int(np.argmin(sizes[1:]))
     return chosen, tried[best], float(sizes[0]), float(sizes[1 + best])
-
-
-def main(names: Sequence[str]) -> int:
-    """Write a line a choice; 1 where one is worse than `WORST`."""
-    far = 0
-    for choice in choices(names or None):
-        far += choice.ratio > WORST
-        sys.stdout.write(
-            f"{choice.dataset} {choice.extractor} {choice.model} {choice.ratio:.3f} "
-            f"{dict(choice.chosen)} {choice.chosen_deg:.4g} {dict(choice.best)} "
-            f"{choice.best_deg:.4g}\n"
-        )
-        sys.stdout.flush()
-    return int(far > 0)
-
-
-if __name__ == "__main__":
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except UnknownNameError as error:
-        sys.exit(f"{__spec__.name if __spec__ else sys.argv[0]}: {error}")

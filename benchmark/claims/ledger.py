@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.claims.judgement import Judged, judged, verdict
-from benchmark.claims.outcomes import PUBLISHED, Outcome, read
+from benchmark.claims.outcomes import RECORD, Outcome, read
 from benchmark.claims.rules import DIRECTORY, VERDICTS, Claim, Verdict, claims, rows_of
 from benchmark.claims.verification import contradictions
+from benchmark.results.store import PUBLISHED
 from survey_data import labels
 
 EXPLANATIONS = DIRECTORY / "explanations.csv"
@@ -76,7 +77,9 @@ class Entry:
         }
 
 
-def ledger(directory: Path = PUBLISHED, explanations: Path = EXPLANATIONS) -> tuple[Entry, ...]:
+def ledger(
+    directory: Path | str = PUBLISHED, explanations: Path = EXPLANATIONS
+) -> tuple[Entry, ...]:
     """Return every claim with its verdict, in the survey's order.
 
     Raises
@@ -118,7 +121,8 @@ def _entry(claim: Claim, outcome: Outcome | None, written: tuple[str, str]) -> E
         return Entry(claim, "not testable here" if untestable else None, rules, (), said, None)
     if wrong := next(contradictions(claim, outcome), ""):
         raise LedgerError(
-            f"{claim.id}.json: {wrong}; measure it again with `python -m benchmark.claims.run`"
+            f"{RECORD.name}: {claim.id}: {wrong}; measure it again with "
+            f"`python -m benchmark.experiments claims {claim.id}`"
         )
     rules = tuple(judged(rule, outcome.values[rule.name]) for rule in claim.rules)
     second = tuple(judged(claim.rule(name), values) for name, values in outcome.second.items())

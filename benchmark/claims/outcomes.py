@@ -1,12 +1,11 @@
-"""Outcomes of experiments as they are published: one JSON file a claim.
+"""Outcomes of claims as they are published: a row each.
 
-A file holds what was measured, never the verdict: that is computed at reading, by the rules as
-they stand. It says of what code and of which plan it is the outcome, so that a stale one shows.
+A row holds what was measured, never the verdict: that is computed at reading, by the rules as they
+stand. It says of what code and of which plan it is the outcome, so that a stale one shows.
 """
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -16,22 +15,18 @@ from typing import Any
 import numpy as np
 
 from benchmark.canonical import digest
-from benchmark.claims.experiment import Experiment, Trial
+from benchmark.claims.experiment import Trial
 from benchmark.claims.rules import FIRST_TRIAL, Claim
 from benchmark.metrics.score import stored
-from benchmark.results import recorded
-from benchmark.results.closure import closure_digest
-from files.reading import FileRefusedError
-from files.strict_json import members, read_json, require, require_kind
-
-#: Where the published ones are.
-PUBLISHED = Path(__file__).resolve().parents[1] / "published" / "claims"
+from benchmark.results.row_file import Row, RowFile
+from benchmark.results.store import PUBLISHED
+from files.strict_json import members, require, require_kind
 
 Values = Mapping[str, Sequence[float]]
 
 
 class OutcomeError(ValueError):
-    """Trials or a file that do not fit their claim; the message says what was expected."""
+    """Trials that do not fit their claim; the message says what was expected."""
 
 
 @dataclass(frozen=True)
@@ -52,20 +47,20 @@ class Outcome:
     ----------
     claim
         Its id.
-    code, plan
-        Digests of the code that measured it and of the plan it followed.
     values, second
         By rule, a number a trial: by the experiment, and by the claim's second method.
     lines
         Of the plot.
+    plan, code
+        Digests of the plan it followed and of the code that measured it; empty before it is kept.
     """
 
     claim: str
-    code: str
-    plan: str
     values: Values
     second: Values
     lines: Mapping[str, Curve]
+    plan: str = ""
+    code: str = ""
 
 
 def plan_digest(claim: Claim) -> str:
@@ -75,8 +70,8 @@ def plan_digest(claim: Claim) -> str:
     return digest([claim.id, FIRST_TRIAL, claim.trials, claim.replicate, rules, uppers])
 
 
-def outcome_of(claim: Claim, experiment: Experiment, trials: Sequence[Trial]) -> Outcome:
-    """Put the trials of an experiment together.
+def outcome_of(claim: Claim, trials: Sequence[Trial]) -> Outcome:
+    """Put the trials of a claim together.
 
     Raises
     ------
@@ -100,8 +95,6 @@ def outcome_of(claim: Claim, experiment: Experiment, trials: Sequence[Trial]) ->
         raise OutcomeError(f"{claim.id}: expected numbers by the second method ({claim.second})")
     return Outcome(
         claim.id,
-        closure_digest(experiment.module),
-        plan_digest(claim),
         {rule.name: _numbers(t.values[rule.name] for t in trials) for rule in claim.rules},
         {
             rule.name: _numbers(t.second.get(rule.name, math.nan) for t in trials)
@@ -112,67 +105,74 @@ def outcome_of(claim: Claim, experiment: Experiment, trials: Sequence[Trial]) ->
     )
 
 
-def stale(claim: Claim, experiment: Experiment, outcome: Outcome | None) -> str:
-    """Say why an outcome has to be measured again; empty where it need not."""
-    if outcome is None:
-        return "not measured"
-    if outcome.plan != plan_digest(claim):
-        return "rules or plan changed"
-    if outcome.code != closure_digest(experiment.module):
-        return "code changed"
-    return ""
+def row_of(outcome: Outcome) -> Row:
+    """Return what the record keeps of an outcome, but for its digests; NaN is None."""
+    row: Row = _without_nan(
+        {
+            "claim": outcome.claim,
+            "values": outcome.values,
+            "second": outcome.second,
+            "lines": {name: asdict(line) for name, line in outcome.lines.items()},
+        }
+    )
+    return row
 
 
-def read(directory: Path = PUBLISHED) -> dict[str, Outcome]:
-    """Read every outcome of a directory by its claim; OutcomeError for a broken file."""
-    return {path.stem: _read(path) for path in sorted(directory.glob("C*.json"))}
+def outcome_of_row(row: Row) -> Outcome:
+    """Return the outcome that a row of the record keeps."""
+    plan, _, code = row["key"].partition(" ")
+    return Outcome(
+        row["claim"],
+        {name: _given(values) for name, values in row["values"].items()},
+        {name: _given(values) for name, values in row["second"].items()},
+        {
+            name: Curve(
+                tuple(line["across"]), *(_given(line[part]) for part in ("median", "low", "high"))
+            )
+            for name, line in row["lines"].items()
+        },
+        plan,
+        code,
+    )
 
 
-def write(outcome: Outcome, directory: Path = PUBLISHED) -> None:
-    """Write an outcome, whole or not at all."""
-    document = _without_nan(asdict(outcome))
-    text = json.dumps(document, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    name = f"{directory.name}/{outcome.claim}.json"
-    recorded.write(directory.parent, {name: text.replace('"},', '"},\n') + "\n"})
-
-
-def _read(path: Path) -> Outcome:
-    try:
-        document = members(read_json(path), path, _MEMBERS)
-        named = document["claim"]
-        require(named == path.stem, path, f"is of claim {named!r}, by its content")
-        return Outcome(
-            document["claim"],
-            document["code"],
-            document["plan"],
-            {name: _given(path, name, values) for name, values in document["values"].items()},
-            {name: _given(path, name, values) for name, values in document["second"].items()},
-            {name: _curve(path, name, line) for name, line in document["lines"].items()},
-        )
-    except (FileRefusedError, FileNotFoundError) as error:
-        raise OutcomeError(
-            f"{path.name} is no outcome of a claim ({error}); measure it again with "
-            "`python -m benchmark.claims.run`"
-        ) from error
+def read(directory: Path | str = PUBLISHED) -> dict[str, Outcome]:
+    """Return every outcome of a record by its claim; StoreError for a broken file."""
+    return {name: outcome_of_row(row) for name, row in RECORD.read(directory).items()}
 
 
 _MEMBERS = {
-    **dict.fromkeys(("claim", "code", "plan"), str),
+    **dict.fromkeys(("claim", "key"), str),
     **dict.fromkeys(("values", "second", "lines"), dict),
 }
+_PARTS = ("across", "median", "low", "high")
 
 
-def _curve(path: Path, name: str, line: Any) -> Curve:
-    members(line, path, dict.fromkeys(("across", "median", "low", "high"), list))
-    for place in line["across"]:
-        require_kind(place, (str, int, float), path, f"{name}, across")
-    curve = Curve(
-        tuple(line["across"]),
-        *(_given(path, f"{name}, {k}", line[k]) for k in ("median", "low", "high")),
-    )
-    lengths = {len(part) for part in (curve.across, curve.median, curve.low, curve.high)}
-    require(len(lengths) == 1, path, f"{name}: its lists are of different lengths")
-    return curve
+def _require_row(path: Path, row: object) -> None:
+    held: Row = members(row, path, _MEMBERS)
+    for member in ("values", "second"):
+        for name, values in held[member].items():
+            _require_numbers(path, name, values)
+    for name, line in held["lines"].items():
+        members(line, path, dict.fromkeys(_PARTS, list))
+        for place in line["across"]:
+            require_kind(place, (str, int, float), path, f"{name}, across")
+        for part in _PARTS[1:]:
+            _require_numbers(path, f"{name}, {part}", line[part])
+        lengths = {len(line[part]) for part in _PARTS}
+        require(len(lengths) == 1, path, f"{name}: its lists are of different lengths")
+
+
+def _require_numbers(path: Path, where: str, values: object) -> None:
+    for value in require_kind(values, list, path, where):
+        require_kind(value, (int, float, type(None)), path, where)
+
+
+def _claim(row: Row) -> str:
+    return str(row["claim"])
+
+
+RECORD = RowFile("claims.json", "claims", 1, _claim, _require_row)
 
 
 def _curves(claim: Claim, trials: Sequence[Trial]) -> dict[str, Curve]:
@@ -200,9 +200,7 @@ def _numbers(values: Any) -> tuple[float, ...]:
     return tuple(math.nan if value is None else value for value in rounded)
 
 
-def _given(path: Path, name: str, values: Any) -> tuple[float, ...]:
-    for value in require_kind(values, list, path, name):
-        require_kind(value, (int, float, type(None)), path, name)
+def _given(values: Sequence[float | None]) -> tuple[float, ...]:
     return tuple(math.nan if value is None else float(value) for value in values)
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from benchmark.leaderboard.ranking import Spread
+from benchmark.metrics.ranking import Spread
 from benchmark.metrics.score import is_available
 from registry.measured import Partly, finer_for
 

@@ -16,12 +16,13 @@ from benchmark.datasets import get, names
 from benchmark.datasets.pins import Pin, Place
 from benchmark.datasets.realism import standing
 from benchmark.leaderboard.beside import expected_on_bench, on_bench, twins_of
-from benchmark.leaderboard.ranking import Judged, judged, order, spreads
 from benchmark.leaderboard.scope import BEHIND, UNITS, Studied, studies_of_pipelines
+from benchmark.metrics.ranking import Judged, judged, order, spreads
 from benchmark.metrics.rings import EDGES_DEG, field_error, widest_field
 from benchmark.metrics.score import METRIC_VERSION, is_available
 from benchmark.results.components import SCHEMA_VERSION
 from benchmark.results.store import Store
+from benchmark.sweeps import record as sweeps
 
 Row = Mapping[str, Any]
 #: Times of one pipeline on a machine, by (dataset, extractor, model).
@@ -50,7 +51,7 @@ def build(
     times
         Of this machine; none by default.
     swept
-        Rows of sweeps as `Store.swept` gives them.
+        Rows of sweeps as `benchmark.sweeps.record.swept` gives them.
     studied
         Mapped studies by the pipelines they used (`scope.studies_of_pipelines`); none by default.
     pins
@@ -180,8 +181,8 @@ def board_of(store: Store, times: Times | None = None) -> dict[str, Any]:
     StoreError, ComponentsError
         For a file that cannot be read.
     """
-    rows, swept = store.rows(unit=None), store.swept()
-    return build(rows, times, swept, studies_of_pipelines(), store.pins())
+    rows = store.rows(unit=None)
+    return build(rows, times, sweeps.swept(store.directory), studies_of_pipelines(), store.pins())
 
 
 def best_of_extractors_first(ranked: Iterable[Row]) -> list[dict[str, Any]]:

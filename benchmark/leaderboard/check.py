@@ -15,8 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.contract import Cell
-from benchmark.curves import run as curves
-from benchmark.curves.record import NAME as CURVES
+from benchmark.experiments.sweeps import Sweeps
 from benchmark.leaderboard import scope
 from benchmark.leaderboard.board import board_of
 from benchmark.leaderboard.consistency import contradictions
@@ -31,9 +30,12 @@ from benchmark.results.components import current
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.results.tables import Row
 from benchmark.running import pinning
+from benchmark.running.experiment import Recorded, due, experiments
 from benchmark.running.kernels import update_with_older_kernels
 from benchmark.running.run import RunInterruptedError
-from benchmark.sweeps import run as sweeps
+from benchmark.sweeps.differences import differences
+from benchmark.sweeps.record import RECORD as SWEEPS
+from benchmark.sweeps.record import swept
 from files.temporary import temporary_directory
 from survey_data import recorded_facts
 
@@ -146,8 +148,8 @@ def compare(committed: Store, measured: Store, kernels: str = "") -> list[Differ
         *_moved_data(committed, measured, kernels),
         *compare_scores(committed.scores(), measured.scores(), _counts(measured), kernels),
     ]
-    for place, one, other in sweeps.differences(committed.swept(), measured.swept()):
-        found.append(Difference(committed.sweeps_path.name, place, one, other, kernels))
+    for place, one, other in differences(swept(committed.directory), swept(measured.directory)):
+        found.append(Difference(SWEEPS.name, place, one, other, kernels))
     return found
 
 
@@ -219,7 +221,7 @@ def _by_hand(store: Store) -> Iterator[Difference]:
 
 def _moved_heads(store: Store, parts: Parts) -> Iterator[Difference]:
     """Find datasets whose first samples are not as pinned, in seconds."""
-    components = current(parts, sweeps.series_digests())
+    components = current(parts)
     changed = pinning.presets_of_other_code(store, parts, components)
     for name, lines in pinning.changed_heads(store.pins(), changed).items():
         for line in lines:
@@ -252,7 +254,7 @@ def _moved_data(committed: Store, measured: Store, kernels: str) -> Iterator[Dif
 def _outdated(store: Store, parts: Parts) -> Iterator[Difference]:
     """Find components of other code than there is, and what is stored too much or too little."""
     stored = store.components()
-    now = current(parts, sweeps.series_digests())
+    now = current(parts)
     for name, one, other in stored.differences(now):
         if one or _is_used(name, store):
             yield Difference(
@@ -267,11 +269,17 @@ def _outdated(store: Store, parts: Parts) -> Iterator[Difference]:
     pinned = {"/".join(place) for place in store.pins()}
     there = {"/".join(place) for place in pinning.places(parts)}
     yield from _unlike(store.pins_path.name, pinned, there, "pinned")
-    for point, state in sweeps.unplanned(store.swept(), parts.extractors):
-        told = ("absent", "planned") if state == "absent" else ("present", "not planned")
-        yield Difference(store.sweeps_path.name, f"{point}/row", *told)
-    for leader, why in curves.behind(store.directory, parts):
-        yield Difference(CURVES, str(leader), why, "renewed by `python -m benchmark.curves`")
+    for name, kind in experiments().items():
+        if issubclass(kind, Recorded) and _is_of(kind, store):
+            should = f"renewed by `python -m benchmark.experiments {name}`"
+            for cell, why in due(kind(store.directory, parts)):
+                yield Difference(kind.record.name, str(cell), why, should)
+
+
+def _is_of(kind: type[Recorded[Any]], store: Store) -> bool:
+    """Say whether a record has an experiment; others than the published one need only sweeps."""
+    wanted = store.directory == PUBLISHED or kind is Sweeps
+    return wanted or (store.directory / kind.record.name).is_file()
 
 
 def _is_used(name: str, store: Store) -> bool:

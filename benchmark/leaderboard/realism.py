@@ -14,9 +14,10 @@ from typing import Any
 
 from benchmark.datasets import get, names
 from benchmark.datasets.realism import Standing, figures, standings
-from benchmark.leaderboard.ranking import order
+from benchmark.metrics.ranking import order
 from benchmark.metrics.rings import EDGES_DEG, field_error
 from survey_data.hardware import Hardware
+from survey_data.reported import reported
 from survey_data.sources import source_named
 
 Row = Mapping[str, Any]
@@ -106,15 +107,23 @@ _OURS = ("extractor", "model", "rms_deg", "bound_deg", "repeatability_deg", "hal
 
 def _compared(sensor: Hardware, row: Row | None) -> dict[str, Any]:
     ours = None if row is None else _error(sensor, row)
+    theirs = _accuracy_rms_deg(sensor)
     repeated = None if row is None else row["repeatability_deg"]
     return {
         **figures(sensor),
         "source_name": source_named(sensor.source).name,
-        "accuracy_rms_deg": sensor.rms_deg,
+        "accuracy_rms_deg": theirs,
         "our_rms_deg": ours,
-        "accuracy_ratio": _over(ours, sensor.rms_deg),
+        "accuracy_ratio": _over(ours, theirs),
         "precision_ratio": _over(repeated, sensor.precision_deg),
     }
+
+
+def _accuracy_rms_deg(sensor: Hardware) -> float | None:
+    """Return the published accuracy as a root mean square, by the rule of its kind."""
+    if sensor.accuracy_deg is None:
+        return None
+    return reported("accuracy", sensor.accuracy_deg, sensor.accuracy_kind).rms_deg
 
 
 def _error(sensor: Hardware, row: Row) -> float | None:

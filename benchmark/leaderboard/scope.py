@@ -26,7 +26,7 @@ from types import MappingProxyType
 from typing import Any
 
 from benchmark.contract import ON_BENCH, Cell
-from benchmark.leaderboard.ranking import order
+from benchmark.metrics.ranking import order
 from benchmark.metrics.score import is_available
 from benchmark.plan.combinations import cells, scorable
 from benchmark.plan.parts import Parts, installed

@@ -9,6 +9,7 @@ from itertools import groupby
 from pathlib import Path
 
 from benchmark.contract import Cell
+from benchmark.experiments.sweeps import Sweeps
 from benchmark.leaderboard import scope
 from benchmark.leaderboard.board import board_of
 from benchmark.leaderboard.pages import PAGE, page
@@ -19,10 +20,9 @@ from benchmark.results.components import Components, current
 from benchmark.results.record import opened
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.results.tables import Row
-from benchmark.running import pinning
+from benchmark.running import experiment, pinning
 from benchmark.running.planned import FollowUp
 from benchmark.running.run import Summary, failures, measure_missing
-from benchmark.sweeps import run as sweeps
 
 
 def update(
@@ -60,7 +60,7 @@ def update(
         raise ValueError(f"workers must be at least 1; got {workers}")
     started = time.perf_counter()
     known = parts or installed()
-    components = current(known, sweeps.series_digests())
+    components = current(known)
     first, studied = scope.first(known), scope.studied_pipelines(known)
     choose = partial(scope.followers, studied=studied)
     store = Store(directory)
@@ -87,13 +87,12 @@ def update(
         computed += measured(followers)
         pins = pinning.pin_missing(record, components, known, workers=workers, progress=progress)
         pinning.require_versions(pinned, record.pins.values())
-        swept = sweeps.sweep_missing(
-            record, components, known.extractors, workers=workers, progress=progress
-        )
         wanted = frozenset((*first, *followers))
         record.drop(scores=wanted.__contains__, pins=frozenset(pinning.places(known)).__contains__)
-        record.write(components, sweeps.ordered)
+        record.write(components)
         failed = failures(sorted(wanted), record)
+    sweeps = Sweeps(store.directory, known)
+    experiment.update(sweeps, workers, progress)
     write_page(store)
     return Summary(
         store=store.directory,
@@ -103,7 +102,11 @@ def update(
         failed=failed,
         warnings=(
             *pins.warnings,
-            *(f"sweep {point} failed: {reason}" for point, reason in swept.failed),
+            *(
+                f"sweep {point} failed: {row['reason']}"
+                for point, row in sweeps.record.read(store.directory).items()
+                if row["status"] == "failed"
+            ),
         ),
         seconds=time.perf_counter() - started,
     )

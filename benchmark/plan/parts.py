@@ -37,6 +37,10 @@ class Parts:
             raise UnknownNameError("model", name, self.models)
         return self.models[name]
 
+    def of_extractors(self) -> Parts:
+        """Return the extractors alone."""
+        return Parts({}, self.extractors, {})
+
     def only(self, cells: Iterable[Cell]) -> Parts:
         """Return the parts that these cells are made of; UnknownNameError for one that is none."""
         wanted = list(cells)

@@ -1,4 +1,4 @@
-"""What results are made of: data sets, extractors, models, series, harness; facts and digests.
+"""What results are made of: data sets, extractors, models, harness; facts and digests.
 
 A stored number belongs to the components as they were when it was measured. One small file holds
 a line for each, so that a change of one component is a change of one line, and tells which of the
@@ -27,7 +27,7 @@ SCHEMA_VERSION = 2
 KEYED = ("harness", "dataset", "extractor", "model")
 
 Facts = Mapping[str, Any]
-_KINDS = ("datasets", "extractors", "models", "series")
+_KINDS = ("datasets", "extractors", "models")
 
 
 class ComponentsError(ValueError):
@@ -46,8 +46,6 @@ class Components:
         With version, detector, mask and half field of view.
     extractors, models
         With version and value of the taxonomy.
-    series
-        Of reference features.
     metric
         Version of the metric that the numbers are by.
     """
@@ -56,7 +54,6 @@ class Components:
     datasets: Mapping[str, Facts] = field(default_factory=dict)
     extractors: Mapping[str, Facts] = field(default_factory=dict)
     models: Mapping[str, Facts] = field(default_factory=dict)
-    series: Mapping[str, Facts] = field(default_factory=dict)
     metric: int = METRIC_VERSION
 
     def cell_key(self, cell: Cell) -> str:
@@ -76,16 +73,6 @@ class Components:
         if len(before) != len(KEYED):  # of no layout that is known
             return KEYED
         return tuple(name for name, one, two in zip(KEYED, before, now, strict=True) if one != two)
-
-    def point_key(self, series: str, extractor: str) -> str:
-        """Return the same of a point of a sweep; what no series fits has the series `""`."""
-        return "-".join(
-            (
-                self.harness,
-                self.digest("series", series) if series else "",
-                self.digest("extractors", extractor),
-            )
-        )
 
     def digest(self, kind: str, name: str) -> str:
         """Return the digest of a component; ComponentsError where there is none."""
@@ -173,22 +160,19 @@ class Components:
         return cls(harness=held["harness"], **kinds, metric=metric)
 
 
-def current(parts: Parts, series: Mapping[str, str] | None = None) -> Components:
+def current(parts: Parts) -> Components:
     """Return the components as the code is now.
 
     Parameters
     ----------
     parts
         Data sets and implementations.
-    series
-        Digest of each series of reference features; none by default.
     """
     return Components(
         harness=harness_digest(),
         datasets={name: _of_dataset(preset) for name, preset in parts.presets.items()},
         extractors={name: _of_method(method) for name, method in parts.extractors.items()},
         models={name: _of_method(method) for name, method in parts.models.items()},
-        series={name: {"digest": digest} for name, digest in (series or {}).items()},
     )
 
 
@@ -203,7 +187,6 @@ _MEMBERS: Mapping[str, Mapping[str, type | tuple[type, ...]]] = {
     },
     "extractors": {"version": int, "taxonomy": str, "digest": str},
     "models": {"version": int, "taxonomy": str, "digest": str},
-    "series": {"digest": str},
 }
 
 

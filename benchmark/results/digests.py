@@ -27,7 +27,6 @@ _HARNESS = (
     "benchmark.metrics.score",
     "benchmark.running.generated",
     "benchmark.running.task",
-    "benchmark.sweeps.measure",
 )
 
 
@@ -57,7 +56,7 @@ def dataset_digest(preset: Preset) -> str:
 
 
 def series_digest(series: object) -> str:
-    """Digest of a reference series: of what it holds, and of the code of all it is made of."""
+    """Digest of a series of synthetic features: of what it holds, and of the code of it all."""
     return _component({"holds": series, "code": closure_digest(*modules_of(series))})
 
 

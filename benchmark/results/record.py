@@ -26,8 +26,6 @@ from benchmark.results.tables import Row, StoreError
 from files.locks import HeldError, held_alone
 from files.temporary import remove_leftovers
 
-Point = tuple[str, str, str, str]  # (series, sweep, point, extractor)
-
 
 class StoreLockedError(HeldError):
     """Another runner is writing to the store."""
@@ -49,7 +47,7 @@ class Record:
 
     Attributes
     ----------
-    scores, pins, swept
+    scores, pins
         All that is known, journal included.
     errors
         What the journal holds sample by sample; the rest stays on disk.
@@ -62,12 +60,10 @@ class Record:
         self._components = store.components()
         self.scores: dict[Cell, Row] = store.scores()
         self.pins: dict[Place, Pin] = store.pins()
-        self.swept: dict[Point, Row] = {point_of(row): row for row in store.swept()}
         self.errors = SampleErrors()
         known = self._components
         self._score_keys = {cell: known.cell_key(cell) for cell in self.scores}
         self._pin_keys = {place: known.digest("datasets", place[0]) for place in self.pins}
-        self._swept_keys = {point: known.point_key(point[0], point[3]) for point in self.swept}
         self._changed = False
         self._read_journal()
 
@@ -98,20 +94,12 @@ class Record:
         """Say whether a split's pin is of these components."""
         return self._pin_keys.get(place) == components.digest("datasets", place[0])
 
-    def is_swept(self, point: Point, components: Components) -> bool:
-        """Say whether a point of a sweep is of these components, and no failure."""
-        return (
-            self._swept_keys.get(point) == components.point_key(point[0], point[3])
-            and self.swept[point]["status"] != "failed"
-        )
-
     def keep(
         self,
         components: Components,
         *,
         pins: Iterable[Pin] = (),
         scores: Mapping[Cell, Row] | None = None,
-        swept: Iterable[Row] = (),
         errors: Mapping[Cell, CellErrors] | None = None,
         directions: Mapping[str, Directions] | None = None,
     ) -> None:
@@ -121,7 +109,7 @@ class Record:
         ----------
         components
             Of what was measured.
-        pins, scores, swept
+        pins, scores
             Numbers.
         errors
             Of cells in `scores`, sample by sample (`benchmark.results.samples`).
@@ -141,10 +129,6 @@ class Record:
         records += [
             {"directions_of": name, **known.spelt()} for name, known in (directions or {}).items()
         ]
-        records += [
-            {"swept": row, "key": components.point_key(row["series"], row["extractor"])}
-            for row in swept
-        ]
         if not records:
             return
         self._journal.append(records)
@@ -156,18 +140,14 @@ class Record:
         *,
         scores: Callable[[Cell], bool] = _everything,
         pins: Callable[[Place], bool] = _everything,
-        swept: Callable[[Point], bool] = _everything,
     ) -> None:
         """Forget what is no longer wanted: each function says what is, everything by default."""
-        before = len(self.scores), len(self.pins), len(self.swept)
+        before = len(self.scores), len(self.pins)
         self.scores = {cell: row for cell, row in self.scores.items() if scores(cell)}
         self.pins = {place: pin for place, pin in self.pins.items() if pins(place)}
-        self.swept = {point: row for point, row in self.swept.items() if swept(point)}
-        self._changed |= before != (len(self.scores), len(self.pins), len(self.swept))
+        self._changed |= before != (len(self.scores), len(self.pins))
 
-    def write(
-        self, components: Components, order: Callable[[Iterable[Row]], list[Row]] | None = None
-    ) -> None:
+    def write(self, components: Components) -> None:
         """Write the store's files and forget the journal.
 
         What was measured with other components than these is left out, where these say anything
@@ -177,8 +157,6 @@ class Record:
         ----------
         components
             Of what was measured now; the others stay as they were.
-        order
-            Sorts rows of sweeps; as they are by default.
         """
         known = self._components.updated(components)
         scores = {
@@ -191,24 +169,15 @@ class Record:
             for place, pin in self.pins.items()
             if self._pin_keys[place] == known.digest("datasets", place[0])
         ]
-        swept = [
-            row
-            for point, row in self.swept.items()
-            if self._swept_keys[point] == known.point_key(point[0], point[3])
-        ]
         used = Components(
             harness=known.harness,
             datasets=_used(known.datasets, [c.dataset for c in scores] + [p.dataset for p in pins]),
-            extractors=_used(
-                known.extractors,
-                [c.extractor for c in scores] + [row["extractor"] for row in swept],
-            ),
+            extractors=_used(known.extractors, [cell.extractor for cell in scores]),
             models=_used(known.models, [cell.model for cell in scores]),
-            series=_used(known.series, [row["series"] for row in swept]),
             metric=known.metric,
         )
         if self._changed or used != self._components:
-            self.store.write(scores, pins, order(swept) if order else swept, used)
+            self.store.write(scores, pins, used)
             self.errors.write(
                 self.store.directory,
                 lambda cell: cell in scores and scores[cell]["status"] == "ok",
@@ -235,9 +204,6 @@ class Record:
             elif fields == {"cell", "score", "key"}:
                 cell = Cell(**record["cell"])
                 self.scores[cell], self._score_keys[cell] = record["score"], key
-            elif fields == {"swept", "key"}:
-                point = point_of(record["swept"])
-                self.swept[point], self._swept_keys[point] = record["swept"], key
             else:
                 raise StoreError(f"{where}: not a record of the journal; fields {sorted(fields)}")
         except (TypeError, KeyError, binascii.Error) as error:
@@ -252,11 +218,6 @@ class Record:
         else:
             return False
         return True
-
-
-def point_of(row: Mapping[str, Any]) -> Point:
-    """Return the point a row of a sweep is of."""
-    return (row["series"], row["sweep"], row["point"], row["extractor"])
 
 
 @contextmanager

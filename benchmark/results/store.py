@@ -5,7 +5,7 @@ A store is a directory:
 - ``scores/<dataset>.csv``: one row a pipeline, condition and unit; numbers only.
 - ``samples/<dataset>.parquet``: the errors behind scores, sample by sample
   (`benchmark.results.samples`).
-- ``sweeps.csv``: one row an extractor and point of a sweep (`benchmark.sweeps`).
+- a file of each recorded experiment (`benchmark.running.experiment`).
 - ``pins.csv``: hash and bound of each generated split (`benchmark.results.pins`).
 - ``components.json``: facts and digests of what the numbers are of.
 - ``manifest.json``: digests of all these, by which a change by hand shows (`files.manifest`).
@@ -67,25 +67,6 @@ _SCORE_COLUMNS: Mapping[str, Reader] = {
     **dict.fromkeys(("bias_alpha_deg", "bias_beta_deg"), number),
     "reason": str,
 }
-#: Numbers of a row of a sweep.
-SWEPT = (
-    *("found_fraction", "kept_fraction", "wrong_fraction"),
-    *("rms", "bias", "bound", "over_bound"),
-)
-_SWEEP_COLUMNS: Mapping[str, Reader] = {
-    "series": str,
-    "sweep": str,
-    "point": str,
-    "extractor": word,
-    "status": one_of(*STATUSES),
-    "value": number,
-    "n": count,
-    "unit": str,
-    **dict.fromkeys(SWEPT, size),
-    **dict.fromkeys(("found_fraction", "kept_fraction", "wrong_fraction"), share),
-    "bias": number,
-    "reason": str,
-}
 
 
 class UnknownFieldError(LookupError):
@@ -113,11 +94,6 @@ class Store:
     def samples_directory(self) -> Path:
         """Where the errors sample by sample are."""
         return self.directory / "samples"
-
-    @property
-    def sweeps_path(self) -> Path:
-        """Of the table of sweeps."""
-        return self.directory / "sweeps.csv"
 
     @property
     def pins_path(self) -> Path:
@@ -180,31 +156,6 @@ class Store:
         """Pinned data by (dataset, condition, split); StoreError for a line that is no pin."""
         return read_pins(self.pins_path)
 
-    def swept(self) -> list[Row]:
-        """Return rows of sweeps in the order of the file; StoreError for a line that is none."""
-        components = self.components()
-        rows = []
-        seen: set[tuple[str, ...]] = set()
-        for line, row in read(self.sweeps_path, _SWEEP_COLUMNS):
-            point = (row["series"], row["sweep"], row["point"], row["extractor"])
-            if point in seen:
-                raise StoreError(f"{self.sweeps_path}, line {line}: {point} is there twice")
-            seen.add(point)
-            known = components.extractors.get(row["extractor"])
-            if known is None:
-                raise StoreError(
-                    f"{self.sweeps_path}, line {line}: {row['extractor']!r} is not in "
-                    f"{self.components_path.name}"
-                )
-            rows.append(
-                {
-                    **row,
-                    "extractor_taxonomy": known["taxonomy"],
-                    "extractor_version": known["version"],
-                }
-            )
-        return rows
-
     def query(self, **where: Filter) -> list[Row]:
         """Return the rows whose fields have one of the wanted values.
 
@@ -238,7 +189,6 @@ class Store:
         self,
         scores: Mapping[Cell, Row],
         pins: Iterable[Pin],
-        swept: Iterable[Row],
         components: Components,
     ) -> None:
         """Replace the files, each whole or not at all; unchanged ones are left alone.
@@ -252,8 +202,6 @@ class Store:
             Numbers (`NUMBERS`) by cell.
         pins
             In any order.
-        swept
-            Rows of sweeps in the order of the file.
         components
             What all that is of.
         """
@@ -277,7 +225,6 @@ class Store:
         for path in self.scores_directory.glob("*.csv"):
             contents.setdefault(f"{folder}/{path.name}", None)
         contents[self.pins_path.name] = pins_text(pins)
-        contents[self.sweeps_path.name] = text_of(list(_SWEEP_COLUMNS), swept)
         contents[self.components_path.name] = components.text()
         recorded.write(self.directory, contents, start=True)
 

@@ -16,7 +16,7 @@ def one_thread() -> Iterator[None]:
     # yet cannot be limited.
     import scipy.linalg  # noqa: F401, PLC0415
 
-    opencv = sys.modules.get("cv2")  # no method loads it so far, and measuring does without
+    opencv = sys.modules.get("cv2")  # no extractor loads it: see docs/decisions/opencv.md
     threads = opencv.getNumThreads() if opencv else None
     if opencv:
         opencv.setNumThreads(1)

@@ -11,10 +11,9 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from benchmark.claims import outcomes
-from benchmark.curves import record as curves
 from benchmark.results import recorded, samples
 from benchmark.results.store import PUBLISHED, Store
+from benchmark.running.experiment import Recorded, experiments
 from files import manifest
 from survey_data import recorded_facts
 from survey_data.problems import SurveyDataError
@@ -49,17 +48,17 @@ def renew(directory: Path) -> list[str]:
 
     Raises
     ------
-    StoreError, ComponentsError, OutcomeError
+    StoreError, ComponentsError
         Where a file cannot be read; the manifest is left as it is.
     """
     store = Store(directory)
     store.rows(unit=None)
-    store.swept()
     for name in samples.datasets(directory):
         samples.read(name, directory)
         samples.read_directions(name, directory)
-    curves.read(directory)
-    outcomes.read(directory / "claims")
+    for kind in experiments().values():
+        if issubclass(kind, Recorded):
+            kind.record.read(directory)
     return manifest.renew(directory, recorded.names(directory))
 
 

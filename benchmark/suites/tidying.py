@@ -95,7 +95,7 @@ def would_tidy(store: Store, *, parts: Parts | None = None) -> Tidied:
 
 def _files(store: Store) -> list[Path]:
     """List the files of a store: whatever else lies in its directory is nobody's garbage."""
-    top = [store.pins_path, store.sweeps_path, store.components_path]
+    top = [store.pins_path, store.components_path]
     top += [store.directory / times.TIMES, store.work_directory / durations.DURATIONS]
     found = [*top, store.work_directory / "journal.jsonl", *store.scores_directory.glob("*.csv")]
     found += store.samples_directory.glob("*.parquet")

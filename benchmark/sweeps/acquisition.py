@@ -7,7 +7,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from algorithms.calibration.coded.mask import CodedMask, CodeReading
+from algorithms.calibration.coded.mask import CodedMask
+from algorithms.calibration.coded.reading import CodeReading
 from algorithms.contract import Floats
 from algorithms.pipeline import extracted
 from benchmark import seeds

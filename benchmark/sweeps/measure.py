@@ -2,34 +2,57 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from algorithms.contract import Extractor, Floats, UnusableDataError
 from algorithms.pipeline import checked
 from benchmark.metrics.score import stored
-from benchmark.reference.series import KEPT_PX, WRONG_PX, Drawn, Series, Setting
-from benchmark.results.store import SWEPT
+from benchmark.results.row_file import Row
 from benchmark.running.threads import one_thread
-from benchmark.sweeps.plan import SERIES, Point
-
-Row = dict[str, Any]
-
-
-def refused_row(point: Point, extractor: type[Extractor], reason: str) -> Row:
-    """Return the row of a series that a method is not measured on."""
-    return _row(point, None, extractor) | {"reason": reason}
+from benchmark.sweeps.plan import SERIES
+from benchmark.sweeps.points import Point
+from benchmark.sweeps.record import NUMBERS
+from benchmark.synthetic_features.series import KEPT_PX, WRONG_PX, Drawn, Series, Setting
 
 
-def measure(work: Sequence[tuple[Point, Setting, type[Extractor]]]) -> list[Row]:
-    """Measure methods at one point: all of `work` is of the same series and setting."""
-    (first, setting, _), *_ = work
-    series = SERIES[first.series]
+@dataclass(frozen=True)
+class Task:
+    """What sees the observations of one point.
+
+    Attributes
+    ----------
+    extractors
+        By point; all of the same series and setting.
+    setting
+        Of the point; None where nothing is measured.
+    refused
+        Why a method is not measured.
+    """
+
+    extractors: Mapping[Point, type[Extractor]]
+    setting: Setting | None
+    refused: Mapping[Point, str]
+
+
+def measure(task: Task) -> list[tuple[Point, Row]]:
+    """Measure methods at one point, each on the same observations."""
+    rows = [
+        (point, _row(point, None, task.extractors[point]) | {"reason": reason})
+        for point, reason in task.refused.items()
+    ]
+    if task.setting is None:
+        return rows
+    asked = [point for point in task.extractors if point not in task.refused]
+    series = SERIES[asked[0].series]
     with one_thread():
-        drawn = series.draw(setting)
-        return [_measured(series, drawn, *one) for one in work]
+        drawn = series.draw(task.setting)
+        for point in asked:
+            row = _measured(series, drawn, point, task.setting, task.extractors[point])
+            rows.append((point, row))
+    return rows
 
 
 def _measured(
@@ -67,7 +90,7 @@ def _numbers(estimates: Floats, drawn: Drawn, unit: str) -> Row:
     bias = float(np.sqrt(np.sum(good.mean(axis=0) ** 2) / 2.0)) if len(good) else np.nan
     kept = float((squared <= KEPT_PX**2).sum() / len(errors)) if unit == "px" else np.nan
     values = (found.mean(), kept, wrong, rms, bias, bound, rms / bound)
-    return {name: stored(float(v)) for name, v in zip(SWEPT, values, strict=True)}
+    return {name: stored(float(v)) for name, v in zip(NUMBERS, values, strict=True)}
 
 
 def _row(point: Point, setting: Setting | None, extractor: type[Extractor]) -> Row:
@@ -81,8 +104,10 @@ def _row(point: Point, setting: Setting | None, extractor: type[Extractor]) -> R
         "value": setting.value if setting else None,
         "n": setting.frames if setting else 0,
         "unit": series.unit if series else "",
-        **dict.fromkeys(SWEPT),
+        **dict.fromkeys(NUMBERS),
         "reason": "",
+        "extractor_taxonomy": extractor.about.taxonomy,
+        "extractor_version": extractor.about.version,
     }
 
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from benchmark.drawing import svg
-from benchmark.reference.series import SWEEPS
 from benchmark.sweeps.plan import SERIES
+from benchmark.synthetic_features.series import SWEEPS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

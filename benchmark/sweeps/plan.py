@@ -9,15 +9,16 @@ from types import MappingProxyType
 from algorithms.contract import Extractor, FeatureKind, Observation, UnsuitableDesignError
 from benchmark.datasets import Preset
 from benchmark.datasets.standard import ccd_lens, cmos_lens
-from benchmark.reference.cameras import CameraSeries
-from benchmark.reference.events import EVENTS
-from benchmark.reference.frame_series import FramesSeries
-from benchmark.reference.lines import SLIT, SLITS
-from benchmark.reference.readings import FacesSeries, QuadrantSeries
-from benchmark.reference.series import Series, Setting
-from benchmark.reference.spots import DiscSeries, GridSeries
 from benchmark.simulator.sensors.black_sun import BlackSunSensor
 from benchmark.simulator.sensors.blooming import BloomingSensor
+from benchmark.sweeps.points import Point
+from benchmark.synthetic_features.cameras import CameraSeries
+from benchmark.synthetic_features.events import EVENTS
+from benchmark.synthetic_features.frame_series import FramesSeries
+from benchmark.synthetic_features.lines import SLIT, SLITS
+from benchmark.synthetic_features.readings import FacesSeries, QuadrantSeries
+from benchmark.synthetic_features.series import Series, Setting
+from benchmark.synthetic_features.spots import DiscSeries, GridSeries
 
 
 def _camera_of(preset: Preset, name: str, description: str) -> CameraSeries:
@@ -74,19 +75,6 @@ _READINGS_OF: Mapping[FeatureKind, tuple[str, ...]] = MappingProxyType(
 )
 #: What is no estimate of a place: lists of spots, readings of pixels.
 _UNMEASURED = frozenset({FeatureKind.SPOTS, FeatureKind.SIGNALS})
-
-
-@dataclass(frozen=True, order=True)
-class Point:
-    """One extractor at one point of a series, by names."""
-
-    series: str
-    sweep: str
-    point: str
-    extractor: str
-
-    def __str__(self) -> str:
-        return f"{self.series}/{self.sweep}/{self.point}/{self.extractor}"
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
-from benchmark.reference.series import SWEEPS
 from benchmark.results.tables import text_of
 from benchmark.sweeps.plan import SERIES
+from benchmark.synthetic_features.series import SWEEPS
 from registry.taxonomy import exported_row
 
 Row = Mapping[str, Any]

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
+from files.reading import LARGEST, FileRefusedError, read_bytes
 from survey_data.nearest import nearest
 from survey_data.problems import SurveyImportError
 
@@ -62,3 +64,15 @@ def one_of(value: object, words: Iterable[str], near: Iterable[str] = ()) -> str
     hint = f", did you mean {spelt.get(meant, meant)}?" if meant else ""
     listed = ", ".join(allowed[:_MOST_LISTED]) + (", ..." if len(allowed) > _MOST_LISTED else "")
     return f"expected one of {listed}{hint}"
+
+
+def read_text(path: Path, largest: int = LARGEST) -> str:
+    """Read a text file of at most so many bytes; FaultsError where that cannot be."""
+    try:
+        return read_bytes(path, largest).decode("utf-8-sig")
+    except FileNotFoundError as error:
+        raise FaultsError(path.name, [Fault(None, "there is no such file")]) from error
+    except FileRefusedError as error:
+        raise FaultsError(path.name, [Fault(None, error.reason)]) from error
+    except UnicodeDecodeError as error:
+        raise FaultsError(path.name, [Fault(None, "expected UTF-8 text")]) from error

@@ -8,9 +8,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from files.reading import FileRefusedError, read_bytes
+from files.reading import FileRefusedError
 from files.strict_json import read_json
-from survey_data.additions.faults import Fault, FaultsError, one_of
+from survey_data.additions.faults import Fault, FaultsError, one_of, read_text
 from survey_data.importing.bibliography import read_bibliography
 
 Publication = dict[str, str]
@@ -97,14 +97,7 @@ def _bibtex(path: Path) -> Iterator[Publication]:
 
 
 def _ris(path: Path) -> Iterator[Publication]:
-    try:
-        text = read_bytes(path).decode("utf-8-sig")
-    except FileNotFoundError as error:
-        raise FaultsError(path.name, [Fault(None, "there is no such file")]) from error
-    except FileRefusedError as error:
-        raise FaultsError(path.name, [Fault(None, error.reason)]) from error
-    except UnicodeDecodeError as error:
-        raise FaultsError(path.name, [Fault(None, "expected UTF-8 text")]) from error
+    text = read_text(path)
     tags: dict[str, list[str]] = {}
     for line in text.splitlines():
         match = _RIS_LINE.match(line.strip("\ufeff"))

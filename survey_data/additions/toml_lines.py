@@ -9,8 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from files.reading import FileRefusedError, read_bytes
-from survey_data.additions.faults import Fault, FaultsError
+from survey_data.additions.faults import Fault, FaultsError, read_text
 
 Place = tuple[str | int, ...]
 """Keys and positions that lead to a value, such as ``("model", 0, "basis")``."""
@@ -45,15 +44,7 @@ def read_toml(path: Path) -> TomlDocument:
     FaultsError
         It cannot be read, or is no TOML; says where.
     """
-    try:
-        text = read_bytes(path, _MOST_BYTES).decode("utf-8-sig")
-    except FileNotFoundError as error:
-        raise FaultsError(path.name, [Fault(None, "there is no such file")]) from error
-    except FileRefusedError as error:
-        raise FaultsError(path.name, [Fault(None, error.reason)]) from error
-    except UnicodeDecodeError as error:
-        raise FaultsError(path.name, [Fault(None, "expected UTF-8 text")]) from error
-    return parse_toml(text, path.name)
+    return parse_toml(read_text(path, _MOST_BYTES), path.name)
 
 
 def parse_toml(text: str, name: str) -> TomlDocument:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -33,6 +34,36 @@ def test_kernels_work_where_nothing_can_be_cached():
         "assert PixelMax().extract(frames).tolist() == [[3.0, 2.0]]\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, timeout=600)
+
+
+def test_a_change_in_a_kernel_of_another_file_is_noticed(tmp_path):
+    """The caller's machine code has the callee's inside, and Numba looks at the caller's alone."""
+    (tmp_path / "caller.py").write_text(
+        "from callee import inner\n"
+        "from algorithms.compiled import compiled\n"
+        "@compiled\n"
+        "def outer(x):\n"
+        "    return inner(x) + 1.0\n"
+    )
+    for factor in (2.0, 30.0):
+        (tmp_path / "callee.py").write_text(
+            "from algorithms.compiled import compiled\n"
+            "@compiled\n"
+            "def inner(x):\n"
+            f"    return {factor} * x\n"
+        )
+        for _ in range(2):  # compiled, and then read from disk
+            code = "from caller import outer; print(outer(1.0), outer.stats.cache_hits)"
+            done = subprocess.run(
+                [sys.executable, "-c", code],
+                env={**os.environ, "PYTHONPATH": f"{tmp_path}:{ROOT}", "PYTHONHASHSEED": "0"},
+                check=True,
+                capture_output=True,
+                text=True,
+                timeout=600,
+            )
+            assert done.stdout.split()[0] == str(factor + 1.0)
+        assert "Counter()" not in done.stdout
 
 
 def test_numba_itself_refuses_to_cache_as_expected(tmp_path, monkeypatch):

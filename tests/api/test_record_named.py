@@ -20,7 +20,7 @@ NAME = "cmos-single-aperture"
 
 def write(directory, bound):
     pin = Pin(NAME, "nominal", "test", 1, 400, "a" * 32, "c" * 32, 400, bound, bound)
-    Store(directory).write({}, [pin], [], Components())
+    Store(directory).write({}, [pin], Components())
     return Measurements(directory).record["sha256"]
 
 

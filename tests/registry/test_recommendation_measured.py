@@ -127,7 +127,7 @@ def test_what_no_condition_tries_does_not_survive_it_and_the_answer_says_so(
     rows = [pipeline(hazards={"albedo": worse(0.2)}), pipeline(dataset="e", mask="Lens")]
     answer = recommend({"survive": "albedo"}, rows, facts=facts)
     assert masks_of(answer) == ["Slit"]
-    assert answer.untried == {"albedo": (("CMOS", "Lens"),)}
+    assert answer.document["untried"] == {"albedo": [{"detector": "CMOS", "mask": "Lens"}]}
 
 
 @pytest.mark.parametrize("broken", [worse(None), worse(0.2, available=False)])
@@ -166,7 +166,7 @@ def test_the_pipeline_that_errs_least_of_those_that_keep_the_limits_is_shown(
         best = only(recommend(ask, rows, facts=facts)).best
         assert best.measured is not None
         assert best.measured["dataset"] == shown
-        assert [one["dataset"] for one in best.others] == [other]
+        assert [one["dataset"] for one in best.other_datasets] == [other]
 
 
 def test_failed_runs_and_numbers_that_are_none_do_not_count(
@@ -377,6 +377,6 @@ def test_pipelines_of_an_architecture_are_in_the_order_of_their_names() -> None:
 
 def test_support_is_said_to_four_decimals(facts_of: Callable[[Rows], Facts]) -> None:
     facts = facts_of([STUDY, {**STUDY, "extractor": ["BCM"]}, {**STUDY, "model": ["LUT"]}])
-    first = only(recommend({}, facts=facts)).calibrations[0].to_dict()
-    assert first["support"] == 1.8171  # of 3 studies, 2 and 1
-    assert first["with_model"] == 2
+    first = only(recommend({}, facts=facts)).calibrations[0]
+    assert first.support == 1.8171  # of 3 studies, 2 and 1
+    assert first.with_model == 2

@@ -31,7 +31,7 @@ def test_a_limit_nothing_tells_of_says_so(survey: Facts) -> None:
 
 def test_an_impossible_question_names_the_constraint_and_ways_out(survey: Facts) -> None:
     ask = {"task": ["Accuracy"], "detector": ["Event"], "mask": ["V-Slit"]}
-    answer = recommend(ask, facts=survey).to_dict()
+    answer = recommend(ask, facts=survey).document
     assert answer["paths"] == answer["nodes"] == answer["links"] == answer["architectures"] == []
     blocked = answer["blocked"]
     assert isinstance(blocked, dict)

@@ -14,7 +14,7 @@ def test_requirements_are_given_back_as_they_can_be_given_again(survey: Facts) -
     one = next(iter(survey.properties))
     ask = {"task": "Cost", "exclude_mask": ["Lens", "Slit"], "max_error_deg": 2, "model": []}
     answer = recommend({**ask, "properties": one, "survive": []}, facts=survey)
-    echo = answer.to_dict()["requirements"]
+    echo = answer.document["requirements"]
     assert echo == {
         "task": ["Cost"], "exclude_mask": ["Lens", "Slit"], "max_error_deg": 2.0,
         "properties": [one],

@@ -4,21 +4,15 @@ from __future__ import annotations
 
 import math
 import shutil
-from dataclasses import fields
 from pathlib import Path
 
 import pytest
 
 import survey_data
 from survey_data.descriptor import DATA_DIRECTORY
-from survey_data.hardware import Hardware, hardware
+from survey_data.hardware import hardware
 from survey_data.problems import SurveyDataError
-
-
-def sensor(**given: object) -> Hardware:
-    empty: dict[str, object] = dict.fromkeys((field.name for field in fields(Hardware)), "")
-    figures = dict.fromkeys(("fov_full_deg", "accuracy_deg", "precision_deg"))
-    return Hardware(**{**empty, **figures, **given})
+from survey_data.reported import statistics
 
 
 def test_it_is_the_table_that_pandas_reads() -> None:
@@ -32,12 +26,8 @@ def test_it_is_the_table_that_pandas_reads() -> None:
     assert {item.basis for item in found.values()} == {"page", "recalled"}
 
 
-@pytest.mark.parametrize(
-    ("kind", "rms"), [("3sigma", 0.1), ("max", 0.1), ("1sigma", 0.3), ("rms", 0.3), ("", 0.3)]
-)
-def test_claims_are_compared_as_root_mean_squares(kind: str, rms: float) -> None:
-    assert sensor(accuracy_deg=0.3, accuracy_kind=kind).rms_deg == pytest.approx(rms)
-    assert sensor(accuracy_kind=kind).rms_deg is None
+def test_every_accuracy_is_of_a_kind_that_has_a_rule() -> None:
+    assert {one.accuracy_kind for one in hardware().values()} <= {*statistics(), ""}
 
 
 def test_a_broken_table_is_named(tmp_path: Path) -> None:

@@ -56,7 +56,7 @@ def test_a_sloppy_program_is_told_with_each_of_its_faults() -> None:
 
 
 def test_kills_of_quick_programs_leave_nothing() -> None:
-    only = [word for name in ("holding", "gc", "pin") for word in ("--only", name)]
+    only = [word for name in ("error_budget", "gc", "pin") for word in ("--only", name)]
     found = run("-m", "tools.faults.kills", "--kills", "9", "--no-pairs", *only)
     assert found.returncode == 0, found.stdout + found.stderr
     assert "9 kills" in found.stdout

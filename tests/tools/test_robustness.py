@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmark.reference.frame_sets import FRAME_SETS, Scenes
-from benchmark.reference.frames import REFERENCE_SETS
-from benchmark.reference.shapes import (
+from benchmark.synthetic_features.frame_sets import FRAME_SETS, Scenes
+from benchmark.synthetic_features.frames import REFERENCE_SETS
+from benchmark.synthetic_features.shapes import (
     EDGE_PX,
     disc,
     gaussian,
@@ -226,7 +226,7 @@ def test_every_kind_of_frame_and_every_extractor_of_one_spot_is_there():
     assert kinds == {"symmetric", "stray", "fault"}
     assert len(SETS) == len(FRAME_SETS)
     found = robustness.methods(SETS["disc"])
-    assert {"mirror", "mirror for_sensor", "matched-profile", "hough-circle", "tm"} <= set(found)
+    assert {"mirror", "mirror for_sensor", "hough-circle", "tm"} <= set(found)
     assert {"opencv threshold + moments", "scipy curve_fit ellipse"} <= set(found)
     assert {"mcam", "fmms", "feic", "weighted-spots"} == set(
         robustness.grid_methods(GridSet(5, 16.0))

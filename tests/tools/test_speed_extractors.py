@@ -8,7 +8,7 @@ import json
 import numpy as np
 import pytest
 
-from benchmark.reference.frames import REFERENCE_SETS
+from benchmark.synthetic_features.frames import REFERENCE_SETS
 from tools.bench import extractor_peers as speed_extractors_peers
 from tools.bench import extractors as speed_extractors
 from tools.bench.extractor_limits import (
@@ -43,12 +43,12 @@ def test_a_limit_is_broken_where_no_reason_excuses_it():
     assert not known.holds
     assert "two levels" in known.cannot
     assert not broken([known])
-    assert broken(verdicts({("disc", "matched-profile"): figures(over_bound=float("nan"))}))
+    assert broken(verdicts({("disc", "tm binarise=no"): figures(over_bound=float("nan"))}))
 
 
 def test_an_error_of_few_frames_is_not_judged():
-    found = verdicts({("disc", "matched-profile"): figures(over_bound=1.2, frames=999)})
-    assert [verdict.what for verdict in found] == ["matched-profile on disc: time over OpenCV's"]
+    assert not verdicts({("disc", "tm binarise=no"): figures(over_bound=1.4, frames=999)})
+    assert broken(verdicts({("disc", "tm binarise=no"): figures(over_bound=1.4, frames=1000)}))
 
 
 def test_the_range_of_noise_is_the_ratio_of_its_ends():

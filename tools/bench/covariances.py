@@ -19,8 +19,8 @@ import numpy as np
 
 from algorithms.contract import Extractor
 from algorithms.extractors.frames.mirror.extractor import MirrorRegistration
-from benchmark.reference.frame_sets import FRAME_SETS, FrameSet
 from benchmark.running.threads import one_thread
+from benchmark.synthetic_features.frame_sets import FRAME_SETS, FrameSet
 from tools.bench.extractors import single_spot
 from tools.bench.robustness import frames_of, grid_extractors
 from tools.bench.robustness_grids import GRID_SETS, GridSet

@@ -58,8 +58,6 @@ LIMITS: tuple[Limit, ...] = (
     Limit("bctm", ("disc-512",), "over_opencv", 0.25),
     Limit("bctm", _ALL, "error_over_opencv", 1.0),
     *(Limit(name, _ALL, "over_opencv", 0.3) for name in ("bcm", "pm", "dbcm", "ifm")),
-    Limit("matched-profile", _ALL, "over_bound", 1.05),
-    Limit("matched-profile", _ALL, "over_opencv", 1.0),
     Limit(
         "tm",
         ("disc",),

@@ -21,12 +21,11 @@ from numpy.typing import NDArray
 from algorithms.contract import Extractor, FeatureKind, Floats, Observation, SensorGeometry
 from algorithms.discovery import discover_extractors
 from algorithms.extractors.frames.centroid import BasicCentroid, FilteredCentroid
-from algorithms.extractors.frames.matched import MatchedProfile
 from algorithms.extractors.frames.template import TemplateMatch
 from algorithms.extractors.frames.threshold_average import MultipleThresholdCentroid
 from benchmark import datasets
-from benchmark.reference.frames import REFERENCE_SETS, ReferenceSet
 from benchmark.running.threads import one_thread
+from benchmark.synthetic_features.frames import REFERENCE_SETS, ReferenceSet
 from tools.bench.extractor_limits import (
     NOISE_RANGE_E,
     OPENCV,
@@ -121,7 +120,6 @@ def single_spot(half_px: float, size_px: int) -> dict[str, Extractor]:
         "ifm background=border": FilteredCentroid(background="border"),
         "mt-acm crossing=linear": MultipleThresholdCentroid(crossing="linear"),
         "tm binarise=no": TemplateMatch(width_px=float(2 * half_px), binarise=False),
-        "matched-profile steps=2": MatchedProfile(steps=2),
     }
     return {name: found[name] for name in sorted(found)}
 

@@ -25,9 +25,9 @@ from numpy.typing import NDArray
 from algorithms.contract import Extractor, Floats, Observation
 from algorithms.discovery import discover_extractors
 from algorithms.extractors.frames.mirror.extractor import MirrorRegistration
-from benchmark.reference.frame_sets import FRAME_SETS, FrameSet, Scenes
-from benchmark.reference.series import WRONG_PX
 from benchmark.running.threads import one_thread
+from benchmark.synthetic_features.frame_sets import FRAME_SETS, FrameSet, Scenes
+from benchmark.synthetic_features.series import WRONG_PX
 from tools.bench.extractor_limits import OPENCV
 from tools.bench.extractor_peers import REACH, Method, opencv_loop, peers
 from tools.bench.extractors import single_spot

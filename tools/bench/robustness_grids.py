@@ -14,10 +14,10 @@ from typing import Literal
 import numpy as np
 
 from algorithms.contract import Floats, SensorGeometry
-from benchmark.reference.frame_sets import Scenes
-from benchmark.reference.light import position_bound, spots
-from benchmark.reference.shapes import BACKGROUND_E, read_out, variance_e
 from benchmark.seeds import generator
+from benchmark.synthetic_features.frame_sets import Scenes
+from benchmark.synthetic_features.light import position_bound, spots
+from benchmark.synthetic_features.shapes import BACKGROUND_E, read_out, variance_e
 
 _RADIUS_PX, _PEAK_E, _BITS = 4.0, 2000.0, 12
 #: Of the sensor behind: any will do.

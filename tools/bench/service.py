@@ -2,10 +2,10 @@
 
 `python -m tools.bench.service [--format json]`. Both applications run side by side under uvicorn
 in this process, on one event loop; one client asks them in turn over kept connections, so that
-whatever else the machine does hits both alike. Three kinds of queries: the same again and again
-(answered from memory), and two that are different each time (computed): values excluded from
-everything, a large answer, and a task with a limit. Exit status 1 where a ratio is above
-`LARGEST_RATIO`.
+whatever else the machine does hits both alike. Four kinds of queries: the same again and again
+(answered from memory), and three that are different each time (computed): values excluded from
+everything, a large answer; a task with a limit; and requirements drawn at random, of limits on
+error and field, exclusions, tasks and orders. Exit status 1 where a ratio is above `LARGEST_RATIO`.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import argparse
 import asyncio
 import gc
 import json
+import random
 import socket
 import statistics
 import sys
@@ -32,11 +33,16 @@ from fastapi import FastAPI
 
 from api.http.server.connections import bounds
 from api.http.service import create_app
+from registry.ranking import SORTS
 from registry.studies import facts
 from tools.bench.verdicts import Verdict, broken
 
 LARGEST_RATIO = 3.0
 PATH = "/v1/recommendations"
+#: Questions of each kind before those that are measured: a service that has answered some.
+WARM = 100
+#: How often a drawn question has a requirement of a kind.
+_SHARE = 0.4
 #: A connection is kept however long the machine lets its next request wait, s.
 _KEPT_S = 600
 
@@ -47,7 +53,7 @@ class Measured:
 
     Attributes
     ----------
-    queries : "repeated", or different each time: "excluding" or "limiting"
+    queries : "repeated", or different each time: "excluding", "limiting" or "drawn"
     empty_us : median of the empty endpoint in its quietest round, in microseconds
     recommendation_us : median of the recommendation in its quietest round, in microseconds
     ratio : the two divided: other work on the machine only ever adds, and not alike
@@ -138,6 +144,24 @@ def limiting() -> Iterator[str]:
         yield f"{PATH}?{urlencode(pairs)}"
 
 
+def drawn(seed: int = 36) -> Iterator[str]:
+    """Yield paths that ask for requirements drawn at random, which something meets or nothing."""
+    values = facts().taxonomy.values
+    rng = random.Random(seed)
+    while True:
+        asked: dict[str, object] = {"sort": rng.choice(SORTS)}
+        if rng.random() < _SHARE:
+            asked["max_error_deg"] = 10.0 ** rng.uniform(-2.0, 1.0)
+        if rng.random() < _SHARE:
+            asked["min_fov_deg"] = rng.uniform(5.0, 160.0)
+        if rng.random() < _SHARE:
+            asked["task"] = rng.choice(values("task"))
+        for name in ("detector", "mask", "model", "extractor", "error"):
+            if rng.random() < _SHARE:
+                asked[f"exclude_{name}"] = rng.choice(values(name))
+        yield f"{PATH}?{urlencode(asked)}"
+
+
 def repeated() -> Iterator[str]:
     """Yield the same path again and again."""
     while True:
@@ -162,11 +186,16 @@ def measure(rounds: int = 15, requests: int = 30, app: FastAPI | None = None) ->
     `app` is the service, not asked before: what it remembers would not be computed.
     """
     service = create_app() if app is None else app
-    kinds = {"repeated": repeated(), "excluding": excluding(), "limiting": limiting()}
+    kinds = {
+        "repeated": repeated(),
+        "excluding": excluding(),
+        "limiting": limiting(),
+        "drawn": drawn(),
+    }
     found: dict[str, list[tuple[float, float]]] = {name: [] for name in kinds}
     with serving([empty_app(), service]) as (empty, atlas):
         for paths in kinds.values():  # warm
-            for _ in range(10):
+            for _ in range(WARM):
                 asked(empty, "/")
                 asked(atlas, next(paths))
         for _ in range(rounds):

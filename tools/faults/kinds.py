@@ -8,11 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import survey_data
-from benchmark.claims import outcomes
-from benchmark.curves import record as curves
 from benchmark.results import recorded
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import times
+from benchmark.running.experiment import Recorded, experiments
 from survey_data import recorded_facts
 from survey_data.descriptor import DATA_DIRECTORY
 from tools.faults.kind import OFFERED, OTHERS, OWN, Kind, RefusedError
@@ -58,8 +57,9 @@ def _read_record(folder: Path) -> Any:
 
 def _read_files(folder: Path) -> Any:
     store = Store(folder)
-    read = (store.rows(None), store.pins(), store.swept(), curves.read(folder))
-    return repr((*read, outcomes.read(folder / "claims")))
+    records = [kind.record for kind in experiments().values() if issubclass(kind, Recorded)]
+    kept = [record.read(folder) for record in records]
+    return repr((store.rows(None), store.pins(), kept))
 
 
 _OFFERED = (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import random
 import shutil
 from functools import cache
@@ -17,19 +16,19 @@ from algorithms.models.non_physical.polynomial import SurfacePolynomial
 from algorithms.pipeline import Pipeline
 from api.deposit import against_record, bundle
 from api.deposit.verification import verify as verify_bundle
-from benchmark.claims import run as claims_run
 from benchmark.claims.ledger import ledger
-from benchmark.claims.rules import FIRST_TRIAL, claims
-from benchmark.claims.verification import differences
+from benchmark.claims.outcomes import RECORD as CLAIMS
 from benchmark.contract import Cell
 from benchmark.datasets import export, export_verification
 from benchmark.datasets.pins import Pin
+from benchmark.experiments.claims import Claims
 from benchmark.metrics.score import METRICS
 from benchmark.results import recorded
 from benchmark.results.components import Components
 from benchmark.results.journal import Journal
 from benchmark.results.record import Record
-from benchmark.results.store import PUBLISHED, SWEPT, Store
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.running.experiment import due, repeated
 from files import manifest
 from tools.faults.forging import forged_export
 from tools.faults.forging_bundles import forged_bundle
@@ -67,15 +66,11 @@ def _journal(folder: Path) -> list[Path]:
         datasets={"d": sensor},
         extractors={"e": {"version": 1, "taxonomy": "BCM", "digest": "e"}},
         models={f"m{k}": {"version": 1, "taxonomy": "LSQ", "digest": f"m{k}"} for k in range(8)},
-        series={"s": {"digest": "s"}},
     )
     record.keep(known, pins=[Pin("d", "c", "test", 1, 9, "h", "hh", 9, 0.25, 0.2)])
     for k in range(8):
         row = {"status": "ok", **dict.fromkeys(METRICS), "rms_deg": 0.1 * k, "reason": ""}
         record.keep(known, scores={Cell("d", "c", "e", f"m{k}", 0): row})
-    swept = {"series": "s", "sweep": "noise", "point": "50", "extractor": "e", "status": "ok"}
-    swept |= {"value": 50.0, "n": 3, "unit": "px", **dict.fromkeys(SWEPT, 0.5), "reason": ""}
-    record.keep(known, swept=[swept])
     return [record.journal]
 
 
@@ -88,13 +83,18 @@ def _is_start(result: Any, reference: Any) -> bool:
     return bool(result == reference[: len(result)])
 
 
+_SMALL = (
+    *("pins.csv", "components.json", "curves.json", "claims.json", "error_budget.json"),
+    "sweeps.json",
+)
+
+
 @cache
 def _small_record(folder: Path) -> Path:
     """A record of one data set, as a runner older than manifests left it."""
     (folder / "scores").mkdir(parents=True)
-    for name in ("pins.csv", "components.json", "curves.json", f"scores/{_DATASET}.csv"):
+    for name in (*_SMALL, f"scores/{_DATASET}.csv"):
         shutil.copy(PUBLISHED / name, folder / name)
-    shutil.copytree(PUBLISHED / "claims", folder / "claims")
     swept = (PUBLISHED / "sweeps.csv").read_text().splitlines(keepends=True)
     (folder / "sweeps.csv").write_text("".join(swept[:60]))
     return folder
@@ -102,14 +102,11 @@ def _small_record(folder: Path) -> Path:
 
 def _unguarded(folder: Path) -> list[Path]:
     _small_record(folder)
-    top = [
-        path for path in sorted(folder.rglob("*")) if path.is_file() and "claims" not in str(path)
-    ]
-    return [*top, folder / "claims" / f"{_CLAIM}.json"]
+    return sorted(path for path in folder.rglob("*") if path.is_file())
 
 
 def _read_unguarded(folder: Path) -> Any:
-    ledger(folder / "claims")
+    ledger(folder)
     return _read_files(folder)
 
 
@@ -157,31 +154,31 @@ def _forged_bundle(rng: random.Random, folder: Path) -> str:
 
 
 def _outcome(folder: Path) -> list[Path]:
-    (folder / "claims").mkdir()
-    path = Path(shutil.copy(PUBLISHED / "claims" / f"{_CLAIM}.json", folder / "claims"))
+    CLAIMS.write({_CLAIM: CLAIMS.read()[_CLAIM]}, folder)
     manifest.renew(folder, recorded.names(folder))
-    return [path]
+    return [folder / CLAIMS.name]
 
 
 def _read_outcome(folder: Path) -> Any:
     recorded.require_unchanged(folder, required=True)
-    due = claims_run.due(folder / "claims")
-    if _CLAIM in due:
-        raise RefusedError(f"{_CLAIM}.json: {due[_CLAIM]}")
-    last = FIRST_TRIAL + claims()[_CLAIM].trials
-    places = [(_CLAIM, number) for number in range(FIRST_TRIAL, last)]
-    for file, text in differences(places, folder / "claims"):
-        raise RefusedError(f"{file}: {text}")
+    experiment = Claims(folder)
+    if reason := dict(due(experiment)).get(_CLAIM):
+        raise RefusedError(f"{CLAIMS.name}: {_CLAIM}: {reason}")
+    for cell, text in repeated(experiment, 1, 0):
+        raise RefusedError(f"{CLAIMS.name}: {cell}: {text}")
     return []
 
 
 def _forged_outcome(rng: random.Random, folder: Path) -> str:
     """Change a number, a name or a digest of an outcome, and its manifest with it."""
-    path = folder / "claims" / f"{_CLAIM}.json"
-    document = json.loads(path.read_text())
+    rows = CLAIMS.read(folder)
+    document = rows[_CLAIM]
     what = rng.choice(["values", "values", "values", "lines", "lines", "code", "plan", "name"])
-    if what in {"code", "plan"}:
-        document[what] = "0" * 32
+    plan, code = document["key"].split()
+    if what == "code":
+        document["key"] = f"{plan} {'0' * 32}"
+    elif what == "plan":
+        document["key"] = f"{'0' * 32} {code}"
     elif what == "name":
         held = document[rng.choice(["values", "lines"])]
         key = rng.choice(list(held))
@@ -194,7 +191,7 @@ def _forged_outcome(rng: random.Random, folder: Path) -> str:
         part = line[rng.choice(["median", "low", "high"])]
         at = rng.choice([k for k, value in enumerate(part) if value])
         part[at] *= rng.choice([1.001, 2.0])
-    path.write_text(json.dumps(document))
+    CLAIMS.write(rows, folder)
     manifest.renew(folder, recorded.names(folder))
     return f"forged: {what}"
 

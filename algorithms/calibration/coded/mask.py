@@ -7,14 +7,15 @@ from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, Self, cast
+from typing import TYPE_CHECKING, Self, cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from algorithms.angles import tangents_from_sun
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.coded.places import offsets_of, turn_of
+from algorithms.calibration.coded.reading import CodeReading, MaskDrawing
 from algorithms.calibration.forward import ForwardModel
 from algorithms.contract import (
     FeatureKind,
@@ -76,41 +77,56 @@ _ENOUGH = 0.5
 _ROUNDS = 3
 
 
-class CodeReading(NamedTuple):
-    """What lists of spots (N, 3 K) say of a mask of A apertures.
-
-    Attributes
-    ----------
-    displacement
-        (N, 2) px of the mask's middle on the detector; NaN where the code is not read.
-    apertures
-        (N, K) the aperture of each spot that was used; -1 for the others.
-    ambiguous
-        (N,) whether several places of the mask explain the spots.
-    """
-
-    displacement: Floats
-    apertures: NDArray[np.int64]
-    ambiguous: NDArray[np.bool_]
-
-
-class _Drawn(NamedTuple):
-    """A mask's drawing as the kernels take it."""
-
-    places: Floats  # (A, 2)
-    widths: Floats  # (A,)
-    reach: float
-    tolerance: float
-    widest: float
-    view: Floats  # (7,)
-    noise: tuple[float, ...]
-
-
 @dataclass
 class CodedMask(ForwardModel):
     """What the models of coded masks share: a subclass writes `about` and `search`.
 
-    Parameters and attributes stand there.
+    Parameters
+    ----------
+    apertures_px : tuple of (x, y, width)
+        The mask's apertures, px from its middle; four at least.
+    spots : int
+        Length of the lists, at least 3.
+    focal_length_mm, pixel_pitch_mm : float
+        Nominal distance from mask to detector, and of two pixels; positive.
+    centre_px : tuple of two float
+        Where the boresight meets the detector.
+    size_px : tuple of two float
+        Width and height of the detector, positive.
+    layers : tuple of (thickness mm, index)
+        Cover glass, as `algorithms.compensations.optics.refraction` has it.
+    tolerance_px : float
+        Largest distance of a spot from its aperture's place along an axis, positive; below half
+        of what tells two spacings of the code apart.
+    size_tolerance : float or None
+        Largest relative error of an aperture's width as told by its spot's light, positive; None
+        where sizes are no code.
+    half_fov_deg : float or None
+        Edge of the field of view, in (0, 90): a place more than 2 degrees beyond it along an axis
+        is no answer. None for no such edge.
+    agreeing : int
+        Spots that must agree on a place, at least 3.
+    odds : float
+        By how much likelier than any other the place must make the spots, from 1 up: where these
+        lie as far from their places as the code's steps are wide, none is.
+    share : float
+        Of the spots, and of the apertures in view, that must agree, in (0, 1].
+
+    Attributes
+    ----------
+    turn_ : float
+        Turn of the mask against the detector, degrees.
+    offsets_ : ndarray, shape (A, 2)
+        Offsets of the apertures from their turned places, px; 0 for those never seen.
+    vector_ : ndarray, shape (6,)
+        Focal length in mm, rotation and tilts about x and y in degrees, centre (x, y) in px.
+    hull_ : Hull
+        Cone of the calibrated directions.
+
+    Notes
+    -----
+    Shapes: lists ``(x_px, y_px, light)`` of spots (N, 3 K), light 0 and last for none, to unit
+    vectors (N, 3). No row leans on another: lost in space, in one frame.
     """
 
     apertures_px: Apertures = field(repr=False)
@@ -340,7 +356,7 @@ class CodedMask(ForwardModel):
         return CodeReading(displacement, apertures, verdicts == evidence_kernel.SEVERAL)
 
     @cached_property
-    def _drawn(self) -> _Drawn:
+    def _drawn(self) -> MaskDrawing:
         from algorithms.calibration.coded import table  # noqa: PLC0415 - Numba, at first use
 
         rows = np.array(self.apertures_px)
@@ -349,7 +365,7 @@ class CodedMask(ForwardModel):
         rim, sun = rows[:, 2].max() / 2.0 + _RIM_PX, _SOLAR_DIAMETER * focal / 2.0
         tolerance = min(self.tolerance_px, least / 6.0)
         area = math.log(self.size_px[0] * self.size_px[1])
-        return _Drawn(
+        return MaskDrawing(
             rows[:, :2],
             rows[:, 2].copy(),
             _REACH * most,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal, Self, get_args
+from typing import ClassVar, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +14,9 @@ from algorithms.contract import (
     AboutCompensation,
     FeatureKind,
     Floats,
-    SensorGeometry,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import Normals, require_normals
 from algorithms.models.physics_informed.assembled_faces import inverted
 
@@ -34,6 +34,7 @@ SURELY_LIT = 0.1
 _ROUNDS = 20
 
 
+@documented
 @dataclass
 class AngularLoss(CalibratedCompensation):
     """Signals of photodiodes turned into cosines of incidence by their angular response.
@@ -43,8 +44,6 @@ class AngularLoss(CalibratedCompensation):
 
     Parameters
     ----------
-    face_normals : tuple of K vectors
-        Unit normals of the faces in the order of the features, K at least 3, spanning space.
     response : {"kelly", "fitted"}
         The published cubic, or the one that fits the calibration best, the same for all faces.
 
@@ -54,15 +53,6 @@ class AngularLoss(CalibratedCompensation):
         Signal of each face at normal incidence.
     response_ : ndarray, shape (4,)
         Coefficients of 1, c, c^2 and c^3; ``f(1) = 1``.
-    samples_ : int
-        Calibration samples with features.
-    data_digest_ : str
-        Of these samples.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -77,10 +67,6 @@ class AngularLoss(CalibratedCompensation):
     samples light a face, or a lit face's signal is not positive. Normals are taken as drawn.
 
     Cost: 6 Newton's steps of 12 operations a face.
-
-    References
-    ----------
-    Yousefian2017; survey model:nonlin, eq:kellycos.
 
     Examples
     --------
@@ -127,13 +113,6 @@ class AngularLoss(CalibratedCompensation):
                 f"{self.about.name}: response must be one of {', '.join(get_args(Response))}; "
                 f"got {self.response!r}"
             )
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the published compensation of the sensor's faces."""
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
 
     def columns(self) -> int:
         """One a face."""

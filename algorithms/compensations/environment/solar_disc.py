@@ -10,6 +10,7 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.compensated import CalibratedCompensation
 from algorithms.contract import AboutCompensation, FeatureKind, Floats, SensorGeometry
+from algorithms.documented import documented
 from algorithms.models.nominal_projection import (
     nominal_projection,
     require_projection,
@@ -19,6 +20,7 @@ ITERATIONS = 4
 """Fixed-point steps; each leaves the square of the disc's radius of what was left."""
 
 
+@documented
 @dataclass
 class SolarDiscBias(CalibratedCompensation):
     """Middles of spots' outlines moved to where the Sun's centre falls.
@@ -31,24 +33,6 @@ class SolarDiscBias(CalibratedCompensation):
     ----------
     focal_length_mm : float
         Distance h from mask to detector, positive.
-    unit_mm : float
-        Displacement of the spot for one unit of feature, positive.
-    centre : tuple of two float
-        Feature (x, y) of the spot when the Sun is on the boresight.
-    disc_deg : float
-        Full angle of the Sun's disc, in (0, 10).
-
-    Attributes
-    ----------
-    samples_ : int
-        Calibration samples with features; nothing is learnt of them.
-    data_digest_ : str
-        Of these samples.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -64,10 +48,6 @@ class SolarDiscBias(CalibratedCompensation):
     Failure: a NaN row for a NaN feature row.
 
     Cost: 30 operations a sample.
-
-    References
-    ----------
-    Antonello2018; survey model:solar.
 
     Examples
     --------
@@ -106,9 +86,6 @@ class SolarDiscBias(CalibratedCompensation):
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the compensation for the sensor's drawing and the Sun seen from the Earth."""
         return cls(**nominal_projection(geometry, kind, cls.about))
-
-    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Learn nothing: the Sun's size is known."""
 
     def apply(self, features: Floats, context: Columns) -> Floats:
         """Spots (N, 2) of the Sun's centre."""

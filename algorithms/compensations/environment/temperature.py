@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
@@ -13,9 +13,9 @@ from algorithms.contract import (
     AboutCompensation,
     FeatureKind,
     Floats,
-    SensorGeometry,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import Normals, require_normals
 
 SMALLEST_SPREAD_K = 2.0
@@ -30,17 +30,13 @@ FEWEST_LIT = 12
 _ROUNDS = 10
 
 
+@documented
 @dataclass
 class TemperatureDrift(CalibratedCompensation):
     """Signals brought to one temperature by each face's own temperature coefficient.
 
     A photodiode's current grows by some hundredths of a per cent a kelvin, each a little
     differently; what is common to all faces drops out of a direction, the differences do not.
-
-    Parameters
-    ----------
-    face_normals : tuple of K vectors
-        Unit normals of the faces in the order of the features, K at least 3, spanning space.
 
     Attributes
     ----------
@@ -50,15 +46,6 @@ class TemperatureDrift(CalibratedCompensation):
         Their standard errors.
     reference_k_ : float
         Mean temperature of the calibration, K.
-    samples_ : int
-        Calibration samples with features.
-    data_digest_ : str
-        Of these samples.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -74,21 +61,15 @@ class TemperatureDrift(CalibratedCompensation):
 
     Cost: 3 operations a face.
 
-    References
-    ----------
-    Lu2017a; survey model:temp, eq:tempcomp.
-
     Examples
     --------
     >>> import numpy as np
+    >>> from algorithms.examples import face_signals, sun_grid
     >>> faces = ((0.6, 0.0, 0.8), (-0.6, 0.0, 0.8), (0.0, 0.6, 0.8), (0.0, -0.6, 0.8))
-    >>> rng = np.random.default_rng(1)
-    >>> sun = rng.normal((0, 0, 4), 1, (60, 3)); sun /= np.linalg.norm(sun, axis=1, keepdims=True)
-    >>> warm = {"temperature_K": rng.uniform(270, 330, 60)}
-    >>> cold = sun @ np.array(faces).T
-    >>> signals = cold * (1 + 1e-3 * (warm["temperature_K"] - 300)[:, None])
-    >>> drift = TemperatureDrift(faces).fit(signals, sun, warm)
-    >>> ratio = drift.transform(signals, warm) / cold
+    >>> sun, warm = sun_grid(range(-20, 21, 5)), {"temperature_K": 270 + 37 * np.arange(81) % 61}
+    >>> fall = 1 + 1e-3 * (warm["temperature_K"] - 300)[:, None]
+    >>> drift = TemperatureDrift(faces).fit(face_signals(sun, faces) * fall, sun, warm)
+    >>> ratio = drift.transform(face_signals(sun, faces) * fall, warm) / face_signals(sun, faces)
     >>> float(np.ptp(ratio / ratio[0, 0]).round(6))
     0.0
     """
@@ -117,13 +98,6 @@ class TemperatureDrift(CalibratedCompensation):
 
     def __post_init__(self) -> None:
         require_normals(self.face_normals, self.about.name)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the compensation of the sensor's faces."""
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
 
     def columns(self) -> int:
         """One a face."""

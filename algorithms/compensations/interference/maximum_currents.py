@@ -10,33 +10,16 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.cube_currents import CubeCurrents
 from algorithms.contract import AboutCompensation, FeatureKind, Floats
+from algorithms.documented import documented
 
 
+@documented
 @dataclass
 class MaximumCurrents(CubeCurrents):
     """Of every opposite pair the brighter face is kept, the darker one's light is the Earth's.
 
     Sunlight is stronger than albedo, and never reaches both faces of a pair. What of the Earth's
     light falls on a sunlit face stays.
-
-    Parameters
-    ----------
-    face_normals : tuple of six vectors
-        The six directions +x, -x, +y, -y, +z, -z, each once, in the order of the features.
-
-    Attributes
-    ----------
-    one_sun_ : ndarray, shape (6,)
-        Current of each face under perpendicular sunlight, in units of the features.
-    samples_ : int
-        Calibration samples with features.
-    data_digest_ : str
-        Of these samples.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -49,10 +32,6 @@ class MaximumCurrents(CubeCurrents):
     face.
 
     Cost: 5 operations a face.
-
-    References
-    ----------
-    Frezza2022; survey model:albedo, eq:albedo1.
 
     Examples
     --------

@@ -18,6 +18,7 @@ from algorithms.contract import (
     UnsuitableDesignError,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.inputs import require_positive, require_samples
 from algorithms.models.nominal_projection import nominal_projection, require_projection
 
@@ -31,6 +32,7 @@ FEWEST = 12
 _SETTLED = 1e-3
 
 
+@documented
 @dataclass
 class PinholeShadow(CalibratedCompensation):
     """Spots of a thick round hole moved from the middle of their outline to the mask's middle.
@@ -44,31 +46,16 @@ class PinholeShadow(CalibratedCompensation):
     ----------
     focal_length_mm : float
         Distance from the mask's middle to the detector, ``h + t / 2``, positive.
-    unit_mm : float
-        Displacement of the spot for one unit of feature, positive.
     thickness_mm : float
         Of the mask, t, positive, less than twice the focal length.
     aperture_mm : float
         Its hole's diameter d, positive.
-    centre : tuple of two float
-        Feature (x, y) of the spot when the Sun is on the boresight.
-    disc_deg : float
-        Full angle of the Sun's disc, in (0, 10).
 
     Attributes
     ----------
     share_ : float
         Of the shift that is taken off, in [0, 1]: 1 for a method that finds the very outline, 0
         for one that weighs all light evenly.
-    samples_ : int
-        Calibration samples with features.
-    data_digest_ : str
-        Of these samples.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -89,16 +76,11 @@ class PinholeShadow(CalibratedCompensation):
 
     Cost: 60 operations a sample.
 
-    References
-    ----------
-    Antonello2018; survey model:shad, eq:shadcomp, model:solar.
-
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-40, -20, 0, 20, 40]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-40, 41, 20))
     >>> tangents = sun[:, :2] / sun[:, 2:]
     >>> mask = PinholeShadow(1.0, unit_mm=1.0, thickness_mm=0.1, aperture_mm=0.2, disc_deg=2.0)
     >>> outlines = mask.seen(tangents, share=0.5)

@@ -16,6 +16,7 @@ from algorithms.contract import (
     SensorGeometry,
     UnsuitableDesignError,
 )
+from algorithms.documented import documented
 from algorithms.inputs import require_positive
 from algorithms.models.nominal_projection import (
     POSITIONS,
@@ -24,6 +25,7 @@ from algorithms.models.nominal_projection import (
 )
 
 
+@documented
 @dataclass
 class MaskShadow(CalibratedCompensation):
     """Spots brought from the middle of what a thick mask lets through to a thin one's.
@@ -36,29 +38,13 @@ class MaskShadow(CalibratedCompensation):
     ----------
     focal_length_mm : float
         Distance h from the mask's lower face to the detector, positive.
-    unit_mm : float
-        Displacement of the spot for one unit of feature, positive.
     thickness_mm : float
         Of the mask, positive.
     aperture_mm : float
         Its aperture's diameter d, positive.
-    centre : tuple of two float
-        Feature (x, y) of the spot when the Sun is on the boresight.
     drawn_mm : float, optional
         Distance that the model behind counts with, positive: the thin mask's whose spots come
         out. The lower face's where None.
-
-    Attributes
-    ----------
-    samples_ : int
-        Calibration samples with features; nothing is learnt of them.
-    data_digest_ : str
-        Of these samples.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -76,10 +62,6 @@ class MaskShadow(CalibratedCompensation):
     Failure: a NaN row for a NaN feature row, and where ``t tan(theta)`` reaches d.
 
     Cost: 10 operations a sample.
-
-    References
-    ----------
-    Antonello2018; survey model:shad, eq:shadcomp.
 
     Examples
     --------
@@ -138,9 +120,6 @@ class MaskShadow(CalibratedCompensation):
             centre=drawn["centre"],
             drawn_mm=drawn["focal_length_mm"],
         )
-
-    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Learn nothing: the mask is the drawing's."""
 
     def apply(self, features: Floats, context: Columns) -> Floats:
         """Spots (N, 2) as of a mask without thickness at the drawn distance."""

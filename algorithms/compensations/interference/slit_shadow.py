@@ -16,12 +16,14 @@ from algorithms.contract import (
     SensorGeometry,
     UnsuitableDesignError,
 )
+from algorithms.documented import documented
 from algorithms.inputs import require_positive
 
 #: Slants of the two slits, degrees, to within this.
 _DIAGONAL_DEG, _SAME_DEG = 45.0, 1e-6
 
 
+@documented
 @dataclass
 class SlitShadow(CalibratedCompensation):
     """Balances of photodiode pairs behind thick slits, brought to those behind thin ones.
@@ -35,18 +37,6 @@ class SlitShadow(CalibratedCompensation):
         Distance H from the mask's middle to the photodiodes, positive.
     thickness_mm : float
         Of the mask, t, positive.
-
-    Attributes
-    ----------
-    samples_ : int
-        Calibration samples with features; nothing is learnt of them.
-    data_digest_ : str
-        Of these samples.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -63,10 +53,6 @@ class SlitShadow(CalibratedCompensation):
     Failure: a NaN row for a NaN feature row.
 
     Cost: 6 operations a sample.
-
-    References
-    ----------
-    Chang2006; survey model:shad, alg:VB.
 
     Examples
     --------
@@ -113,9 +99,6 @@ class SlitShadow(CalibratedCompensation):
                 f"axes, in a mask that has a thickness; got {slits!r} and {thickness:g} mm"
             )
         return cls(focal_length_mm=geometry.focal_length_mm or 0.0, thickness_mm=thickness)
-
-    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Learn nothing: the walls are the drawing's."""
 
     def apply(self, features: Floats, context: Columns) -> Floats:
         """Balances (N, 2) as behind thin walls."""

@@ -12,12 +12,14 @@ from numpy.typing import NDArray
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.cube_currents import CubeCurrents
 from algorithms.contract import AboutCompensation, FeatureKind, Floats
+from algorithms.documented import documented
 from algorithms.row_arithmetic import normalised
 
 #: Ways to give each of three pairs' plus face to the Sun (+1) or to the Earth (-1).
 _SIDES = tuple(product((1.0, -1.0), repeat=3))
 
 
+@documented
 @dataclass
 class SunAndAlbedoInputs(CubeCurrents):
     """Sun's share of every face's current, in closed form from the Sun's known strength.
@@ -28,25 +30,9 @@ class SunAndAlbedoInputs(CubeCurrents):
 
     Parameters
     ----------
-    face_normals : tuple of six vectors
-        The six directions +x, -x, +y, -y, +z, -z, each once, in the order of the features.
     tolerance : float
         Relative error of currents, in (0, 0.5): up to it a face is dark, a length is one, a share
         may be larger than the face's current.
-
-    Attributes
-    ----------
-    one_sun_ : ndarray, shape (6,)
-        Current of each face under perpendicular sunlight, in units of the features.
-    samples_ : int
-        Calibration samples with features.
-    data_digest_ : str
-        Of these samples.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -65,10 +51,6 @@ class SunAndAlbedoInputs(CubeCurrents):
     way or several different ones fit. fit raises UnusableDataError where no sample lights a face.
 
     Cost: 8 sides of 40 operations a sample.
-
-    References
-    ----------
-    Frezza2022; survey model:albedo, eq:albedo3a, eq:albedo3b.
 
     Examples
     --------

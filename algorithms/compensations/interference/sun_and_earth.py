@@ -10,6 +10,7 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.cube_currents import CubeCurrents
 from algorithms.contract import AboutCompensation, FeatureKind, Floats
+from algorithms.documented import documented
 from algorithms.row_arithmetic import normalised
 
 ITERATIONS = 8
@@ -20,6 +21,7 @@ ITERATIONS = 8
 _AWAY = 0.1
 
 
+@documented
 @dataclass
 class SunAndEarth(CubeCurrents):
     """Differences of opposite faces as Sun and Earth together, less what the Earth sends.
@@ -27,27 +29,11 @@ class SunAndEarth(CubeCurrents):
     The Earth's light comes from about the nadir, the more of it the fuller the Earth is seen; how
     much is learnt from the calibration. What is left of the sum is the Sun's.
 
-    Parameters
-    ----------
-    face_normals : tuple of six vectors
-        The six directions +x, -x, +y, -y, +z, -z, each once, in the order of the features.
-
     Attributes
     ----------
     albedo_ : float
         Length of the Earth's vector when it is seen full, in units of one Sun; 0 where the
         calibration shows none.
-    one_sun_ : ndarray, shape (6,)
-        Current of each face under perpendicular sunlight, in units of the features.
-    samples_ : int
-        Calibration samples with features.
-    data_digest_ : str
-        Of these samples.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -63,21 +49,14 @@ class SunAndEarth(CubeCurrents):
 
     Cost: 8 steps of 20 operations a sample.
 
-    References
-    ----------
-    Bhanderi2006; survey model:albedo, eq:albedo2.
-
     Examples
     --------
     >>> import numpy as np
+    >>> from algorithms.examples import face_signals
     >>> faces = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
-    >>> sun = np.array([[0.6, 0.0, 0.8], [0.0, 0.6, 0.8]])
-    >>> nadir = {"nadir": np.array([[0.0, 0.0, -1.0], [0.0, 0.0, -1.0]])}
-    >>> earth = 0.2 * 0.9**2 * nadir["nadir"]
-    >>> normals = np.array(faces).T
-    >>> seen = (sun @ normals).clip(0) + (earth @ normals).clip(0)
-    >>> clean = SunAndEarth(faces).fit(seen, sun, nadir)
-    >>> round(clean.albedo_, 2)
+    >>> sun, nadir = np.array([[0.6, 0.0, 0.8], [0.0, 0.6, 0.8]]), np.array([[0.0, 0.0, -1.0]] * 2)
+    >>> seen = face_signals(sun, faces) + face_signals(0.2 * 0.9**2 * nadir, faces)
+    >>> round(SunAndEarth(faces).fit(seen, sun, {"nadir": nadir}).albedo_, 2)
     0.2
     """
 

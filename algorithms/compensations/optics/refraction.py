@@ -15,6 +15,7 @@ from algorithms.contract import (
     Floats,
     SensorGeometry,
 )
+from algorithms.documented import documented
 from algorithms.models.nominal_projection import (
     POSITIONS,
     nominal_projection,
@@ -30,6 +31,7 @@ _FLATTEST = 1e9
 _FOUND = 1e-12
 
 
+@documented
 @dataclass
 class Refraction(CalibratedCompensation):
     """Spots moved to where they would be without glass between mask and detector.
@@ -42,24 +44,8 @@ class Refraction(CalibratedCompensation):
     ----------
     focal_length_mm : float
         Distance h from mask to detector, glass included, positive.
-    unit_mm : float
-        Displacement of the spot for one unit of feature, positive.
-    centre : tuple of two float
-        Feature (x, y) of the spot when the Sun is on the boresight.
     layers : tuple of (float, float)
         Thickness mm, positive, and refractive index, at least 1, of each plate.
-
-    Attributes
-    ----------
-    samples_ : int
-        Calibration samples with features; nothing is learnt of them.
-    data_digest_ : str
-        Of these samples.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -74,10 +60,6 @@ class Refraction(CalibratedCompensation):
     plates that fill the whole distance.
 
     Cost: five steps of 15 operations a layer and a sample.
-
-    References
-    ----------
-    Wei2011; survey model:optic, eq:refcomp1, eq:refcomp3.
 
     Examples
     --------
@@ -132,9 +114,6 @@ class Refraction(CalibratedCompensation):
         return cls(
             **nominal_projection(geometry, kind, cls.about), layers=geometry.cover_glass or ()
         )
-
-    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Learn nothing: glass and distance are the drawing's."""
 
     def apply(self, features: Floats, context: Columns) -> Floats:
         """Spots (N, 2) where they would be without glass."""

@@ -15,12 +15,14 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
+from algorithms.documented import documented
 from algorithms.extractors.currents.photodiode import DirectSignals
 
 FINE_TRACKS = 4
 """F1 to F4 of eq:fourier, after the coarse tracks of each dial."""
 
 
+@documented
 @dataclass(frozen=True)
 class DialTracks(Extractor):
     """Calibrated signal of every track of every code dial: dark reading off, gain divided out.
@@ -38,13 +40,6 @@ class DialTracks(Extractor):
         Reading without light, in the reading's unit: one for all tracks or one a track.
     gain : float or tuple of float
         Reading per unit of signal, positive, likewise.
-    saturation : float or None
-        A reading that reaches it says only "at least": the row is NaN.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -57,10 +52,6 @@ class DialTracks(Extractor):
     positive.
 
     Cost: 2 operations a track.
-
-    References
-    ----------
-    Fan2013; survey fe:direct.
 
     Examples
     --------

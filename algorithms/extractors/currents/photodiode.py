@@ -17,12 +17,14 @@ from algorithms.contract import (
     SensorGeometry,
     UnsuitableDesignError,
 )
+from algorithms.documented import documented
 from algorithms.inputs import as_currents
 from algorithms.row_arithmetic import quotient_rows
 
 Normalisation = Literal["none", "sum", "maximum", "length"]
 
 
+@documented
 @dataclass(frozen=True)
 class DirectSignals(Extractor):
     """Calibrated signal of each photodiode: dark reading off, gain divided out, normalised.
@@ -42,13 +44,6 @@ class DirectSignals(Extractor):
     normalisation : {"none", "sum", "maximum", "length"}
         What each row's signals are divided by: nothing, their sum, the largest, or their
         Euclidean length.
-    saturation : float or None
-        A reading that reaches it says only "at least": the row is NaN.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -63,10 +58,6 @@ class DirectSignals(Extractor):
     not told apart.
 
     Cost: 3 operations an element.
-
-    References
-    ----------
-    Allgeier2009; survey fe:direct.
 
     Examples
     --------
@@ -133,6 +124,7 @@ class DirectSignals(Extractor):
         return quotient_rows(signals, divisor, found)
 
 
+@documented
 @dataclass(frozen=True)
 class VoltageBalance(Extractor):
     """Balances of a quadrant photodiode: how far the spot's light leans along x and along y.
@@ -150,13 +142,6 @@ class VoltageBalance(Extractor):
         Reading without light, in the reading's unit, by column.
     gain : float or tuple of four float
         Reading per unit of light, positive, by column (transimpedance, or its mismatch).
-    saturation : float or None
-        A reading that reaches it says only "at least": the row is NaN.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -173,10 +158,6 @@ class VoltageBalance(Extractor):
     positive. At -1 or 1 all light is on one half and only the direction is known.
 
     Cost: 17 operations a sample.
-
-    References
-    ----------
-    Boslooper2017; survey fe:vb, alg:VB.
 
     Examples
     --------

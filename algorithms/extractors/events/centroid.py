@@ -17,12 +17,14 @@ from algorithms.contract import (
     SensorGeometry,
     UnsuitableDesignError,
 )
+from algorithms.documented import documented
 from algorithms.inputs import as_frames, require_positive
 
 Layout = Literal["l-slit", "spot"]
 """``l-slit``: a line along y tells x, one along x tells y. ``spot``: one spot tells both."""
 
 
+@documented
 @dataclass(frozen=True)
 class EventCentroid(Extractor):
     """Mean address of the events, each weighted by the light that its time tells.
@@ -47,11 +49,6 @@ class EventCentroid(Extractor):
         Events with more than this many times the light of a lit pixel are left out: hot pixels.
         Ours; the published sum takes all, as infinity does.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
-
     Notes
     -----
     Implements: alg:ECM (fe:escm, Farian2022): ``X = sum(x / (t - t_reset)) / sum(1 / (t -
@@ -74,10 +71,6 @@ class EventCentroid(Extractor):
     more light is found if it has more than half.
 
     Cost: 40 operations an event, in 3 to 5 moves, and the sorting of the times.
-
-    References
-    ----------
-    Farian2022; survey fe:escm, alg:ECM.
 
     Examples
     --------
@@ -142,6 +135,7 @@ class EventCentroid(Extractor):
         return found - self.offset_px
 
 
+@documented
 @dataclass(frozen=True)
 class EventWinner(Extractor):
     """Column and row that are the first to gather a number of events: winners take all.
@@ -158,11 +152,6 @@ class EventWinner(Extractor):
         Where a line falls from the detector's middle when the Sun is on the boresight, px; taken
         off both coordinates.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
-
     Notes
     -----
     Implements: fe:escm without its mean (Farian2018): the survey compares ESCM with the address
@@ -177,10 +166,6 @@ class EventWinner(Extractor):
     in one column win unseen.
 
     Cost: 4 operations an event.
-
-    References
-    ----------
-    Farian2018; survey fe:escm.
 
     Examples
     --------

@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
+from algorithms.documented import documented
 from algorithms.inputs import as_frames
 
 
+@documented
 @dataclass(frozen=True)
 class DoubleBalance(Extractor):
     """Balance of five areas in a window of 21 x 21 pixels around the brightest pixel.
@@ -52,15 +54,10 @@ class DoubleBalance(Extractor):
 
     Cost: 1 operation a pixel for the maxima, 3 a pixel of the window and move.
 
-    References
-    ----------
-    Xie2014, deBoer2013; survey fe:dbcm, alg:DBCM.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:31, :33]
-    >>> frames = 200 * np.exp(-((x - 16.3) ** 2 + (y - 14.8) ** 2) / 6)[None]
+    >>> from algorithms.examples import spot_frame
+    >>> frames = spot_frame(16.3, 14.8, 31, 33)
     >>> DoubleBalance().extract(frames).round(2)
     array([[16.29, 14.8 ]])
     """

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
+from algorithms.documented import documented
 from algorithms.extractors.frames.background import (
     Background,
     background_level,
@@ -22,6 +23,7 @@ from algorithms.row_arithmetic import quotient_rows
 _DEVIATIONS = 6.0
 
 
+@documented
 @dataclass(frozen=True)
 class BasicCentroid(Extractor):
     """Intensity-weighted mean position of all light in the frame.
@@ -34,14 +36,6 @@ class BasicCentroid(Extractor):
     background : {"none", "border", "median"}
         Level subtracted from every pixel before the sums; residuals below it count negative, so
         that noise averages out. The published method subtracts nothing.
-    window_px : int or None
-        Odd side, at least 3, of a square window that starts on the brightest pixel and is moved
-        onto its own centroid until it stays; None sums the whole frame, as published.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -56,15 +50,10 @@ class BasicCentroid(Extractor):
 
     Cost: 4 operations a pixel, one pass.
 
-    References
-    ----------
-    Chang2008; survey fe:bcm, alg:BCM.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:21, :25]
-    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> from algorithms.examples import spot_frame
+    >>> frames = spot_frame(12.3, 9.8)
     >>> BasicCentroid().extract(frames).round(2)
     array([[12.3,  9.8]])
     >>> BasicCentroid(background="median").extract(frames + 50).round(2)
@@ -94,6 +83,7 @@ class BasicCentroid(Extractor):
         return _box_centroids(frames, self.background, self.window_px, reach=0)
 
 
+@documented
 @dataclass(frozen=True)
 class ThresholdedCentroid(Extractor):
     """Intensity-weighted mean position of the light above a threshold.
@@ -110,14 +100,6 @@ class ThresholdedCentroid(Extractor):
         light of the spot's rim.
     background : {"none", "border", "median"}
         Level subtracted from every pixel first. The published method subtracts nothing.
-    window_px : int or None
-        Odd side, at least 3, of a square window that starts on the brightest pixel and is moved
-        onto its own centroid until it stays; None sums the whole frame, as published.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -138,15 +120,10 @@ class ThresholdedCentroid(Extractor):
     Cost: 1 operation a pixel for the maxima, 3 a pixel of the sides, 6 a pixel in rows that hold a
     pixel above the threshold; integer sums are exact.
 
-    References
-    ----------
-    He2005; survey fe:bctm, alg:BCTM.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:21, :25]
-    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> from algorithms.examples import spot_frame
+    >>> frames = spot_frame(12.3, 9.8)
     >>> ThresholdedCentroid().extract(frames + 50).round(2)
     array([[12.3,  9.8]])
     """
@@ -213,6 +190,7 @@ class ThresholdedCentroid(Extractor):
         return _inside(found, usable, shape)
 
 
+@documented
 @dataclass(frozen=True)
 class FilteredCentroid(Extractor):
     """Intensity-weighted mean position of the frame smoothed by a 3 x 3 mean.
@@ -231,11 +209,6 @@ class FilteredCentroid(Extractor):
         brightest pixel and is moved onto its own centroid until it stays; None sums the whole
         frame, as published.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
-
     Notes
     -----
     Implements: alg:IFM (fe:ifm, Chang2008): ``I_mn = (1/9) sum_{i=m-1..m+1} sum_{j=n-1..n+1}
@@ -252,15 +225,10 @@ class FilteredCentroid(Extractor):
 
     Cost: 4 operations a pixel, one pass.
 
-    References
-    ----------
-    Chang2008; survey fe:ifm, alg:IFM.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:21, :25]
-    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> from algorithms.examples import spot_frame
+    >>> frames = spot_frame(12.3, 9.8)
     >>> FilteredCentroid(window_px=11).extract(frames).round(2)
     array([[12.29,  9.81]])
     """

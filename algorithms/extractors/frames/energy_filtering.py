@@ -17,6 +17,7 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
+from algorithms.documented import documented
 from algorithms.extractors.frames.one_light import (
     Light,
     agreed,
@@ -36,6 +37,7 @@ _LATE = 0.2
 _DRIFT = 2.0 * math.log(100.0)
 
 
+@documented
 @dataclass(frozen=True)
 class AdaptiveEnergyFilter(Extractor):
     """Centroid of the pixels' energies above their noise, averaged over frames of a still Sun.
@@ -53,17 +55,6 @@ class AdaptiveEnergyFilter(Extractor):
         Part of the largest energy, in [0, 1), that it must have as well.
     memory : int
         Most frames, at least 1, that count: later ones replace earlier ones at this rate.
-    light : {"spot", "any"}
-        What the light looks like: one whole, compact and symmetric spot, anything else being no
-        answer; or streaks, rings and stars too, as lenses and slits make them.
-    longest_px : float or None
-        Longest half axis that the outline of one spot has, px, positive; None where no design
-        tells. See `algorithms.extractors.frames.mirror.extractor`.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -88,10 +79,6 @@ class AdaptiveEnergyFilter(Extractor):
 
     Cost: 6 operations a pixel, and that of registration; in a sequence 3 more, and 12 a pixel of
     the spot.
-
-    References
-    ----------
-    Bao2022.
 
     Examples
     --------

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import Floats, SensorGeometry
+from algorithms.extractors.frames.mirror.records import LIGHT
 from algorithms.inputs import Frames, as_frames, require_positive
 from algorithms.measurement import Doubt, as_batch, without_bad
 
@@ -185,6 +186,6 @@ def _unlit(frames: Frames) -> NDArray[np.int64]:
 
     if min(frames.shape[1:]) < 5:
         return np.full(len(frames), int(Doubt.NO_SPOT), dtype=np.int64)
-    lights = np.empty((len(frames), search.FOUND))
+    lights = np.empty(len(frames), dtype=LIGHT)
     search.find_lights(frames, np.zeros(len(frames), dtype=np.bool_), lights)
-    return np.where(lights[:, 8] == search.DARK, int(Doubt.NO_SPOT), 0).astype(np.int64)
+    return np.where(lights["refusal"] == search.DARK, int(Doubt.NO_SPOT), 0).astype(np.int64)

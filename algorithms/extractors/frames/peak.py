@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
+from algorithms.documented import documented
 from algorithms.inputs import as_frames
 
 
+@documented
 @dataclass(frozen=True)
 class PixelMax(Extractor):
     """Column and row whose summed light is largest.
@@ -34,15 +36,10 @@ class PixelMax(Extractor):
 
     Cost: 2 operations a pixel, one pass.
 
-    References
-    ----------
-    Coutinho2022; survey fe:pm, alg:PM.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:21, :25]
-    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> from algorithms.examples import spot_frame
+    >>> frames = spot_frame(12.3, 9.8)
     >>> PixelMax().extract(frames)
     array([[12., 10.]])
     """

@@ -16,6 +16,7 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
+from algorithms.documented import documented
 from algorithms.extractors.frames.background import (
     Background,
     background_level,
@@ -29,6 +30,7 @@ Candidates = Literal["search", "brightest"]
 """``brightest``: the brightest pixels, as printed. ``search``: anywhere, to 1/16 px."""
 
 
+@documented
 @dataclass(frozen=True)
 class TemplateMatch(Extractor):
     """Position at which the aperture's outline differs in fewest pixels from the lit ones.
@@ -61,11 +63,6 @@ class TemplateMatch(Extractor):
         the light is taken for another shape, two spots or noise. None, as published, asks for
         nothing.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
-
     Notes
     -----
     Implements: alg:TM (fe:tm, Chang2008): ``I' = 1`` where ``I > mu I_max``, else 0; J is 1
@@ -90,15 +87,10 @@ class TemplateMatch(Extractor):
     Cost: 3 operations a pixel, and some 1600 positions of 10 operations a row of the template;
     a grey frame 36 more of 60 operations a row.
 
-    References
-    ----------
-    Chang2008; survey fe:tm, alg:TM.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:31, :33]
-    >>> frames = 200 * np.clip(5.5 - np.hypot(x - 16.3, y - 14.8), 0, 1)[None]
+    >>> from algorithms.examples import disc_frame
+    >>> frames = disc_frame(16.3, 14.8)
     >>> TemplateMatch(width_px=10.0).extract(frames).round(1)
     array([[16.4, 14.9]])
     """

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
+from algorithms.documented import documented
 from algorithms.inputs import as_frames
 from algorithms.row_arithmetic import medians
 
@@ -16,6 +17,7 @@ Crossing = Literal["pixel", "linear"]
 """``pixel``: the first entry above the threshold. ``linear``: interpolated to the entry before."""
 
 
+@documented
 @dataclass(frozen=True)
 class MultipleThresholdCentroid(Extractor):
     """Midpoint between a profile's two flanks, averaged over many thresholds.
@@ -26,19 +28,12 @@ class MultipleThresholdCentroid(Extractor):
 
     Parameters
     ----------
-    accuracy_px : float
-        Wanted accuracy dx of a position, at least 1e-4 px: sets the number of thresholds.
     lowest, highest : float
         Fractions of the profile's height above its floor between which thresholds lie. Ours: the
         study leaves them open; noise must stay below the lowest, and the top is too flat to tell
         a position.
     crossing : {"pixel", "linear"}
         Whether a rise counts at its pixel, as published, or is interpolated to the entry before.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -57,15 +52,10 @@ class MultipleThresholdCentroid(Extractor):
 
     Cost: 2 operations a pixel for the profiles, the median of each, and 4 a threshold.
 
-    References
-    ----------
-    Massari2004; survey fe:mtacm, alg:MTACM1, alg:MTACM2.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:21, :25]
-    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> from algorithms.examples import spot_frame
+    >>> frames = spot_frame(12.3, 9.8)
     >>> MultipleThresholdCentroid(crossing="linear").extract(frames).round(2)
     array([[12.3,  9.8]])
     """

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import AboutExtractor, FeatureKind, Floats, Observation
+from algorithms.documented import documented
 from algorithms.extractors.frames.centroid import BasicCentroid, ThresholdedCentroid
 from algorithms.extractors.frames.threshold_average import Crossing, MultipleThresholdCentroid
 from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, dark_level
@@ -20,6 +21,7 @@ Middles = Callable[[Floats, Floats], Floats]
 _MOVES = 2
 
 
+@documented
 @dataclass(frozen=True)
 class ProfileCentroid(SlitLines):
     """Intensity-weighted mean position of all light on each line.
@@ -29,25 +31,9 @@ class ProfileCentroid(SlitLines):
 
     Parameters
     ----------
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each line lies, in the order of a profile's columns.
-    line_pixels : int
-        Pixels of a line, at least 1.
-    slits : tuple of (float, float, float)
-        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
-        each slit; all lines lie behind the same. At most two different slants.
-    reach_px : float
-        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
-    margin_px : float
-        What a spot is wider than its slit on each side, px, positive.
     subtract_dark : bool
         Whether the line's median is taken off first; residuals below it count negative. The
         published method subtracts nothing.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -56,26 +42,17 @@ class ProfileCentroid(SlitLines):
     each other, each spot is summed in its own window, found as PD finds it and moved onto the
     centroid twice.
 
-    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
-    first pixel of a line whose middle is the sensor's.
-
     Failure: a NaN row for a profile without light (sum not positive), without contrast (all dark
     or all saturated) or with a NaN or infinity. Behind slits of one slant a missing or cut spot, a
     second Sun and noise alone are averaged in unseen; behind two slants they give NaN.
 
     Cost: 4 operations a pixel.
 
-    References
-    ----------
-    Enright2008b; survey fe:bcm, alg:BCM.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
-    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
-    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
-    >>> ProfileCentroid(**lines, reach_px=20.0, margin_px=2.0).extract(profiles).round(2)
+    >>> from algorithms.examples import slit_profiles
+    >>> profiles, design = slit_profiles(43.3, 36.8)
+    >>> ProfileCentroid(**design).extract(profiles).round(2)
     array([[43.3, 36.8]])
     """
 
@@ -104,6 +81,7 @@ class ProfileCentroid(SlitLines):
         return self.spots(_shifts(self, self.lines(observations), _light_middle(self), middles))
 
 
+@documented
 @dataclass(frozen=True)
 class ProfileThresholdedCentroid(SlitLines):
     """Intensity-weighted mean position of the light above a fraction of each line's maximum.
@@ -113,25 +91,9 @@ class ProfileThresholdedCentroid(SlitLines):
 
     Parameters
     ----------
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each line lies, in the order of a profile's columns.
-    line_pixels : int
-        Pixels of a line, at least 1.
-    slits : tuple of (float, float, float)
-        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
-        each slit; all lines lie behind the same. At most two different slants.
-    reach_px : float
-        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
-    margin_px : float
-        What a spot is wider than its slit on each side, px, positive.
     threshold : float
         The fraction mu of the maximum, in [0, 1). The survey gives no value; 0.3 is ours, as on
         frames.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -140,26 +102,17 @@ class ProfileThresholdedCentroid(SlitLines):
     whose spots move against each other, each spot is summed in its own window, found as PD finds
     it and moved onto the centroid twice.
 
-    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
-    first pixel of a line whose middle is the sensor's.
-
     Failure: a NaN row for a profile without light (maximum not positive), without contrast (all
     dark or all saturated) or with a NaN or infinity. Behind slits of one slant a missing or cut
     spot, a second Sun and noise alone are averaged in unseen; behind two slants they give NaN.
 
     Cost: 5 operations a pixel.
 
-    References
-    ----------
-    He2005; survey fe:bctm, alg:BCTM.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
-    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
-    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
-    >>> method = ProfileThresholdedCentroid(**lines, reach_px=20.0, margin_px=2.0)
+    >>> from algorithms.examples import slit_profiles
+    >>> profiles, design = slit_profiles(43.3, 36.8)
+    >>> method = ProfileThresholdedCentroid(**design)
     >>> method.extract(profiles + 40).round(1)
     array([[43.4, 36.8]])
     """
@@ -195,6 +148,7 @@ class ProfileThresholdedCentroid(SlitLines):
         return self.spots(_shifts(self, self.lines(observations), _light_middle(self), middles))
 
 
+@documented
 @dataclass(frozen=True)
 class ProfileThresholdAverage(SlitLines):
     """Midpoint between the outermost flanks of each line's light, averaged over many thresholds.
@@ -204,28 +158,10 @@ class ProfileThresholdAverage(SlitLines):
 
     Parameters
     ----------
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each line lies, in the order of a profile's columns.
-    line_pixels : int
-        Pixels of a line, at least 1.
-    slits : tuple of (float, float, float)
-        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
-        each slit; all lines lie behind the same. At most two different slants.
-    reach_px : float
-        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
-    margin_px : float
-        What a spot is wider than its slit on each side, px, positive.
-    accuracy_px : float
-        Wanted accuracy dx of a position, at least 1e-4 px: sets the number of thresholds.
     lowest, highest : float
         Fractions of the light's height above dark between which thresholds lie, as on frames.
     crossing : {"pixel", "linear"}
         Whether a rise counts at its pixel, as published, or is interpolated to the pixel before.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -235,9 +171,6 @@ class ProfileThresholdAverage(SlitLines):
     slants, whose spots move against each other, each spot is taken in its own window, found as
     PD finds it and moved onto the midpoint twice.
 
-    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
-    first pixel of a line whose middle is the sensor's.
-
     Failure: a NaN row for a profile without contrast (all dark or all saturated), with a NaN or
     infinity, or whose light is cut by both ends of the line or one so that no threshold has a rise
     from both sides. Behind slits of one slant a missing outer spot, a second Sun and noise alone
@@ -245,17 +178,11 @@ class ProfileThresholdAverage(SlitLines):
 
     Cost: the median of each line, 2 operations a pixel and 4 a threshold.
 
-    References
-    ----------
-    Massari2004; survey fe:mtacm, alg:MTACM1, alg:MTACM2.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
-    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
-    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
-    >>> method = ProfileThresholdAverage(**lines, reach_px=20.0, margin_px=2.0, crossing="linear")
+    >>> from algorithms.examples import slit_profiles
+    >>> profiles, design = slit_profiles(43.3, 36.8)
+    >>> method = ProfileThresholdAverage(**design, crossing="linear")
     >>> method.extract(profiles + 40).round(1)
     array([[43.4, 36.7]])
     """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal, Self
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,31 +14,20 @@ from algorithms.contract import (
     FeatureKind,
     Floats,
     Observation,
-    SensorGeometry,
 )
+from algorithms.documented import documented
 from algorithms.extractors.profiles.slit_lines import dark_level
 from algorithms.inputs import as_currents, require_positive
 
 _NEEDS = ("line_axes", "line_pixels", "slits")
 
 
+@documented
 @dataclass(frozen=True)
 class DirectProfile(Extractor):
     """Light of every pixel of every line: the reading less what is dark on its line.
 
     Nothing is located; a model that knows the pattern of the slits correlates with it.
-
-    Parameters
-    ----------
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each line lies, in the order of a profile's columns.
-    line_pixels : int
-        Pixels of a line, positive.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -52,10 +41,6 @@ class DirectProfile(Extractor):
     median.
 
     Cost: a median and one operation a pixel.
-
-    References
-    ----------
-    Tsuno2019, Kondo2024; survey fe:direct.
 
     Examples
     --------
@@ -85,17 +70,12 @@ class DirectProfile(Extractor):
         """One name a pixel, line after line."""
         return _pixel_names(self.line_axes, self.line_pixels)
 
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """All pixels of the sensor's lines."""
-        geometry.require(*cls.about.needs, by=cls.about.name)
-        return cls(geometry.line_axes or (), geometry.line_pixels or 0)
-
     def extract(self, observations: ArrayLike) -> Floats:
         """Signals (N, A L) of profiles (N, A L); ValueError on wrong input."""
         return _light(observations, len(self.line_axes), self.line_pixels, self.about.name)
 
 
+@documented
 @dataclass(frozen=True)
 class ThresholdProfile(Extractor):
     """Light of every pixel above a fraction of its line's brightest, zero elsewhere.
@@ -105,19 +85,10 @@ class ThresholdProfile(Extractor):
 
     Parameters
     ----------
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each line lies, in the order of a profile's columns.
-    line_pixels : int
-        Pixels of a line, positive.
     threshold : float
         The fraction mu, in (0, 1), of the line's brightest pixel above what is dark. The survey
         gives no value; 0.1 is ours: a ruler's few large pixels share a slit's light, and what the
         dim one has of it counts.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -131,10 +102,6 @@ class ThresholdProfile(Extractor):
     median.
 
     Cost: a median and 3 operations a pixel.
-
-    References
-    ----------
-    Chen2006; survey fe:bctm, alg:BCTM.
 
     Examples
     --------
@@ -168,12 +135,6 @@ class ThresholdProfile(Extractor):
     def features(self) -> tuple[str, ...]:
         """One name a pixel, line after line."""
         return _pixel_names(self.line_axes, self.line_pixels)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """All pixels of the sensor's lines."""
-        geometry.require(*cls.about.needs, by=cls.about.name)
-        return cls(geometry.line_axes or (), geometry.line_pixels or 0)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Signals (N, A L) of profiles (N, A L); ValueError on wrong input."""

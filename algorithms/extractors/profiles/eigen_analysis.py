@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import AboutExtractor, FeatureKind, Floats, Observation
+from algorithms.documented import documented
 from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, dark_level
 from algorithms.extractors.profiles.spot_spectra import SpotSpectra, require_frequencies
 
@@ -17,6 +18,7 @@ from algorithms.extractors.profiles.spot_spectra import SpotSpectra, require_fre
 _PASSES = 2
 
 
+@documented
 @dataclass(frozen=True)
 class EigenAnalysis(SlitLines):
     """Shift whose model spectrum has the least part in the noise subspace.
@@ -27,26 +29,10 @@ class EigenAnalysis(SlitLines):
 
     Parameters
     ----------
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each line lies, in the order of a profile's columns.
-    line_pixels : int
-        Pixels of a line, at least 1.
-    slits : tuple of (float, float, float)
-        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
-        each slit; all lines lie behind the same. At most two different slants.
-    reach_px : float
-        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
-    margin_px : float
-        What a spot is wider than its slit on each side, px, positive.
     frequencies : int or None
         How many frequencies above zero make the series. The published one has them all. None,
         ours, ends it at the last whose power stands out of the noise, nine times, as the spectrum
         itself tells that from a quarter of the sampling on: beyond, it is noise and aliased light.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -62,9 +48,6 @@ class EigenAnalysis(SlitLines):
     the N pixels are those of a window about each spot; the cross-spectra of slits of one slant
     are summed. The minimum is searched on a grid and then off it, by Newton's method.
 
-    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
-    first pixel of a line whose middle is the sensor's.
-
     Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
     a NaN or infinity, where a slit's spot is missing, cut by the line's end or covered by
     another's, and where light elsewhere is half as bright (a second Sun, noise alone).
@@ -72,17 +55,11 @@ class EigenAnalysis(SlitLines):
     Cost: 2 operations a pixel and slit, the median of each line, 8 a frequency and pixel of the
     windows, the eigenvectors of a matrix, 5 to 30 a side, and its side times 4 tries a pixel.
 
-    References
-    ----------
-    Enright2006b; survey fe:eigena, alg:eigen.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
-    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
-    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
-    >>> EigenAnalysis(**lines, reach_px=20.0, margin_px=2.0).extract(profiles).round(1)
+    >>> from algorithms.examples import slit_profiles
+    >>> profiles, design = slit_profiles(43.3, 36.8)
+    >>> EigenAnalysis(**design).extract(profiles).round(1)
     array([[43.3, 36.8]])
     """
 

@@ -18,6 +18,7 @@ from algorithms.contract import (
     SensorGeometry,
     UnsuitableDesignError,
 )
+from algorithms.documented import documented
 from algorithms.extractors.profiles.single_spot import require_one_spot, spot_size_px
 from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, box_means, dark_level
 from algorithms.extractors.profiles.spot_spectra import SpotSpectra, require_frequencies
@@ -29,6 +30,7 @@ Shape = Literal["round", "square"]
 _PASSES = 2
 
 
+@documented
 @dataclass(frozen=True)
 class LinearPhase(SlitLines):
     """Shift of the slits' light by the slope of its phase against a reference's.
@@ -38,26 +40,10 @@ class LinearPhase(SlitLines):
 
     Parameters
     ----------
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each line lies, in the order of a profile's columns.
-    line_pixels : int
-        Pixels of a line, at least 1.
-    slits : tuple of (float, float, float)
-        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
-        each slit; all lines lie behind the same. At most two different slants.
-    reach_px : float
-        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
-    margin_px : float
-        What a spot is wider than its slit on each side, px, positive.
     frequencies : int or None
         How many frequencies from the lowest on are fitted. The study gives no limit. None, ours,
         takes those whose power stands out of the noise, nine times, as the spectrum itself tells
         that from a quarter of the sampling on.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -73,9 +59,6 @@ class LinearPhase(SlitLines):
     whose phases are summed over the slits of one slant: what is left to unwrap is a fraction of a
     turn, and the other spots stay out.
 
-    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
-    first pixel of a line whose middle is the sensor's.
-
     Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
     a NaN or infinity, where a slit's spot is missing, cut by the line's end or covered by
     another's, and where light elsewhere is half as bright (a second Sun, noise alone).
@@ -83,17 +66,11 @@ class LinearPhase(SlitLines):
     Cost: 2 operations a pixel and slit, the median of each line, and 8 a frequency and pixel of
     the windows, half as many as pixels.
 
-    References
-    ----------
-    Enright2007b; survey fe:linearphase, alg:linearphase.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
-    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
-    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
-    >>> LinearPhase(**lines, reach_px=20.0, margin_px=2.0).extract(profiles).round(1)
+    >>> from algorithms.examples import slit_profiles
+    >>> profiles, design = slit_profiles(43.3, 36.8)
+    >>> LinearPhase(**design).extract(profiles).round(1)
     array([[43.3, 36.8]])
     """
 
@@ -127,6 +104,7 @@ class LinearPhase(SlitLines):
         return self.spots(shifts)
 
 
+@documented
 @dataclass(frozen=True)
 class FrameLinearPhase(Extractor):
     """Position of a spot by the slopes of the phases of its column and row sums.
@@ -144,11 +122,6 @@ class FrameLinearPhase(Extractor):
         What the spot is wider than that on each side.
     frequencies : int or None
         How many frequencies from the lowest on are fitted; None as in `LinearPhase`.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -168,15 +141,10 @@ class FrameLinearPhase(Extractor):
     Cost: 2 operations a pixel for the sums, 4 a pixel of the window and 16 a frequency and
     column of it, half as many as columns.
 
-    References
-    ----------
-    Enright2007b; survey fe:linearphase, alg:linearphase.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:31, :33]
-    >>> frames = 200 * np.clip(5.5 - np.hypot(x - 16.3, y - 14.8), 0, 1)[None]
+    >>> from algorithms.examples import disc_frame
+    >>> frames = disc_frame(16.3, 14.8)
     >>> FrameLinearPhase(width_px=10.0).extract(frames).round(1)
     array([[16.3, 14.8]])
     """

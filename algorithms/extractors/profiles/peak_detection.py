@@ -16,11 +16,13 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
+from algorithms.documented import documented
 from algorithms.extractors.profiles.single_spot import require_one_spot, spot_size_px
 from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, dark_level
 from algorithms.inputs import as_frames, require_positive
 
 
+@documented
 @dataclass(frozen=True)
 class PeakDetection(SlitLines):
     """Brightest pixel of a line behind one slit; behind several, their pattern's brightest place.
@@ -31,26 +33,10 @@ class PeakDetection(SlitLines):
 
     Parameters
     ----------
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each line lies, in the order of a profile's columns.
-    line_pixels : int
-        Pixels of a line, at least 1.
-    slits : tuple of (float, float, float)
-        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
-        each slit; all lines lie behind the same. At most two different slants.
-    reach_px : float
-        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
-    margin_px : float
-        What a spot is wider than its slit on each side, px, positive.
     alone : bool
         Whether light elsewhere that is half as bright as the pattern's darkest pixel gives
         nothing (a second Sun, noise alone, a hot pixel). Ours: the published method always
         answers.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -61,9 +47,6 @@ class PeakDetection(SlitLines):
     those that a Sun in the field explains and that keep all spots apart. Of maxima that are
     equal within a slit's width (a saturated spot) the middle of the first and the last counts.
 
-    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
-    first pixel of a line whose middle is the sensor's.
-
     Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
     a NaN or infinity, and behind two slants where no Sun in the field explains two patterns apart.
     Noise alone, a second Sun, a hot pixel, and a slit's spot that is missing, off the line or
@@ -71,17 +54,11 @@ class PeakDetection(SlitLines):
 
     Cost: 1 operation a pixel and slit, and the median of each line.
 
-    References
-    ----------
-    Enright2006b; survey fe:peak, alg:PDsp, alg:PDmp.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
-    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
-    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
-    >>> PeakDetection(**lines, reach_px=20.0, margin_px=2.0).extract(profiles)
+    >>> from algorithms.examples import slit_profiles
+    >>> profiles, design = slit_profiles(43.3, 36.8)
+    >>> PeakDetection(**design).extract(profiles)
     array([[43., 37.]])
     """
 
@@ -106,6 +83,7 @@ class PeakDetection(SlitLines):
         return self.spots(self.locate(lines, floors, smooth=False, alone=self.alone))
 
 
+@documented
 @dataclass(frozen=True)
 class FramePeak(Extractor):
     """Brightest pixel of a frame with one spot.
@@ -117,11 +95,6 @@ class FramePeak(Extractor):
     ----------
     width_px : float or None
         Width of the widest spot: maxima further apart are two spots. None tells none apart.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -137,15 +110,10 @@ class FramePeak(Extractor):
 
     Cost: 1 operation a pixel, and a second look at rows that hold the maximum.
 
-    References
-    ----------
-    Enright2006b; survey fe:peak, alg:PDsp.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:21, :25]
-    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> from algorithms.examples import spot_frame
+    >>> frames = spot_frame(12.3, 9.8)
     >>> FramePeak().extract(frames)
     array([[12., 10.]])
     """

@@ -17,6 +17,7 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
+from algorithms.documented import documented
 from algorithms.extractors.profiles.single_spot import require_one_spot
 from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, box_means, dark_level
 from algorithms.inputs import as_frames, require_positive
@@ -29,6 +30,7 @@ Coefficients = tuple[float, float, float, float, float, float]
 SLIT_IMAGE: Coefficients = (0.0, -0.26, 1.0, 0.98, -0.42, 1.0)
 
 
+@documented
 @dataclass(frozen=True)
 class PeakPositionEstimate(SlitLines):
     """Least-squares fit of all peaks of a line together, each the image of its slit.
@@ -39,17 +41,6 @@ class PeakPositionEstimate(SlitLines):
 
     Parameters
     ----------
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each line lies, in the order of a profile's columns.
-    line_pixels : int
-        Pixels of a line, at least 1.
-    slits : tuple of (float, float, float)
-        Offset from the line's middle, px, tangent of the slant and width along the line, px, of
-        each slit; all lines lie behind the same. At most two different slants.
-    reach_px : float
-        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
-    margin_px : float
-        What a spot is wider than its slit on each side, px, positive.
     image : {"rational", "gaussian", "diffraction"}
         Light of a peak against u, the distance from its middle in halves of the slit's width: a
         ratio of polynomials; a Gaussian; or the far field of a slit, ``(sin(x) / x)^2``. The
@@ -62,13 +53,6 @@ class PeakPositionEstimate(SlitLines):
     tolerance : float
         The fit ends when a step changes amplitudes by less than this fraction, and shifts by
         less than this fraction of a half width.
-    iterations : int
-        Steps, at least 1, after which the fit is given up.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -84,9 +68,6 @@ class PeakPositionEstimate(SlitLines):
     the steps end: which pixels count is told at the start and where they end, and steps that
     shrink by a constant ratio are summed at once.
 
-    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
-    first pixel of a line whose middle is the sensor's.
-
     Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
     a NaN or infinity, where a slit's spot is missing or off the line, where light elsewhere is
     half as bright as the pattern's darkest peak (a second Sun, noise alone), and where the fit
@@ -94,17 +75,11 @@ class PeakPositionEstimate(SlitLines):
 
     Cost: 1 operation a pixel and slit to start, 40 a pixel near a peak and step, some 8 steps.
 
-    References
-    ----------
-    Enright2007a; survey fe:ppe, alg:PPE.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
-    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
-    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
-    >>> PeakPositionEstimate(**lines, reach_px=20.0, margin_px=2.0).extract(profiles).round(1)
+    >>> from algorithms.examples import slit_profiles
+    >>> profiles, design = slit_profiles(43.3, 36.8)
+    >>> PeakPositionEstimate(**design).extract(profiles).round(1)
     array([[43.3, 36.8]])
     """
 
@@ -203,6 +178,7 @@ class PeakPositionEstimate(SlitLines):
         return starts
 
 
+@documented
 @dataclass(frozen=True)
 class FramePeakPositionEstimate(Extractor):
     """Least-squares fit of a known peak to the sums of a frame's columns and of its rows.
@@ -223,13 +199,6 @@ class FramePeakPositionEstimate(Extractor):
     tolerance : float
         The fit ends when a step changes the amplitude by less than this fraction, and the
         position by less than this fraction of a half width.
-    iterations : int
-        Steps, at least 1, after which the fit is given up.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -246,15 +215,10 @@ class FramePeakPositionEstimate(Extractor):
 
     Cost: 2 operations a pixel, 20 a pixel of the profiles and step, some 8 steps.
 
-    References
-    ----------
-    Enright2007a; survey fe:ppe, alg:PPE.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:21, :25]
-    >>> frames = 200 * np.exp(-((x - 12.3) ** 2 + (y - 9.8) ** 2) / 6)[None]
+    >>> from algorithms.examples import spot_frame
+    >>> frames = spot_frame(12.3, 9.8)
     >>> FramePeakPositionEstimate(image="gaussian").extract(frames).round(2)
     array([[12.3,  9.8]])
     """

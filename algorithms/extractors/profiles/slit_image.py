@@ -18,6 +18,7 @@ from algorithms.contract import (
     SensorGeometry,
     UnsuitableDesignError,
 )
+from algorithms.documented import documented
 from algorithms.extractors.profiles.linear_phase import LinearPhase
 from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines
 from algorithms.inputs import require_positive
@@ -39,6 +40,7 @@ _TABLED = 24
 _BENT = 40
 
 
+@documented
 @dataclass(frozen=True)
 class SlitImage(SlitLines):
     """Place of each slit's image by least squares on what the slit casts, diffraction included.
@@ -49,18 +51,10 @@ class SlitImage(SlitLines):
 
     Parameters
     ----------
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each line lies, in the order of a profile's columns.
-    line_pixels : int
-        Pixels of a line, at least 1.
     slits : tuple of (float, float, float)
         Offset from the line's middle, px, tangent of the slant and width along the line, px, of
         each slit; all lines lie behind the same. At most two different slants, slits of one slant
         equally wide.
-    reach_px : float
-        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
-    margin_px : float
-        What a spot is wider than its slit on each side, px, positive.
     height_px : float
         From the middle of the mask to the lines, px, positive.
     pixel_mm : float
@@ -69,11 +63,6 @@ class SlitImage(SlitLines):
         Thickness of the mask, px: slanted light passes a narrower slit.
     glass : tuple of (float, float)
         Thickness, px, and index of each plate of the height.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -92,26 +81,17 @@ class SlitImage(SlitLines):
     cubic term of the phase is left out, which moves spots as smoothly with direction as the model
     learns.
 
-    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
-    first pixel of a line whose middle is the sensor's.
-
     Failure: a NaN row where `LinearPhase` has one and where a fit does not settle.
 
     Cost: that of `LinearPhase`, and for each spot 12 Fresnel integrals and 12 chords for each of
     some 500 places, and 10 operations a pixel and step, 4 to 20 of them.
 
-    References
-    ----------
-    None of the survey: ours.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> places = np.arange(80) - np.array([[43.3], [36.8]])
-    >>> profiles = 200 * np.clip(3.5 - abs(places), 0, 1).reshape(1, -1)
-    >>> lines = dict(line_axes=("x", "y"), line_pixels=80, slits=((0.0, 0.0, 6.0),))
-    >>> drawn = dict(reach_px=20.0, margin_px=2.0, height_px=50.0, pixel_mm=0.05)
-    >>> SlitImage(**lines, **drawn).extract(profiles).round(1)
+    >>> from algorithms.examples import slit_profiles
+    >>> profiles, design = slit_profiles(43.3, 36.8)
+    >>> drawn = dict(height_px=50.0, pixel_mm=0.05)
+    >>> SlitImage(**design, **drawn).extract(profiles).round(1)
     array([[43.3, 36.8]])
     """
 

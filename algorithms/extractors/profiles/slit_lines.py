@@ -56,14 +56,19 @@ class SlitLines:
     line_axes : tuple of {"x", "y"}
         The detector axis along which each line lies, in the order of a profile's columns.
     line_pixels : int
-        Pixels of a line.
+        Pixels of a line, at least 1.
     slits : tuple of (float, float, float)
         Offset from the line's middle, px, tangent of the slant and width along the line, px, of
         each slit; all lines lie behind the same. At most two different slants.
     reach_px : float
-        Largest displacement of the shadow on either axis; used where slants differ.
+        Largest displacement of the shadow on either axis, px, positive; used where slants differ.
     margin_px : float
-        What a spot is wider than its slit on each side.
+        What a spot is wider than its slit on each side, px, positive.
+
+    Notes
+    -----
+    Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
+    first pixel of a line whose middle is the sensor's.
     """
 
     about: ClassVar[AboutExtractor]

@@ -4,53 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.forward import ForwardModel
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
-from algorithms.models.nominal_projection import nominal_projection, require_projection
+from algorithms.calibration.projection import ProjectionModel
+from algorithms.contract import AboutModel, FeatureKind, Floats
+from algorithms.documented import documented
 
 
+@documented
 @dataclass
-class BareDetector(ForwardModel):
+class BareDetector(ProjectionModel, ForwardModel):
     """Homography of a detector that stands any way behind its mask, after a radial stretch.
 
     Eight numbers hold all that a plane behind a pinhole can do: scales, turns, tilts, skew, and a
     mirror. Refraction and the aperture's depth stretch tangents about the mask's normal before.
-
-    Parameters
-    ----------
-    focal_length_mm : float
-        Nominal distance from aperture to detector, positive.
-    unit_mm : float
-        Pixel pitch, positive.
-    centre : tuple of two float
-        Nominal spot (x, y) when the Sun is on the boresight.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
     vector_ : ndarray, shape (10,)
         The homography's first eight elements by rows, the ninth being 1, in nominal focal lengths
         off the nominal centre; k1 and k2.
-    covariance_ : ndarray, shape (10, 10)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
-    quality_ : FitQuality
-        Residuals, and the ten with their standard errors by name.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -60,24 +37,17 @@ class BareDetector(ForwardModel):
     about its optical axis, a bare sensor's before the detector's tilt, about the mask's normal.
     Hence a class of its own. The start is the affine map that fits best.
 
-    Shapes: features ``(x, y)`` (N, 2), in px, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
     to rest within 6e-8 deg. fit raises UnusableDataError below 6 samples, where they do not settle
     the parameters, or do not belong together.
 
     Cost: 36 times 30 operations a sample; the fit, some ten times 21 passes of 30.
 
-    References
-    ----------
-    Survey model:cam, eq:cameq.
-
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-40, -20, 0, 20, 40]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-40, 41, 20))
     >>> x, y = (sun[:, :2] / sun[:, 2:]).T
     >>> tilted = 200.0 * np.column_stack([x, y]) / (1.0 + 0.05 * x)[:, None]
     >>> model = BareDetector(focal_length_mm=2.0, unit_mm=0.01).fit(tilted, sun)
@@ -92,19 +62,6 @@ class BareDetector(ForwardModel):
         needs=("focal_length_mm", "pixel_pitch_mm", "centre_px"),
         accepts=frozenset({FeatureKind.SPOT}),
     )
-
-    focal_length_mm: float
-    unit_mm: float
-    centre: tuple[float, float] = (0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model that starts from the sensor's drawing."""
-        return cls(**nominal_projection(geometry, kind, cls.about))
 
     def names(self) -> Sequence[tuple[str, str]]:
         """Name and unit of each parameter."""

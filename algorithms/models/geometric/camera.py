@@ -10,12 +10,15 @@ import numpy as np
 
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.forward import ForwardModel
+from algorithms.calibration.projection import ProjectionModel
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
-from algorithms.models.nominal_projection import nominal_projection, require_projection
+from algorithms.documented import documented
+from algorithms.models.nominal_projection import nominal_projection
 
 
+@documented
 @dataclass
-class LensCamera(ForwardModel):
+class LensCamera(ProjectionModel, ForwardModel):
     """Camera with OpenCV's intrinsics: two focal lengths, principal point, lens distortion.
 
     A lens images tangents with a stretch that grows off its axis, and shifts them where its
@@ -23,36 +26,14 @@ class LensCamera(ForwardModel):
 
     Parameters
     ----------
-    focal_length_mm : float
-        Nominal distance from lens to detector, positive.
-    unit_mm : float
-        Pixel pitch, positive.
-    centre : tuple of two float
-        Nominal spot (x, y) when the Sun is on the boresight.
     distortion : tuple of two float
         Nominal (k1, k2), where the fit starts.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
     vector_ : ndarray, shape (11,)
         Focal lengths along x and y in mm, principal point (x, y) in px, k1, k2, p1, p2, the
         camera's rotation and tilts about x and y in degrees.
-    covariance_ : ndarray, shape (11, 11)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
-    quality_ : FitQuality
-        Residuals, and the eleven with their standard errors by name.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -65,8 +46,6 @@ class LensCamera(ForwardModel):
     target stands, which of the Sun at infinity nothing tells. In a narrow field tilts, principal
     point and p1, p2 act nearly alike; their standard errors then say so.
 
-    Shapes: features ``(x, y)`` (N, 2), in px, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
     to rest within 6e-8 deg, as where the distortion folds the picture back. fit raises
     UnusableDataError below 6 samples, where they do not settle the parameters, or do not belong
@@ -74,16 +53,10 @@ class LensCamera(ForwardModel):
 
     Cost: 36 times 40 operations a sample; the fit, some ten times 23 passes of 40.
 
-    References
-    ----------
-    Saleem2019; survey model:cam, eq:cameq.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-30, -15, 0, 15, 30]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-30, 31, 15))
     >>> tangents = sun[:, :2] / sun[:, 2:]
     >>> stretch = 1.0 - 0.1 * (tangents**2).sum(axis=1, keepdims=True)
     >>> model = LensCamera(focal_length_mm=3.0, unit_mm=0.01).fit(305.0 * stretch * tangents, sun)
@@ -101,14 +74,10 @@ class LensCamera(ForwardModel):
         accepts=frozenset({FeatureKind.SPOT}),
     )
 
-    focal_length_mm: float
-    unit_mm: float
-    centre: tuple[float, float] = (0.0, 0.0)
     distortion: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
         if np.shape(self.distortion) != (2,) or not np.isfinite(self.distortion).all():
             raise ValueError(
                 f"{self.about.name}: distortion must be two finite numbers; got {self.distortion!r}"

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
 from algorithms.angles import rotations_from_sun
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.parametric import ParametricModel
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.calibration.projection import ProjectionModel
+from algorithms.contract import AboutModel, Floats
+from algorithms.documented import documented
 from algorithms.models.nominal_projection import (
     POSITIONS,
-    nominal_projection,
-    require_projection,
 )
 
 
+@documented
 @dataclass
-class LeastSquaresGeometry(ParametricModel):
+class LeastSquaresGeometry(ProjectionModel, ParametricModel):
     """Pinhole projection with focal length, two boresight offsets and zero point calibrated.
 
     The five numbers that carry most of a built sensor's error are found by nonlinear least
@@ -30,34 +31,15 @@ class LeastSquaresGeometry(ParametricModel):
     ----------
     focal_length_mm : float
         Nominal distance F from aperture to detector, positive.
-    unit_mm : float
-        Displacement of the spot for one unit of feature, positive: the pixel pitch for spots,
-        half the aperture's width for balances.
     centre : tuple of two float
         Nominal feature (x, y) of the spot when both angles are zero; where the fit of the zero
         point starts.
 
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
     vector_ : ndarray, shape (5,)
         Delta F in mm, alpha_0 and beta_0 in degrees, x_zp and y_zp in the features' unit.
-    covariance_ : ndarray, shape (5, 5)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
-    quality_ : FitQuality
-        Residuals, and the five with their standard errors by name.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -74,8 +56,6 @@ class LeastSquaresGeometry(ParametricModel):
     angles: exact for a turntable whose zero is off, and for a head turned about its y axis; a
     head turned about x is matched only near beta = 0.
 
-    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row and outside the hull. fit raises UnusableDataError
     below 3 samples, where the samples do not settle the five parameters (all in one place, or one
     axis swept alone), where it does not converge, or where its residuals are as large as the
@@ -84,16 +64,11 @@ class LeastSquaresGeometry(ParametricModel):
     Cost: 5 transcendental functions and 20 operations a sample; the fit, some ten times eleven
     passes over the samples.
 
-    References
-    ----------
-    Rufino2004a; survey model:lsq, eq:lsq.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = [-20, 0, 20]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-20, 21, 20))
     >>> spots = 212.0 * sun[:, :2] / sun[:, 2:] + (100.7, 79.5)  # 0.12 mm too long
     >>> model = LeastSquaresGeometry(focal_length_mm=2.0, unit_mm=0.01, centre=(100.0, 80.0))
     >>> round(model.fit(spots, sun).quality_.parameter("focal_length_error").value, 4)
@@ -112,19 +87,6 @@ class LeastSquaresGeometry(ParametricModel):
         needs=("focal_length_mm",),
         accepts=POSITIONS,
     )
-
-    focal_length_mm: float
-    unit_mm: float
-    centre: tuple[float, float] = (0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model that starts from the sensor's drawing."""
-        return cls(**nominal_projection(geometry, kind, cls.about))
 
     def names(self) -> Sequence[tuple[str, str]]:
         """Name and unit of each parameter."""

@@ -11,8 +11,10 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.slit_sensor import NEEDS, SlitModel
 from algorithms.contract import AboutModel, FeatureKind, Floats, UnsuitableDesignError
+from algorithms.documented import documented
 
 
+@documented
 @dataclass
 class MultiSlit(SlitModel):
     """Spots of many slits whose two edges come from the lower and the upper rim of the mask.
@@ -22,40 +24,14 @@ class MultiSlit(SlitModel):
 
     Parameters
     ----------
-    focal_length_mm : float
-        Distance from the mask's middle to the lines, ``h + t / 2``, positive.
-    pixel_pitch_mm : float
-        Distance of two pixels, positive.
-    centre_px : tuple of two float
-        Spot (x, y) when the Sun is on the boresight.
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each line lies.
     slits : tuple of (float, float, float)
         Position mm, slant deg and width mm of each slit, at least two.
-    cover_glass : tuple of (float, float)
-        Thickness mm and index of each plate between mask and lines.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
     vector_ : ndarray, shape (8,)
         Focal length and zero shift of the first line (or slant), then of the second, and what both
         sides' heights differ by, mm; the head's rotation and tilts about x and y in degrees.
-    covariance_ : ndarray, shape (8, 8)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
-    quality_ : FitQuality
-        Residuals, and the eight with their standard errors by name.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -69,24 +45,16 @@ class MultiSlit(SlitModel):
     tan(slant) tan(v)``. Ours: a focal length and a zero a line or slant, the head's turns, plates
     of the drawing by Snell's law (eq:refcomp1).
 
-    Shapes: features ``(x, y)`` (N, 2), in px, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
     to rest within 6e-8 deg. fit raises UnusableDataError below 5 samples, where they do not settle
     the parameters, or do not belong together. An inclined mask is left as a residual (`slit`).
 
     Cost: 30 times 40 operations a sample; the fit, some ten times twenty passes of 40.
 
-    References
-    ----------
-    Bolshakov2020; survey model:mslit, eq:mslit1, eq:mslit2, eq:refcomp1.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-40, -20, 0, 20, 40]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-40, 41, 20))
     >>> spots = 24.5 * sun[:, :2] / sun[:, 2:]  # 1.225 mm over pixels of 50 um
     >>> lines = dict(line_axes=("x", "y"), slits=((-0.6, 0.0, 0.2), (0.7, 0.0, 0.2)))
     >>> model = MultiSlit(focal_length_mm=1.2, pixel_pitch_mm=0.05, centre_px=(0.0, 0.0), **lines)

@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
-from algorithms.calibration.calibrated import CalibratedModel, Columns
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.drawn import DrawnModel
 from algorithms.contract import (
     AboutModel,
     FeatureKind,
     Floats,
-    SensorGeometry,
 )
+from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import axis_faces
 from algorithms.row_arithmetic import normalised
 
 
+@documented
 @dataclass
-class SixFaces(CalibratedModel):
+class SixFaces(DrawnModel):
     """Sun vector whose components are the brighter face of each opposite pair of a cube.
 
     Each face's signal is the cosine of its angle to the Sun, so the lit one of a pair is that
@@ -31,21 +33,6 @@ class SixFaces(CalibratedModel):
         Unit normals of the detectors in the order of the features; the six directions +x, -x,
         +y, -y, +z, -z, each once, in any order.
 
-    extrapolation : float
-        As `CalibratedModel` has it; a drawing holds everywhere, whatever was calibrated.
-
-    Attributes
-    ----------
-    quality_ : FitQuality
-        How many calibration samples there were, and how far off the drawing is.
-    hull_ : Hull
-        Without sides.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
-
     Notes
     -----
     Implements: eq:msfstd (model:base, Allgeier2009): ``I_a = max(I_x-, I_x+)``, ``I_b =
@@ -53,17 +40,12 @@ class SixFaces(CalibratedModel):
     I_b^2 + I_c^2)``. The survey leaves the sign open: it is the side of the brighter face, plus
     when both are equal. A pair whose two signals are negative (noise in the dark) gives 0.
 
-    Shapes: signals (N, 6), in any common unit, to unit vectors (N, 3), all directions. Nothing is
-    learnt; fit checks its input and says how far off the drawing is.
+    Shapes: signals (N, 6), in any common unit, to unit vectors (N, 3), all directions.
 
     Failure: a NaN row for a NaN feature row, or where no signal is positive. Albedo on an unlit
     face is taken for Sun where it is the brighter of its pair.
 
     Cost: 14 operations and one root a sample.
-
-    References
-    ----------
-    Allgeier2009; survey model:base, eq:msfstd.
 
     Examples
     --------
@@ -87,25 +69,14 @@ class SixFaces(CalibratedModel):
     face_normals: tuple[tuple[float, float, float], ...]
 
     frontal: ClassVar[bool] = False
-    bounded: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
         axis_faces(self.face_normals, self.about.name)
 
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model of the sensor's six faces."""
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
-
     def columns(self) -> int:
         """Six faces."""
         return 6
-
-    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Learn nothing: the drawing is all there is."""
 
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of signals (N, 6)."""

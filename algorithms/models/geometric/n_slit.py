@@ -11,11 +11,13 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.slit_sensor import NEEDS, SlitModel, shadow
 from algorithms.contract import AboutModel, FeatureKind, Floats, UnsuitableDesignError
+from algorithms.documented import documented
 
 #: Largest difference of the outer slits' slants, degrees.
 _SAME_SLANT_DEG = 1e-6
 
 
+@documented
 @dataclass
 class NSlit(SlitModel):
     """One line under an N of slits, its refraction factor, slant, place and turns fitted.
@@ -27,20 +29,9 @@ class NSlit(SlitModel):
     ----------
     focal_length_mm : float
         Distance h from mask to line, positive; it stays, as K scales it.
-    pixel_pitch_mm : float
-        Distance of two pixels, positive.
-    centre_px : tuple of two float
-        Spot (x, y) when the Sun is on the boresight.
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which the line lies.
     slits : tuple of (float, float, float)
         Position mm, slant deg and width mm of the three slits, in the order of their positions;
         the middle one square to the line, the others of one slant.
-    cover_glass : tuple of (float, float)
-        Thickness mm and index of each plate between mask and line.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
@@ -48,19 +39,6 @@ class NSlit(SlitModel):
         K; the mask's shifts along and across the line in mm; the outer slits' slant, the line's
         deflection in the mask's plane and its slope out of it, the head's rotation and tilts about
         x and y in degrees.
-    covariance_ : ndarray, shape (9, 9)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
-    quality_ : FitQuality
-        Residuals, and the nine with their standard errors by name.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -72,24 +50,16 @@ class NSlit(SlitModel):
     where there are none. Ours: the line's place and turns under the mask (see `v-slit`) and the
     head's turns; the reference centroids are the shifts.
 
-    Shapes: features ``(x, y)`` (N, 2), in px, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
     to rest within 6e-8 deg. fit raises UnusableDataError below 5 samples, where they do not settle
     the parameters, or do not belong together.
 
     Cost: 30 times 60 operations a sample; the fit, some ten times twenty passes of 60.
 
-    References
-    ----------
-    Maji2015; survey model:nslit, eq:nslit1, eq:nslit2, eq:refcomp1.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-40, -20, 0, 20, 40]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-40, 41, 20))
     >>> spots = 100.0 * sun[:, :2] / sun[:, 2:]
     >>> slits = ((-3.0, 45.0, 0.1), (0.0, 0.0, 0.1), (3.0, 45.0, 0.1))
     >>> lines = dict(line_axes=("y",), slits=slits, centre_px=(0.0, 0.0))

@@ -17,6 +17,7 @@ from algorithms.contract import (
     UnsuitableDesignError,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.geometric.detector_faces import Normals, directions, require_normals
 from algorithms.row_arithmetic import normalised
@@ -30,6 +31,7 @@ FLATTEST = 1e-6
 """Smallest determinant of the normal matrix, over its trace cubed, that settles a direction."""
 
 
+@documented
 @dataclass
 class WeightedCells(FacesModel):
     """Sun vector that fits the cosines of all lit cells best, by weighted least squares.
@@ -39,31 +41,16 @@ class WeightedCells(FacesModel):
 
     Parameters
     ----------
-    face_normals : tuple of K vectors
-        Unit installation vectors of the cells in the order of the features, K at least 3,
-        spanning space.
     weighting : {"signal", "equal"}
         Weight of a lit cell: its signal over its reference current, or 1.
     largest_incidence_deg : float
         In (0, 90); a cell counts as lit where its signal over its reference current reaches the
         cosine. The default leaves four of sixteen evenly spread cells in every direction.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
     reference_ : ndarray, shape (K,)
         Current of every cell under perpendicular sunlight, in units of the features.
-    quality_ : FitQuality
-        How good the fit is.
-    hull_ : Hull
-        Cone of the directions it gives for the calibration.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -75,18 +62,12 @@ class WeightedCells(FacesModel):
     signals on the cosines up to `largest_incidence_deg`; a cell that no sample lights takes the
     others' mean. W is left open there, and the lit cells' choice is stated in words.
 
-    Shapes: signals (N, K), in any common unit, to unit vectors (N, 3), all directions.
-
     Failure: a NaN row for a NaN feature row, and where fewer than three cells are lit or those lit
     look along one plane. fit raises UnusableDataError where no sample lights a cell. Albedo is
     taken for Sun. for_sensor refuses bodies that leave directions of their field unsolved, as
     cubes do.
 
     Cost: 21 operations a cell, 30 a sample.
-
-    References
-    ----------
-    Zhang2022b; survey model:pano, eq:msfpano.
 
     Examples
     --------

@@ -10,6 +10,7 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.quality import Parameter
 from algorithms.contract import AboutModel, FeatureKind, Floats, UnusableDataError
+from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.geometric.panoramic import WeightedCells
 
@@ -19,6 +20,7 @@ _STEADIEST = 1e-9
 _STEPS = 20
 
 
+@documented
 @dataclass
 class WarmCells(WeightedCells):
     """Weighted least squares over the lit cells, their reference currents led by temperature.
@@ -28,19 +30,11 @@ class WarmCells(WeightedCells):
 
     Parameters
     ----------
-    face_normals : tuple of K vectors
-        Unit installation vectors of the cells in the order of the features, K at least 3,
-        spanning space.
-    weighting : {"signal", "equal"}
-        Weight of a lit cell: its signal over its reference current, or 1.
     largest_incidence_deg : float
         In (0, 90); a cell counts as lit where its signal over its reference current reaches the
         cosine.
     reference_temperature_K : float
         T_0, positive.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
@@ -50,15 +44,6 @@ class WarmCells(WeightedCells):
         Its standard error.
     reference_ : ndarray, shape (K,)
         Current of every cell under perpendicular sunlight at T_0, in units of the features.
-    quality_ : FitQuality
-        How good the fit is.
-    hull_ : Hull
-        Cone of the calibrated directions.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -81,23 +66,17 @@ class WarmCells(WeightedCells):
 
     Cost: 22 operations a cell, 32 a sample.
 
-    References
-    ----------
-    Zhang2022b; survey model:pano, eq:msfpano.
-
     Examples
     --------
     >>> import numpy as np
+    >>> from algorithms.examples import face_signals
     >>> normals = ((0.6, 0.0, 0.8), (-0.6, 0.0, 0.8), (0.0, 0.6, 0.8), (0.0, -0.6, 0.8))
     >>> sun = np.array([[0.0, 0.0, 1.0], [0.28, 0.0, 0.96], [0.0, -0.28, 0.96]])
     >>> warm = {"temperature_K": np.array([298.15, 318.15, 338.15])}
     >>> fall = 1.0 - 0.004 * (warm["temperature_K"] - 298.15)
-    >>> signals = np.maximum(sun @ np.array(normals).T, 0.0) * fall[:, None]
-    >>> model = WarmCells(normals).fit(signals, sun, warm)
+    >>> model = WarmCells(normals).fit(face_signals(sun, normals) * fall[:, None], sun, warm)
     >>> round(model.coefficient_, 6)
     0.004
-    >>> model.predict(signals[1:2], {"temperature_K": [318.15]}).round(3)
-    array([[0.28, 0.  , 0.96]])
     """
 
     about: ClassVar = AboutModel(

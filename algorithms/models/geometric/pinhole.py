@@ -4,42 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
 from algorithms.angles import tangents_from_sun
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.parametric import ParametricModel
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.calibration.projection import ProjectionModel
+from algorithms.contract import AboutModel, Floats
+from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.nominal_projection import (
     POSITIONS,
-    nominal_projection,
-    require_projection,
 )
 from algorithms.row_arithmetic import normalised
 
 
+@documented
 @dataclass
-class BuiltPinhole(ParametricModel):
+class BuiltPinhole(ProjectionModel, ParametricModel):
     """Pinhole with everything an assembly can do to it: seven numbers and a mirror.
 
     The detector may be turned about the boresight, mounted from its back, and have another scale
     along either axis; the head may be tilted. What no such sensor explains is left as residual.
-
-    Parameters
-    ----------
-    focal_length_mm : float
-        Nominal distance from aperture to detector, positive.
-    unit_mm : float
-        Displacement of the spot for one unit of feature, positive: the pixel pitch for spots,
-        half the aperture's width for balances.
-    centre : tuple of two float
-        Nominal feature (x, y) of the spot when the Sun is on the boresight.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
@@ -47,19 +35,6 @@ class BuiltPinhole(ParametricModel):
         Whether x runs the other way.
     vector_ : ndarray, shape (7,)
         Focal lengths along x and y in mm, rotation and the two tilts in degrees, centre (x, y).
-    covariance_ : ndarray, shape (7, 7)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
-    quality_ : FitQuality
-        Residuals, and the seven with their standard errors by name.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -68,23 +43,16 @@ class BuiltPinhole(ParametricModel):
     R_z(rotation) t / |t|``. In a narrow field a tilt moves the spots as the centre does; their
     standard errors then say so, and directions hold all the same.
 
-    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row and outside the hull. fit raises UnusableDataError
     below 4 samples, where they do not settle the parameters, or do not belong together.
 
     Cost: 25 operations and one root a sample; the fit, some ten times fifteen passes.
 
-    References
-    ----------
-    Survey model:spm, model:lsq, eq:stdproj.
-
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-40, -20, 0, 20, 40]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-40, 41, 20))
     >>> x, y = (200.0 * sun[:, :2] / sun[:, 2:]).T
     >>> turned = np.column_stack([y, x])  # a quarter turn and a mirror
     >>> model = BuiltPinhole(focal_length_mm=2.1, unit_mm=0.01).fit(turned, sun)
@@ -100,20 +68,7 @@ class BuiltPinhole(ParametricModel):
         accepts=POSITIONS,
     )
 
-    focal_length_mm: float
-    unit_mm: float
-    centre: tuple[float, float] = (0.0, 0.0)
-
     mirrored_: bool = field(init=False, repr=False, compare=False)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model that starts from the sensor's drawing."""
-        return cls(**nominal_projection(geometry, kind, cls.about))
 
     def names(self) -> Sequence[tuple[str, str]]:
         """Name and unit of each parameter."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal, Self, get_args
+from typing import ClassVar, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +14,10 @@ from algorithms.contract import (
     AboutModel,
     FeatureKind,
     Floats,
-    SensorGeometry,
     UnsuitableDesignError,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.geometric.detector_faces import (
     UNIT_TOLERANCE,
@@ -30,6 +30,7 @@ from algorithms.row_arithmetic import normalised
 Coefficient = Literal["common", "each"]
 
 
+@documented
 @dataclass
 class RegularPyramid(FacesModel):
     """Each component of the Sun vector is the signals' mean, weighted by the faces' normals.
@@ -49,23 +50,11 @@ class RegularPyramid(FacesModel):
     dark_fraction : float
         Share of the row's largest signal, in [0, 1), up to which a face counts as dark: what dark
         current and stray light may look like.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
     coefficients_ : ndarray, shape (M,)
         xi of every face: cosine of incidence per unit of signal.
-    quality_ : FitQuality
-        How good the fit is.
-    hull_ : Hull
-        Cone of the directions it gives for the calibration.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -83,10 +72,6 @@ class RegularPyramid(FacesModel):
     raises UnusableDataError where no sample lights all faces.
 
     Cost: 6 operations a face and one root a sample.
-
-    References
-    ----------
-    Wang2019; survey model:pyra, eq:msfpyra1, eq:msfpyra2.
 
     Examples
     --------
@@ -129,16 +114,6 @@ class RegularPyramid(FacesModel):
             raise ValueError(
                 f"{self.about.name}: dark_fraction must be in [0, 1); got {self.dark_fraction!r}"
             )
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the published model of the sensor's pyramid.
-
-        UnsuitableDesignError where it is none.
-        """
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
 
     def columns(self) -> int:
         """One a face."""

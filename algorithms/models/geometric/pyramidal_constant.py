@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
@@ -13,15 +13,16 @@ from algorithms.contract import (
     AboutModel,
     FeatureKind,
     Floats,
-    SensorGeometry,
     UnsuitableDesignError,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.geometric.detector_faces import Normals, row_sums
 from algorithms.models.geometric.pyramidal import RegularPyramid
 
 
+@documented
 @dataclass
 class SteadyPyramid(FacesModel):
     """Sun vector of a pyramid whose two horizontal components are sums in which constants cancel.
@@ -39,23 +40,11 @@ class SteadyPyramid(FacesModel):
         constant explain, and how far the constant below none. Beyond it a face is dark, or the
         interference not constant. The default, ours, is three times what gains leave that differ
         by a few percent.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
     coefficient_ : float
         xi: cosine of incidence per unit of signal.
-    quality_ : FitQuality
-        How good the fit is.
-    hull_ : Hull
-        Cone of the directions it gives for the calibration.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -77,10 +66,6 @@ class SteadyPyramid(FacesModel):
     boresight lights all faces, by the drawing.
 
     Cost: 8 operations a face and one root a sample.
-
-    References
-    ----------
-    Wang2019; survey model:pyra, eq:msfpyra1, eq:msfpyra2.
 
     Examples
     --------
@@ -117,16 +102,6 @@ class SteadyPyramid(FacesModel):
             raise ValueError(
                 f"{self.about.name}: largest_misfit must be positive; got {self.largest_misfit!r}"
             )
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model of the sensor's pyramid.
-
-        UnsuitableDesignError where it is none.
-        """
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
 
     def columns(self) -> int:
         """One a face."""

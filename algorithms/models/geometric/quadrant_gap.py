@@ -11,6 +11,7 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.forward import ForwardModel
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.documented import documented
 from algorithms.inputs import require_positive
 
 Shape = Literal["round", "square"]
@@ -19,6 +20,7 @@ Shape = Literal["round", "square"]
 _FLATTEST = 0.05
 
 
+@documented
 @dataclass
 class QuadrantGap(ForwardModel):
     """Spot behind one aperture on four photodiodes with a gap between, which is fitted.
@@ -28,8 +30,6 @@ class QuadrantGap(ForwardModel):
 
     Parameters
     ----------
-    focal_length_mm : float
-        Nominal distance from aperture to detector, positive.
     aperture_width_mm : float
         Diameter of a round aperture, side of a square one, positive.
     aperture_shape : {"round", "square"}
@@ -37,28 +37,12 @@ class QuadrantGap(ForwardModel):
     gap_mm : float
         Between the photodiodes, at least 0 and less than the aperture; where the fit of a round
         spot's starts, and what a square spot's stays.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
     vector_ : ndarray, shape (6,) or (7,)
         Focal length, place (x, y) of the spot on the boresight, mm; the head's rotation and tilts
         about x and y in degrees; of a round aperture the gap, mm.
-    covariance_ : ndarray, shape (P, P)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
-    quality_ : FitQuality
-        Residuals, and the parameters with their standard errors by name.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -81,16 +65,11 @@ class QuadrantGap(ForwardModel):
 
     Cost: of a round aperture 30 times 150 operations a sample, of a square one 30 times 20.
 
-    References
-    ----------
-    Faizullin2017; survey model:qpd, eq:gapcomp, alg:VB.
-
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-30, -15, 0, 15, 30]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-30, 31, 15))
     >>> model = QuadrantGap(focal_length_mm=1.0, aperture_width_mm=2.0, aperture_shape="round")
     >>> gapped = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.2])
     >>> balances = model.cast(gapped, sun[:, :2] / sun[:, 2:])

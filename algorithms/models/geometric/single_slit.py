@@ -11,8 +11,10 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.slit_sensor import NEEDS, SlitModel
 from algorithms.contract import AboutModel, FeatureKind, Floats, UnsuitableDesignError
+from algorithms.documented import documented
 
 
+@documented
 @dataclass
 class DeflectedSlits(SlitModel):
     """Slits at another height, not square to their lines and with one end higher than the other.
@@ -22,40 +24,14 @@ class DeflectedSlits(SlitModel):
 
     Parameters
     ----------
-    focal_length_mm : float
-        Theoretical distance f from slit to line, positive.
-    pixel_pitch_mm : float
-        Distance of two pixels, positive.
-    centre_px : tuple of two float
-        Spot (x, y) when the Sun is on the boresight.
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each of the two lines lies.
     slits : tuple of (float, float, float)
         Position mm, slant deg and width mm of each slit over a line; all square to it.
-    cover_glass : tuple of (float, float)
-        Thickness mm and index of each plate between slits and lines.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
     vector_ : ndarray, shape (10,)
         f', theta and delta of the first line, then of the second, mm and degrees; centre (x, y)
         in px; tilts of the head about x and y in degrees.
-    covariance_ : ndarray, shape (10, 10)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
-    quality_ : FitQuality
-        Residuals, and the ten with their standard errors by name.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -68,8 +44,6 @@ class DeflectedSlits(SlitModel):
     axes alike (a turn about the boresight is both deflections); plates of the drawing, which take
     ``t (1 - 1 / sqrt(n^2 + (n^2 - 1) tan^2))`` off each focal length (eq:refcomp1).
 
-    Shapes: features ``(x, y)`` (N, 2), in px, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
     to rest within 6e-8 deg. fit raises UnusableDataError below 6 samples, where they do not settle
     the parameters, or do not belong together. In a narrow field a tilt moves spots as the centre
@@ -77,16 +51,11 @@ class DeflectedSlits(SlitModel):
 
     Cost: 30 times 60 operations a sample; the fit, some ten times twenty passes of 60.
 
-    References
-    ----------
-    KeQiang2020; survey model:slit, eq:slit, eq:refcomp1.
-
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-40, -20, 0, 20, 40]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-40, 41, 20))
     >>> x, y = (sun[:, :2] / sun[:, 2:]).T
     >>> spots = 350.0 * np.column_stack([x / (1 - 0.02 * y), y])  # one end of x's slit is lower
     >>> lines = dict(line_axes=("x", "y"), slits=((0.0, 0.0, 0.1),), centre_px=(0.0, 0.0))

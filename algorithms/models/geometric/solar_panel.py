@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
-from algorithms.calibration.calibrated import CalibratedModel, Columns
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.drawn import DrawnModel
+from algorithms.contract import AboutModel, FeatureKind, Floats
+from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import Normals, require_square_pairs, row_sums
 from algorithms.row_arithmetic import normalised
 
 
+@documented
 @dataclass
-class SolarPanels(CalibratedModel):
+class SolarPanels(DrawnModel):
     """Sum of the lit panels' normals, each weighted by its current, scaled to length one.
 
     On a body with panels square to each other every current is a component of the Sun vector, so
@@ -27,21 +30,6 @@ class SolarPanels(CalibratedModel):
         Unit normals of the panels in the order of the features: three pairs of opposite ones,
         the pairs square to each other, in any order and turned any way.
 
-    extrapolation : float
-        As `CalibratedModel` has it; a drawing holds everywhere, whatever was calibrated.
-
-    Attributes
-    ----------
-    quality_ : FitQuality
-        How many calibration samples there were, and how far off the drawing is.
-    hull_ : Hull
-        Without sides.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
-
     Notes
     -----
     Implements: eq:msfsc (model:solarpanel, Nurgizat2021): ``n = sum_i n_i I_i / sqrt(sum_i
@@ -50,18 +38,13 @@ class SolarPanels(CalibratedModel):
     is a unit vector where one panel of each pair is lit; the length is scaled to one where stray
     light or albedo lights both. A panel is lit whose signal is positive.
 
-    Shapes: signals (N, 6), in any common unit, to unit vectors (N, 3), all directions. Nothing is
-    learnt; fit checks its input and says how far off the drawing is.
+    Shapes: signals (N, 6), in any common unit, to unit vectors (N, 3), all directions.
 
     Failure: a NaN row for a NaN feature row, or where no signal is positive, or opposite ones
     cancel. Albedo is taken for Sun, and differences between the panels go straight into the
     result.
 
     Cost: 40 operations and one root a sample.
-
-    References
-    ----------
-    Nurgizat2021; survey model:solarpanel, eq:msfsc.
 
     Examples
     --------
@@ -84,25 +67,14 @@ class SolarPanels(CalibratedModel):
     face_normals: Normals
 
     frontal: ClassVar[bool] = False
-    bounded: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
         self._normals()
 
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model of the sensor's six panels."""
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
-
     def columns(self) -> int:
         """Six panels."""
         return 6
-
-    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Learn nothing: the drawing is all there is."""
 
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of signals (N, 6)."""

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
-from algorithms.calibration.calibrated import CalibratedModel, Columns
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.drawn import DrawnModel
+from algorithms.calibration.projection import ProjectionModel
+from algorithms.contract import AboutModel, Floats
+from algorithms.documented import documented
 from algorithms.models.nominal_projection import (
     POSITIONS,
-    nominal_projection,
-    require_projection,
 )
 
 
+@documented
 @dataclass
-class StandardProjection(CalibratedModel):
+class StandardProjection(ProjectionModel, DrawnModel):
     """Direction from the aperture's centre through the spot, by the nominal geometry.
 
     One multiplication an axis turns the spot's place into the tangents of the Sun angles; errors
@@ -27,26 +29,6 @@ class StandardProjection(CalibratedModel):
     ----------
     focal_length_mm : float
         Distance h from aperture to detector, positive.
-    unit_mm : float
-        Displacement of the spot for one unit of feature, positive: the pixel pitch s for spots,
-        half the aperture's width d for balances.
-    centre : tuple of two float
-        Feature (x, y) of the spot when the Sun is on the boresight.
-
-    extrapolation : float
-        As `CalibratedModel` has it; a drawing holds everywhere, whatever was calibrated.
-
-    Attributes
-    ----------
-    quality_ : FitQuality
-        How many calibration samples there were, and how far off the drawing is.
-    hull_ : Hull
-        Without sides.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -54,16 +36,9 @@ class StandardProjection(CalibratedModel):
     ``beta = arctan(X s / h)`` with X, Y counted from the centre; for balances (alg:VB)
     ``tan(beta) = S_A d / (2 h)``, ``tan(alpha) = S_B d / (2 h)``.
 
-    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3). Nothing is
-    learnt; fit checks its input and says how far off the drawing is.
-
     Failure: a NaN row for a NaN feature row.
 
     Cost: 11 operations a sample.
-
-    References
-    ----------
-    deBoer2013; survey model:spm, eq:stdproj, alg:VB.
 
     Examples
     --------
@@ -85,24 +60,6 @@ class StandardProjection(CalibratedModel):
         needs=("focal_length_mm",),
         accepts=POSITIONS,
     )
-
-    focal_length_mm: float
-    unit_mm: float
-    centre: tuple[float, float] = (0.0, 0.0)
-
-    bounded: ClassVar[bool] = False
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model of the sensor's drawing."""
-        return cls(**nominal_projection(geometry, kind, cls.about))
-
-    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Learn nothing: the drawing is all there is."""
 
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of features (N, 2)."""

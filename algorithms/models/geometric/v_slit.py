@@ -11,8 +11,10 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.slit_sensor import NEEDS, SlitModel, shadow, shortening
 from algorithms.contract import AboutModel, FeatureKind, Floats, UnsuitableDesignError
+from algorithms.documented import documented
 
 
+@documented
 @dataclass
 class VSlit(SlitModel):
     """One line under a V of two slits, with its place and turns, and the glass between, fitted.
@@ -22,21 +24,8 @@ class VSlit(SlitModel):
 
     Parameters
     ----------
-    focal_length_mm : float
-        Nominal distance from mask to line, positive.
-    pixel_pitch_mm : float
-        Distance of two pixels, positive.
-    centre_px : tuple of two float
-        Spot (x, y) when the Sun is on the boresight.
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which the line lies.
     slits : tuple of (float, float, float)
         Position mm, slant deg and width mm of both slits: one square to the line, one slanted.
-    cover_glass : tuple of (float, float)
-        Thickness mm and index of each plate between mask and line; none leaves refraction out.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
@@ -44,19 +33,6 @@ class VSlit(SlitModel):
         Focal length, the mask's shifts along and across the line in mm, the line's deflection in
         the mask's plane and its slope out of it, the head's rotation and tilts about x and y in
         degrees; with glass, its thickness in mm and its index.
-    covariance_ : ndarray, shape (P, P)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
-    quality_ : FitQuality
-        Residuals, and the parameters with their standard errors by name.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -72,8 +48,6 @@ class VSlit(SlitModel):
     (1 - 1 / sqrt(n^2 + (n^2 - 1) tan^2))`` off the height (Snell's law, eq:refcomp1), for all
     plates together, starting from their whole thickness and mean index.
 
-    Shapes: features ``(x, y)`` (N, 2), in px, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
     to rest within 6e-8 deg. fit raises UnusableDataError below 5 samples (6 with glass), where
     they do not settle the parameters, or do not belong together. Thickness and index act alike but
@@ -81,16 +55,10 @@ class VSlit(SlitModel):
 
     Cost: 30 times 60 operations a sample; the fit, some ten times twenty passes of 60.
 
-    References
-    ----------
-    Fan2015, Fan2016; survey model:vslit, eq:vslit1, eq:vslit2, eq:refcomp1.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import sun_from_angles
-    >>> steps = [-40, -20, 0, 20, 40]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-40, 41, 20))
     >>> spots = 180.0 * sun[:, :2] / sun[:, 2:]
     >>> lines = dict(line_axes=("y",), slits=((-3.3, 0.0, 0.1), (0.5, 45.0, 0.1)))
     >>> model = VSlit(focal_length_mm=1.7, pixel_pitch_mm=0.01, centre_px=(0.0, 0.0), **lines)

@@ -4,24 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from algorithms.angles import angles_from_sun
 from algorithms.calibration.blocks import best, folds, splits
-from algorithms.calibration.calibrated import CalibratedModel, Columns
+from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.conditioning import WORST_CONDITION
 from algorithms.calibration.hull import spacing
+from algorithms.calibration.projection import ProjectionModel
 from algorithms.calibration.quality import Setting
 from algorithms.contract import (
     AboutModel,
-    FeatureKind,
     Floats,
-    SensorGeometry,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.inputs import require_positive, require_samples
 from algorithms.models.lut.error_tables import (
     MAX_NODES,
@@ -36,9 +36,7 @@ from algorithms.models.lut.error_tables import (
 )
 from algorithms.models.nominal_projection import (
     POSITIONS,
-    nominal_projection,
     nominal_tangents,
-    require_projection,
 )
 from algorithms.models.non_physical.regression_axes import sun_from_target
 
@@ -48,8 +46,9 @@ DEGREES = (2, 4, 6, 8, 12)
 """Of each row, tried where none is given; the study's is the last."""
 
 
+@documented
 @dataclass
-class BlendedPolynomials(CalibratedModel):
+class BlendedPolynomials(ProjectionModel):
     """Nominal angles corrected by polynomials of one angle, blended between rows of the other.
 
     A table of polynomial coefficients takes far less room than one of nodes; weighting the two
@@ -57,13 +56,6 @@ class BlendedPolynomials(CalibratedModel):
 
     Parameters
     ----------
-    focal_length_mm : float
-        Nominal distance from aperture to detector, positive.
-    unit_mm : float
-        Displacement of the spot for one unit of feature, positive: the pixel pitch for spots,
-        half the aperture's width for balances.
-    centre : tuple of two float
-        Nominal feature (x, y) of the spot when the Sun is on the boresight.
     interval_deg : float
         Distance in alpha between rows, positive; the study's is 1.
     degree : int, optional
@@ -72,9 +64,6 @@ class BlendedPolynomials(CalibratedModel):
     smoothing : float, optional
         Weight of the squared second differences of coefficients from row to row against one
         sample's squared error, positive; 1e-3 only fills rows no sample settles. None: chosen.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
@@ -86,17 +75,6 @@ class BlendedPolynomials(CalibratedModel):
         Chebyshev coefficients of the errors of alpha and beta, row by row.
     smoothing_ : float
         Given or chosen.
-    validated_deg_ : float or None
-        Error on samples left out, where they chose a setting.
-    quality_ : FitQuality
-        How good the fit is.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -104,8 +82,6 @@ class BlendedPolynomials(CalibratedModel):
     and k + 1, ``e = (1 - w) P_k(beta) + w P_{k+1}(beta)`` with w the fraction of the interval. All
     rows are fitted at once to samples anywhere, in Chebyshev polynomials, which span the same
     functions without the loss of digits.
-
-    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
 
     Failure: a NaN row for a NaN feature row, outside the hull, or where an angle reaches 90
     degrees. fit raises UnusableDataError below 2 (n + 1) samples, where they do not settle a
@@ -115,16 +91,11 @@ class BlendedPolynomials(CalibratedModel):
     Cost: 12 (n + 1) operations a sample, and 2 a facet of the hull; the fit solves one sparse
     system in A (n + 1) unknowns.
 
-    References
-    ----------
-    He2013; survey model:lut, eq:stdproj.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = np.arange(-10, 11, 2)
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-10, 11, 2))
     >>> bent = 200.0 * (sun[:, :2] / sun[:, 2:]) ** 3  # what the drawing does not know
     >>> spots = 200.0 * sun[:, :2] / sun[:, 2:] + bent
     >>> model = BlendedPolynomials(focal_length_mm=2.0, unit_mm=0.01, interval_deg=5.0, degree=4)
@@ -143,9 +114,6 @@ class BlendedPolynomials(CalibratedModel):
         accepts=POSITIONS,
     )
 
-    focal_length_mm: float
-    unit_mm: float
-    centre: tuple[float, float] = (0.0, 0.0)
     interval_deg: float = 1.0
     degree: int | None = None
     smoothing: float | None = None
@@ -161,7 +129,6 @@ class BlendedPolynomials(CalibratedModel):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
         smoothing = 1.0 if self.smoothing is None else self.smoothing
         require_positive(self.about.name, interval_deg=self.interval_deg, smoothing=smoothing)
         if self.degree is not None and not 1 <= self.degree <= MAX_DEGREE:
@@ -169,11 +136,6 @@ class BlendedPolynomials(CalibratedModel):
                 f"{self.about.name}: degree must be from 1 to {MAX_DEGREE}, or None; "
                 f"got {self.degree!r}"
             )
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the rows over the sensor's nominal angles, at the published interval."""
-        return cls(**nominal_projection(geometry, kind, cls.about))
 
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Solve for all rows' coefficients."""

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 
 from algorithms.angles import angles_from_sun
 from algorithms.calibration.blocks import best, folds, splits
-from algorithms.calibration.calibrated import CalibratedModel, Columns
+from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.hull import spacing
+from algorithms.calibration.projection import ProjectionModel
 from algorithms.calibration.quality import Setting
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.contract import AboutModel, Floats
+from algorithms.documented import documented
 from algorithms.inputs import require_positive
 from algorithms.models.lut.error_tables import (
     MAX_BAND,
@@ -28,15 +30,14 @@ from algorithms.models.lut.error_tables import (
 )
 from algorithms.models.nominal_projection import (
     POSITIONS,
-    nominal_projection,
     nominal_tangents,
-    require_projection,
 )
 from algorithms.models.non_physical.regression_axes import sun_from_target
 
 
+@documented
 @dataclass
-class ErrorTable(CalibratedModel):
+class ErrorTable(ProjectionModel):
     """Nominal angles corrected by a table of their errors, interpolated between its nodes.
 
     Whatever the error comes from, the table holds it as measured over the field of view; its
@@ -44,22 +45,12 @@ class ErrorTable(CalibratedModel):
 
     Parameters
     ----------
-    focal_length_mm : float
-        Nominal distance from aperture to detector, positive.
-    unit_mm : float
-        Displacement of the spot for one unit of feature, positive: the pixel pitch for spots,
-        half the aperture's width for balances.
-    centre : tuple of two float
-        Nominal feature (x, y) of the spot when the Sun is on the boresight.
     interval_deg : float
         Distance between nodes, positive; the study's is 1.
     smoothing : float, optional
         Weight of the table's squared second differences against one sample's squared error,
         positive; 1e-3 only fills nodes that no sample settles. None: chosen from the calibration
         samples by cross-validation, on a table as coarse as their poses.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
@@ -69,25 +60,12 @@ class ErrorTable(CalibratedModel):
         Errors of alpha and beta at the nodes.
     smoothing_ : float
         Given or chosen.
-    validated_deg_ : float or None
-        Error on samples left out, where they chose the smoothing.
-    quality_ : FitQuality
-        How good the fit is.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
     Implements: model:lut (He2013), in words there: ``angle = nominal + e(nominal)``, nominal by
     eq:stdproj, e bilinear between the nodes of a two-dimensional table of 1 degree interval. The
     nodes are the least-squares ones for samples anywhere, so repeats are averaged.
-
-    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
 
     Failure: a NaN row for a NaN feature row, outside the hull, or where an angle reaches 90
     degrees. fit raises UnusableDataError below 3 samples, for samples on one line, or for a table
@@ -96,16 +74,11 @@ class ErrorTable(CalibratedModel):
     Cost: 40 operations a sample, and 2 a facet of the hull; the fit solves one sparse system in
     A B unknowns.
 
-    References
-    ----------
-    He2013; survey model:lut, eq:stdproj.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = np.arange(-10, 11, 2)
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-10, 11, 2))
     >>> bent = 200.0 * (sun[:, :2] / sun[:, 2:]) ** 3  # what the drawing does not know
     >>> spots = 200.0 * sun[:, :2] / sun[:, 2:] + bent
     >>> model = ErrorTable(focal_length_mm=2.0, unit_mm=0.01, interval_deg=2.0).fit(spots, sun)
@@ -124,9 +97,6 @@ class ErrorTable(CalibratedModel):
         accepts=POSITIONS,
     )
 
-    focal_length_mm: float
-    unit_mm: float
-    centre: tuple[float, float] = (0.0, 0.0)
     interval_deg: float = 1.0
     smoothing: float | None = None
 
@@ -140,14 +110,8 @@ class ErrorTable(CalibratedModel):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
         smoothing = 1.0 if self.smoothing is None else self.smoothing
         require_positive(self.about.name, interval_deg=self.interval_deg, smoothing=smoothing)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the table over the sensor's nominal angles, at the published interval."""
-        return cls(**nominal_projection(geometry, kind, cls.about))
 
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Solve for the table's nodes."""

@@ -7,70 +7,16 @@ from typing import ClassVar
 
 from algorithms.calibration.coded.mask import NEEDS, CodedMask, Search
 from algorithms.contract import AboutModel, FeatureKind
+from algorithms.documented import documented
 
 
+@documented
 @dataclass
 class CodedCorrelation(CodedMask):
     """The part of a coded mask where the correlation peaks, then one direction from all spots.
 
     Spots and apertures are correlated over all displacements of the mask; the highest peak tells
     the sub-field. All spots that fit there give the direction together.
-
-    Parameters
-    ----------
-    apertures_px : tuple of (x, y, width)
-        The mask's apertures, px from its middle; four at least.
-    spots : int
-        Length of the lists, at least 3.
-    focal_length_mm, pixel_pitch_mm : float
-        Nominal distance from mask to detector, and of two pixels; positive.
-    centre_px : tuple of two float
-        Where the boresight meets the detector.
-    size_px : tuple of two float
-        Width and height of the detector, positive.
-    layers : tuple of (thickness mm, index)
-        Cover glass, as `algorithms.compensations.optics.refraction` has it.
-    tolerance_px : float
-        Largest distance of a spot from its aperture's place along an axis, positive; below half
-        of what tells two spacings of the code apart.
-    size_tolerance : float or None
-        Largest relative error of an aperture's width as told by its spot's light, positive; None
-        where sizes are no code.
-    half_fov_deg : float or None
-        Edge of the field of view, in (0, 90): a place more than 2 degrees beyond it along an axis
-        is no answer. None for no such edge.
-    agreeing : int
-        Spots that must agree on a place, at least 3.
-    odds : float
-        By how much likelier than any other the place must make the spots, from 1 up: where these
-        lie as far from their places as the code's steps are wide, none is.
-    share : float
-        Of the spots, and of the apertures in view, that must agree, in (0, 1].
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
-
-    Attributes
-    ----------
-    turn_ : float
-        Turn of the mask against the detector, degrees.
-    offsets_ : ndarray, shape (A, 2)
-        Offsets of the apertures from their turned places, px; 0 for those never seen.
-    vector_ : ndarray, shape (6,)
-        Focal length in mm, rotation and tilts about x and y in degrees, centre (x, y) in px.
-    covariance_ : ndarray, shape (6, 6)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
-    quality_ : FitQuality
-        Residuals, and the six with their standard errors by name.
-    hull_ : Hull
-        Cone of the calibrated directions.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -90,9 +36,6 @@ class CodedCorrelation(CodedMask):
     to each other (best linear unbiased; no error of the turntable enters); focal length, centre,
     turns and tilts are fitted to D by least squares of the angles, through the cover glass.
 
-    Shapes: lists ``(x_px, y_px, light)`` of spots (N, 3 K), light 0 and last for none, to unit
-    vectors (N, 3). No row leans on another: lost in space, in one frame.
-
     Failure: a NaN row for a NaN feature row, outside the cone of calibrated directions, beyond the
     field of view, where fewer than `agreeing` spots agree, and where another place explains the
     spots nearly as well (`read` says ``ambiguous``). fit raises UnusableDataError where the code is
@@ -100,36 +43,13 @@ class CodedCorrelation(CodedMask):
 
     Cost: 8 to 30 us a sample for 500 to 1000 apertures, as one operation an aperture and spot.
 
-    References
-    ----------
-    Zhang2021, Zhang2022a; survey model:multiplex, model:code.
-
     Examples
     --------
-    >>> import numpy as np
     >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> rng = np.random.default_rng(1)
-    >>> lattice = 30.0 * np.stack(np.meshgrid(np.arange(-9, 10), np.arange(-9, 10)), -1)
-    >>> holes = lattice.reshape(-1, 2) + rng.uniform(-6, 6, (361, 2))
-    >>> def spots(sun):
-    ...     rows = np.zeros((len(sun), 20, 3))
-    ...     for row, tangents in zip(rows, sun[:, :2] / sun[:, 2:]):
-    ...         seen = holes + 49.5 + 200.0 * tangents
-    ...         seen = seen[(np.abs(seen - 49.5) < 44).all(axis=1)]
-    ...         row[: len(seen)] = np.column_stack([seen, np.ones(len(seen))])
-    ...     return rows.reshape(len(sun), 60)
-    ...
-    >>> model = CodedCorrelation(
-    ...     tuple((x, y, 5.0) for x, y in holes.tolist()),
-    ...     spots=20,
-    ...     focal_length_mm=2.0,
-    ...     pixel_pitch_mm=0.01,
-    ...     centre_px=(49.5, 49.5),
-    ...     size_px=(100.0, 100.0),
-    ... )
-    >>> sun = sun_from_angles(rng.uniform(-40, 40, (60, 2)))
-    >>> found = model.fit(spots(sun), sun).predict(spots(sun_from_angles([[12.3, -4.5]])))
-    >>> angles_from_sun(found).round(3)
+    >>> from algorithms.examples import coded_design, coded_lists, sun_grid
+    >>> sun = sun_grid(range(-40, 41, 10))
+    >>> model = CodedCorrelation(**coded_design()).fit(coded_lists(sun), sun)
+    >>> angles_from_sun(model.predict(coded_lists(sun_from_angles([[12.3, -4.5]])))).round(3)
     array([[12.3, -4.5]])
     """
 

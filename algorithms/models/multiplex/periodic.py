@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.calibration.calibrated import CalibratedModel, Columns
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.dial_model import DialModel
+from algorithms.contract import AboutModel, FeatureKind, Floats
+from algorithms.documented import documented
 from algorithms.models.multiplex.dial_code import (
     NEEDS,
-    Axes,
-    DialCode,
-    dial_code,
     fit_tangents,
     sun_from_fractions,
 )
@@ -22,32 +21,14 @@ from algorithms.models.multiplex.dial_code import (
 _START = (0.0, 0.0, 0.0, 1.0, 0.0)
 
 
+@documented
 @dataclass
-class PeriodicCode(CalibratedModel):
+class PeriodicCode(DialModel):
     """Coarse cell and fine phase of each dial, its periodic error and its assembly taken out.
 
     The Gray code tells which period of the fine rows the light falls on, their phase where in
     it. Rows displaced against each other make the phase err twice a period; a dial off centre,
     tilted or too far away bends the scale of tangents into a fraction of straight lines.
-
-    Parameters
-    ----------
-    bits : int
-        Coarse tracks of each dial, in [1, 16].
-    cell_mm : float
-        Length of a Gray cell, positive, below `period_mm`.
-    period_mm : float
-        Period of the fine rows.
-    focal_length_mm : float
-        Nominal distance from the slit to the dials, positive.
-    axes : tuple of {"x", "y"}
-        Along which detector axis each dial lies, in the order of the features.
-    smallest_contrast : float
-        Amplitude of the fine rows over their mean, in [0, 1), below which they say nothing; a
-        slit of half a period gives 2/pi, light without a pattern 0.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
@@ -56,15 +37,6 @@ class PeriodicCode(CalibratedModel):
         radians.
     conversion_ : ndarray, shape (2, 4)
         (a, b, c, d) of the dials along x and y, a = -1.
-    quality_ : FitQuality
-        How good the fit is.
-    hull_ : Hull
-        Cone of the calibrated directions.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -76,9 +48,6 @@ class PeriodicCode(CalibratedModel):
     the period is the phase's. (a, b, c, d) are one number too many: only their ratios count. They
     and (k, t) are fitted by least squares of the angles, an axis at a time.
 
-    Shapes: signals (N, 2 (bits + 4)), a dial's coarse tracks and then F1 to F4, in any common
-    unit, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row, for fine rows without contrast, where cell and phase
     contradict each other, and where the direction would lie behind the detector. What couples the
     axes (dials turned against the reference, slits askew) is not in the equation and stays. fit
@@ -86,27 +55,15 @@ class PeriodicCode(CalibratedModel):
 
     Cost: 2 arc tangents, 2 sines and 60 operations a sample.
 
-    References
-    ----------
-    Fan2013; survey model:periodic, eq:pamulti, eq:fourier.
-
     Examples
     --------
-    >>> import numpy as np
     >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> from algorithms.examples import dial_signals, sun_grid
     >>> design = dict(bits=5, cell_mm=0.15, period_mm=0.3, focal_length_mm=2.0)
-    >>> def signals(sun):
-    ...     rows = []
-    ...     for place in (2.0 * sun[:, :2] / sun[:, 2:]).T:
-    ...         cell = np.floor(place / 0.15).astype(int) + 16
-    ...         rows += [((cell ^ (cell >> 1)) >> bit) & 1 for bit in (4, 3, 2, 1, 0)]
-    ...         p = 2 * np.pi * place / 0.3
-    ...         rows += [(1 + way * wave) / 2 for way in (-1, 1) for wave in (np.cos(p), np.sin(p))]
-    ...     return np.transpose(rows)
-    ...
-    >>> sun = sun_from_angles(np.random.default_rng(1).uniform(-30, 30, (60, 2)))
-    >>> model = PeriodicCode(**design).fit(signals(sun), sun)
-    >>> angles_from_sun(model.predict(signals(sun_from_angles([[12.3, -4.5]])))).round(3)
+    >>> sun = sun_grid(range(-30, 31, 3))
+    >>> model = PeriodicCode(**design).fit(dial_signals(sun, **design), sun)
+    >>> signals = dial_signals(sun_from_angles([[12.3, -4.5]]), **design)
+    >>> angles_from_sun(model.predict(signals)).round(3)
     array([[12.3, -4.5]])
     """
 
@@ -120,36 +77,13 @@ class PeriodicCode(CalibratedModel):
         accepts=frozenset({FeatureKind.SIGNALS}),
     )
 
-    bits: int
-    cell_mm: float
-    period_mm: float
-    focal_length_mm: float
-    axes: Axes = ("x", "y")
-    smallest_contrast: float = 0.2
-
     correction_: Floats = field(init=False, repr=False, compare=False)
     conversion_: Floats = field(init=False, repr=False, compare=False)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self._code().require(self.about.name)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the published model of the sensor's dials.
-
-        UnsuitableDesignError where it has none.
-        """
-        return cls(**dial_code(geometry, kind, cls.about))
-
-    def columns(self) -> int:
-        """Coarse and fine tracks of both dials."""
-        return self._code().columns
 
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Learn (k, t) and (a, b, c, d) of both dials."""
         del context
-        places, phases, vectors = self._code().calibration(features, sun)
+        places, phases, vectors = self.code.calibration(features, sun)
 
         def tangents(parameters: NDArray[np.complex128]) -> NDArray[np.complex128]:
             numerators, denominators = _fraction(parameters.reshape(2, 5), places, phases)
@@ -163,21 +97,11 @@ class PeriodicCode(CalibratedModel):
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of signals (N, 2 (bits + 4))."""
         del context
-        places, phases = self._code().read(features)
+        places, phases = self.code.read(features)
         k, t = self.correction_.T
         a, b, c, d = self.conversion_.T
         tangent = places + k * np.sin(2.0 * phases + t)
         return sun_from_fractions(b - d * tangent, c * tangent - a)
-
-    def _code(self) -> DialCode:
-        return DialCode(
-            self.bits,
-            self.cell_mm,
-            self.period_mm,
-            self.focal_length_mm,
-            self.axes,
-            self.smallest_contrast,
-        )
 
 
 def _fraction(parameters: NDArray[Any], places: Floats, phases: Floats) -> tuple[Any, Any]:

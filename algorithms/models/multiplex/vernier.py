@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
-from algorithms.calibration.calibrated import Columns
-from algorithms.calibration.rulers.lines import raster, spots_of
+from algorithms.calibration.rulers.lines import Raster
+from algorithms.calibration.rulers.model import RulerModel
 from algorithms.calibration.slit_sensor import NEEDS
 from algorithms.contract import (
     AboutModel,
     FeatureKind,
     Floats,
-    SensorGeometry,
     UnsuitableDesignError,
 )
-from algorithms.inputs import require_positive
-from algorithms.models.geometric.single_slit import DeflectedSlits
+from algorithms.documented import documented
 
 
+@documented
 @dataclass
-class OpticalVernier(DeflectedSlits):
+class OpticalVernier(RulerModel):
     """Slits a little farther apart than the marks of a ruler, which three pixels each make.
 
     Slits cross the marks one after the other as the light moves, so that few and large pixels tell
@@ -30,46 +29,9 @@ class OpticalVernier(DeflectedSlits):
 
     Parameters
     ----------
-    focal_length_mm : float
-        Nominal distance from the slits to the lines, positive.
-    pixel_pitch_mm : float
-        Distance of two pixels, positive.
-    centre_px : tuple of two float
-        Spot (x, y) when the Sun is on the boresight.
-    line_axes : tuple of {"x", "y"}
-        The detector axis along which each of the two lines lies.
     slits : tuple of (float, float, float)
         Position mm, slant deg and width mm of each slit over a line; equal, on one
         raster, some left out.
-    cover_glass : tuple of (float, float)
-        Thickness mm and index of each plate between slits and lines.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
-    line_pixels : int
-        Pixels of a line, positive.
-    smallest_contrast : float
-        Length of the phase over the light, in [0, 1), below which it says nothing;
-        light without a pattern has none.
-
-    Attributes
-    ----------
-    vector_ : ndarray, shape (10,)
-        Of the assembly, as of the slit model: focal length, deflection and inclination of each
-        line, mm and degrees; centre (x, y) in px; tilts about x and y in degrees.
-    covariance_ : ndarray, shape (10, 10)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
-    quality_ : FitQuality
-        Residuals, and the ten with their standard errors by name.
-    hull_ : Hull
-        Cone of the calibrated directions.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -81,9 +43,6 @@ class OpticalVernier(DeflectedSlits):
     with its phase; the slits of a vernier stand evenly over all phases, which cancels that.
     The shifts of both lines make a spot, and height, deflection and inclination of the slits over
     each line, zero points and tilts are fitted to it as in the slit model (eq:slit).
-
-    Shapes: signals (N, 2 L), the light of L pixels of one line and then the other, in any unit, to
-    unit vectors (N, 3).
 
     Failure: a NaN row for a NaN feature row, outside the cone of calibrated directions, where no
     place shows the code by 0.4 of a slit's light more than all others, where a slit has less than
@@ -98,25 +57,14 @@ class OpticalVernier(DeflectedSlits):
 
     Examples
     --------
-    >>> import numpy as np
     >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> from algorithms.examples import slit_light, sun_grid
     >>> places = [0.32 * (k - 7.5) for k in range(16) if k not in (2, 11)]  # mm
-    >>> def signals(sun):  # two lines of 104 px of 0.1 mm
-    ...     shifts = sun[:, :2] / sun[:, 2:]
-    ...     u = 0.1 * (np.arange(104) - 51.5)
-    ...     away = np.abs(u - shifts[..., None, None] - np.array(places)[:, None])
-    ...     return np.clip((0.075 - away) / 0.1 + 0.5, 0, 1).sum(axis=2).reshape(len(sun), 208)
-    ...
-    >>> model = OpticalVernier(
-    ...     focal_length_mm=1.02,
-    ...     pixel_pitch_mm=0.1,
-    ...     centre_px=(51.5, 51.5),
-    ...     line_axes=("x", "y"),
-    ...     slits=tuple((place, 0.0, 0.15) for place in places),
-    ...     line_pixels=104,
-    ... )
-    >>> sun = sun_from_angles(np.random.default_rng(1).uniform(-60, 60, (60, 2)))
-    >>> found = model.fit(signals(sun), sun).predict(signals(sun_from_angles([[12.3, -4.5]])))
+    >>> design = dict(slits=tuple((place, 0.0, 0.15) for place in places), pixel_pitch_mm=0.1)
+    >>> design |= dict(centre_px=(51.5, 51.5), line_axes=("x", "y"), line_pixels=104)
+    >>> sun = sun_grid(range(-60, 61, 12))
+    >>> model = OpticalVernier(1.02, **design).fit(slit_light(sun, 1.0, **design), sun)
+    >>> found = model.predict(slit_light(sun_from_angles([[12.3, -4.5]]), 1.0, **design))
     >>> angles_from_sun(found).round(1)
     array([[12.3, -4.5]])
     """
@@ -131,40 +79,10 @@ class OpticalVernier(DeflectedSlits):
         accepts=frozenset({FeatureKind.SIGNALS}),
     )
 
-    line_pixels: int = field(kw_only=True)
-    smallest_contrast: float = field(default=0.05, kw_only=True)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_positive(self.about.name, line_pixels=self.line_pixels)
-        if not 0.0 <= self.smallest_contrast < 1.0:
-            raise ValueError(
-                f"{self.about.name}: smallest_contrast must be in [0, 1); "
-                f"got {self.smallest_contrast!r}"
-            )
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model of the sensor's slits.
-
-        UnsuitableDesignError where they are no vernier with a position code.
-        """
-        cls.about.require_kind(kind)
-        geometry.require(*cls.about.needs, by=cls.about.name)
-        return cls(
-            focal_length_mm=geometry.focal_length_mm or 0.0,
-            pixel_pitch_mm=geometry.pixel_pitch_mm or 0.0,
-            centre_px=geometry.centre_px or (0.0, 0.0),
-            line_axes=geometry.line_axes or (),
-            slits=geometry.slits or (),
-            cover_glass=geometry.cover_glass or (),
-            line_pixels=geometry.line_pixels or 0,
-        )
-
     def require_slits(self) -> None:
         """Equal slits, some missing, that gain a part of a mark on each."""
         super().require_slits()
-        found = raster(self.slits, self.pixel_pitch_mm, self.about.name)
+        found = self.raster()
         mark = int(found.period)
         if not (len(found.gaps) and mark >= 3 and 0.01 * mark < found.period - mark < 0.5):
             raise UnsuitableDesignError(
@@ -172,32 +90,10 @@ class OpticalVernier(DeflectedSlits):
                 f"three whole pixels or more; got {self.slits!r}"
             )
 
-    def columns(self) -> int:
-        """Pixels of both lines."""
-        return 2 * self.line_pixels
-
-    def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Fit the assembly to the shifts of the pattern."""
-        spots = self.spots(features)
-        seen = np.isfinite(spots[:, 0])
-        super().learn(spots[seen], sun[seen], context)
-
-    def answer(self, features: Floats, context: Columns) -> Floats:
-        """(N, 3) unit vectors of signals (N, 2 L)."""
-        return super().answer(self.spots(features), context)
-
-    def variance(self, features: Floats, context: Columns) -> Floats:
-        """(N,) variance of a tangent axis that the assembly's errors make, rad^2."""
-        return super().variance(self.spots(features), context)
-
-    def spots(self, features: Floats) -> Floats:
-        """(N, 2) px of the pattern's middle in signals (N, 2 L); NaN where it is not seen."""
+    def read(self, lines: Floats, found: Raster, middle: float, shifts: Floats) -> None:
+        """Write into `shifts` (M,) the pattern's, px, on lines (M, L) whose middle is told."""
         from algorithms.calibration.rulers import phase_kernel  # noqa: PLC0415 - Numba, at first use
 
-        lines = np.ascontiguousarray(features).reshape(-1, self.line_pixels)
-        found = raster(self.slits, self.pixel_pitch_mm, self.about.name)
-        middle = (self.line_pixels - 1) / 2.0
-        shifts = np.empty(len(lines))
         ends = np.array([found.slits[0] - found.period, found.slits[-1] + found.period])
         mark = int(found.period)
         phase_kernel.read_vernier(
@@ -210,4 +106,3 @@ class OpticalVernier(DeflectedSlits):
             self.smallest_contrast,
             shifts,
         )
-        return spots_of(shifts.reshape(-1, 2), self.line_axes, middle)

@@ -11,6 +11,7 @@ import numpy as np
 from algorithms.calibration.calibrated import CalibratedModel, Columns
 from algorithms.calibration.quality import Setting
 from algorithms.contract import AboutModel, Floats
+from algorithms.documented import documented
 from algorithms.models.neural_network.training import (
     Network,
     Training,
@@ -26,6 +27,7 @@ _LAYERS = (1, 0)  # log-sigmoid, then linear
 _STEPS = 400
 
 
+@documented
 @dataclass
 class AxisNetworks(CalibratedModel):
     """Each Sun angle by a network of its own, of sigmoids of both features.
@@ -37,18 +39,9 @@ class AxisNetworks(CalibratedModel):
     ----------
     hidden : int
         Sigmoid units of each network, 1 to 40.
-    restarts : int
-        Trainings from other weights, 1 to 50, of which the best on samples held out is kept.
-    seed : int
-        Of the weights that trainings start from, not negative; the same fit for the same seed.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere. Further out a network says nothing.
 
     Attributes
     ----------
-    middle_, half_range_ : ndarray, shape (2,)
-        The features' scaling ``u = (feature - middle) / half_range`` onto [-1, 1].
     reach_deg_ : ndarray, shape (2,)
         Largest calibrated ``alpha`` and ``beta``: what an output of one means.
     networks_ : tuple of two Network
@@ -57,15 +50,6 @@ class AxisNetworks(CalibratedModel):
         Error on the samples held out, of both angles together.
     steps_ : tuple of two int
         Steps of training to the networks kept.
-    quality_ : FitQuality
-        Residuals, error on samples held out, units and steps.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -78,24 +62,17 @@ class AxisNetworks(CalibratedModel):
     ours. Trained by Levenberg and Marquardt's method on four fifths of the poses until the error on
     the other fifth, in blocks, no longer falls.
 
-    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row, outside the hull, or where an angle reaches 90
     degrees. fit raises UnusableDataError for fewer poses than a network has weights, 49 for twelve
     units, or where they lie on one line.
 
     Cost: 40 operations a unit and sample. A fit takes some 0.1 ms a pose and start.
 
-    References
-    ----------
-    Rufino2009b; survey model:nn, model:ann.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = np.arange(-30, 31, 5)
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-30, 31, 5))
     >>> spots = 200.0 * sun[:, :2] / sun[:, 2:] + (100.0, 80.0)
     >>> model = AxisNetworks().fit(spots, sun)
     >>> angles_from_sun(model.predict([spots[0], [900.0, 80.0]])).round(2)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar, Self
 
@@ -10,7 +9,6 @@ import numpy as np
 
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.faces_model import FacesModel
-from algorithms.calibration.quality import Setting
 from algorithms.contract import (
     AboutModel,
     FeatureKind,
@@ -19,7 +17,9 @@ from algorithms.contract import (
     UnsuitableDesignError,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.models.neural_network.direction_errors import (
+    Corrected,
     Correction,
     combined,
     learn_correction,
@@ -32,8 +32,9 @@ MAX_SIGNALS = 8
 """Every signal has a unit of the first layer that sees all others."""
 
 
+@documented
 @dataclass
-class DeepSignals(FacesModel):
+class DeepSignals(Corrected, FacesModel):
     """A Sun direction from all signals in common proportion, corrected by a deep network.
 
     The network learns from the signals themselves how far the direction is off: by light from the
@@ -44,15 +45,6 @@ class DeepSignals(FacesModel):
     ----------
     signals : int
         Detectors K, 2 to 8.
-    hidden : int
-        Units of each of the two hidden layers, 1 to 40.
-    restarts : int
-        Trainings from other weights, 1 to 50, of which the best on samples held out is kept.
-    seed : int
-        Of the weights that trainings start from, not negative; the same fit for the same seed.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
@@ -61,17 +53,6 @@ class DeepSignals(FacesModel):
         never changed is left alone.
     coefficients_ : ndarray, shape (K + 1, 3)
         Of one and of each scaled signal in s_x, s_y and s_z, before they are brought to length one.
-    correction_ : Correction
-        The network, with its error on the samples held out.
-    quality_ : FitQuality
-        Residuals, error on samples held out, units and steps.
-    hull_ : Hull
-        Cone of the directions it gives for the calibration.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -87,8 +68,6 @@ class DeepSignals(FacesModel):
     Marquardt's method on four fifths of the poses until the error on the other fifth, in blocks, no
     longer falls.
 
-    Shapes: signals (N, K), in any common unit, to unit vectors (N, 3), all directions.
-
     Failure: a NaN row for a NaN feature row, and outside the cone. What the calibration never
     showed, such as the Earth's light to one made on the ground, is corrected wrongly. Faces that
     all see Sun and Earth measure little but the sum of both: where the Earth stands differently for
@@ -97,10 +76,6 @@ class DeepSignals(FacesModel):
     UnsuitableDesignError for more than eight detectors.
 
     Cost: 1200 operations a sample for four signals. A fit takes some 10 ms a sample and start.
-
-    References
-    ----------
-    Soken2023; survey model:nn, model:dnn.
 
     Examples
     --------
@@ -178,23 +153,6 @@ class DeepSignals(FacesModel):
             seed=self.seed,
             by=by,
         )
-
-    def settings(self) -> Mapping[str, Setting]:
-        """Give the units, and the steps at which the held-out error was least."""
-        return {"hidden": self.hidden, "steps": self.correction_.steps}
-
-    def validation_rms_deg(self) -> float:
-        """Error on the samples held out."""
-        return self.correction_.held_deg
-
-    def answer(self, features: Floats, context: Columns) -> Floats:
-        """Directions (N, 3) of signals (N, K)."""
-        del context
-        inputs = self._scaled(features)
-        return self.correction_.corrected(self._base(inputs), inputs)
-
-    def _scaled(self, features: Floats) -> Floats:
-        return np.asarray((features - self.middle_) / self.half_range_)
 
     def _base(self, inputs: Floats) -> Floats:
         """Directions (N, 3) before they are corrected."""

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
 
 from algorithms.calibration.calibrated import CalibratedModel, Columns
-from algorithms.calibration.quality import Setting
 from algorithms.contract import AboutModel, Floats
+from algorithms.documented import documented
 from algorithms.models.neural_network.direction_errors import (
+    Corrected,
     Correction,
     combined,
     learn_correction,
@@ -26,43 +26,19 @@ from algorithms.row_arithmetic import normalised
 _CUBIC = tuple((total - j, j) for total in range(4) for j in range(total + 1))
 
 
+@documented
 @dataclass
-class DeepSurface(CalibratedModel):
+class DeepSurface(Corrected, CalibratedModel):
     """Cubic surfaces of both features, and a deep network for what they leave.
 
     The surfaces take up what is smooth, the network what is not: a spot that is cut off at the
     field's edge bends a response more than a few powers follow.
 
-    Parameters
-    ----------
-    hidden : int
-        Units of each of the two hidden layers, 1 to 40.
-    restarts : int
-        Trainings from other weights, 1 to 50, of which the best on samples held out is kept.
-    seed : int
-        Of the weights that trainings start from, not negative; the same fit for the same seed.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere. Further out a network says nothing.
-
     Attributes
     ----------
-    middle_, half_range_ : ndarray, shape (2,)
-        The features' scaling ``u = (feature - middle) / half_range`` onto [-1, 1].
     coefficients_ : ndarray, shape (10, 2)
         Of ``u_x^i u_y^j``, i + j <= 3, by total degree and then by j, in ``tan(beta)`` and
         ``tan(alpha)``.
-    correction_ : Correction
-        The network, with its error on the samples held out.
-    quality_ : FitQuality
-        Residuals, error on samples held out, units and steps.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -74,24 +50,18 @@ class DeepSurface(CalibratedModel):
     Marquardt's method on four fifths of the poses until the error on the other fifth, in blocks, no
     longer falls.
 
-    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row, or outside the hull. fit raises UnusableDataError for
     fewer poses than the network has weights an output, 60 for eight units, or where they lie on one
     line.
 
     Cost: 1000 operations a sample. A fit takes some 5 ms a pose and start.
 
-    References
-    ----------
-    Sun2023; Soken2023; survey model:nn, model:dnn.
-
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = np.arange(-30, 31, 5)
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-30, 31, 5))
     >>> balances = np.tanh(sun[:, :2] / sun[:, 2:])
     >>> model = DeepSurface().fit(balances, sun)
     >>> angles_from_sun(model.predict([balances[0], [9.0, 0.0]])).round(1)
@@ -140,23 +110,6 @@ class DeepSurface(CalibratedModel):
             seed=self.seed,
             by=by,
         )
-
-    def settings(self) -> Mapping[str, Setting]:
-        """Give the units, and the steps at which the held-out error was least."""
-        return {"hidden": self.hidden, "steps": self.correction_.steps}
-
-    def validation_rms_deg(self) -> float:
-        """Error on the samples held out."""
-        return self.correction_.held_deg
-
-    def answer(self, features: Floats, context: Columns) -> Floats:
-        """Directions (N, 3) of features (N, 2)."""
-        del context
-        inputs = self._scaled(features)
-        return self.correction_.corrected(self._base(inputs), inputs)
-
-    def _scaled(self, features: Floats) -> Floats:
-        return np.asarray((features - self.middle_) / self.half_range_)
 
     def _base(self, inputs: Floats) -> Floats:
         """Directions (N, 3) of the surfaces."""

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.quality import Setting
 from algorithms.contract import Floats, UnusableDataError
 from algorithms.models.neural_network.training import Network, Trained, Training, held_out, trained
 from algorithms.row_arithmetic import normalised
@@ -47,6 +51,48 @@ class Correction:
             return normalised(base + errors)
         first, second = across_from_boresight(base)
         return normalised(base + errors[:, :1] * first + errors[:, 1:] * second)
+
+
+class Corrected:
+    """What models share that correct directions `_base` by a network: mixed into a model.
+
+    Parameters
+    ----------
+    hidden : int
+        Units of each of the two hidden layers, 1 to 40.
+
+    Attributes
+    ----------
+    correction_ : Correction
+        The network, with its error on the samples held out.
+    """
+
+    hidden: int
+    middle_: Floats
+    half_range_: Floats
+    correction_: Correction
+
+    def settings(self) -> Mapping[str, Setting]:
+        """Give the units, and the steps at which the held-out error was least."""
+        return {"hidden": self.hidden, "steps": self.correction_.steps}
+
+    def validation_rms_deg(self) -> float:
+        """Error on the samples held out."""
+        return self.correction_.held_deg
+
+    def answer(self, features: Floats, context: Columns) -> Floats:
+        """Directions (N, 3) of features (N, F)."""
+        del context
+        inputs = self._scaled(features)
+        return self.correction_.corrected(self._base(inputs), inputs)
+
+    @abstractmethod
+    def _base(self, inputs: Floats) -> Floats:
+        """Directions (N, 3) before they are corrected."""
+        ...
+
+    def _scaled(self, features: Floats) -> Floats:
+        return np.asarray((features - self.middle_) / self.half_range_)
 
 
 def across_from_boresight(directions: Floats) -> tuple[Floats, Floats]:

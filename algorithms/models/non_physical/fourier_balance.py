@@ -11,6 +11,7 @@ import numpy as np
 from algorithms.calibration.calibrated import CalibratedModel, Columns
 from algorithms.calibration.quality import Setting
 from algorithms.contract import AboutModel, FeatureKind, Floats
+from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.non_physical.axis_regression import AXES, fit_axes
 from algorithms.models.non_physical.regression_axes import (
@@ -26,6 +27,7 @@ _FUNDAMENTAL = np.pi / 2.0
 """Of a feature scaled to [-1, 1]: half a wave over the calibrated range."""
 
 
+@documented
 @dataclass
 class FourierBalance(CalibratedModel):
     """Each Sun angle as a straight line on its axis' balance and a Fourier series of the rest.
@@ -40,9 +42,6 @@ class FourierBalance(CalibratedModel):
         cross-validation.
     target : {"angle", "tangent"}
         What the series gives: the angle in degrees, as published, or its tangent.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
@@ -54,17 +53,6 @@ class FourierBalance(CalibratedModel):
     whitening_ : ndarray, shape (2, 2 + 2 N, 2 + 2 N)
         Inverse of each design's triangular factor: rows of terms times it have the squared length
         that their value's variance is, for errors of size one.
-    validated_deg_ : float or None
-        Error on samples left out, where they chose the order.
-    quality_ : FitQuality
-        Residuals, and the order.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -81,16 +69,12 @@ class FourierBalance(CalibratedModel):
 
     Cost: 4 tangents, 4 divisions and 14 N operations a sample.
 
-    References
-    ----------
-    Pentke2022; survey model:fourier.
-
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = np.arange(-30, 31, 3)
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-30, 31, 3))
     >>> tangents = sun[:, :2] / sun[:, 2:]
     >>> balances = tangents + 0.01 * np.sin(12 * tangents)
     >>> model = FourierBalance(harmonics=6).fit(balances, sun)

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.calibration.calibrated import CalibratedModel, Columns
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.dial_model import DialModel
+from algorithms.contract import AboutModel, FeatureKind, Floats
+from algorithms.documented import documented
 from algorithms.models.multiplex.dial_code import (
     NEEDS,
-    Axes,
-    DialCode,
-    dial_code,
     fit_tangents,
     sun_from_fractions,
 )
@@ -22,8 +21,9 @@ from algorithms.models.multiplex.dial_code import (
 MAX_HARMONICS = 16
 
 
+@documented
 @dataclass
-class FourierPhase(CalibratedModel):
+class FourierPhase(DialModel):
     """Coarse cell and fine phase of each dial, the phase error a Fourier series of the phase.
 
     Whatever the fine rows are like, their phase errs periodically: once a period by gains that
@@ -32,24 +32,8 @@ class FourierPhase(CalibratedModel):
 
     Parameters
     ----------
-    bits : int
-        Coarse tracks of each dial, in [1, 16].
-    cell_mm : float
-        Length of a Gray cell, positive, below `period_mm`.
-    period_mm : float
-        Period of the fine rows.
-    focal_length_mm : float
-        Nominal distance from the slit to the dials, positive.
-    axes : tuple of {"x", "y"}
-        Along which detector axis each dial lies, in the order of the features.
-    smallest_contrast : float
-        Amplitude of the fine rows over their mean, in [0, 1), below which they say nothing; a
-        slit of half a period gives 2/pi, light without a pattern 0.
     harmonics : int
         Terms of the series, in [1, 16]; 4 reach the first one that plain windows cause.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
@@ -59,15 +43,6 @@ class FourierPhase(CalibratedModel):
     conversion_ : ndarray, shape (3, 3)
         Projection H: ``(tan(beta), tan(alpha), 1)`` in proportion to ``H (T_x, T_y, 1)``,
         ``H_33 = 1``.
-    quality_ : FitQuality
-        How good the fit is.
-    hull_ : Hull
-        Cone of the calibrated directions.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -89,27 +64,15 @@ class FourierPhase(CalibratedModel):
 
     Cost: 2 arc tangents, 4 sines a harmonic and 60 operations a sample.
 
-    References
-    ----------
-    Fan2013; survey model:fourier, eq:fourier, eq:pamulti.
-
     Examples
     --------
-    >>> import numpy as np
     >>> from algorithms.angles import angles_from_sun, sun_from_angles
+    >>> from algorithms.examples import dial_signals, sun_grid
     >>> design = dict(bits=5, cell_mm=0.15, period_mm=0.3, focal_length_mm=2.0)
-    >>> def signals(sun):
-    ...     rows = []
-    ...     for place in (2.0 * sun[:, :2] / sun[:, 2:]).T:
-    ...         cell = np.floor(place / 0.15).astype(int) + 16
-    ...         rows += [((cell ^ (cell >> 1)) >> bit) & 1 for bit in (4, 3, 2, 1, 0)]
-    ...         p = 2 * np.pi * place / 0.3
-    ...         rows += [(1 + way * wave) / 2 for way in (-1, 1) for wave in (np.cos(p), np.sin(p))]
-    ...     return np.transpose(rows)
-    ...
-    >>> sun = sun_from_angles(np.random.default_rng(1).uniform(-30, 30, (60, 2)))
-    >>> model = FourierPhase(**design).fit(signals(sun), sun)
-    >>> angles_from_sun(model.predict(signals(sun_from_angles([[12.3, -4.5]])))).round(3)
+    >>> sun = sun_grid(range(-30, 31, 3))
+    >>> model = FourierPhase(**design).fit(dial_signals(sun, **design), sun)
+    >>> signals = dial_signals(sun_from_angles([[12.3, -4.5]]), **design)
+    >>> angles_from_sun(model.predict(signals)).round(3)
     array([[12.3, -4.5]])
     """
 
@@ -123,12 +86,6 @@ class FourierPhase(CalibratedModel):
         accepts=frozenset({FeatureKind.SIGNALS}),
     )
 
-    bits: int
-    cell_mm: float
-    period_mm: float
-    focal_length_mm: float
-    axes: Axes = ("x", "y")
-    smallest_contrast: float = 0.2
     harmonics: int = 4
 
     series_: Floats = field(init=False, repr=False, compare=False)
@@ -136,26 +93,16 @@ class FourierPhase(CalibratedModel):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self._code().require(self.about.name)
         if not 1 <= self.harmonics <= MAX_HARMONICS:
             raise ValueError(
                 f"{self.about.name}: harmonics must be in [1, {MAX_HARMONICS}]; got "
                 f"{self.harmonics!r}"
             )
 
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model of the sensor's dials; UnsuitableDesignError where it has none."""
-        return cls(**dial_code(geometry, kind, cls.about))
-
-    def columns(self) -> int:
-        """Coarse and fine tracks of both dials."""
-        return self._code().columns
-
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Learn the series of both dials and the projection."""
         del context
-        places, phases, vectors = self._code().calibration(features, sun)
+        places, phases, vectors = self.code.calibration(features, sun)
         waves = self._waves(phases)
 
         def tangents(parameters: NDArray[np.complex128]) -> NDArray[np.complex128]:
@@ -172,7 +119,7 @@ class FourierPhase(CalibratedModel):
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of signals (N, 2 (bits + 4))."""
         del context
-        places, phases = self._code().read(features)
+        places, phases = self.code.read(features)
         corrected = _corrected(places, self._waves(phases), self.series_)
         return sun_from_fractions(*_projected(self.conversion_, corrected))
 
@@ -184,16 +131,6 @@ class FourierPhase(CalibratedModel):
     def _split(self, parameters: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
         conversion = np.append(parameters[:8], 1.0).reshape(3, 3)
         return conversion, parameters[8:].reshape(2, self.harmonics, 2)
-
-    def _code(self) -> DialCode:
-        return DialCode(
-            self.bits,
-            self.cell_mm,
-            self.period_mm,
-            self.focal_length_mm,
-            self.axes,
-            self.smallest_contrast,
-        )
 
 
 def _corrected(places: Floats, waves: Floats, series: NDArray[Any]) -> NDArray[Any]:

@@ -10,6 +10,7 @@ import numpy as np
 from algorithms.calibration.calibrated import CalibratedModel, Columns
 from algorithms.calibration.quality import Parameter
 from algorithms.contract import AboutModel, Floats
+from algorithms.documented import documented
 from algorithms.models.nominal_projection import POSITIONS
 from algorithms.models.non_physical.regression_axes import (
     Target,
@@ -21,6 +22,7 @@ from algorithms.models.non_physical.regression_axes import (
 )
 
 
+@documented
 @dataclass
 class LinearFit(CalibratedModel):
     """Each Sun angle as a straight line on the feature of its axis.
@@ -33,9 +35,6 @@ class LinearFit(CalibratedModel):
     target : {"angle", "tangent"}
         What the line gives: the angle in degrees, as published, or its tangent, which is what a
         pinhole's response is straight in.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
 
     Attributes
     ----------
@@ -44,22 +43,11 @@ class LinearFit(CalibratedModel):
         (or tangents) and per unit of feature.
     deviations_ : ndarray, shape (2, 2)
         Their standard errors.
-    quality_ : FitQuality
-        Residuals, and the four coefficients by name.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
     Implements: model:linear (Faizullin2017), in words there: ``alpha = c_0 + c_1 y``,
     ``beta = d_0 + d_1 x`` by ordinary least squares.
-
-    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
 
     Failure: a NaN row for a NaN feature row, outside the hull or where an angle reaches 90 degrees.
     fit raises UnusableDataError below 3 samples, where they lie on one line, or where a line
@@ -67,16 +55,11 @@ class LinearFit(CalibratedModel):
 
     Cost: 4 operations and 2 tangents a sample.
 
-    References
-    ----------
-    Faizullin2017; survey model:linear.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = [-5, 0, 5]
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-5, 6, 5))
     >>> balances = 4.0 * sun[:, :2] / sun[:, 2:] + 0.01
     >>> model = LinearFit().fit(balances, sun)
     >>> model.coefficients_.round(2)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
@@ -14,9 +14,9 @@ from algorithms.contract import (
     AboutModel,
     FeatureKind,
     Floats,
-    SensorGeometry,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import (
     Normals,
     opposite_pairs,
@@ -27,6 +27,7 @@ from algorithms.models.non_physical.trigonometric import FEWEST_LIT, SMALLEST_CO
 from algorithms.row_arithmetic import normalised
 
 
+@documented
 @dataclass
 class AveragedPanelCurves(FacesModel):
     """One trigonometric curve for both panels of a pair; the lit one's gives an angle, its sign.
@@ -39,9 +40,6 @@ class AveragedPanelCurves(FacesModel):
     face_normals : tuple of six vectors
         Unit normals of the panels in the order of the features: three pairs of opposite ones,
         the pairs square to each other, in any order and turned any way.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
@@ -52,13 +50,6 @@ class AveragedPanelCurves(FacesModel):
         Their standard errors.
     quality_ : FitQuality
         Residuals, and the nine with their standard errors by pair from 0.
-    hull_ : Hull
-        Cone of the directions it gives for the calibration.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -79,23 +70,16 @@ class AveragedPanelCurves(FacesModel):
 
     Cost: 30 operations and 4 roots a sample.
 
-    References
-    ----------
-    Richie2015; survey model:trig.
-
     Examples
     --------
     >>> import numpy as np
+    >>> from algorithms.examples import face_signals
     >>> panels = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
     >>> sun = np.random.default_rng(1).normal(size=(200, 3))
     >>> sun /= np.linalg.norm(sun, axis=1, keepdims=True)
-    >>> cosines = sun @ np.array(panels).T
-    >>> signals = np.where(cosines > 0, 0.9 * cosines + 0.1 * cosines**2, 0.0)
-    >>> model = AveragedPanelCurves(panels).fit(signals, sun)
-    >>> model.curves_[0].round(3)  # 0.1 cos^2 is half a level and half of twice the angle
+    >>> cosines = face_signals(sun, panels)
+    >>> AveragedPanelCurves(panels).fit(0.9 * cosines + 0.1 * cosines**2, sun).curves_[0].round(3)
     array([0.05, 0.9 , 0.05])
-    >>> bool(np.abs(model.predict(signals) - sun).max() < 1e-12)
-    True
     """
 
     about: ClassVar = AboutModel(
@@ -118,13 +102,6 @@ class AveragedPanelCurves(FacesModel):
     def __post_init__(self) -> None:
         super().__post_init__()
         require_square_pairs(self.face_normals, self.about.name)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model of the sensor's six panels."""
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
 
     def columns(self) -> int:
         """Six panels."""

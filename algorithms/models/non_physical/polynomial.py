@@ -14,6 +14,7 @@ from algorithms.calibration.calibrated import CalibratedModel, Columns
 from algorithms.calibration.orders import chosen, errors_of_orders
 from algorithms.calibration.quality import Setting
 from algorithms.contract import AboutModel, Floats
+from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.nominal_projection import POSITIONS
 from algorithms.models.non_physical.axis_regression import AXES, fit_axes
@@ -31,6 +32,7 @@ MAX_DEGREE = 15
 """Past the 11th degree nothing is gained (Chang2006); past this, rounding and overfitting rule."""
 
 
+@documented
 @dataclass
 class AxisPolynomial(CalibratedModel):
     """Each Sun angle as a polynomial of the feature of its own axis.
@@ -45,14 +47,9 @@ class AxisPolynomial(CalibratedModel):
         by cross-validation.
     target : {"angle", "tangent"}
         What the polynomial gives: the angle in degrees, as published, or its tangent.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere. Further out a polynomial says nothing.
 
     Attributes
     ----------
-    middle_, half_range_ : ndarray, shape (2,)
-        The features' scaling ``u = (feature - middle) / half_range`` onto [-1, 1].
     coefficients_ : ndarray, shape (2, n + 1)
         Chebyshev coefficients in the scaled feature, rows ``alpha`` (on y) and ``beta`` (on x).
     powers_ : ndarray, shape (2, n + 1)
@@ -60,17 +57,6 @@ class AxisPolynomial(CalibratedModel):
     whitening_ : ndarray, shape (2, n + 1, n + 1)
         Inverse of each design's triangular factor: rows of terms times it have the squared length
         that their value's variance is, for errors of size one.
-    validated_deg_ : float or None
-        Error on samples left out, where they chose the degree.
-    quality_ : FitQuality
-        Residuals, and the degree.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -79,24 +65,17 @@ class AxisPolynomial(CalibratedModel):
     fitted to all samples given. Fitted in Chebyshev polynomials, which span the same functions
     without their loss of digits.
 
-    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row, outside the hull, or where an angle reaches 90
     degrees. fit raises UnusableDataError below n + 1 different features an axis, or where they lie
     on one line.
 
     Cost: 6 (n + 1) operations and 2 tangents a sample.
 
-    References
-    ----------
-    You2011; survey model:poly.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = np.arange(-30, 31, 5)
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-30, 31, 5))
     >>> spots = 200.0 * sun[:, :2] / sun[:, 2:] + (100.0, 80.0)
     >>> model = AxisPolynomial(degree=5).fit(spots, sun)
     >>> angles_from_sun(model.predict([spots[0], [900.0, 80.0]])).round(1)
@@ -177,6 +156,7 @@ class AxisPolynomial(CalibratedModel):
         return np.asarray(share * np.radians(self.quality_.residual_rms_deg) ** 2 / 4.0)
 
 
+@documented
 @dataclass
 class SurfacePolynomial(CalibratedModel):
     """Each Sun angle as a polynomial surface over both features.
@@ -190,14 +170,9 @@ class SurfacePolynomial(CalibratedModel):
         Total degree n, 1 to 15. None: chosen from the calibration samples by cross-validation.
     target : {"angle", "tangent"}
         What the polynomial gives: the angle in degrees or its tangent.
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere. Further out a polynomial says nothing.
 
     Attributes
     ----------
-    middle_, half_range_ : ndarray, shape (2,)
-        The features' scaling ``u = (feature - middle) / half_range`` onto [-1, 1].
     coefficients_ : ndarray, shape (2, (n + 1)(n + 2) / 2)
         Coefficients of ``T_i(u_x) T_j(u_y)``, i + j <= n, by total degree and then by j, rows
         ``alpha`` and ``beta``.
@@ -206,17 +181,6 @@ class SurfacePolynomial(CalibratedModel):
     whitening_ : ndarray, shape (terms, terms)
         Inverse of the design's triangular factor: rows of terms times it have the squared length
         that their value's variance is, for errors of size one.
-    validated_deg_ : float or None
-        Error on samples left out, where they chose the degree.
-    quality_ : FitQuality
-        Residuals, and the degree.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -224,24 +188,18 @@ class SurfacePolynomial(CalibratedModel):
     b_ij x^i y^j``, i + j <= n. Fitted in products of Chebyshev polynomials, which span the same
     functions without their loss of digits.
 
-    Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to unit vectors (N, 3).
-
     Failure: a NaN row for a NaN feature row, outside the hull, or where an angle reaches 90
     degrees. fit raises UnusableDataError below (n + 1)(n + 2) / 2 samples or where they lie so that
     they do not settle every term.
 
     Cost: 2.5 (n + 1)(n + 2) operations and 2 tangents a sample.
 
-    References
-    ----------
-    Chang2006; survey model:poly.
-
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = np.arange(-20, 21, 5)
-    >>> sun = sun_from_angles(np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2))
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-20, 21, 5))
     >>> x, y = (200.0 * sun[:, :2] / sun[:, 2:]).T
     >>> turned = np.column_stack([x - 0.1 * y, y + 0.1 * x])
     >>> model = SurfacePolynomial(degree=5).fit(turned, sun)

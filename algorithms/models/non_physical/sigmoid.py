@@ -12,6 +12,7 @@ from algorithms.angles import angles_from_sun, sun_from_tangents
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.parametric import ParametricModel
 from algorithms.contract import AboutModel, FeatureKind, Floats, UnusableDataError
+from algorithms.documented import documented
 from algorithms.inputs import require_samples
 
 #: Of each axis, (alpha, beta), the balance that it is read from, (s_a, s_b).
@@ -38,6 +39,7 @@ _NEARLY_STRAIGHT = 1e-2
 _SERIES = (1.0, -1.0 / 3.0, 2.0 / 15.0, -17.0 / 315.0, 62.0 / 2835.0, -1382.0 / 155925.0)
 
 
+@documented
 @dataclass
 class SigmoidBalance(ParametricModel):
     """Each balance as a modified logistic curve of its Sun angle, with one wave and an offset.
@@ -45,32 +47,13 @@ class SigmoidBalance(ParametricModel):
     The light spot of a round aperture passes a quadrant's edge slowly, quickly and slowly again;
     the curve has that shape, the wave takes up what it leaves, and few numbers serve a wide field.
 
-    Parameters
-    ----------
-    extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
-
     Attributes
     ----------
     vector_ : ndarray, shape (12,)
         Of alpha and then beta: slope in 1/rad, bend in 1/rad^2, skew in 1/rad, and the wave's
         cosine, sine and the offset, balances.
-    covariance_ : ndarray, shape (12, 12)
-        Of their errors.
-    condition_ : float
-        Of the equations at the solution.
     calibrated_deg_ : ndarray, shape (2, 2)
         Lowest and highest alpha, and beta, of the calibration: one period of the wave.
-    quality_ : FitQuality
-        Residuals, and the twelve with their standard errors by name.
-    hull_ : Hull
-        Of the calibrated features.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -92,18 +75,13 @@ class SigmoidBalance(ParametricModel):
     Cost: 2 tables and 6 steps of a hyperbolic tangent, a sine and a cosine a sample: some ten
     times a polynomial's.
 
-    References
-    ----------
-    Pentke2022; survey model:sigmoid.
-
     Examples
     --------
     >>> import numpy as np
-    >>> from algorithms.angles import angles_from_sun, sun_from_angles
-    >>> steps = np.arange(-50, 51, 5)
-    >>> grid = np.stack(np.meshgrid(steps, steps), -1).reshape(-1, 2)
-    >>> sun = sun_from_angles(grid)
-    >>> balances = 0.9 * np.tanh(np.radians(1.4 * grid[:, ::-1] - 2.0)) + 0.01
+    >>> from algorithms.angles import angles_from_sun
+    >>> from algorithms.examples import sun_grid
+    >>> sun = sun_grid(range(-50, 51, 5))
+    >>> balances = 0.9 * np.tanh(np.radians(1.4 * angles_from_sun(sun)[:, ::-1] - 2.0)) + 0.01
     >>> model = SigmoidBalance().fit(balances, sun)
     >>> [round(model.quality_.parameter(f"{name}_beta").value, 3) for name in ("bend", "skew")]
     [1.96, -0.049]

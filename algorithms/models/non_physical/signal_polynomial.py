@@ -23,6 +23,7 @@ from algorithms.contract import (
     UnsuitableDesignError,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.non_physical.regression_axes import solve_regression
 from algorithms.row_arithmetic import normalised
@@ -39,6 +40,7 @@ _DEPENDENT = 1e-4
 """Share of a term that those before it leave, below which samples do not tell it from them."""
 
 
+@documented
 @dataclass
 class SignalPolynomial(FacesModel):
     """Each component of the Sun vector as a polynomial of all detectors' signals.
@@ -67,17 +69,8 @@ class SignalPolynomial(FacesModel):
         Of the terms, in s_x, s_y and s_z.
     dropped_ : int
         Terms up to the degree that the samples do not tell from others, left out.
-    validated_deg_ : float or None
-        Error on samples left out, where they chose the degree.
     quality_ : FitQuality
         Residuals, the degree, the terms kept and those left out.
-    hull_ : Hull
-        Cone of the directions it gives for the calibration.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -89,18 +82,12 @@ class SignalPolynomial(FacesModel):
     calibration samples, to a part in ten thousand, is settled by none of them and left out, the
     higher degrees first.
 
-    Shapes: signals (N, K), in any common unit, to unit vectors (N, 3), all directions.
-
     Failure: a NaN row for a NaN feature row, outside the cone, where a signal leaves its
     calibrated range by more than a tenth of its half (a detector lit that never was), or where
     the vector vanishes. fit raises UnusableDataError where samples are fewer than the terms they
     tell apart, or no signal changes. UnsuitableDesignError for more than eight detectors.
 
     Cost: 8 operations a term and sample; ``(n + K)! / (n! K!)`` terms at most.
-
-    References
-    ----------
-    Hermoso2021; survey model:poly.
 
     Examples
     --------

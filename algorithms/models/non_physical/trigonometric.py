@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
@@ -15,9 +15,9 @@ from algorithms.contract import (
     AboutModel,
     FeatureKind,
     Floats,
-    SensorGeometry,
     UnusableDataError,
 )
+from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import (
     Normals,
     opposite_pairs,
@@ -33,6 +33,7 @@ FEWEST_LIT = 8
 """Samples that light a panel below which its opposite speaks for it."""
 
 
+@documented
 @dataclass
 class TrigonometricPanels(FacesModel):
     """Each panel's signal a cosine with amplitude, phase and offset; the lit ones give the Sun.
@@ -45,9 +46,6 @@ class TrigonometricPanels(FacesModel):
     face_normals : tuple of six vectors
         Unit normals of the panels in the order of the features: three pairs of opposite ones,
         the pairs square to each other, in any order and turned any way.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
@@ -60,13 +58,6 @@ class TrigonometricPanels(FacesModel):
         Standard errors of offset and amplitudes; NaN for a panel that its opposite speaks for.
     quality_ : FitQuality
         Residuals, and offsets and amplitudes with standard errors by panel from 0.
-    hull_ : Hull
-        Cone of the directions it gives for the calibration.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -86,23 +77,16 @@ class TrigonometricPanels(FacesModel):
 
     Cost: 40 operations, 9 looked-up numbers and one root a sample.
 
-    References
-    ----------
-    Richie2015; survey model:trig.
-
     Examples
     --------
     >>> import numpy as np
+    >>> from algorithms.examples import face_signals
     >>> panels = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
     >>> sun = np.random.default_rng(1).normal(size=(200, 3))
     >>> sun /= np.linalg.norm(sun, axis=1, keepdims=True)
-    >>> gains = np.array([1.0, 1.1, 0.9, 1.0, 1.2, 1.0])
-    >>> signals = np.maximum(sun @ np.array(panels).T, 0.0) * gains
-    >>> model = TrigonometricPanels(panels).fit(signals, sun)
-    >>> np.linalg.norm(model.amplitudes_, axis=1).round(3)
+    >>> signals = face_signals(sun, panels) * (1.0, 1.1, 0.9, 1.0, 1.2, 1.0)
+    >>> np.linalg.norm(TrigonometricPanels(panels).fit(signals, sun).amplitudes_, axis=1).round(3)
     array([1. , 1.1, 0.9, 1. , 1.2, 1. ])
-    >>> model.predict([[0.6, 0.0, 0.0, 0.8, 0.0, 0.0]]).round(3) + 0.0
-    array([[ 0.6, -0.8,  0. ]])
     """
 
     about: ClassVar = AboutModel(
@@ -126,13 +110,6 @@ class TrigonometricPanels(FacesModel):
     def __post_init__(self) -> None:
         super().__post_init__()
         require_square_pairs(self.face_normals, self.about.name)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model of the sensor's six panels."""
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
 
     def columns(self) -> int:
         """Six panels."""

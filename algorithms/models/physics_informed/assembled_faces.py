@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal, Self, get_args
+from typing import ClassVar, Literal, get_args
 
 import numpy as np
 
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.faces_model import FacesModel
 from algorithms.calibration.quality import Parameter
-from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
+from algorithms.contract import AboutModel, FeatureKind, Floats
+from algorithms.documented import documented
 from algorithms.inputs import require_positive
 from algorithms.models.geometric.detector_faces import Normals, require_normals
 from algorithms.models.physics_informed.faces_fit import FEWEST_LIT, FacesFit
@@ -39,6 +40,7 @@ _ASIDE = (6e-4, 5e-4, 7e-4)
 _WORST_RAD = 0.1
 
 
+@documented
 @dataclass
 class AssembledFaces(FacesModel):
     """Direction that explains all faces' signals best, each face as the calibration found it.
@@ -49,18 +51,12 @@ class AssembledFaces(FacesModel):
 
     Parameters
     ----------
-    face_normals : tuple of K vectors
-        Nominal unit normals of the faces in the order of the features, K at least 3, spanning
-        space.
     response : {"common", "each"}
         Whether all faces have one response but for their gains, as elements of one make do, or
         each its own.
     level_spread : float
         Standard deviation of the light's strength around that of the calibration, relative,
         positive: Sun and lamp differ, and the Sun's distance changes.
-    extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, from 0 up;
-        infinity for anywhere.
 
     Attributes
     ----------
@@ -78,15 +74,6 @@ class AssembledFaces(FacesModel):
         Gains, tilts, response and the slopes of the lamp's light, with standard errors.
     condition_ : float
         Of the equations, their columns brought to one length.
-    quality_ : FitQuality
-        Residuals, and all of these with their standard errors by name.
-    hull_ : Hull
-        Cone of the directions it gives for the calibration.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -105,25 +92,16 @@ class AssembledFaces(FacesModel):
     Cost: some ten steps of 30 operations a face and 60 a sample; the fit, some twenty passes of
     seven over the samples a face.
 
-    References
-    ----------
-    Radan2019; survey model:assem, eq:kellycos.
-
     Examples
     --------
-    >>> import numpy as np
+    >>> from algorithms.examples import face_signals, sun_grid
     >>> normals = ((0.6, 0.0, 0.8), (-0.6, 0.0, 0.8), (0.0, 0.6, 0.8), (0.0, -0.6, 0.8))
-    >>> turns, offs = np.meshgrid(np.radians(range(0, 360, 30)), np.radians([5, 15, 25, 35]))
-    >>> sine = np.sin(offs.ravel())
-    >>> sun = np.column_stack([sine * np.cos(turns.ravel()), sine * np.sin(turns.ravel()),
-    ...                        np.cos(offs.ravel())])
-    >>> signals = np.maximum(sun @ np.array(normals).T, 0.0) * (1.0, 1.1, 0.9, 1.2)
+    >>> sun = sun_grid(range(-30, 31, 10))
+    >>> signals = face_signals(sun, normals) * (1.0, 1.1, 0.9, 1.2)
     >>> model = AssembledFaces(normals).fit(signals, sun)
     >>> gains = [model.quality_.parameter(f"gain_{face}").value for face in (1, 4)]
     >>> round(gains[1] / gains[0], 6)
     1.2
-    >>> float(np.abs(model.predict(signals) - sun).max().round(6))
-    0.0
     """
 
     about: ClassVar = AboutModel(
@@ -157,13 +135,6 @@ class AssembledFaces(FacesModel):
                 f"{self.about.name}: response must be one of {', '.join(get_args(Sharing))}; "
                 f"got {self.response!r}"
             )
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model that starts from the sensor's drawing."""
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(geometry.face_normals or ())
 
     def columns(self) -> int:
         """One a face."""

@@ -161,7 +161,7 @@ def _document(
     limit: int,
     calibrations: int,
     studies: Facts,
-) -> dict[str, Any]:
+) -> Mapping[str, Any]:
     """Answer as GET /v1/recommendations does, without the service: that takes a second to load."""
     given = {name: value for name, value in asked.items() if value not in (None, [])}
     try:
@@ -172,6 +172,6 @@ def _document(
             limit=limit,
             calibrations=calibrations,
             facts=studies,
-        ).to_dict()
+        ).document
     except InvalidValueError as error:
         raise refused(error.parameter, error.value, error.expected, error.nearest) from error

@@ -4,18 +4,36 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, Protocol
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler
+from pydantic_core import CoreSchema
 
+from api.dictionary import meaning
 from api.http.models.parameters import GIVEN
 
 
-class Shape(BaseModel):
+class Described(BaseModel):
+    """A model whose members are described: by itself, or by the data dictionary."""
+
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Return the JSON schema, with the dictionary's meaning where a member has none."""
+        made = handler(schema)
+        for name, member in handler.resolve_ref_schema(made).get("properties", {}).items():
+            said = meaning(name)
+            if said is not None:
+                member.setdefault("description", said)
+        return made
+
+
+class Shape(Described):
     """An answer or a part of one: exactly these members."""
 
     model_config = ConfigDict(extra="forbid")
 
 
-class OpenShape(BaseModel):
+class OpenShape(Described):
     """An answer or a part of one whose producer may say more than these members."""
 
     model_config = ConfigDict(extra="allow")

@@ -46,6 +46,18 @@ class ScoresQuery(TableQuestion):
     cursor: Cursor = None
 
 
+class WholeLeaderboardQuery(TableQuestion):
+    """Which part of the leaderboard of all data sets."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
+
+    whole: Flag = Field(
+        default=False, description="All rows in one answer, which has more than 10 MB as JSON."
+    )
+    limit: Limit = DEFAULT_PAGE
+    cursor: Cursor = None
+
+
 class LeaderboardQuery(TableQuestion):
     """Which rows of a data set's leaderboard, and what they are ranked by."""
 
@@ -259,6 +271,8 @@ class Leaderboard(OpenShape):
     schema_version: int | str | None = Field(alias="schema")
     datasets: list[LeaderboardDataset]
     record: RecordNamed
+    total: int = Field(description="Rows of all data sets together.")
+    next: str | None = Field(description="Cursor of the next page; null on the last.")
 
 
 class LeaderboardRows(Listing):

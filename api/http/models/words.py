@@ -8,8 +8,8 @@ from typing import Annotated
 
 from api.http.models.parameters import OneOf
 from benchmark.claims.rules import VERDICTS
-from benchmark.reference.series import SWEEPS
 from benchmark.sweeps.plan import SERIES
+from benchmark.synthetic_features.series import SWEEPS
 from registry.catalogue import catalogue
 from registry.flows import CHARTS
 from registry.requirements import HAZARDS, NEEDS

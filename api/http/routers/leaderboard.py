@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query
 
 from api import columns
 from api.deposit.identity import identity
 from api.http.answers import Answer, AnswerRoute, listing
-from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
+from api.http.dependencies import Known
 from api.http.models.base import Selected
 from api.http.models.boards import (
     Architectures,
@@ -17,9 +18,14 @@ from api.http.models.boards import (
     Overview,
     OverviewQuery,
 )
-from api.http.models.scores import Leaderboard, LeaderboardQuery, LeaderboardRows
+from api.http.models.scores import (
+    Leaderboard,
+    LeaderboardQuery,
+    LeaderboardRows,
+    WholeLeaderboardQuery,
+)
 from api.http.models.words import DatasetName
-from api.http.pagination import narrowed, ordered, page
+from api.http.pagination import Page, narrowed, ordered, page
 from api.metadata.signposting import headers, landing_of_record
 from benchmark.leaderboard.architectures import architectures as best_of_each
 from benchmark.leaderboard.board import at_field, within_error
@@ -33,19 +39,33 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
     summary="The leaderboard",
     response_model=Leaderboard,
 )
-async def leaderboard(
-    known: Known,
-    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
-) -> Answer:
+async def leaderboard(known: Known, query: Annotated[WholeLeaderboardQuery, Query()]) -> Answer:
     """Every data set and condition: pipelines ranked by error, the best of each extractor first.
 
-    Those that answer less than 95 % come behind all others; a rank is shared where errors on five
-    units built alike overlap. Sweeps are at /v1/sweeps.
+    Pipelines that answer less than 95 % rank behind all others; a rank is shared where errors on
+    five units built alike overlap. Every data set is listed, with its rows that are on this page;
+    `whole` gives all rows in one answer. Sweeps are at /v1/sweeps.
     """
     board = {k: v for k, v in known.measurements.leaderboard.items() if k != "sweeps"}
-    board["record"] = known.measurements.record
-    link = ", ".join(headers(landing_of_record(identity()).links_of_content()))
-    return Answer(board, columns.LEADERBOARD, known.measurements.board_rows, link)
+    rows = known.measurements.board_rows()
+    shown = Page(rows, len(rows), None, None)
+    if not query.whole:
+        shown = page(rows, "/v1/leaderboard", query)
+        board["datasets"] = _with_rows(board["datasets"], shown.items)
+    board |= {"record": known.measurements.record, "total": shown.total, "next": shown.next}
+    links = headers(landing_of_record(identity()).links_of_content())
+    link = ", ".join((*links, *([shown.link] if shown.link else ())))
+    return Answer(board, columns.LEADERBOARD, lambda: shown.items, link)
+
+
+def _with_rows(
+    boards: Iterable[Mapping[str, Any]], rows: Iterable[Mapping[str, Any]]
+) -> list[dict[str, Any]]:
+    """Return boards with those of their rows that are among some."""
+    of: dict[str, list[Mapping[str, Any]]] = {}
+    for row in rows:
+        of.setdefault(row["dataset"], []).append(row)
+    return [{**board, "rows": of.get(board["name"], [])} for board in boards]
 
 
 @router.get(

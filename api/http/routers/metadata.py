@@ -12,6 +12,7 @@ from api.deposit.identity import identity
 from api.http.answers import AnswerRoute, Linked
 from api.http.dependencies import NO_PARAMETERS, Known
 from api.http.knowledge import Knowledge
+from api.http.models.scores import WholeLeaderboardQuery
 from api.http.models.words import DatasetName
 from api.http.negotiation import CSV
 from api.http.routers.datasets import dataset
@@ -83,7 +84,7 @@ async def dataset_linkset(request: Request, known: Known, name: Name) -> LinkSet
 async def leaderboard_croissant(request: Request, known: Known) -> LinkedData:
     """Give the leaderboard's table with its SHA-256, and what each column holds."""
     base, who = str(request.base_url), identity()
-    answer = await leaderboard(known)
+    answer = await leaderboard(known, WholeLeaderboardQuery.model_validate({"whole": True}))
     file, table = served.table_of_ranks(answer.representation(CSV).body, base)
     document = croissant(served.of_record(who, base), who, [file], [table])
     landing = signposting.landing_of_record(who)

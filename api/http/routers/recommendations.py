@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Body, Query
+from fastapi import APIRouter, Body, Depends
 
 from api import columns
 from api.http.answers import Answer, AnswerRoute
-from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
+from api.http.dependencies import AS_ACCEPTED, Known, TableOnly, query_as
 from api.http.knowledge import Knowledge
 from api.http.models.recommendations import (
     Recommendations,
@@ -17,13 +18,15 @@ from api.http.models.recommendations import (
     RequirementsBody,
     RequirementsQuery,
 )
-from api.http.recommended import encoded_answer
-from api.http.recommended_table import table_text
+from api.http.representations import digest_of
 from api.recommending import rows
-from registry.recommendation import Answered, answered, recommendation
+from registry.answer_json import answer_digest, answer_json
+from registry.recommendation import answer
 from registry.requirements import PARAMETERS, SETTINGS
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
+
+READ = Depends(query_as(RequirementsQuery))
 
 DESCRIPTION = (
     "Which sensor: detector and mask. How to calibrate it: extractor, compensations, model. Three "
@@ -39,7 +42,7 @@ DESCRIPTION = (
     description=DESCRIPTION,
     response_model=Recommendations,
 )
-async def recommendations(known: Known, query: Annotated[RequirementsQuery, Query()]) -> Answer:
+async def recommendations(known: Known, query: Annotated[RequirementsQuery, READ]) -> Answer:
     """Recommend for requirements in a query."""
     return _answer(query, known)
 
@@ -59,50 +62,42 @@ async def recommend(
     return _answer(body, known)
 
 
-class Recommended(Answer):
-    """A recommendation: its JSON comes as bytes, its document is made where somebody reads it.
+class Recommendation(Answer):
+    """A recommendation, written as JSON already; its table is made from that where it is asked for.
 
     Parameters
     ----------
-    requirements : what is asked
-    found : what meets them
+    content : the JSON
+    digest : what its ETag is made of
     """
 
-    def __init__(self, requirements: Requirements, found: Answered) -> None:
-        self._requirements = requirements
-        self._found = found
-        self._document: Mapping[str, Any] | None = None
+    def __init__(self, content: bytes, digest: str) -> None:
+        self._content = content
+        self.digest = digest
         super().__init__({}, columns.RECOMMENDATIONS, lambda: list(rows(self.document)))
 
-    def render(self, content: Any) -> bytes:  # noqa: ARG002 - the document is not needed
+    def render(self, content: Any) -> bytes:  # noqa: ARG002 - written already
         """Return the JSON."""
-        asked = self._requirements
-        body, self.digest = encoded_answer(self._found, asked.limit, asked.calibrations)
-        return body
-
-    def table(self) -> str:
-        """Return the CSV."""
-        return table_text(self._found, self._requirements.limit, self._requirements.calibrations)
+        return self._content
 
     @property
     def document(self) -> Mapping[str, Any]:
         """The JSON object."""
-        if self._document is None:
-            asked = self._requirements
-            told = recommendation(self._found, asked.limit, asked.calibrations)
-            self._document = told.to_dict()
-        return self._document
+        document: Mapping[str, Any] = json.loads(self._content)
+        return document
 
     @document.setter
     def document(self, _document: Mapping[str, Any]) -> None:
-        """Leave it to who reads it."""
+        """Ignore the empty one of `Answer`."""
 
 
-def _answer(requirements: Requirements, known: Knowledge) -> Recommended:
+def _answer(requirements: Requirements, known: Knowledge) -> Recommendation:
     given = requirements.model_fields_set
     asked = {
         name: getattr(requirements, name) for name in (*PARAMETERS, *SETTINGS) if name in given
     }
     studies = known.of(requirements.edition).facts
-    found = answered(asked, known.measured, sort=requirements.sort, facts=studies)
-    return Recommended(requirements, found)
+    found = answer(asked, known.measured, sort=requirements.sort, facts=studies)
+    shown = (requirements.limit, requirements.calibrations)
+    digest = digest_of(answer_digest(found, *shown))
+    return Recommendation(answer_json(found, *shown), digest)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields, replace
-from functools import partial
+from dataclasses import replace
 
+from benchmark.datasets.conditions.aloft import FIRM, UNDER_GLASS, conditions_aloft, grounded
 from benchmark.datasets.conditions.flight import Flight, FlightPreset, Span
 from benchmark.datasets.conditions.instruments import ABOARD
 from benchmark.datasets.conditions.propagation import GLASS
@@ -14,7 +14,6 @@ from benchmark.simulator.flight.attitude import Attitude
 from benchmark.simulator.flight.drift import AssemblyDrift, PhotodiodeDrift, ThermalCycle
 from benchmark.simulator.flight.orbit import CircularOrbit
 from benchmark.simulator.flight.time_series import DriftingFaceSensor, DriftingFrameSensor
-from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 from benchmark.simulator.sensors.faces import FaceSensor
 
@@ -35,9 +34,6 @@ SPACER = AssemblyDrift(
 PHOTODIODES = PhotodiodeDrift(
     gain_per_k=1e-3, gain_per_k_spread=2e-4, loss_per_year=0.02, loss_per_year_spread=0.01
 )
-#: 40 K warmer than usual throughout.
-_WARM = ThermalCycle(sunlit_k=348.15, eclipse_k=288.15)
-_HOT = "The nominal sensor on a satellite 40 K warmer throughout."
 
 
 def in_orbit(
@@ -78,72 +74,33 @@ def in_orbit(
 
 
 def frames_aloft(ground: Preset, drift: AssemblyDrift) -> dict[str, Condition]:
-    """Return the conditions of a ground dataset's sensor in orbit, under glass, Earth in view."""
+    """Return the conditions of a ground dataset's frames in orbit, under glass."""
 
     def flying(condition: str) -> DriftingFrameSensor:
-        still = ground.condition(condition).sensor
-        same = {f.name: getattr(still, f.name) for f in fields(DiffractiveFrameSensor)}
+        same = grounded(ground, condition, DiffractiveFrameSensor)
         same["camera"] = replace(same["camera"], glass=GLASS)
         return DriftingFrameSensor(**same, drift=drift, thermal=ThermalCycle())
 
-    nominal, light = flying("nominal"), ground.condition("nominal").irradiance
-    seen, its = partial(Condition, irradiance=light, earth=Earth()), f"{ground.name}'s"
-    return {
-        "nominal": seen(
-            f"The nominal sensor of {ground.name} under a filter of 0.5 mm of glass (index 1.52), "
-            "its head moving with temperature and age, sunlit Earth in view.",
-            nominal,
-        ),
-        "low-noise": seen(
-            f"The nominal sensor with the noise of {its} low-noise condition.",
-            flying("low-noise"),
-        ),
-        "high-noise": seen(
-            f"The nominal sensor with the noise of {its} high-noise condition.",
-            flying("high-noise"),
-        ),
-        "misaligned": seen(
-            f"The nominal sensor, misaligned at first as {its} of that name.",
-            flying("misaligned"),
-        ),
-        "hot": seen(_HOT, replace(nominal, thermal=_WARM)),
-        "stable": seen(
-            "The nominal sensor with an assembly that does not drift.",
-            replace(nominal, drift=AssemblyDrift()),
-        ),
-    }
+    still = replace(flying("nominal"), drift=AssemblyDrift())
+    texts = {"nominal": f"The nominal sensor of {ground.name} {UNDER_GLASS}", "stable": FIRM}
+    return conditions_aloft(ground, flying, still, texts)
 
 
 def photodiodes_aloft(ground: Preset, drift: PhotodiodeDrift) -> dict[str, Condition]:
-    """Return the conditions of a ground dataset's photodiodes in orbit, Earth in view."""
+    """Return the conditions of a ground dataset's photodiodes in orbit."""
 
     def flying(condition: str) -> DriftingFaceSensor:
-        still = ground.condition(condition).sensor
-        same = {f.name: getattr(still, f.name) for f in fields(FaceSensor)}
+        same = grounded(ground, condition, FaceSensor)
         return DriftingFaceSensor(**same, drift=drift, thermal=ThermalCycle())
 
-    nominal, light = flying("nominal"), ground.condition("nominal").irradiance
-    seen = partial(Condition, irradiance=light, earth=Earth())
-    return {
-        "nominal": seen(
-            f"The nominal unit design of {ground.name} in orbit: sunlit Earth in view, gain "
-            "+0.1 %/K with 0.02 %/K from face to face, 2 % a year of ageing with 1 % from face to "
-            "face.",
-            nominal,
-        ),
-        "no-albedo": seen("The nominal sensor over a black Earth.", nominal, earth=None),
-        "low-noise": seen(
-            "The nominal sensor with a tenth of the noise and a 16-bit converter.",
-            flying("low-noise"),
-        ),
-        "high-noise": seen("The nominal sensor with ten times the noise.", flying("high-noise")),
-        "misaligned": seen(
-            "The nominal sensor with photodiodes mounted 2 deg off their faces' normals.",
-            flying("misaligned"),
-        ),
-        "hot": seen(_HOT, replace(nominal, thermal=_WARM)),
-        "stable": seen(
-            "The nominal sensor without thermal drift and ageing of its gains.",
-            replace(nominal, drift=PhotodiodeDrift()),
-        ),
+    still = replace(flying("nominal"), drift=PhotodiodeDrift())
+    texts = {
+        "nominal": f"The nominal unit design of {ground.name} in orbit: sunlit Earth in view, gain "
+        "+0.1 %/K with 0.02 %/K from face to face, 2 % a year of ageing with 1 % from face to "
+        "face.",
+        "low-noise": "The nominal sensor with a tenth of the noise and a 16-bit converter.",
+        "high-noise": "The nominal sensor with ten times the noise.",
+        "misaligned": "The nominal sensor with photodiodes mounted 2 deg off their faces' normals.",
+        "stable": "The nominal sensor without thermal drift and ageing of its gains.",
     }
+    return conditions_aloft(ground, flying, still, texts, black_earth=True)

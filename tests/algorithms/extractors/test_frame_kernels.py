@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from algorithms.extractors.frames import balance_kernel, gaussian_kernel, radial_kernel
+from algorithms.extractors.frames import balance_kernel, gaussian_kernel
 from algorithms.extractors.frames.background import background_level
 from algorithms.extractors.frames.windows import MAX_MOVES, centred_windows, follow_spot
 from algorithms.kernels import moments, window_sums
@@ -254,77 +254,3 @@ def test_damped_equations_are_solved_and_singular_ones_refused(damping):
     np.testing.assert_allclose(step, np.linalg.solve(damped, right), rtol=1e-8)
     matrix[:, 5] = matrix[5] = 0.0
     assert not gaussian_kernel._solved(matrix, right, damping, step)
-
-
-# Matched profile
-
-
-@pytest.mark.parametrize("shape", SHAPES)
-def test_the_border_of_a_frame_is_its_mean_and_variance(shape):
-    frame = noise(shape)
-    rim = np.ones(shape, dtype=bool)
-    rim[1:-1, 1:-1] = False
-    assert radial_kernel._border(frame) == pytest.approx((frame[rim].mean(), frame[rim].var()))
-
-
-@pytest.mark.parametrize("shape", SHAPES)
-def test_pixels_near_a_point_are_listed_with_direction_and_distance(shape):
-    frame = noise(shape)
-    rows, columns = np.indices(shape)
-    pixels = np.empty((4, frame.size))
-    for x, y, reach in ((3.2, 2.7, 2.0), (0.1, 4.0, 3.3), (shape[1] - 1.0, shape[0] - 1.0, 4.0)):
-        count = radial_kernel._pixels_near(frame, x, y, 7.0, reach, pixels)
-        away = np.hypot(columns - x, rows - y)
-        near = away <= reach
-        assert count == near.sum()
-        scale = np.maximum(away[near], 1e-300)
-        np.testing.assert_allclose(pixels[0, :count], (columns[near] - x) / scale)
-        np.testing.assert_allclose(pixels[1, :count], (rows[near] - y) / scale)
-        np.testing.assert_allclose(pixels[2, :count], away[near])
-        np.testing.assert_allclose(pixels[3, :count], frame[near] - 7.0)
-
-
-def test_a_lit_spot_is_whole_compact_and_off_the_border():
-    frame = np.zeros((13, 29))
-    frame[4:8, 10:14] = 10.0
-    frame[5, 12] = 30.0
-
-    def spot(cut=1.0, spread=2.0):
-        return radial_kernel._lit_spot(frame, frame.max(axis=1), cut, spread)
-
-    u = np.maximum(frame - 1.0, 0.0)
-    rows, columns = np.indices(frame.shape)
-    expected = (u * columns).sum() / u.sum(), (u * rows).sum() / u.sum(), math.sqrt(16 / math.pi)
-    assert spot() == pytest.approx(expected)
-    apart = 2 * (4**2 - 1) / 12 / (16 / (2 * math.pi))
-    assert spot(spread=apart * 1.001)[2] > 0
-    assert spot(spread=apart * 0.999)[2] == 0
-    for place in ((0, 12), (12, 12), (6, 0), (6, 28)):
-        frame[place] = 2.0
-        assert spot(spread=99.0)[2] == 0
-        frame[place] = 1.0  # what equals the cut is not above it
-        assert spot(spread=99.0)[2] > 0
-        frame[place] = 0.0
-    assert spot(cut=30.0) == (0.0, 0.0, 0.0)
-
-
-def test_rings_sum_their_pixels_and_running_sums_go_on_at_both_ends():
-    rng = np.random.default_rng(6)
-    count, scale, rings = 60, 2.5, 12
-    r = rng.uniform(0, (rings - 2) / scale, count)
-    turn = rng.uniform(0, 7, count)
-    pixels = np.vstack([np.cos(turn), np.sin(turn), r, rng.uniform(0, 9, count)])
-    sums = np.zeros((rings, 6))
-    radial_kernel._ring_sums(pixels, count, scale, sums)
-    of = np.floor(r * scale).astype(int)
-    values = np.vstack([np.ones(count), r, pixels[3], pixels[3] ** 2, *pixels[:2]])
-    expected = [[v[of == q].sum() for v in values] for q in range(rings)]
-    np.testing.assert_allclose(sums, expected)
-    near = 3
-    running = np.full((7, rings + 2 * near + 1), np.nan)
-    radial_kernel._running_sums(sums, rings, running)
-    mean = sums[:, 1] / np.maximum(sums[:, 0], 1)
-    each = [sums[:, 0], sums[:, 1], sums[:, 1] * mean, sums[:, 2], sums[:, 2] * mean]
-    for row, one in zip(running, [*each, sums[:, 4], sums[:, 5]], strict=True):
-        whole = np.concatenate([np.zeros(near + 1), np.cumsum(one)])
-        np.testing.assert_allclose(row, np.append(whole, np.full(near, whole[-1])))

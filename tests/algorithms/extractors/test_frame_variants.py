@@ -14,7 +14,7 @@ from algorithms.extractors.frames.peak import PixelMax
 from algorithms.extractors.profiles.linear_phase import FrameLinearPhase
 from algorithms.extractors.profiles.peak_detection import FramePeak
 from benchmark import datasets
-from benchmark.reference.frames import REFERENCE_SETS
+from benchmark.synthetic_features.frames import REFERENCE_SETS
 
 
 def test_frame_variants_refuse_many_spots(geometry):

@@ -1,4 +1,4 @@
-"""DBCM, MT-ACM, TM, matched profile and Gaussian fit against the printed loops and SciPy."""
+"""DBCM, MT-ACM, TM and Gaussian fit against the printed loops and SciPy."""
 
 from __future__ import annotations
 
@@ -6,15 +6,14 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.optimize import curve_fit, least_squares
+from scipy.optimize import curve_fit
 from scipy.special import ndtr
 
 from algorithms.contract import SensorGeometry
 from algorithms.extractors.frames.balance import DoubleBalance
-from algorithms.extractors.frames.centroid import ThresholdedCentroid
-from algorithms.extractors.frames.matched import GaussianFit, MatchedProfile
+from algorithms.extractors.frames.gaussian import GaussianFit
 from algorithms.extractors.frames.template import TemplateMatch
 from algorithms.extractors.frames.threshold_average import MultipleThresholdCentroid
 
@@ -23,7 +22,6 @@ ALL = [
     MultipleThresholdCentroid(),
     MultipleThresholdCentroid(crossing="linear"),
     TemplateMatch(width_px=13.0),
-    MatchedProfile(),
     GaussianFit(),
 ]
 
@@ -269,52 +267,9 @@ def test_the_gaussian_fit_inverts_its_model(x, y, s, t):
     np.testing.assert_allclose(GaussianFit(light="any").extract(frame[None]), [[x, y]], atol=1e-6)
 
 
-# Matched profile
-
-
-@pytest.mark.parametrize("shape", [discs, gaussians], ids=["disc", "gaussian"])
-def test_the_matched_profile_is_the_likelihood_fit_of_the_true_shape(shape):
-    """The oracle knows the profile, ours takes it from the frame: less than noise apart."""
-    centres = np.random.default_rng(9).uniform(17, 23, (60, 2)) + (10 if shape is discs else 0)
-    frames = noisy(shape(centres), 9)
-    found = MatchedProfile().extract(frames)
-    fits = np.empty_like(found)
-    for k, frame in enumerate(frames):
-        spread = np.sqrt(shape(centres[k : k + 1])[0] + 100)
-
-        def residuals(p, frame=frame, spread=spread):
-            return ((frame - shape([p])[0]) / spread).ravel()
-
-        fits[k] = least_squares(residuals, centres[k], method="lm").x
-    bound = rms(fits, centres)
-    assert rms(found, centres) < 1.15 * bound
-    assert rms(found, fits) < 0.5 * bound
-
-
-@settings(deadline=None, derandomize=True, max_examples=30)
-@given(centres_inside)
-@example((31.5, 29.6433893348168))  # no pixel within half of one, so that the first rings are empty
-@example((31.5, 31.5))
-def test_the_matched_profile_of_a_noiseless_spot_is_its_centre(centre):
-    np.testing.assert_allclose(MatchedProfile().extract(discs([centre]))[0], centre, atol=0.01)
-
-
-def test_the_matched_profile_beats_every_other_on_a_disc():
-    centres = np.random.default_rng(10).uniform(26, 34, (200, 2))
-    frames = noisy(discs(centres), 10)
-    best = rms(MatchedProfile().extract(frames), centres)
-    for other in (*ALL[:4], GaussianFit(), ThresholdedCentroid()):
-        assert best < rms(other.extract(frames), centres)
-
-
-def test_several_spots_or_lines_are_not_one():
-    two = discs([[14.0, 30.0], [46.0, 30.0]], radius=5).sum(axis=0)
-    line = np.full((60, 64), 20.0)
-    line[28:31, 4:60] = 900.0
-    assert np.isnan(MatchedProfile().extract(np.stack([two, line]))).all()
-    for method in (MatchedProfile, GaussianFit):
-        with pytest.raises(ValueError, match="apertures"):
-            method.for_sensor(SensorGeometry(apertures=((0.0, 0.0, 0.1), (1.0, 0.0, 0.1))))
+def test_a_mask_of_several_apertures_is_refused():
+    with pytest.raises(ValueError, match="apertures"):
+        GaussianFit.for_sensor(SensorGeometry(apertures=((0.0, 0.0, 0.1), (1.0, 0.0, 0.1))))
 
 
 # All
@@ -335,7 +290,7 @@ def test_transposing_the_frame_swaps_x_and_y(extractor):
     np.testing.assert_allclose(swapped, extractor.extract(frames)[:, ::-1], atol=atol)
 
 
-@pytest.mark.parametrize("extractor", [ALL[0], ALL[3], ALL[4]], ids=str)
+@pytest.mark.parametrize("extractor", [ALL[0], ALL[3]], ids=str)
 def test_a_spot_cut_in_half_by_the_edge_is_not_found(extractor):
     for axis in (0, 1):
         for side in (-1.0, 60.0 if axis else 64.0):
@@ -362,8 +317,6 @@ def test_a_frame_of_noise_alone_is_never_a_result_outside_it(extractor):
         (TemplateMatch, {"width_px": 0.0}),
         (TemplateMatch, {"width_px": 3.0, "shape": "oval"}),
         (TemplateMatch, {"width_px": 3.0, "threshold": 1.0}),
-        (MatchedProfile, {"threshold": 0.0}),
-        (MatchedProfile, {"steps": 0}),
         (GaussianFit, {"tolerance_px": -1.0}),
         (GaussianFit, {"iterations": 0}),
     ],

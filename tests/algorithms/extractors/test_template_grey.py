@@ -9,7 +9,7 @@ import pytest
 
 from algorithms.extractors.frames import template_kernel
 from algorithms.extractors.frames.template import TemplateMatch
-from benchmark.reference.frames import REFERENCE_SETS
+from benchmark.synthetic_features.frames import REFERENCE_SETS
 
 DISC = REFERENCE_SETS["disc"]
 GREY = TemplateMatch(width_px=16.0, binarise=False)

@@ -13,13 +13,15 @@ from algorithms.contract import FeatureKind, UnsuitableDesignError
 from algorithms.discovery import discover_models
 from algorithms.filtering.reading_noise import correlated_steps
 from algorithms.filtering.readings import FaceReadings, SpotReadings, earth_columns
-from algorithms.models.filters.adaptive import AdaptiveKalmanFilter
-from algorithms.models.filters.assembly_drift import AssemblyDriftFilter
-from algorithms.models.filters.consider import ConsiderKalmanFilter
-from algorithms.models.filters.extended import ExtendedKalmanFilter
-from algorithms.models.filters.multiple_models import MultipleModelEstimation
-from algorithms.models.filters.robust import RobustKalmanFilter
-from algorithms.models.filters.unscented import UnscentedKalmanFilter
+from algorithms.models.filters import (
+    AdaptiveKalmanFilter,
+    AssemblyDriftFilter,
+    ConsiderKalmanFilter,
+    ExtendedKalmanFilter,
+    MultipleModelEstimation,
+    RobustKalmanFilter,
+    UnscentedKalmanFilter,
+)
 
 CUBE = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1.0)])
 FILTERS = [m for m in discover_models().values() if getattr(m, "sequential", False)]

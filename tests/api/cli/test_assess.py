@@ -18,8 +18,11 @@ from api.http.measurements import Measurements
 from api.http.service import create_app
 from benchmark.assessment import assess as assessment
 from benchmark.assessment.definitions import DEFINITIONS
-from benchmark.results.store import Store
-from benchmark.sweeps import run as sweeps
+from benchmark.experiments.sweeps import Sweeps
+from benchmark.plan.parts import Parts
+from benchmark.progress import silent
+from benchmark.running.experiment import update
+from benchmark.sweeps.record import swept as stored_rows
 
 PROPERTIES = tuple(DEFINITIONS)
 
@@ -33,7 +36,7 @@ def published(tmp_path_factory):
     directory = tmp_path_factory.mktemp("published")
     known = discover_extractors()
     few = {name: known[name] for name in ("voltage-balance", "direct")}
-    sweeps.update(directory, 1, lambda *_: None, extractors=few)
+    update(Sweeps(directory, Parts({}, few, {})), 1, silent)
     return directory
 
 
@@ -90,7 +93,7 @@ def test_answers_revalidate_and_refusals_name_the_nearest(swept):
 
 
 def test_sweeps_are_served_page_by_page_and_filtered(swept, published):
-    stored = Store(published).swept()
+    stored = stored_rows(published)
     assert swept.walk("/v1/sweeps?limit=7") == stored
     noise = swept.walk("/v1/sweeps?sweep=noise&extractor=direct")
     assert [row["value"] for row in noise] == [5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0]
@@ -113,7 +116,7 @@ def test_what_is_measured_reaches_the_answer(swept):
 
 @pytest.mark.slow
 def test_the_page_prints_the_definitions_and_outcomes(published, monkeypatch):
-    rows = Store(published).swept()
+    rows = stored_rows(published)
     document = assessment.document(assessment.assess(published))
     monkeypatch.setattr(pages, "_rows", lambda: rows)
     monkeypatch.setattr(pages, "_document", lambda: document)

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from api.cli.command_line import app
 from api.docs import curves as page
-from benchmark.curves import record
+from benchmark.learning_curves import record
 
 
 def run(*arguments):

@@ -25,6 +25,7 @@ from benchmark.claims.rules import claims
 from benchmark.datasets.checksums import CHECKSUMS, write_checksums
 from benchmark.results import samples
 from benchmark.results.store import PUBLISHED, Store
+from benchmark.sweeps import record as sweeps
 from files import atomic, manifest
 from registry.taxonomy import exported_row
 from survey_data.editions import editions
@@ -311,8 +312,8 @@ def test_without_published_results_there_is_nothing_to_deposit(tmp_path):
 
 @pytest.mark.slow
 def test_a_column_nobody_described_does_not_go_out(tmp_path, monkeypatch):
-    rows = [{**row, "mystery": 1} for row in Store(PUBLISHED).swept()]
-    monkeypatch.setattr(Store, "swept", lambda _store: rows)
+    rows = [{**row, "mystery": 1} for row in sweeps.swept()]
+    monkeypatch.setattr(sweeps, "swept", lambda _directory: rows)
     with pytest.raises(ValueError, match="no description of column mystery"):
         build(tmp_path / "bundle")
     assert not (tmp_path / "bundle").exists()

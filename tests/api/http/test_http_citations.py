@@ -57,7 +57,7 @@ def test_keys_select_studies(atlas):
 
 def test_references_have_no_columns(atlas):
     refused = atlas.get("/v1/studies?fields=key&format=ris")
-    assert refused.status_code == 422
+    assert refused.status_code == 400
     assert refused.json()["errors"][0]["parameter"] == "fields"
 
 

@@ -34,7 +34,7 @@ def pinned(tmp_path_factory, client_of):
         ),
         Pin(NAME, "hot", "test", 99, 400, "b" * 32, "c" * 32, 400, 0.5, 0.5),
     ]
-    Store(directory).write({}, pins, [], Components())
+    Store(directory).write({}, pins, Components())
     return client_of(create_app(Knowledge(Measurements(directory))))
 
 

@@ -94,6 +94,16 @@ def test_the_document_is_short(atlas):
     assert len(atlas.get("/openapi.json").content) < 400_000
 
 
+def test_every_member_and_parameter_is_described(document):
+    schemas = document["components"]["schemas"]
+    members = [(n, m, of) for n, s in schemas.items() for m, of in s.get("properties", {}).items()]
+    assert len(members) > 700
+    assert [(name, member) for name, member, of in members if not of.get("description")] == []
+    for path, _, operation in operations(document):
+        for parameter in operation.get("parameters", ()):
+            assert parameter.get("description"), (path, parameter["name"])
+
+
 def test_every_example_validates_against_its_schema(document):
     checked = 0
     for path, _, operation in operations(document):

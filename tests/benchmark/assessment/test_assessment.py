@@ -13,9 +13,8 @@ from benchmark.assessment import former
 from benchmark.assessment.assess import assess
 from benchmark.assessment.definitions import DEFINITIONS
 from benchmark.assessment.measures import SCORED, SWEPT, Unmeasured
-from benchmark.results.store import Store
 from benchmark.running.times import Time
-from benchmark.sweeps.run import components_of
+from benchmark.sweeps.record import RECORD, point_of
 from survey_data.tables import load
 
 
@@ -236,10 +235,16 @@ def test_hough_transforms_are_told_apart_by_their_study(tmp_path):
         assert all(known[n].about.origin == "survey" for n in one.extractors)
 
 
+def keep(directory, swept):
+    """Write rows of sweeps to a record."""
+    facts = {"unit": "px", "extractor_taxonomy": "BCTM", "extractor_version": 1, "key": ""}
+    RECORD.write({point_of(one): {**one, **facts} for one in swept}, directory)
+
+
 def test_verdicts_compare_with_the_survey_and_costs_are_medians(tmp_path):
     known = {"bctm": discover_extractors()["bctm"]}
     swept = [row("reference", "disc", over_bound=1.2)]
-    Store(tmp_path).write({}, [], [{**one, "unit": "px"} for one in swept], components_of(known))
+    keep(tmp_path, swept)
     times = {
         (name, "bctm", model): Time(name, "bctm", model, 1.0, ratio, ratio, "")
         for name, ratio in (("d0", 0.1), ("d1", 40.0), ("d2", 20.0), ("d3", None))
@@ -265,7 +270,7 @@ def test_what_is_not_judged_keeps_its_number_and_says_why(tmp_path):
     known = {"bctm": discover_extractors()["bctm"]}
     swept = [row("location", "middle"), row("location", "anywhere", over_bound=2.2)]
     swept += [row("noise", "50", 50.0, over_bound=9.0)]
-    Store(tmp_path).write({}, [], [{**one, "unit": "px"} for one in swept], components_of(known))
+    keep(tmp_path, swept)
     bctm = next(one for one in assess(tmp_path, known) if one.method == "BCTM")
     found = {verdict.name: verdict for verdict in bctm.verdicts}
     anywhere = found["Feature location agnostic"]

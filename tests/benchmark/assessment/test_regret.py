@@ -7,6 +7,7 @@ import math
 import pytest
 
 from benchmark.assessment import regret
+from benchmark.experiments.__main__ import main
 from benchmark.results.store import Store
 from registry.requirements import PARAMETERS, SETTINGS, Requirements
 from registry.studies import facts
@@ -27,7 +28,7 @@ def test_drawn_requirements_ask_for_everything_that_is_measured_or_of_studies():
 
 @pytest.mark.slow
 def test_of_a_hundred_sets_the_best_is_named_first_and_the_usual_answer_tells_its_regret(capsys):
-    assert regret.main(["100", "20"]) == 0
+    assert main(["regret", "20"]) == 0
     printed = capsys.readouterr().out
     assert "in 0 of 100" in printed
 
@@ -41,10 +42,10 @@ def test_the_best_is_named_first_and_regret_told_for_a_few_sets():
             assert math.isnan(one.own_ratio) or one.own_ratio <= 2.0, one.asked
 
 
-def test_no_sets_at_all_are_refused(capsys):
+def test_what_is_no_seed_is_refused(capsys):
     with pytest.raises(SystemExit):
-        regret.main(["0"])
-    assert "expected a positive number" in capsys.readouterr().err
+        main(["regret", "twenty"])
+    assert "twenty" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from benchmark.claims.experiments.frames.single_discs import (
     errors_px,
     single,
 )
-from benchmark.reference.shapes import EDGE_PX
+from benchmark.synthetic_features.shapes import EDGE_PX
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,6 @@
 """The ledger of claims: what decides, what came out, and that it is of this code."""
 
 import dataclasses
-import json
 import math
 from collections import Counter
 
@@ -10,29 +9,26 @@ import pytest
 
 import survey_data
 from benchmark.claims import rules as claim_rules
-from benchmark.claims.experiment import Experiment, Sketch, Trial, found
+from benchmark.claims.experiment import Trial, found
 from benchmark.claims.judgement import judged
 from benchmark.claims.ledger import LedgerError, ledger, tally, unexplained
-from benchmark.claims.outcomes import (
-    PUBLISHED,
-    OutcomeError,
-    outcome_of,
-    read,
-    stale,
-    write,
-)
+from benchmark.claims.outcomes import RECORD, OutcomeError, outcome_of, plan_digest, read, row_of
 from benchmark.claims.rules import DIRECTORY, VERDICTS, claims
-from benchmark.claims.run import due, main, run
-from benchmark.contract import UnknownNameError
-
-
-def experiment(trial):
-    return Experiment("C04", "benchmark.claims.judgement", trial, Sketch(), "about")
+from benchmark.experiments.__main__ import main
+from benchmark.experiments.claims import Claims
+from benchmark.results.tables import StoreError
+from benchmark.running.experiment import due
 
 
 def trials(count=6, **more):
     one = {"little": 1.0, "before": 2.0}
     return [Trial(one, {"line": ((1, 2), (0.5, math.nan))}, one, **more) for _ in range(count)]
+
+
+def keep(directory, made):
+    """Write the outcome of C04 to a record, of the plan and the code as they are."""
+    row = row_of(outcome_of(claims()["C04"], made))
+    RECORD.write({"C04": {**row, "key": Claims().keys()["C04"]}}, directory)
 
 
 def test_every_claim_of_the_survey_has_rules_and_trials():
@@ -50,14 +46,15 @@ def test_every_claim_has_an_experiment_in_its_family():
 
 def test_every_outcome_is_of_the_rules_and_the_code_as_they_are():
     """What CI checks: a changed algorithm, data set or rule leaves no outcome behind."""
-    assert due() == {}, "measure again: python -m benchmark.claims.run"
+    assert due(Claims()) == [], "measure again: python -m benchmark.experiments claims"
 
 
 def test_verdicts_follow_from_the_published_numbers():
     """Recomputed from the files by hand: Student's interval by pandas, limits from the CSV."""
     table = pd.read_csv(DIRECTORY / "rules.csv", keep_default_na=False)
+    rows_of_claims = RECORD.read()
     for entry in (entry for entry in ledger() if entry.outcome):
-        document = json.loads((PUBLISHED / f"{entry.claim.id}.json").read_text())
+        document = rows_of_claims[entry.claim.id]
         rows = table[table["claim"] == entry.claim.id]
         assert set(document["values"]) == set(rows["rule"])
         assert entry.verdict in VERDICTS
@@ -95,16 +92,14 @@ def test_tally_counts_every_claim_once():
 
 
 def test_an_outcome_is_read_as_it_was_written(tmp_path):
-    outcome = outcome_of(claims()["C04"], experiment(None), trials())
-    write(outcome, tmp_path)
+    keep(tmp_path, trials())
     again = read(tmp_path)["C04"]
     assert again.values == {"little": (1.0,) * 6, "before": (2.0,) * 6}
     assert again.lines["line"].across == (1.0, 2.0)
     assert again.lines["line"].median[0] == 0.5
     assert math.isnan(again.lines["line"].median[1])
-    before = (tmp_path / "C04.json").read_bytes()
-    write(again, tmp_path)
-    assert (tmp_path / "C04.json").read_bytes() == before
+    before = RECORD.read(tmp_path)["C04"]
+    assert {**row_of(again), "key": before["key"]} == before
 
 
 @pytest.mark.parametrize(
@@ -119,38 +114,42 @@ def test_an_outcome_is_read_as_it_was_written(tmp_path):
 def test_trials_that_do_not_fit_their_claim_are_refused(change, said):
     made = [dataclasses.replace(trial, **change) for trial in trials()]
     with pytest.raises(OutcomeError, match=said):
-        outcome_of(claims()["C04"], experiment(None), made)
+        outcome_of(claims()["C04"], made)
 
 
 def test_trials_that_place_their_points_differently_are_refused():
     made = trials()
     made[3] = dataclasses.replace(made[3], lines={"line": ((1, 3), (0.5, 0.5))})
     with pytest.raises(OutcomeError, match="differently"):
-        outcome_of(claims()["C04"], experiment(None), made)
+        outcome_of(claims()["C04"], made)
 
 
-def test_a_changed_rule_or_code_makes_an_outcome_stale(monkeypatch):
-    claim, one = claims()["C04"], experiment(None)
-    outcome = outcome_of(claim, one, trials())
-    assert stale(claim, one, outcome) == ""
-    assert stale(claim, one, None) == "not measured"
+def test_a_changed_rule_or_code_makes_an_outcome_stale(tmp_path):
+    keep(tmp_path, trials())
+    experiment, row = Claims(tmp_path), RECORD.read(tmp_path)["C04"]
+    key = experiment.keys()["C04"]
+    assert experiment.outdated(row, key) == ""
+    plan, code = key.split()
+    assert experiment.outdated(row, f"other {code}") == "rules or plan changed"
+    assert experiment.outdated(row, f"{plan} other") == "code changed"
+
+
+def test_a_plan_is_of_rules_and_trials_and_of_no_words():
+    claim = claims()["C04"]
     tightened = dataclasses.replace(claim.rules[0], limit=0.95)
     changed = dataclasses.replace(claim, rules=(tightened, *claim.rules[1:]))
-    assert stale(changed, one, outcome) == "rules or plan changed"
-    reworded = dataclasses.replace(claim, measured_on="said in other words")
-    assert stale(reworded, one, outcome) == ""
-    other = dataclasses.replace(one, module="benchmark.claims.ledger")
-    assert stale(claim, other, outcome) == "code changed"
+    assert plan_digest(changed) != plan_digest(claim)
+    assert plan_digest(dataclasses.replace(claim, measured_on="other")) == plan_digest(claim)
 
 
 def test_a_broken_file_is_named(tmp_path):
-    (tmp_path / "C04.json").write_text('{"claim": "C04"}')
-    with pytest.raises(OutcomeError, match=r"C04\.json is no outcome"):
+    (tmp_path / RECORD.name).write_text('{"schema":1,"claims":[{"claim": "C04"}]}')
+    with pytest.raises(StoreError, match=r"claims\.json: claims, row 1: the member"):
         read(tmp_path)
 
 
 def test_an_explanation_of_another_verdict_is_refused(tmp_path):
-    write(outcome_of(claims()["C04"], experiment(None), trials()), tmp_path)
+    keep(tmp_path, trials())
     said = tmp_path / "explanations.csv"
     said.write_text("claim,verdict,says\nC04,refuted,It is not so.\n")
     with pytest.raises(LedgerError, match=r"C04 is explained as 'refuted'.*'reproduced'"):
@@ -171,7 +170,7 @@ def test_what_was_not_measured_says_so(tmp_path):
 def test_the_second_method_disagrees_where_a_rule_comes_out_otherwise(tmp_path):
     low = {"little": 0.5, "before": 2.0}
     made = [dataclasses.replace(trial, second=low) for trial in trials()]
-    write(outcome_of(claims()["C04"], experiment(None), made), tmp_path)
+    keep(tmp_path, made)
     said = tmp_path / "explanations.csv"
     said.write_text("claim,verdict,says\n")
     (entry,) = (e for e in ledger(tmp_path, said) if e.claim.id == "C04")
@@ -179,17 +178,19 @@ def test_the_second_method_disagrees_where_a_rule_comes_out_otherwise(tmp_path):
     assert judged(entry.claim.rule("little"), [0.5] * 6).standing == "fails"
 
 
-def test_only_what_is_asked_for_is_measured_and_unknown_claims_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr("benchmark.claims.run.measured", lambda name: trials())
-    assert run(["C04"], tmp_path) == ["C04"]
-    assert [path.name for path in tmp_path.iterdir()] == ["C04.json"]
-    with pytest.raises(UnknownNameError, match="did you mean"):
-        run(["C044"], tmp_path)
-
-
-def test_the_check_names_what_is_due(tmp_path, capsys):
-    assert main(["--check", "--directory", str(tmp_path)]) == 1
-    assert "C04: not measured" in capsys.readouterr().out
+def test_only_what_is_asked_for_is_measured(tmp_path, monkeypatch, capsys):
+    row = row_of(outcome_of(claims()["C04"], trials()))
+    monkeypatch.setattr(Claims, "measure", staticmethod(lambda name: [(name, row)]))
+    call = ["claims", "--directory", str(tmp_path)]
+    assert main([*call, "C04"]) == 0
+    assert list(RECORD.read(tmp_path)) == ["C04"]
+    assert main([*call, "--check"]) == 1
+    said = capsys.readouterr().out
+    assert "claims C05: absent" in said
+    assert "C04" not in said
+    with pytest.raises(SystemExit):
+        main([*call, "C044"])
+    assert "did you mean" in capsys.readouterr().err
 
 
 def test_rules_that_no_claim_has_are_refused(tmp_path, monkeypatch):

@@ -165,7 +165,7 @@ def test_matplotlib_is_loaded_by_pictures_alone():
     code = (
         "import sys\n"
         "import api.http.service, benchmark.datasets.export, benchmark.datasets.preview_overlay\n"
-        "import benchmark.running.task, benchmark.sweeps.pictures, benchmark.sweeps.run\n"
+        "import benchmark.running.task, benchmark.sweeps.pictures, benchmark.experiments.sweeps\n"
         "assert 'matplotlib' not in sys.modules\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, timeout=600)

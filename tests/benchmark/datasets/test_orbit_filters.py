@@ -11,8 +11,7 @@ from scipy.spatial.transform import Rotation
 from algorithms.angles import separation_deg
 from algorithms.contract import FeatureKind
 from algorithms.discovery import discover_models
-from algorithms.models.filters.assembly_drift import AssemblyDriftFilter
-from algorithms.models.filters.extended import ExtendedKalmanFilter
+from algorithms.models.filters import AssemblyDriftFilter, ExtendedKalmanFilter
 from algorithms.models.physics_informed.assembled_faces import AssembledFaces
 from algorithms.pipeline import extracted
 from benchmark import datasets

@@ -8,7 +8,6 @@ from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin
 from benchmark.metrics.score import METRICS
 from benchmark.results.components import Components
-from benchmark.results.store import SWEPT
 
 
 def numbers(rms: float | None = 0.5, **more: Any) -> dict[str, Any]:
@@ -31,16 +30,8 @@ def pin(split: str = "test", **more: Any) -> Pin:
     return Pin(**{**base, **more})
 
 
-def swept(point: str = "50", **more: Any) -> dict[str, Any]:
-    return {
-        "series": "s", "sweep": "noise", "point": point, "extractor": "e", "status": "ok",
-        "value": float(point), "n": 300, "unit": "px", **dict.fromkeys(SWEPT, 0.5), "reason": "",
-        **more,
-    }  # fmt: skip
-
-
 def components(*, harness: str = "hh", **digests: str) -> Components:
-    """Return what `cell`, `pin` and `swept` name; keywords give other digests by name."""
+    """Return what `cell` and `pin` name; keywords give other digests by name."""
 
     def facts(name: str, **more: Any) -> dict[str, Any]:
         return {"version": 1, **more, "digest": digests.get(name, f"digest-{name}")}
@@ -51,7 +42,6 @@ def components(*, harness: str = "hh", **digests: str) -> Components:
         datasets={name: facts(name, **sensor) for name in ("c", "d", "other")},
         extractors={"e": facts("e", taxonomy="BCM")},
         models={name: facts(name, taxonomy="LSQ") for name in ("a", "b", "m", "z")},
-        series={"s": {"digest": digests.get("s", "digest-s")}},
     )
 
 

@@ -23,6 +23,7 @@ from benchmark.progress import silent
 from benchmark.results.store import Store
 from benchmark.running import generated
 from benchmark.running.pinning import UnversionedChangeError
+from benchmark.sweeps.record import swept
 
 pytestmark = pytest.mark.usefixtures("readings_only", "log")
 CELL = "fake-diodes/noisy/fake-currents/fake-least-squares"
@@ -80,14 +81,14 @@ def test_everything_planned_is_measured_and_the_leading_on_other_units(made):
         for unit in range(1, UNITS)
     }
     assert len(rows) == PLANNED
-    assert {row["series"] for row in store.swept()} >= {"faces", "quadrants"}
+    assert {row["series"] for row in swept(store.directory)} >= {"faces", "quadrants"}
     assert {place[0] for place in store.pins()} == {preset.name for preset in PRESETS}
 
 
 def test_what_is_committed_is_tables_pins_digests_and_one_page(made):
     assert set(states(made)) == {
-        "scores/fake-diodes.csv", "scores/fake-second.csv", "sweeps.csv", "pins.csv",
-        "components.json", "manifest.json", PAGE,
+        "scores/fake-diodes.csv", "scores/fake-second.csv", "sweeps.csv", "sweeps.json",
+        "pins.csv", "components.json", "manifest.json", PAGE,
     }  # fmt: skip
 
 
@@ -156,9 +157,10 @@ def test_an_extractor_s_new_code_renews_its_own_rows_and_its_digest_alone(tmp_pa
         "fake-plugged"
     }
     moved = changed_lines(before, states(record))
-    assert list(moved) == ["components.json"], "the numbers are what they were"
+    assert list(moved) == ["components.json", "sweeps.json"], "the numbers are what they were"
     (line,) = moved["components.json"]
     assert line.startswith('"fake-plugged": ')
+    assert all("/fake-plugged" in line for line in moved["sweeps.json"])
 
 
 def test_a_changed_model_or_harness_renews_what_they_are_in(published, monkeypatch):
@@ -359,7 +361,7 @@ def test_the_committed_page_has_the_best_of_each_extractor_in_the_first_conditio
 
 def test_sweeps_stand_in_every_form(made):
     board = board_of(Store(made))
-    assert json.loads(FORMATS["leaderboard.json"](board))["sweeps"] == Store(made).swept()
+    assert json.loads(FORMATS["leaderboard.json"](board))["sweeps"] == swept(made)
     for name in ("leaderboard.md", "leaderboard.html"):
         assert "fake-currents" in FORMATS[name](board).partition("Sweeps")[2], name
     assert "faces,noise,50,fake-currents" in FORMATS["sweeps.csv"](board)

@@ -18,6 +18,7 @@ from benchmark.results.store import Store
 from benchmark.results.tables import StoreError
 from benchmark.running import generated
 from benchmark.running.run import RunInterruptedError
+from benchmark.sweeps.record import RECORD as SWEEPS
 
 pytestmark = pytest.mark.usefixtures("readings_only", "log")
 PARTS = fake_plan.parts(presets=(Diodes(), Diodes(name="fake-second")))
@@ -52,7 +53,7 @@ def altered(directory, cell, **changed):
     store = Store(directory)
     scores = store.scores()
     scores[cell] = {**scores[cell], **changed}
-    store.write(scores, store.pins().values(), store.swept(), store.components())
+    store.write(scores, store.pins().values(), store.components())
     write_page(store)
 
 
@@ -135,7 +136,7 @@ def test_an_altered_number_of_the_page_is_found_without_measuring(published):
         "over_bound": None,
         "over_bound_unit": None,
     }
-    store.write(scores, store.pins().values(), store.swept(), store.components())
+    store.write(scores, store.pins().values(), store.components())
     [difference] = check(published, stored_only=True)
     assert difference.file == PAGE
     assert re.fullmatch(r"line \d+", difference.cell)
@@ -173,7 +174,7 @@ def test_a_missing_pin_is_named_and_an_altered_one_by_what_differs(published):
     place = "/".join(first.place)
 
     def with_pins(*pins):
-        store.write(store.scores(), pins, store.swept(), store.components())
+        store.write(store.scores(), pins, store.components())
         write_page(store)
 
     with_pins(*rest)
@@ -197,9 +198,7 @@ def test_a_changed_bound_is_named_by_its_data_set(published):
     pins = store.pins()
     test = pins["fake-second", "quiet", "test"]
     moved = dataclasses.replace(test, bound_deg=test.bound_deg * 1.001)
-    store.write(
-        store.scores(), [*(pins | {test.place: moved}).values()], store.swept(), store.components()
-    )
+    store.write(store.scores(), [*(pins | {test.place: moved}).values()], store.components())
     [unmeasured] = check(published, stored_only=True)
     assert (unmeasured.file, unmeasured.cell) == ("pins.csv", "fake-second/quiet/test/bound_deg")
     assert unmeasured.measured == f"{test.bound_deg:g}, as the scores have it"
@@ -224,7 +223,7 @@ def test_bounds_sizes_and_versions_are_checked_without_measuring(published, chan
         )
         for pin in store.pins().values()
     ]
-    store.write(store.scores(), pins, store.swept(), store.components())
+    store.write(store.scores(), pins, store.components())
     write_page(store)
     found = check(published, stored_only=True)
     assert {difference.file for difference in found} == {"pins.csv"}
@@ -289,7 +288,7 @@ def test_a_missing_file_is_named(published, name):
     path = published / name
     path.unlink()
     if name == "components.json":
-        with pytest.raises(ValueError, match="not in components"):
+        with pytest.raises(ValueError, match="unknown among the datasets"):
             check(published, stored_only=True)
         return
     found = check(published, stored_only=True)
@@ -315,13 +314,11 @@ POINT = "faces/noise/50/fake-currents"
 
 
 def test_a_changed_sweep_is_named_by_its_point(published):
-    store = Store(published)
-    rows = store.swept()
-    names = ("series", "sweep", "point", "extractor")
-    row = next(row for row in rows if "/".join(row[name] for name in names) == POINT)
+    rows = SWEEPS.read(published)
+    row = next(row for point, row in rows.items() if str(point) == POINT)
     right = row["rms"]
     row["rms"] *= 1.5
-    store.write(store.scores(), store.pins().values(), rows, store.components())
+    SWEEPS.write(rows, published)
     assert check(published, stored_only=True) == []
     [difference] = check(published)
     assert (difference.file, difference.cell) == ("sweeps.csv", f"{POINT}/rms")

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from benchmark import datasets
-from benchmark.claims.rules import claims
 from benchmark.contract import ON_BENCH
 from benchmark.datasets import Preset
 from benchmark.leaderboard.board import board_of
@@ -80,13 +79,12 @@ def test_it_is_small_and_holds_nothing_that_can_be_derived():
     assert sum(path.stat().st_size for path in sampled) < 7e6
     assert sum(path.stat().st_size for path in files() if path not in sampled) < 4.5e6
     tables = {f"scores/{cell.dataset}.csv" for cell in plan.cells()}
-    claimed = {f"claims/{name}.json" for name in claims()}
     names = {path.relative_to(PUBLISHED).as_posix() for path in files()}
     sets = {cell.dataset for cell in plan.cells()}
     errors = {f"samples/{name}{kind}.parquet" for name in sets for kind in ("", ".directions")}
     assert names == {
-        *tables, *claimed, *errors, "pins.csv", "sweeps.csv", "curves.json", "components.json",
-        "leaderboard.md", "manifest.json",
+        *tables, *errors, "pins.csv", "sweeps.csv", "sweeps.json", "claims.json", "curves.json",
+        "components.json", "error_budget.json", "leaderboard.md", "manifest.json",
     }  # fmt: skip
 
 

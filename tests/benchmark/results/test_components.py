@@ -60,16 +60,6 @@ def test_what_has_changed_since_a_key_was_made_is_named(changed, kind):
     )  # fmt: skip
 
 
-def test_a_point_s_key_depends_on_harness_series_and_extractor():
-    keys = [
-        known.point_key("s", "e")
-        for known in (components(), *(components(**{n: "x"}) for n in ("harness", "s", "e")))
-    ]
-    assert len(set(keys)) == 4
-    assert components(d="x", m="x").point_key("s", "e") == keys[0]
-    assert components(s="x").point_key("", "e") == components().point_key("", "e")
-
-
 def test_a_component_that_is_not_there_is_named():
     with pytest.raises(ComponentsError, match="'nobody', which is not among the models"):
         components().cell_key(cell("nobody"))
@@ -100,13 +90,13 @@ def test_only_what_cells_are_of_is_taken():
 
 def test_current_components_are_of_the_code_as_it_is():
     parts = fake_plan.parts()
-    now = current(parts, {"s": "digest"})
-    assert now == current(parts, {"s": "digest"})
+    now = current(parts)
+    assert now == current(parts)
     assert set(now.extractors) == set(parts.extractors)
     assert now.datasets["fake-diodes"].items() >= {
         "version": 1, "detector": "PD", "mask": "Maskless", "half_fov_deg": 25.0,
     }.items()  # fmt: skip
-    newer = current(fake_plan.parts(presets=(Diodes(seed=8),)), {"s": "digest"})
+    newer = current(fake_plan.parts(presets=(Diodes(seed=8),)))
     assert [name for name, *_ in now.differences(newer)] == ["datasets/fake-diodes"]
 
 

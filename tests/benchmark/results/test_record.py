@@ -6,16 +6,14 @@ import sys
 
 import numpy as np
 import pytest
-from fake_results import cell, components, numbers, pin, swept
+from fake_results import cell, components, numbers, pin
 
 from benchmark.results import recorded, samples
 from benchmark.results.journal import chained
-from benchmark.results.record import Record, StoreLockedError, opened, point_of
+from benchmark.results.record import Record, StoreLockedError, opened
 from benchmark.results.samples import CellErrors, Directions
 from benchmark.results.store import Store
 from benchmark.results.tables import StoreError
-
-POINT = point_of(swept())
 
 
 @pytest.fixture
@@ -28,7 +26,6 @@ def keep_all(record, known=None):
         known or components(),
         pins=[pin()],
         scores={cell("a"): numbers(), cell("b"): numbers()},
-        swept=[swept()],
     )
 
 
@@ -37,10 +34,9 @@ def test_what_is_kept_is_known_to_the_next_before_anything_is_written(store):
     assert not store.components_path.exists()
     record = Record(store)
     assert record.scores == {cell("a"): numbers(), cell("b"): numbers()}
-    assert (record.pins, record.swept) == ({pin().place: pin()}, {POINT: swept()})
+    assert record.pins == {pin().place: pin()}
     assert record.is_scored(cell("a"), components())
     assert record.is_pinned(pin().place, components())
-    assert record.is_swept(POINT, components())
 
 
 def test_errors_sample_by_sample_survive_a_kill_and_follow_their_scores(store):
@@ -68,18 +64,16 @@ def test_errors_sample_by_sample_survive_a_kill_and_follow_their_scores(store):
 def test_what_was_measured_with_other_code_is_not_of_the_code_as_it_is(store):
     record = Record(store)
     keep_all(record)
-    for name, scored, pinned, point in (
-        ("harness", False, True, False),
-        ("d", False, False, True),
-        ("e", False, True, False),
-        ("a", False, True, True),
-        ("s", True, True, False),
-        ("z", True, True, True),
+    for name, scored, pinned in (
+        ("harness", False, True),
+        ("d", False, False),
+        ("e", False, True),
+        ("a", False, True),
+        ("z", True, True),
     ):
         other = components(**{name: "x"})
         assert record.is_scored(cell("a"), other) is scored, name
         assert record.is_pinned(pin().place, other) is pinned, name
-        assert record.is_swept(POINT, other) is point, name
 
 
 def test_a_failure_is_never_what_need_not_be_measured_again_and_a_refusal_is(store):
@@ -90,20 +84,16 @@ def test_a_failure_is_never_what_need_not_be_measured_again_and_a_refusal_is(sto
             cell("a"): numbers(None, status="failed", reason="x"),
             cell("b"): numbers(None, status="refused", reason="x"),
         },
-        swept=[swept("5", status="failed"), swept("50", status="refused")],
     )
     for one in (record, Record(store)):
         assert not one.is_scored(cell("a"), components())
         assert one.is_scored(cell("b"), components())
-        assert not one.is_swept(point_of(swept("5")), components())
-        assert one.is_swept(POINT, components())
 
 
 def test_what_was_never_measured_is_not_known(store):
     record = Record(store)
     assert not record.is_scored(cell("a"), components())
     assert not record.is_pinned(pin().place, components())
-    assert not record.is_swept(POINT, components())
 
 
 def test_writing_makes_files_of_the_journal_and_forgets_it(store):
@@ -113,17 +103,9 @@ def test_writing_makes_files_of_the_journal_and_forgets_it(store):
         assert not record.journal.exists()
     assert set(store.scores()) == {cell("a"), cell("b")}
     assert store.pins() == {pin().place: pin()}
-    assert [point_of(row) for row in store.swept()] == [POINT]
     known = store.components()
     assert list(known.models) == ["a", "b"], "what nothing names is left out"
     assert list(known.datasets) == ["d"]
-
-
-def test_rows_of_sweeps_are_written_in_the_order_asked_for(store):
-    with opened(store) as record:
-        record.keep(components(), swept=[swept("50"), swept("5"), swept("500")])
-        record.write(components(), lambda rows: sorted(rows, key=lambda row: row["value"]))
-    assert [row["point"] for row in store.swept()] == ["5", "50", "500"]
 
 
 def test_what_other_code_measured_is_left_out_where_the_new_one_says_anything_of_it(store):
@@ -153,7 +135,6 @@ def test_what_is_dropped_is_what_is_not_wanted(store):
         record.write(components())
     assert set(store.scores()) == {cell("a")}
     assert store.pins() == {}
-    assert len(store.swept()) == 1
 
 
 def test_numbers_that_change_are_written_though_what_they_are_of_does_not(store):
@@ -183,7 +164,7 @@ def test_a_record_nothing_was_done_to_is_not_written_again(store, monkeypatch):
         record.write(components())
     monkeypatch.setattr(Store, "write", lambda *_arguments: pytest.fail("written"))
     with opened(store) as record:
-        record.drop(scores=lambda one: True, pins=lambda one: True, swept=lambda one: True)
+        record.drop(scores=lambda one: True, pins=lambda one: True)
         record.keep(components())
         record.write(components().only([]))
 
@@ -216,7 +197,6 @@ def test_the_journal_adds_to_the_store_and_loses_only_a_torn_last_line(store):
         ("[1]", "line 2: not a record of the journal"),
         ('{"pin": {"dataset": "d"}, "key": "k"}', "line 2: not a record of the journal"),
         ('{"cell": {"datset": "d"}, "score": {}, "key": "k"}', "line 2: not a record"),
-        ('{"swept": {}, "key": "k"}', "line 2: not a record of the journal"),
     ],
 )
 def test_a_journal_line_that_is_not_a_record_is_an_error(store, line, message):
@@ -257,7 +237,7 @@ def test_lines_lost_at_the_end_are_measured_again(store):
     keep_all(record)
     lines = record.journal.read_text().splitlines(keepends=True)
     record.journal.write_text("".join(lines[:-1]))
-    assert Record(store).swept == {}
+    assert set(Record(store).scores) == {cell("a")}
 
 
 def test_a_directory_is_no_journal(store):
@@ -274,7 +254,6 @@ def test_every_line_is_json_of_its_own(store):
         ["chain", "key", "pin"],
         ["cell", "chain", "key", "score"],
         ["cell", "chain", "key", "score"],
-        ["chain", "key", "swept"],
     ]
 
 

@@ -1,7 +1,7 @@
 """Results on disk: sorted, canonical, whole or not at all, and clear about what is broken."""
 
 import pytest
-from fake_results import cell, components, numbers, pin, swept
+from fake_results import cell, components, numbers, pin
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -21,8 +21,8 @@ def store(tmp_path):
     return Store(tmp_path / "results")
 
 
-def write(store, scores=None, pins=(), rows=(), known=None):
-    store.write(scores or {}, pins, rows, known or components())
+def write(store, scores=None, pins=(), known=None):
+    store.write(scores or {}, pins, known or components())
 
 
 def files(store):
@@ -41,19 +41,18 @@ def test_what_is_written_is_read_back_sorted_whatever_the_order(store, tmp_path)
         cell("a", unit=10): numbers(0.1),
         cell("a", unit=2): numbers(0.2),
     }
-    pins, rows = [pin(), pin("calibration")], [swept("50"), swept("5", value=None, rms=None)]
-    write(store, scores, pins, rows)
+    pins = [pin(), pin("calibration")]
+    write(store, scores, pins)
     assert store.scores() == scores
     found = [(one.dataset, one.model, one.unit) for one in store.scores()]
     assert found == [("c", "a", 0), ("d", "a", 0), ("d", "a", 2), ("d", "a", 10), ("d", "b", 0)]
     assert store.pins() == {one.place: one for one in pins}
-    assert [row["point"] for row in store.swept()] == ["50", "5"]
     assert store.components() == components()
     other = Store(tmp_path / "other")
-    write(other, dict(reversed(scores.items())), pins[::-1], rows)
+    write(other, dict(reversed(scores.items())), pins[::-1])
     assert files(other) == files(store)
     assert {str(path) for path in files(store)} == {
-        "scores/c.csv", "scores/d.csv", "pins.csv", "sweeps.csv", "components.json",
+        "scores/c.csv", "scores/d.csv", "pins.csv", "components.json",
         "manifest.json",
     }  # fmt: skip
 
@@ -121,11 +120,11 @@ def test_a_data_set_without_scores_has_no_file_any_more(store):
 
 def test_writing_the_same_again_touches_no_file(store):
     scores, pins = {cell("a"): numbers()}, [pin()]
-    write(store, scores, pins, [swept()])
+    write(store, scores, pins)
     before = {path: path.stat().st_mtime_ns for path in store.directory.rglob("*.*")}
-    write(store, scores, pins, [swept()])
+    write(store, scores, pins)
     assert {path: path.stat().st_mtime_ns for path in store.directory.rglob("*.*")} == before
-    write(store, scores, [pin(n=4)], [swept()])
+    write(store, scores, [pin(n=4)])
     changed = {path for path, then in before.items() if path.stat().st_mtime_ns != then}
     assert changed == {store.pins_path, store.directory / "manifest.json"}
 
@@ -134,12 +133,12 @@ def test_a_new_store_is_empty(store):
     assert store.rows() == []
     assert store.query(dataset="x") == []
     assert store.frame().empty
-    assert (store.scores(), store.pins(), store.swept()) == ({}, {}, [])
+    assert (store.scores(), store.pins()) == ({}, {})
     assert store.components().harness == ""
 
 
 def test_rows_carry_what_is_known_of_what_they_are_of(store):
-    write(store, {cell("a"): numbers(0.5), cell("a", unit=1): numbers(0.6)}, [pin()], [swept()])
+    write(store, {cell("a"): numbers(0.5), cell("a", unit=1): numbers(0.6)}, [pin()])
     (row,) = store.rows()
     assert row["unit"] == 0
     assert (row["detector"], row["mask"], row["half_fov_deg"]) == ("PD", "Slit", 30.0)
@@ -153,16 +152,13 @@ def test_rows_carry_what_is_known_of_what_they_are_of(store):
     }
     assert [one["rms_deg"] for one in store.rows(unit=None)] == [0.5, 0.6]
     assert [one["rms_deg"] for one in store.rows(unit=1)] == [0.6]
-    assert store.swept()[0]["extractor_taxonomy"] == "BCM"
 
 
 def test_a_score_of_something_unknown_is_an_error_that_names_it(store):
-    write(store, {cell("a"): numbers()}, rows=[swept()])
+    write(store, {cell("a"): numbers()})
     store.components_path.write_text(components().only([]).text())
     with pytest.raises(ComponentsError, match="score of d/c/e/a names 'd', unknown"):
         store.rows()
-    with pytest.raises(StoreError, match=r"line 2: 'e' is not in components\.json"):
-        store.swept()
 
 
 def test_queries_filter_and_name_the_nearest_field(store):

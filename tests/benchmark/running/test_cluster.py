@@ -92,7 +92,7 @@ def test_two_dask_workers_give_the_bytes_of_a_local_run(
     done = measured(store, scheduler=scheduler)
     assert (done.planned, done.computed, done.failed) == (PLANNED, PLANNED, ())
     assert contents(store) == expected
-    assert len(expected) == 4 + 3  # pins, sweeps, components, manifest, a table for each data set
+    assert len(expected) == 3 + 3  # pins, components, manifest, a table for each data set
     processes = {process for process, _ in made(log)}
     assert os.getpid() not in processes
     assert 1 <= len(processes) <= 2

@@ -195,7 +195,7 @@ def test_generating_again_tells_what_is_not_as_pinned_and_writes_nothing(store):
         first = pins.pop(("fake-diodes", "noisy", "test"))
         wrong = Store(store.directory.with_name("wrong"))
         altered = [*pins.values(), dataclasses.replace(first, **changed)]
-        wrong.write({}, altered, [], store.components())
+        wrong.write({}, altered, store.components())
         before = contents(wrong)
         found = pinning.differences(wrong, progress=silent, parts=there)
         assert contents(wrong) == before

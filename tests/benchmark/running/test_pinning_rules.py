@@ -108,7 +108,7 @@ def test_data_sets_of_other_code_are_those_whose_digest_is_another(tmp_path: Any
         "z",
     ]
     moved = {**now.datasets, "z": {**now.datasets["z"], "digest": "older"}}
-    store.write({}, [], [], Components(now.harness, datasets=moved))
+    store.write({}, [], Components(now.harness, datasets=moved))
     assert [p.name for p in pinning.presets_of_other_code(store, parts, now)] == ["z"]
 
 

@@ -4,15 +4,15 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-from benchmark.results.store import Store
 from benchmark.sweeps import pictures
+from benchmark.sweeps.record import swept
 
 SVG = "{http://www.w3.org/2000/svg}"
 
 
 @pytest.fixture(scope="module")
 def rows():
-    return Store().swept()
+    return swept()
 
 
 @pytest.mark.slow

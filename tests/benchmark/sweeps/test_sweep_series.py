@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 
-from benchmark.reference import light as reference_light
-from benchmark.reference.events import EVENTS
-from benchmark.reference.frames import REFERENCE_SETS
-from benchmark.reference.lines import SLIT, SLITS
-from benchmark.reference.series import SNRS, SWEEPS
-from benchmark.reference.spots import DiscSeries, GridSeries
 from benchmark.sweeps.plan import SERIES
+from benchmark.synthetic_features import light as reference_light
+from benchmark.synthetic_features.events import EVENTS
+from benchmark.synthetic_features.frames import REFERENCE_SETS
+from benchmark.synthetic_features.lines import SLIT, SLITS
+from benchmark.synthetic_features.series import SNRS, SWEEPS
+from benchmark.synthetic_features.spots import DiscSeries, GridSeries
 
 DISC, GRID = DiscSeries(), GridSeries()
 

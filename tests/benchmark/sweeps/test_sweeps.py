@@ -14,13 +14,18 @@ import pytest
 
 from algorithms.contract import AboutExtractor, FeatureKind, Observation
 from algorithms.discovery import discover_extractors
-from benchmark.reference.series import SWEEPS
-from benchmark.results.record import point_of
-from benchmark.results.store import Store
+from benchmark.experiments import sweeps as experiment
+from benchmark.experiments.sweeps import Sweeps
+from benchmark.plan.parts import Parts
+from benchmark.progress import silent
+from benchmark.running.experiment import due, update
 from benchmark.sweeps import pictures as sweep_pictures
 from benchmark.sweeps import plan as sweep_plan
-from benchmark.sweeps import run as sweeps
 from benchmark.sweeps import tables as sweep_tables
+from benchmark.sweeps.differences import differences
+from benchmark.sweeps.points import Point
+from benchmark.sweeps.record import RECORD, point_of, swept
+from benchmark.synthetic_features.series import SWEEPS
 
 
 @dataclass(frozen=True)
@@ -57,33 +62,35 @@ class Spots(Plain):
     about = dataclasses.replace(Plain.about, name="spots-of-readings", kind=FeatureKind.SPOT)
 
 
+POINTS = len(sweep_plan.SERIES["quadrants"].settings())
 FEW = {c.about.name: c for c in (Plain, Broken, Spots)}
 
 
-def quiet(*_):
-    pass
+def of(directory, extractors=FEW):
+    return Sweeps(directory, Parts({}, extractors, {}))
 
 
-def rows_of(directory):
-    return Store(directory).swept()
+def computed(directory, extractors=FEW, workers=1):
+    return update(of(directory, extractors), workers, silent).computed
 
 
 def table(directory):
-    return Store(directory).sweeps_path.read_bytes()
+    return (directory / RECORD.name).read_bytes()
 
 
 @pytest.fixture
 def made(tmp_path):
-    return tmp_path, sweeps.update(tmp_path, 1, quiet, extractors=FEW)
+    computed(tmp_path)
+    return tmp_path
 
 
 def test_points_are_measured_failures_named_and_misfits_listed(made):
-    directory, swept = made
-    rows = rows_of(directory)
+    rows = swept(made)
     states = {name: {r["status"] for r in rows if r["extractor"] == name} for name in FEW}
     assert states == {"plain": {"ok"}, "broken": {"failed"}, "spots-of-readings": {"refused"}}
-    assert swept.planned == swept.computed == 2 * len(sweep_plan.SERIES["quadrants"].settings())
-    assert {reason for _, reason in swept.failed} == {"RuntimeError: no light"}
+    assert len(rows) == 1 + 2 * POINTS
+    reasons = {row["reason"] for row in rows if row["status"] == "failed"}
+    assert reasons == {"RuntimeError: no light"}
     listed = sweep_tables.unmeasured(rows)
     assert listed == [
         ("", "spots-of-readings", "no reference series of currents that are read as spot")
@@ -93,7 +100,7 @@ def test_points_are_measured_failures_named_and_misfits_listed(made):
 def test_the_closed_form_of_balances_is_at_the_bound(made):
     found = [
         row["over_bound"]
-        for row in rows_of(made[0])
+        for row in swept(made)
         if row["extractor"] == "plain" and row["sweep"] == "noise"
     ]
     assert len(found) == 7
@@ -101,40 +108,33 @@ def test_the_closed_form_of_balances_is_at_the_bound(made):
 
 
 def test_what_is_current_stays_and_failures_are_tried_again(made):
-    directory, swept = made
-    before = table(directory)
-    again = sweeps.update(directory, 1, quiet, extractors=FEW)
-    assert again.computed == swept.computed // 2 == len(again.failed)
-    assert table(directory) == before
-    assert list(sweeps.unplanned(rows_of(directory), FEW)) == []
-    less = sweeps.update(directory, 1, quiet, extractors={"plain": Plain})
-    assert less.computed == 0
-    assert {row["extractor"] for row in rows_of(directory)} == {"plain"}
-    assert list(Store(directory).components().extractors) == ["plain"]
+    before = table(made)
+    assert {why for _, why in due(of(made))} == {"failed"}
+    assert computed(made) == POINTS
+    assert table(made) == before
+    assert computed(made, {"plain": Plain}) == 0
+    assert {row["extractor"] for row in swept(made)} == {"plain"}
 
 
 def test_a_method_of_other_code_is_measured_again_alone(tmp_path):
     second = type("Second", (Plain,), {"about": dataclasses.replace(Plain.about, name="second")})
     both = {"plain": Plain, "second": second}
-    first = sweeps.update(tmp_path, 1, quiet, extractors=both)
-    before = rows_of(tmp_path)
+    assert computed(tmp_path, both) == 2 * POINTS
+    before = swept(tmp_path)
     newer = type("Newer", (second,), {"about": dataclasses.replace(second.about, version=2)})
-    again = sweeps.update(tmp_path, 1, quiet, extractors={"plain": Plain, "second": newer})
-    assert again.computed == first.computed // 2
+    assert computed(tmp_path, {"plain": Plain, "second": newer}) == POINTS
     version = "extractor_version"
-    assert [{**row, version: 0} for row in rows_of(tmp_path)] == [
+    assert [{**row, version: 0} for row in swept(tmp_path)] == [
         {**row, version: 0} for row in before
     ]
-    assert {row[version] for row in rows_of(tmp_path) if row["extractor"] == "second"} == {2}
+    assert {row[version] for row in swept(tmp_path) if row["extractor"] == "second"} == {2}
 
 
 @pytest.mark.parametrize("name", ["quadrants", "faces"])
 def test_a_series_of_other_code_is_measured_again_alone(made, monkeypatch, name):
-    directory, swept = made
-    digests = sweeps.series_digests()
-    monkeypatch.setattr(sweeps, "series_digests", lambda: {**digests, name: "0" * 16})
-    again = sweeps.update(directory, 1, quiet, extractors={"plain": Plain})
-    assert again.computed == (swept.computed // 2 if name == "quadrants" else 0)
+    digests = experiment.series_digests()
+    monkeypatch.setattr(experiment, "series_digests", lambda: {**digests, name: "0" * 16})
+    assert computed(made, {"plain": Plain}) == (POINTS if name == "quadrants" else 0)
 
 
 def test_a_reason_that_changes_is_renewed(made, monkeypatch):
@@ -142,8 +142,8 @@ def test_a_reason_that_changes_is_renewed(made, monkeypatch):
     events = dataclasses.replace(Spots.about, observation=Observation.EVENTS)
     monkeypatch.setattr(Spots, "about", events)
     monkeypatch.setattr(sweep_plan, "_SERIES_OF", dict.fromkeys(Observation, ()))
-    sweeps.update(made[0], 1, quiet, extractors=FEW)
-    assert sweep_tables.unmeasured(rows_of(made[0])) == [
+    computed(made)
+    assert sweep_tables.unmeasured(swept(made)) == [
         ("", "spots-of-readings", "no reference series of events that are read as spot")
     ]
 
@@ -153,40 +153,36 @@ def test_workers_and_what_was_there_before_do_not_change_a_byte(tmp_path):
     known = discover_extractors()
     some = {name: known[name] for name in ("voltage-balance", "direct", "escm-wta")}
     one, two, grown = (tmp_path / name for name in ("one", "two", "grown"))
-    sweeps.update(one, 1, quiet, extractors=some)
-    sweeps.update(two, 2, quiet, extractors=some)
-    sweeps.update(grown, 1, quiet, extractors={"direct": some["direct"]})
-    assert sweeps.update(grown, 1, quiet, extractors=some).computed < 60
+    computed(one, some)
+    computed(two, some, 2)
+    computed(grown, {"direct": some["direct"]})
+    assert computed(grown, some) < 60
     assert table(two) == table(one)
     assert table(grown) == table(one)
 
 
 def test_a_missing_point_and_one_too_much_are_named(made):
-    rows = rows_of(made[0])
-    gone, *rest = rows
-    found = list(sweeps.unplanned([*rest, {**gone, "point": "else"}], FEW))
-    assert sorted((dataclasses.astuple(point), state) for point, state in found) == sorted(
-        [
-            (point_of(gone), "absent"),
-            (point_of({**gone, "point": "else"}), "not planned"),
-        ]
-    )
+    rows = RECORD.read(made)
+    gone = next(point for point, row in rows.items() if row["status"] == "ok")
+    other = dataclasses.replace(gone, point="else")
+    row = rows.pop(gone)
+    RECORD.write({**rows, other: {**row, "point": "else"}}, made)
+    found = [(point, why) for point, why in due(of(made)) if why != "failed"]
+    assert sorted(found) == sorted([(gone, "absent"), (other, "no longer wanted")])
 
 
 def test_a_number_that_moved_is_told_beyond_the_tolerance_only(made):
-    rows = [row for row in rows_of(made[0]) if row["status"] == "ok"]
+    rows = [row for row in swept(made) if row["status"] == "ok"]
     near = [{**row, "rms": row["rms"] * 1.00005} for row in rows]
-    assert list(sweeps.differences(rows, near)) == []
+    assert list(differences(rows, near)) == []
     far = [{**rows[0], "rms": rows[0]["rms"] * 1.001}, *rows[1:]]
-    (found,) = sweeps.differences(rows, far)
-    assert found[0] == f"{'/'.join(point_of(rows[0]))}/rms"
-    assert [place for place, *_ in sweeps.differences(rows[1:], rows)] == [
-        f"{'/'.join(point_of(rows[0]))}/row"
-    ]
+    (found,) = differences(rows, far)
+    assert found[0] == f"{point_of(rows[0])}/rms"
+    assert [place for place, *_ in differences(rows[1:], rows)] == [f"{point_of(rows[0])}/row"]
 
 
 def test_tables_show_what_is_stored_cell_by_cell(made):
-    rows = rows_of(made[0])
+    rows = swept(made)
     shown = {
         (cell, column): text
         for one in sweep_tables.tables(rows)
@@ -194,7 +190,7 @@ def test_tables_show_what_is_stored_cell_by_cell(made):
         for cell, column, text in values
     }
     assert shown["quadrants/noise/50/broken", "over_bound"] == "-"
-    row = next(r for r in rows if point_of(r) == ("quadrants", "noise", "50", "plain"))
+    row = next(r for r in rows if point_of(r) == Point("quadrants", "noise", "50", "plain"))
     assert shown["quadrants/noise/50/plain", "over_bound"] == f"{row['over_bound']:#.4g}"
     text = "\n".join(sweep_tables.to_markdown(rows))
     assert f"| {shown['quadrants/noise/50/plain', 'over_bound']} |" in text
@@ -210,7 +206,7 @@ def test_tables_show_what_is_stored_cell_by_cell(made):
 
 
 def test_pictures_are_the_same_every_time_and_well_formed(made):
-    rows = rows_of(made[0])
+    rows = swept(made)
     for sweep in sweep_pictures.DRAWN:
         text = sweep_pictures.picture(rows, sweep)
         assert text == sweep_pictures.picture(rows, sweep)

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Observation
-from benchmark.reference.frame_sets import FRAME_SETS
-from benchmark.reference.series import WRONG_PX
-from benchmark.sweeps.measure import measure
-from benchmark.sweeps.plan import SERIES, Point, planned
+from benchmark.sweeps.measure import Task, measure
+from benchmark.sweeps.plan import SERIES, planned
+from benchmark.sweeps.points import Point
+from benchmark.synthetic_features.frame_sets import FRAME_SETS
+from benchmark.synthetic_features.series import WRONG_PX
 
 FRAMES = SERIES["frames"]
 SETTINGS = {setting.point: setting for setting in FRAMES.settings()}
@@ -34,7 +35,7 @@ def row_of(point, answers, frames=40):
     """Measure given answers to the first frames of a set."""
     setting = dataclasses.replace(SETTINGS[point], frames=frames)
     place = Point("frames", setting.sweep, point, "told")
-    (row,) = measure([(place, setting, answering(answers))])
+    ((_, row),) = measure(Task({place: answering(answers)}, setting, {}))
     assert row["status"] == "ok", row["reason"]
     return row
 

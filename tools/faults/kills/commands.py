@@ -32,9 +32,10 @@ from api.cli.commands import gc as gc_command
 from api.cli.commands import leaderboard as leaderboard_command
 from api.deposit import bundle
 from api.docs import documentation
-from benchmark.claims import run as claims_run
-from benchmark.curves import run as curves_run
-from benchmark.leaderboard.holding import table
+from benchmark.experiments import __main__ as experiments_run
+from benchmark.experiments.claims import Claims
+from benchmark.experiments.error_budget import ErrorBudget
+from benchmark.experiments.learning_curves import LearningCurves
 from benchmark.plan.combinations import cells
 from benchmark.processes import call_to_end
 from benchmark.progress import silent
@@ -42,6 +43,7 @@ from benchmark.results.store import Store
 from benchmark.running import compiling, pinning
 from benchmark.running import run as runner
 from benchmark.running import times as running_times
+from benchmark.running.experiment import update
 from benchmark.suites import tidying
 from tools.faults.kills import small
 
@@ -177,25 +179,24 @@ def compile_all() -> None:
 
 
 def measure_claims(*names: str) -> None:
-    """`python -m benchmark.claims.run` of claims, with two workers."""
-    _give(claims_run, "measured", small.trials)
-    program(lambda: claims_run.main([*names, "--directory", "outcomes", "--workers", "2"]))
+    """`python -m benchmark.experiments claims`, with two workers."""
+    _give(Claims, "measure", staticmethod(small.claim))
+    call = ["claims", *names, "--directory", "store", "--workers", "2"]
+    program(lambda: experiments_run.main(call))
 
 
 def learn() -> None:
-    """`python -m benchmark.curves` of a small record, with two workers."""
-    program(lambda: curves_run.update("store", 2, silent, parts=small.curve_parts()))
+    """`python -m benchmark.experiments learning_curves`, small, with two workers."""
+    program(lambda: update(LearningCurves("store", small.curve_parts()), 2, silent))
 
 
-def hold_back(*datasets: str) -> None:
-    """`python -m benchmark.leaderboard.holding` of scores that are given."""
-    _give(table, "measured", small.held_back)
-    score = {"condition": "quiet", "extractor": "one", "model": "two", "rms_deg": 0.05}
-    score |= {"bound_deg": 0.005, "bound_unit_deg": 0.005, "answered": 40, "judged": 40}
-    leading = {f"set-{n}": {"dataset": f"set-{n}", **score} for n in range(8)}
-    program(
-        lambda: table.renew(leading, small.parts(), only=datasets or None, path=Path("held.csv"))
-    )
+def budget_errors(*datasets: str) -> None:
+    """`python -m benchmark.experiments error_budget` of data sets that are given."""
+    keys = {f"set-{n}": "of this code" for n in range(8)}
+    _give(ErrorBudget, "keys", lambda _: keys)
+    _give(ErrorBudget, "tasks", lambda _, cells: cells)
+    _give(ErrorBudget, "measure", staticmethod(small.error_budget))
+    program(lambda: update(ErrorBudget("store"), 1, silent, only=datasets or None))
 
 
 def empty_docs() -> None:
@@ -293,15 +294,15 @@ COMMANDS: Mapping[str, Command] = {
     ),
     "compile": Command("`compile`", _nothing, compile_all),
     "claims": Command(
-        "`python -m benchmark.claims.run`", _nothing, lambda: measure_claims(*_CLAIMS)
+        "`python -m benchmark.experiments claims`", _nothing, lambda: measure_claims(*_CLAIMS)
     ),
     "curves": Command(
-        "`python -m benchmark.curves`", lambda: small.write_scores(Path("store")), learn
+        "`python -m benchmark.experiments learning_curves`",
+        lambda: small.write_scores(Path("store")),
+        learn,
     ),
-    "holding": Command(
-        "`python -m benchmark.leaderboard.holding`",
-        lambda: Path("held.csv").write_text(",".join(table._COLUMNS) + "\n"),
-        hold_back,
+    "error_budget": Command(
+        "`python -m benchmark.experiments error_budget`", _nothing, budget_errors
     ),
     "docs": Command("`python -m api.docs.documentation`", empty_docs, document),
     "save": Command("`calibration.saving.save`", _nothing, lambda: program(save_calibration)),

@@ -11,8 +11,8 @@ from pathlib import Path
 from tools.faults.kills.children import contents, fresh, run, start
 from tools.faults.kills.commands import (
     COMMANDS,
+    budget_errors,
     export,
-    hold_back,
     measure_claims,
     pin,
     run_cells,
@@ -43,7 +43,11 @@ PAIRS: Mapping[str, tuple[str, Act, Act]] = {
     "leaderboard and pins": ("update", COMMANDS["update"].act, lambda: pin("fake-second")),
     "times and tidying": ("gc", COMMANDS["times"].act, COMMANDS["gc"].act),
     "claims": ("claims", lambda: measure_claims("C01", "C02"), lambda: measure_claims("C03")),
-    "what holds back": ("holding", lambda: hold_back("set-0"), lambda: hold_back("set-1")),
+    "error budgets": (
+        "error_budget",
+        lambda: budget_errors("set-0"),
+        lambda: budget_errors("set-1"),
+    ),
 }
 _VARYING = ("durations.csv", "times.csv")
 

@@ -16,12 +16,14 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
+from algorithms.documented import documented
 from algorithms.inputs import as_frames, require_positive
 
 #: Standard deviations of the blur beyond which its taps are left out.
 _REACH = 3.0
 
 
+@documented
 @dataclass(frozen=True)
 class BlackSunCentroid(Extractor):
     """Corner of the dark hole in binary masks of descending thresholds, averaged over them.
@@ -47,11 +49,6 @@ class BlackSunCentroid(Extractor):
     blur_px : float
         Standard deviation of the Gaussian blur.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
-
     Notes
     -----
     Implements: alg:BCSM (fe:bscm, Saleem2019): blur; masks ``I > T + f`` for falling f; contours;
@@ -73,10 +70,6 @@ class BlackSunCentroid(Extractor):
 
     Cost: 20 operations a pixel for the blur, 4 for the masks, and 10 a pixel of the holes and
     threshold.
-
-    References
-    ----------
-    Saleem2019; survey fe:bscm, alg:BCSM.
 
     Examples
     --------

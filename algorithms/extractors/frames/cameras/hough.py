@@ -17,6 +17,7 @@ from algorithms.contract import (
     SensorGeometry,
     UnsuitableDesignError,
 )
+from algorithms.documented import documented
 from algorithms.inputs import as_frames
 
 #: Step between the angles tried, degrees.
@@ -25,6 +26,7 @@ _TURN_DEG = 0.25
 _TURNED = [1, 0, 3, 2, 4, 6, 5]
 
 
+@documented
 @dataclass(frozen=True)
 class HoughLines(Extractor):
     """Blooming line of a saturated Sun, and the place on it that the light around points to.
@@ -46,11 +48,6 @@ class HoughLines(Extractor):
         The accumulator threshold tau, at least 2: rows that must vote for a line.
     reach_px : float
         Gradients count up to this far from the line. Ours.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -76,10 +73,6 @@ class HoughLines(Extractor):
 
     Cost: 6 operations a pixel for the runs, 4 a run and angle (720 of them) and 1 a cell and angle,
     80 a pixel within reach.
-
-    References
-    ----------
-    Liu2016; survey fe:ht, alg:BHT.
 
     Examples
     --------
@@ -176,6 +169,7 @@ class HoughLines(Extractor):
         return found
 
 
+@documented
 @dataclass(frozen=True)
 class HoughCircle(Extractor):
     """Circle of unknown radius that most edges agree on.
@@ -204,11 +198,6 @@ class HoughCircle(Extractor):
         (two Suns), and no circle whose edges scatter by more than half a pixel about it. Ours: the
         published maximum always answers.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
-
     Notes
     -----
     Implements: alg:CHT (fe:ht, Adatrao2016): edges, accumulator ``H[a, b, r]``, ``a = x - r
@@ -228,15 +217,10 @@ class HoughCircle(Extractor):
 
     Cost: 30 operations a pixel for edges, 4 an edge and radius, 500 an edge for the candidates.
 
-    References
-    ----------
-    Adatrao2016; survey fe:ht, alg:CHT.
-
     Examples
     --------
-    >>> import numpy as np
-    >>> y, x = np.mgrid[:31, :33]
-    >>> frames = 200 * np.clip(5.5 - np.hypot(x - 16.3, y - 14.8), 0, 1)[None]
+    >>> from algorithms.examples import disc_frame
+    >>> frames = disc_frame(16.3, 14.8)
     >>> HoughCircle().extract(frames).round(1)
     array([[16.3, 14.8]])
     """

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.extractors.frames.mirror.records import Form, Light, State
+from algorithms.kernels.records import Records
 from algorithms.measurement import Doubt
 
 #: Light that departs in clusters of pairs, over the spot's, and the square of what neighbours miss
@@ -65,39 +67,39 @@ def _is_saturated(frame: NDArray[Any], brightest: float) -> bool:
 
 
 @compiled
-def _several(shape: Floats, noise: float) -> bool:
+def _several(form: Form, noise: float) -> bool:
     """Whether outlines are not those of one spot: they have a waist, or differ with height."""
-    minor, area, waist, base = shape[4], shape[5], shape[6], shape[10]
+    area = form.area
     if not area > 0.0:
         return False
-    if waist > _WAIST + _WAIST_FEW / area + _WAIST_NOISE * noise:
+    if form.waist > _WAIST + _WAIST_FEW / area + _WAIST_NOISE * noise:
         return True
     most = _UNLIKE + _UNLIKE_FEW / area + _UNLIKE_GRID / area**3 + _UNLIKE_NOISE * noise
-    for q in (2, 8):
-        one, other = shape[q], shape[q + 1]
-        apart = 2.0 * math.sqrt(max(minor, 0.0)) * (math.sqrt(one) - math.sqrt(other))
-        tells = q == 2 or (area >= _SHARP and area < _TOP * base)
+    for sharp in (False, True):
+        one, other = form.sharp if sharp else form.blurred
+        apart = 2.0 * math.sqrt(max(form.minor, 0.0)) * (math.sqrt(one) - math.sqrt(other))
+        tells = not sharp or (area >= _SHARP and area < _TOP * form.base)
         if tells and one > most * other and apart > _UNLIKE_PX + _UNLIKE_NOISE_PX * noise:
             return True
     return False
 
 
 @compiled
-def _of_shape(light: Floats, state: Floats, shape: Floats, centre: Floats, saturated: bool) -> int:
+def _of_form(light: Light, state: State, form: Form, centre: Floats, saturated: bool) -> int:
     """Doubts that departures from symmetry raise."""
-    clusters, alike, area, scatter, departing = shape[0], shape[1], shape[5], shape[7], shape[11]
+    area, departing = form.area, form.lenient
     doubts = 0
-    crooked = clusters > _CLUSTERS or alike > _ALIKE
+    crooked = form.clusters > _CLUSTERS or form.alike > _ALIKE
     for axis in range(2):
-        far = abs(centre[axis] - light[axis])
-        crooked = crooked or far > _ASTRAY * light[2 + axis] + _ASTRAY_PX
+        far = abs(centre[axis] - light.middle[axis])
+        crooked = crooked or far > _ASTRAY * light.half[axis] + _ASTRAY_PX
     if area > 0.0 and not saturated:
         crooked = crooked or departing > _SCATTER + _SCATTER_FEW / area
         if departing > _SCATTER_GHOST + _GHOST_FEW / area:
             doubts |= _GHOST
     if crooked:
         doubts |= _NOT_SYMMETRIC
-    if max(state[4], state[5]) * scatter > _UNSURE * _UNSURE:
+    if max(state.xx, state.yy) * form.scatter > _UNSURE * _UNSURE:
         doubts |= _NO_SPOT
     return doubts
 
@@ -107,11 +109,11 @@ def conclude(  # noqa: PLR0917 - Numba takes no keyword-only ones
     frames: NDArray[Any],
     seen: NDArray[np.int64],
     longest_px: float,
-    lights: Floats,
-    boxes: NDArray[np.int64],
+    lights: Records,
+    boxes: Records,
     middles: NDArray[np.int64],
-    states: Floats,
-    shapes: Floats,
+    states: Records,
+    forms: Records,
     features: Floats,
     covariance: Floats,
     doubts: NDArray[np.int64],
@@ -124,24 +126,24 @@ def conclude(  # noqa: PLR0917 - Numba takes no keyword-only ones
     """
     centre = np.empty(2)
     for k in range(len(seen)):
-        at, light, state, shape = seen[k], lights[k], states[k], shapes[k]
-        saturated = _is_saturated(frames[at], light[4] + light[6])
+        at, light, state, form = seen[k], lights[k], states[k], forms[k]
+        saturated = _is_saturated(frames[at], light.base + light.peak)
         found = _SATURATED if saturated else 0
         for axis in range(2):
-            centre[axis] = 0.5 * (middles[k, axis] + state[2 + axis])
-        if boxes[k, 3] == 0:
+            centre[axis] = 0.5 * (middles[k, axis] + state.d[axis])
+        if boxes[k].columns == 0:
             found |= _CUT
-        if np.isfinite(state[4]):
-            found |= _of_shape(light, state, shape, centre, saturated)
-            if not 2.0 * math.sqrt(max(shape[12], 0.0)) <= longest_px:
-                found |= _NOT_SYMMETRIC if shape[13] > 0.0 and not saturated else 0
-                found |= _SEVERAL if _several(shape, math.sqrt(state[0])) else 0
+        if np.isfinite(state.xx):
+            found |= _of_form(light, state, form, centre, saturated)
+            if not 2.0 * math.sqrt(max(form.major, 0.0)) <= longest_px:
+                found |= _NOT_SYMMETRIC if form.skew and not saturated else 0
+                found |= _SEVERAL if _several(form, math.sqrt(state.dark)) else 0
         else:
             found |= _NO_SPOT
         doubts[at] = found
-        noise[at, 0], noise[at, 1] = state[0] * light[6] ** 2, state[1] * light[6]
+        noise[at, 0], noise[at, 1] = state.dark * light.peak**2, state.gain * light.peak
         if found & ~(_SATURATED | _GHOST) == 0:
             features[at] = centre
-            scatter = shape[7]
-            covariance[at, 0, 0], covariance[at, 1, 1] = state[4] * scatter, state[5] * scatter
-            covariance[at, 0, 1] = covariance[at, 1, 0] = state[6] * scatter
+            scatter = form.scatter
+            covariance[at, 0, 0], covariance[at, 1, 1] = state.xx * scatter, state.yy * scatter
+            covariance[at, 0, 1] = covariance[at, 1, 0] = state.xy * scatter

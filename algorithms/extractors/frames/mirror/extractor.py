@@ -15,19 +15,18 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
-from algorithms.extractors.frames.matched import require_one_spot
 from algorithms.extractors.frames.one_light import longest_px_of
+from algorithms.extractors.profiles.single_spot import require_one_spot
 from algorithms.inputs import as_frames, require_positive
 from algorithms.measurement import Measurement
 
 
 @dataclass(frozen=True)
 class MirrorRegistration(Extractor):
-    """Centre at which a spot coincides with its own image turned by 180 degrees.
+    """Centre of a point-symmetric spot, found by registering it against its own mirror image.
 
-    Discs, ellipses, squares, Gaussians, Airy patterns and whatever shears them have such a centre;
-    no shape is assumed beyond that. Hot and dead pixels and a background that slopes or bends are
-    found and left out; two lights, a spot cut by the edge or one without symmetry are no answer.
+    Discs, ellipses, squares, Gaussians and Airy patterns have such a centre; no other shape is
+    assumed. Hot and dead pixels and a sloping or bent background are found and left out.
 
     Parameters
     ----------
@@ -43,46 +42,17 @@ class MirrorRegistration(Extractor):
 
     Notes
     -----
-    Implements: nothing printed in the survey. About a point m / 2, m whole, pixels x and m - x
-    pair without interpolation. With f the spot about its centre c, d = 2 c - m and u = x - m / 2,
-    a pair's difference is ``D = f(u - d/2) - f(u + d/2)`` and its mean ``S = (f(u - d/2) + f(u +
-    d/2)) / 2``, so that ``D = -2 tanh(d . grad / 2) S``, a filter on S that depends on d alone.
-    Noise of D and S is independent where both pixels have the same, and so is that of different
-    pairs: d solves the weighted least squares of D on the slopes of S, by steps. Half of the Fisher
-    information about c is in f(u - d/2), half in its mirror image, and an unknown but symmetric f
-    is orthogonal to both: nothing of the Cramer-Rao bound is lost.
-
-    The weights are one over the variance, of the border's pixels and of what neighbouring
-    departures differ by where there is light, by the mean light around: weights as sharp as a rim
-    would turn what slopes miss of it into a share of d. The slopes that weigh are smoothed as long
-    as this lowers the variance, and the products with those that predict are freed of the noise
-    both have in common. The background's odd part, linear and where it shows cubic, is fitted
-    around the spot. Pairs that depart by 4.5 deviations are left out, and the worse pixel of the
-    two becomes the other one.
-
-    `measure` gives the covariance of that fit, with what the background's slopes are uncertain by,
-    times the mean square of the departures over what was expected: of two pixels' noise and of that
-    of the slopes, which have it from the same pixels. Few departures tell a variance badly: it is
-    that of Student's distribution. Outlines of one spot are alike
-    at all heights; those of two that overlap are not, or have a waist. A weaker light beside a spot
-    makes it skew: cubic odd shapes are fitted to what the slopes leave. A hole's fringes make such
-    outlines, and oblique light such skewness: they count where the spot is longer than the design's
-    shadow and its diffraction, or where no design tells.
+    Implements: nothing printed in the survey. Pixels that are mirror images about half a pixel's
+    place are compared; weighted least squares of their differences on the slopes of their means
+    give the displacement: see `algorithms.extractors.frames.mirror.registration`.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
-    Failure: a NaN row for a frame without contrast or with a NaN or infinity, where no 2 x 2 pixels
-    are five standard deviations above the border (`measure`: NO_SPOT); where a second light has
-    over 15 % of the first one's, both lie apart as one loose region, or outlines are not those of
-    one spot (SEVERAL_SPOTS); where the spot reaches the frame's edge (CUT); and where departures
-    are alike, in clusters, too large or skew (NOT_SYMMETRIC). GHOST and SATURATED stand beside
-    answers too. Two equal lights are point-symmetric about their middle: two Gaussians closer than
-    two of their widths have one maximum and the outlines of a longer spot, two squares side by side
-    those of a rectangle, and only a design could tell. So could it alone where a ghost is closer to
-    a Gaussian than about its width: of skewness, which goes with the cube of the distance, noise
-    leaves nothing. Ellipses a few pixels wide and over 2.2
-    times as long may be taken for two lights. Rims sharper than a pixel resolves are found to some
-    thousandths of a pixel, those along rows or columns to hundredths.
+    Failure: a NaN row where there is no light (NO_SPOT), where there are two (SEVERAL_SPOTS), where
+    the edge cuts the spot (CUT) and where it has no such centre (NOT_SYMMETRIC). Not told apart
+    from one spot: two equal lights closer than two of their widths, and a ghost closer than one.
+    Ellipses a few pixels wide and over 2.2 times as long may be taken for two lights. Rims sharper
+    than a pixel are found to some thousandths of a pixel, along rows or columns to hundredths.
 
     Cost: 10 operations a pixel, some 300 in single precision a pixel of the spot's surroundings.
 

@@ -14,35 +14,31 @@ from numpy.typing import NDArray
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
 from algorithms.extractors.frames.mirror import taps
-
-Line = NDArray[np.float32]
+from algorithms.extractors.frames.mirror.lines_kernel import (
+    FLOOR,
+    HALF,
+    LANES,
+    REACH,
+    ZERO,
+    Line,
+    core_start,
+    fold,
+    padded,
+    places,
+)
+from algorithms.extractors.frames.mirror.records import SUMS, Background, Box, State, Sums
+from algorithms.kernels.records import Records
 
 #: The sharpest weighting: slope along one axis by four pixels, mean along the other by three.
 _SLOPE_1, _SLOPE_2 = np.float32(taps.SLOPE_1), np.float32(taps.SLOPE_2)
 _BESIDE, _MIDDLE = np.float32(taps.BESIDE), np.float32(taps.MIDDLE)
 TAPS, _LEVELS = taps.TAPS, taps.LEVELS
 _SQUARES, _PRODUCTS = taps.noise_of_levels()
-_ZERO, _ONE, _HALF, _QUARTER = np.float32(0.0), np.float32(1.0), np.float32(0.5), np.float32(0.25)
-#: Rows around the core that its slopes reach; lanes of the sums; lines end at multiples of this.
-_REACH, _LANES, _WHOLE = 7, 16, 64
+_QUARTER = np.float32(0.25)
 #: Numbers that single precision adds up, before double precision goes on.
 _BLOCK = 1024
 #: d, px, from which another middle is nearer; noise's share from which weights are smoothed.
 _AWAY, _NOISY = 0.75, 0.05
-#: What the slopes miss, over the peak: pixels are not trusted to better than that.
-_FLOOR = 0.0005
-
-
-@compiled
-def _fold(lanes: Line, which: int) -> float:
-    """Sum of the lanes of one of several sums, halves added to halves."""
-    p = which * _LANES
-    for j in range(_LANES // 2):
-        lanes[p + j] += lanes[p + j + _LANES // 2]
-    a, b = float(lanes[p]) + lanes[p + 1], float(lanes[p + 2]) + lanes[p + 3]
-    c, e = float(lanes[p + 4]) + lanes[p + 5], float(lanes[p + 6]) + lanes[p + 7]
-    total: float = (a + b) + (c + e)
-    return total
 
 
 @compiled
@@ -127,33 +123,39 @@ def _normal(  # noqa: PLR0917 - Numba takes no keyword-only ones
     w: Line,
     share: Line,
     lanes: Line,
-    sums: Floats,
+    sums: Sums,
 ) -> None:
-    """Write the nine weighted sums of products that the fit needs, and that of the shares.
-
-    Three of the nine are of variances.
-    """
-    sums[:10] = 0.0
+    """Write the weighted sums that the fit needs; `share` is a variance over that of the weight."""
+    sums.xx, sums.yy, sums.xy, sums.yx, sums.x, sums.y = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    sums.noise_xx, sums.noise_yy, sums.noise_xy, sums.share = 0.0, 0.0, 0.0, 0.0
     for begin in range(0, w.size, _BLOCK):
-        lanes[:] = _ZERO
-        for k in range(begin, min(begin + _BLOCK, w.size), _LANES):
-            for j in range(_LANES):
+        lanes[:] = ZERO
+        for k in range(begin, min(begin + _BLOCK, w.size), LANES):
+            for j in range(LANES):
                 q = np.uint64(k) + np.uint64(j)  # what is never negative is vectorised
                 a, b, dk, part = h_x[q], h_y[q], d[q], share[q]
                 x, y = w[q] * a, w[q] * b
                 lanes[j] += x * g_x[q]
-                lanes[j + _LANES] += y * g_y[q]
-                lanes[j + 2 * _LANES] += x * g_y[q]
-                lanes[j + 3 * _LANES] += y * g_x[q]
-                lanes[j + 4 * _LANES] += x * dk
-                lanes[j + 5 * _LANES] += y * dk
-                lanes[j + 9 * _LANES] += part
+                lanes[j + LANES] += y * g_y[q]
+                lanes[j + 2 * LANES] += x * g_y[q]
+                lanes[j + 3 * LANES] += y * g_x[q]
+                lanes[j + 4 * LANES] += x * dk
+                lanes[j + 5 * LANES] += y * dk
+                lanes[j + 9 * LANES] += part
                 x *= part
-                lanes[j + 6 * _LANES] += x * a
-                lanes[j + 7 * _LANES] += y * b * part
-                lanes[j + 8 * _LANES] += x * b
-        for i in range(10):
-            sums[i] += _fold(lanes, i)
+                lanes[j + 6 * LANES] += x * a
+                lanes[j + 7 * LANES] += y * b * part
+                lanes[j + 8 * LANES] += x * b
+        sums.xx += fold(lanes, 0, LANES)
+        sums.yy += fold(lanes, 1, LANES)
+        sums.xy += fold(lanes, 2, LANES)
+        sums.yx += fold(lanes, 3, LANES)
+        sums.x += fold(lanes, 4, LANES)
+        sums.y += fold(lanes, 5, LANES)
+        sums.noise_xx += fold(lanes, 6, LANES)
+        sums.noise_yy += fold(lanes, 7, LANES)
+        sums.noise_xy += fold(lanes, 8, LANES)
+        sums.share += fold(lanes, 9, LANES)
 
 
 @compiled
@@ -162,45 +164,45 @@ def _smoothed(s: Line, apart: int, stride: int, line: Line, out: Line) -> None:
     n, far = s.size, apart * stride
     above, here, below, out_here = s[: n - 2 * far], s[far : n - far], s[2 * far :], line[far:]
     for q in range(here.size):
-        out_here[q] = _QUARTER * (above[q] + below[q]) + _HALF * here[q]
+        out_here[q] = _QUARTER * (above[q] + below[q]) + HALF * here[q]
     for i in range(apart):
         first, last = i * stride, n - (i + 1) * stride
         a, b, c, e = s[:stride], s[n - stride :], line[first:], line[last:]
         after, before = s[first + far :], s[last - far :]
         own, other = s[first:], s[last:]
         for j in range(stride):
-            c[j] = _QUARTER * (a[j] + after[j]) + _HALF * own[j]
+            c[j] = _QUARTER * (a[j] + after[j]) + HALF * own[j]
         for j in range(stride):
-            e[j] = _QUARTER * (b[j] + before[j]) + _HALF * other[j]
+            e[j] = _QUARTER * (b[j] + before[j]) + HALF * other[j]
     for q in range(apart):
         out[q], out[n - 1 - q] = line[q], line[n - 1 - q]
     here, below, out_here = line[apart:], line[2 * apart :], out[apart:]
     for q in range(n - 2 * apart):
-        out_here[q] = _QUARTER * (line[q] + below[q]) + _HALF * here[q]
+        out_here[q] = _QUARTER * (line[q] + below[q]) + HALF * here[q]
 
 
 @compiled
 def _weights(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    s: Line, p: int, stride: int, keep: Line, state: Floats, line: Line, w: Line, share: Line
+    s: Line, p: int, stride: int, keep: Line, state: State, line: Line, w: Line, share: Line
 ) -> None:
     """One over the variance of a pixel, by the light around it; zero where a pair is left out.
 
     Weights as sharp as a rim would turn what slopes miss of it into a share of d. What the variance
     by a pixel's own light is over that goes to `share`.
     """
-    dark, more = np.float32(state[0]), np.float32(state[1])
-    least = dark + np.float32(_FLOOR * _FLOOR)
+    dark, more = np.float32(state.dark), np.float32(state.gain)
+    least = dark + np.float32(FLOOR * FLOOR)
     n = w.size
     a, b, c = s[p - 1 - stride :], s[p - 1 :], s[p - 1 + stride :]
     for q in range(n + 2):
-        line[q] = _QUARTER * (a[q] + c[q]) + _HALF * b[q]
+        line[q] = _QUARTER * (a[q] + c[q]) + HALF * b[q]
     for q in range(n):
-        lit = _QUARTER * (line[q] + line[q + 2]) + _HALF * line[q + 1]
-        lit, kept = max(_ZERO, lit), max(_ZERO, keep[q])
+        lit = _QUARTER * (line[q] + line[q + 2]) + HALF * line[q + 1]
+        lit, kept = max(ZERO, lit), max(ZERO, keep[q])
         # Numba's own division would look for zeros, one by one.
         w[q] = np.divide(kept, least + more * lit)
     for q in range(n):
-        share[q] = w[q] * (dark + more * max(_ZERO, b[q + 1]))
+        share[q] = w[q] * (dark + more * max(ZERO, b[q + 1]))
 
 
 @compiled
@@ -212,46 +214,27 @@ def _in_common(level: int, d: float) -> float:
 
 
 @compiled
-def _solve(sums: Floats, product_x: float, product_y: float, square: float, state: Floats) -> bool:
+def _solve(sums: Sums, product_x: float, product_y: float, square: float, state: State) -> bool:
     """Solve ``sum w h (d + d_x g_x + d_y g_y) = 0``; what noise adds to the products is taken off.
 
-    To `state` go d_x, d_y, the covariance xx, yy, xy of the centre, noise's share in h, and how
-    much a unit of the sums on the right moves the centre (4).
+    To `state` go displacement and covariance, noise's share in h and how the sums move the centre.
     """
-    xx, yy, xy, yx = sums[0] - product_x, sums[1] - product_y, sums[2], sums[3]
+    xx, yy, xy, yx = sums.xx - product_x, sums.yy - product_y, sums.xy, sums.yx
     determinant = xx * yy - xy * yx
-    state[7] = square / max(min(sums[6], sums[7]), 1e-300)
+    state.noise_share = square / max(min(sums.noise_xx, sums.noise_yy), 1e-300)
     if not (xx > 0.0 and yy > 0.0 and determinant > 1e-6 * xx * yy):
-        state[4] = np.inf
+        state.xx = np.inf
         return False
     a, b, c, d = yy / determinant, -xy / determinant, -yx / determinant, xx / determinant
-    state[2] = -(a * sums[4] + b * sums[5])
-    state[3] = -(c * sums[4] + d * sums[5])
+    state.d[0] = -(a * sums.x + b * sums.y)
+    state.d[1] = -(c * sums.x + d * sums.y)
     # Differences have twice a pixel's variance; the centre moves by half of d.
-    state[4] = 0.5 * (a * a * sums[6] + 2.0 * a * b * sums[8] + b * b * sums[7])
-    state[5] = 0.5 * (c * c * sums[6] + 2.0 * c * d * sums[8] + d * d * sums[7])
-    state[6] = 0.5 * (a * c * sums[6] + (a * d + b * c) * sums[8] + b * d * sums[7])
-    state[8], state[9], state[10], state[11] = 0.5 * a, 0.5 * b, 0.5 * c, 0.5 * d
+    noise_xx, noise_yy, noise_xy = sums.noise_xx, sums.noise_yy, sums.noise_xy
+    state.xx = 0.5 * (a * a * noise_xx + 2.0 * a * b * noise_xy + b * b * noise_yy)
+    state.yy = 0.5 * (c * c * noise_xx + 2.0 * c * d * noise_xy + d * d * noise_yy)
+    state.xy = 0.5 * (a * c * noise_xx + (a * d + b * c) * noise_xy + b * d * noise_yy)
+    state.by_x[0], state.by_y[0], state.by_x[1], state.by_y[1] = 0.5 * a, 0.5 * b, 0.5 * c, 0.5 * d
     return True
-
-
-@compiled
-def _places(box: Any, scale: float, x: Line, y: Line) -> None:
-    """Write x and y of the core's pairs, from the middle, times a scale."""
-    stride, factor = box[4], np.float32(scale)
-    for j in range(stride):
-        x[j] = factor * np.float32(j - 0.5 * (box[3] - 1))
-    for i in range(box[7]):
-        first, along = (
-            np.uint64(i * stride),
-            factor * np.float32(box[6] + i - 0.5 * (box[2] - box[1])),
-        )
-        for j in range(stride):
-            q = first + np.uint64(j)
-            x[q] = x[j]
-            y[q] = along
-    for j in range(box[7] * stride, x.size):
-        x[j], y[j] = _ZERO, _ZERO
 
 
 @compiled
@@ -264,73 +247,81 @@ def _odd_parts(  # noqa: PLR0917 - Numba takes no keyword-only ones
     x: Line,
     y: Line,
     lanes: Line,
-    sums: Floats,
+    products: Floats,
 ) -> None:
-    """Write weighted products of `h_x` and `h_y` with 2 x, 2 y, and, if `bent`, rho times both.
+    """Write weighted products of the weighting with the background's odd shapes.
 
-    ``rho = inverse (x^2 + y^2)``.
+    To `products` (2, 2, 2): of `h_x` and `h_y`, with the slopes and, if `bent`, the bends along x
+    and y: 2 x and 2 y, and rho times both, ``rho = inverse (x^2 + y^2)``.
     """
     factor = np.float32(inverse)
-    lanes[:] = _ZERO
-    for k in range(0, w.size, _LANES):
-        for j in range(_LANES):
+    lanes[:] = ZERO
+    for k in range(0, w.size, LANES):
+        for j in range(LANES):
             q = np.uint64(k) + np.uint64(j)
             a, b = w[q] * h_x[q], w[q] * h_y[q]
             lanes[j] += a * x[q]
-            lanes[j + _LANES] += a * y[q]
-            lanes[j + 4 * _LANES] += b * x[q]
-            lanes[j + 5 * _LANES] += b * y[q]
+            lanes[j + LANES] += a * y[q]
+            lanes[j + 4 * LANES] += b * x[q]
+            lanes[j + 5 * LANES] += b * y[q]
     if bent:
-        for k in range(0, w.size, _LANES):
-            for j in range(_LANES):
+        for k in range(0, w.size, LANES):
+            for j in range(LANES):
                 q = np.uint64(k) + np.uint64(j)
                 rho = factor * w[q] * (x[q] * x[q] + y[q] * y[q])
-                lanes[j + 2 * _LANES] += rho * h_x[q] * x[q]
-                lanes[j + 3 * _LANES] += rho * h_x[q] * y[q]
-                lanes[j + 6 * _LANES] += rho * h_y[q] * x[q]
-                lanes[j + 7 * _LANES] += rho * h_y[q] * y[q]
+                lanes[j + 2 * LANES] += rho * h_x[q] * x[q]
+                lanes[j + 3 * LANES] += rho * h_x[q] * y[q]
+                lanes[j + 6 * LANES] += rho * h_y[q] * x[q]
+                lanes[j + 7 * LANES] += rho * h_y[q] * y[q]
     for i in range(8):
-        sums[i] = 2.0 * _fold(lanes, i)
+        products[i // 4, i // 2 % 2, i % 2] = 2.0 * fold(lanes, i, LANES)
 
 
 @compiled
 def _background(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    box: Any,
-    slope: Floats,
+    box: Box,
+    ground: Background,
     h_x: Line,
     h_y: Line,
     w: Line,
     x: Line,
     y: Line,
     lanes: Line,
-    sums: Floats,
-    state: Floats,
+    state: State,
 ) -> None:
     """Add to the centre's covariance what the background's slopes are uncertain by."""
-    bent = slope[2] != 0.0 or slope[3] != 0.0
-    _places(box, 1.0, x, y)
-    _odd_parts(1.0 / slope[4], bent, h_x, h_y, w, x, y, lanes, sums)
-    for q in range(4 if bent else 2):
-        moved_x = state[8] * sums[q] + state[9] * sums[4 + q]
-        moved_y = state[10] * sums[q] + state[11] * sums[4 + q]
-        state[4] += slope[5 + q] * moved_x * moved_x
-        state[5] += slope[5 + q] * moved_y * moved_y
-        state[6] += slope[5 + q] * moved_x * moved_y
+    bent = ground.bend[0] != 0.0 or ground.bend[1] != 0.0
+    products = np.empty((2, 2, 2))
+    places(box, 1.0, x, y)
+    _odd_parts(1.0 / ground.square, bent, h_x, h_y, w, x, y, lanes, products)
+    for order in range(2 if bent else 1):
+        variances = ground.slope_variance if order == 0 else ground.bend_variance
+        for axis in range(2):
+            variance, of_x, of_y = (
+                variances[axis],
+                products[0, order, axis],
+                products[1, order, axis],
+            )
+            moved_x = state.by_x[0] * of_x + state.by_y[0] * of_y
+            moved_y = state.by_x[1] * of_x + state.by_y[1] * of_y
+            state.xx += variance * moved_x * moved_x
+            state.yy += variance * moved_y * moved_y
+            state.xy += variance * moved_x * moved_y
 
 
 @compiled
 def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
     todo: NDArray[np.int64],
-    boxes: NDArray[np.int64],
+    boxes: Records,
     first: bool,
-    slopes: Floats,
+    grounds: Records,
     s: Line,
     d: Line,
     keep: Line,
     e: Line,
     slack: Line,
     space: Line,
-    states: Floats,
+    states: Records,
 ) -> int:
     """Fit the windows `todo`: displacement, covariance, and what is left of the differences.
 
@@ -339,16 +330,16 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
     """
     away = 0
     work, wide = space[:11], space[11:16]
-    lanes = np.empty(10 * _LANES, dtype=np.float32)
-    sums, other_sums, other = np.empty(10), np.empty(10), np.empty(states.shape[1])
+    lanes = np.empty(10 * LANES, dtype=np.float32)
+    both = np.empty(2, dtype=SUMS)
+    sums, other_sums = both[0], both[1]
+    before = np.empty(1, dtype=states.dtype)
     for k in todo:
         box, state = boxes[k], states[k]
-        if not np.isfinite(state[4]):
+        if not np.isfinite(state.xx):
             continue
-        stride = box[4]
-        n = (box[7] * stride + _WHOLE - 1) // _WHOLE * _WHOLE
-        p = 8 + (_REACH + box[6]) * stride
-        from_row = box[6] * stride
+        stride, n, p = box.stride, padded(box), core_start(box)
+        from_row = box.above * stride
         kept, left = keep[k, :n], e[k, :n]
         differences = d[k, from_row : from_row + n]
         w, h_x, h_y, g_x, g_y = work[0, :n], work[1, :n], work[2, :n], work[3, :n], work[4, :n]
@@ -359,41 +350,46 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
         if first:
             g_x, g_y = h_x, h_y
         else:
-            d_x, d_y = min(max(state[2], -1.0), 1.0), min(max(state[3], -1.0), 1.0)
-            state[14], state[15] = d_x, d_y
+            d_x, d_y = min(max(state.d[0], -1.0), 1.0), min(max(state.d[1], -1.0), 1.0)
+            state.slopes_d[0], state.slopes_d[1] = d_x, d_y
             _slopes(s[k], p, stride, d_x, d_y, wide[3], g_x, g_y)
         _normal(h_x, h_y, g_x, g_y, differences, w, share, lanes, sums)
-        half = 0.5 * sums[9]  # the mean of two pixels has half the variance
+        half = 0.5 * sums.share  # the mean of two pixels has half the variance
         square = half * _SQUARES[0]
         product_x = square if first else half * _in_common(0, d_x)
         product_y = square if first else half * _in_common(0, d_y)
         if not _solve(sums, product_x, product_y, square, state):
             continue
-        away += max(abs(state[2]), abs(state[3])) > _AWAY
+        away += max(abs(state.d[0]), abs(state.d[1])) > _AWAY
         level, old = 0, s[k]
-        end = 8 + (box[6] + box[7] + 2 * _REACH) * stride
-        while not first and level + 1 < _LEVELS and state[7] > _NOISY and 2**level < 0.5 * stride:
+        end = 8 + (box.above + box.rows + 2 * REACH) * stride
+        while (
+            not first
+            and level + 1 < _LEVELS
+            and state.noise_share > _NOISY
+            and 2**level < 0.5 * stride
+        ):
             smooth = wide[level % 2, :end]
             _smoothed(old[:end], 2 ** (level + 1), stride, wide[2, :end], smooth)
-            wide[level % 2, end:] = _ZERO
+            wide[level % 2, end:] = ZERO
             a, b = work[6, :n], work[7, :n]
             _weighting(wide[level % 2], p, stride, work[5], a, b)
             _normal(a, b, g_x, g_y, differences, w, share, lanes, other_sums)
             product_x = half * _in_common(level + 1, d_x)
             product_y = half * _in_common(level + 1, d_y)
-            other[:] = state
-            _solve(other_sums, product_x, product_y, half * _SQUARES[level + 1], other)
-            if not max(other[4], other[5]) < max(state[4], state[5]):
+            before[0] = state
+            _solve(other_sums, product_x, product_y, half * _SQUARES[level + 1], state)
+            if not max(state.xx, state.yy) < max(before[0].xx, before[0].yy):
+                states[k] = before[0]
                 break
             level += 1
             old = wide[(level - 1) % 2]
             h_x[:], h_y[:] = a, b
-            state[:] = other
-        n_x, n_y, steep = np.float32(state[2]), np.float32(state[3]), slack[k, :n]
+        n_x, n_y, steep = np.float32(state.d[0]), np.float32(state.d[1]), slack[k, :n]
         for q in range(n):
             left[q] = differences[q] + n_x * g_x[q] + n_y * g_y[q]
             steep[q] = abs(g_x[q]) + abs(g_y[q])
         if not first:
             x, y = work[8, :n], work[9, :n]
-            _background(box, slopes[k], h_x, h_y, w, x, y, lanes, sums, state)
+            _background(box, grounds[k], h_x, h_y, w, x, y, lanes, state)
     return away

@@ -8,18 +8,26 @@ depart are left out (`outlier_kernel`). After the first turn the background's sl
 (`ring_kernel`); shapes are looked at in the end (`shape_kernel`, `ghost_kernel`), and what speaks
 against an answer is concluded from all that (`doubts_kernel`).
 
+About a point m / 2, m whole, pixels x and m - x pair without interpolation. With f the spot about
+its centre c, d = 2 c - m and u = x - m / 2, a pair's difference is ``D = f(u - d/2) - f(u + d/2)``
+and its mean ``S = (f(u - d/2) + f(u + d/2)) / 2``, so that ``D = -2 tanh(d . grad / 2) S``: a
+filter on S that depends on d alone. Noise of D and S is independent where both pixels have the
+same, and so is that of different pairs: d solves the weighted least squares of D on the slopes of
+S, by steps. Half of the Fisher information about c is in f(u - d/2), half in its mirror image, and
+an unknown but symmetric f is orthogonal to both: nothing of the Cramer-Rao bound is lost.
+
+A weight is one over the variance: of a dark pixel, and of what neighbouring departures differ by
+where there is light, by the mean light around; weights as sharp as a rim would turn what slopes
+miss of it into a share of d. The slopes that weigh are smoothed as long as that lowers the
+variance, and products with those that predict are freed of the noise that both have in common.
+
 The stages share these arrays, a row a frame. Lengths are in pixels, light is over the peak's.
 
-- `boxes`: first column and row, last row and number of columns of the window about the middle;
-  the stride, columns and rows before the core, rows of the core's upper half.
+- `lights`, `boxes`, `states`, `grounds` and `forms`: records, see `records`.
 - `s`, `d`: means and differences of the window's pairs, upper half, row after row a stride apart;
   those of `s` after 7 rows and 8 numbers of margin.
 - `keep`: what a pair of the core counts: 1, a half in a middle row, 0 for one left out, and -1 for
   one to be replaced. `e`: what the fit leaves of the difference; `slack`: the size of its slopes.
-- `states`: variance of a dark pixel, and what light adds to it; displacement d along x and y;
-  covariance xx, yy, xy of the centre; noise's share in the weighting; how the centre moves with
-  the sums that the fit solves for (4); pairs left out; the departures of those in clusters; d along
-  x and y for which the slopes are.
 """
 
 from __future__ import annotations
@@ -33,7 +41,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import Floats
+from algorithms.extractors.frames.mirror.records import BACKGROUND, BOX, FORM, LIGHT, STATE
 from algorithms.inputs import Frames, as_frames
+from algorithms.kernels.records import Records
 from algorithms.measurement import Doubt, Measurement, as_bad, as_batch, without_bad
 
 #: Turns of fit and leaving out; middles that are tried; d, px, from which another one is nearer.
@@ -41,8 +51,6 @@ _TURNS, _CENTRES, _FAR = 6, 3, 0.75
 #: Numbers in all lines of the frames that are worked on at once: 1 MB, and at most 16 MB where one
 #: window is much larger than the others, as long as its lines.
 _CHUNK, _MOST = 2**18, 2**22
-#: Columns that `shape_kernel.shapes` and `ghost_kernel.skewness` write.
-_SHAPE = 14
 _KEPT = threading.local()
 
 
@@ -124,14 +132,14 @@ def registered(
     result = Registered(found, np.full((count, 2), np.nan))
     if min(height, width) < 5:
         return result
-    lights = np.empty((count, search.FOUND))
+    lights = np.empty(count, dtype=LIGHT)
     unusable = np.empty(count, dtype=np.bool_)
     kernels.moments.unusable(frames, frames.dtype.kind == "f", unusable)
     search.find_lights(frames, unusable, lights)
-    why = lights[:, 8]
+    why = lights["refusal"]
     found.doubts[why == search.SEVERAL] = int(Doubt.SEVERAL_SPOTS)
     found.doubts[why == search.EDGE] = int(Doubt.CUT)
-    seen = np.flatnonzero(why == 0.0)
+    seen = np.flatnonzero(why == 0)
     if len(seen):
         _register_seen(frames, seen, lights[seen], mask, longest_px, result)
     return result
@@ -140,7 +148,7 @@ def registered(
 def _register_seen(  # noqa: PLR0917 - what is known of the frames
     frames: Frames,
     seen: NDArray[np.int64],
-    lights: Floats,
+    lights: Records,
     mask: NDArray[np.bool_],
     longest_px: float | None,
     result: Registered,
@@ -148,9 +156,9 @@ def _register_seen(  # noqa: PLR0917 - what is known of the frames
     """Write centres, covariances, doubts and noise of the frames `seen`, chunk by chunk."""
     kernels, n = _kernels(), len(seen)
     numbers = np.empty(3, dtype=np.int64)
-    states, slopes = np.zeros((n, 16)), np.zeros((n, 9))
-    boxes, middles = np.zeros((n, 8), dtype=np.int64), np.empty((n, 2), dtype=np.int64)
-    shapes = np.full((n, _SHAPE), np.nan)
+    states, grounds = np.zeros(n, dtype=STATE), np.zeros(n, dtype=BACKGROUND)
+    boxes, middles = np.zeros(n, dtype=BOX), np.empty((n, 2), dtype=np.int64)
+    forms = np.zeros(n, dtype=FORM)
     kernels.pairs.begin(lights, frames.shape[1], frames.shape[2], middles, states, numbers)
     length, core, total = numbers.tolist()
     step = max(1, min(n, _CHUNK * n // total, _MOST // (2 * length + 3 * core)))
@@ -161,7 +169,7 @@ def _register_seen(  # noqa: PLR0917 - what is known of the frames
     work = space[one + other :].reshape(16, length)
     for begin in range(0, n, step):
         part = slice(begin, begin + step)
-        state = _State(boxes[part], middles[part], states[part], slopes[part], shapes[part])
+        state = _State(boxes[part], middles[part], states[part], grounds[part], forms[part])
         _chunk(frames, seen[part], lights[part], mask, lines, work, state)
     found = result.found
     kernels.doubts.conclude(
@@ -172,7 +180,7 @@ def _register_seen(  # noqa: PLR0917 - what is known of the frames
         boxes,
         middles,
         states,
-        shapes,
+        forms,
         found.features,
         found.covariance,
         found.doubts,
@@ -233,17 +241,17 @@ def _space(size: int) -> NDArray[np.float32]:
 class _State(NamedTuple):
     """What the stages know of the frames of a chunk."""
 
-    boxes: NDArray[np.int64]
+    boxes: Records
     middles: NDArray[np.int64]
-    states: Floats
-    slopes: Floats
-    shapes: Floats
+    states: Records
+    grounds: Records
+    forms: Records
 
 
 def _chunk(  # noqa: PLR0917 - the stages' arrays, in their order
     frames: Frames,
     which: NDArray[np.int64],
-    lights: Floats,
+    lights: Records,
     bad: NDArray[np.bool_],
     lines: tuple[NDArray[np.float32], ...],
     work: NDArray[np.float32],
@@ -254,28 +262,28 @@ def _chunk(  # noqa: PLR0917 - the stages' arrays, in their order
     fit, leave_out, pair_up = kernels.fit.fit, kernels.outliers.leave_out, kernels.pairs.pair_up
     s, d, keep, e, slack = lines
     boxes, middles, states = state.boxes, state.middles, state.states
-    slopes, shapes = state.slopes, state.shapes
+    grounds, forms = state.grounds, state.forms
     every, todo = np.arange(n), np.arange(n)
     pair_up(frames, which, todo, lights, middles, bad, boxes, s, d, keep, work, states)
-    far = fit(todo, boxes, True, slopes, s, d, keep, e, slack, work, states)
+    far = fit(todo, boxes, True, grounds, s, d, keep, e, slack, work, states)
     for _ in range(_CENTRES - 1):
         if far == 0:
             break
-        again = np.flatnonzero(np.abs(states[:, 2:4]).max(axis=1) > _FAR)
-        moved = np.rint(np.clip(states[again, 2:4], -4.0, 4.0)).astype(np.int64)
-        states[again, 2:4] -= moved
+        again = np.flatnonzero(np.abs(states["d"]).max(axis=1) > _FAR)
+        moved = np.rint(np.clip(states["d"][again], -4.0, 4.0)).astype(np.int64)
+        states["d"][again] -= moved
         middles[again] += moved
-        states[again, 4] = 0.0
+        states["xx"][again] = 0.0
         pair_up(frames, which, again, lights, middles, bad, boxes, s, d, keep, work, states)
-        far = fit(again, boxes, True, slopes, s, d, keep, e, slack, work, states)
+        far = fit(again, boxes, True, grounds, s, d, keep, e, slack, work, states)
     left = n
     for turn in range(_TURNS):
         if turn:
-            fit(todo[:left], boxes, False, slopes, s, d, keep, e, slack, work, states)
+            fit(todo[:left], boxes, False, grounds, s, d, keep, e, slack, work, states)
         left = leave_out(todo[:left], boxes, turn == 0, bad, s, d, keep, e, slack, work, states)
         if turn == 0:
-            kernels.ring.flatten(todo[:left], boxes, lights, s, d, work, states, slopes)
+            kernels.ring.flatten(todo[:left], boxes, lights, s, d, work, states, grounds)
         if left == 0:
             break
-    kernels.shape.shapes(every, boxes, s, keep, e, slack, work, states, shapes[:, :13])
-    kernels.ghost.skewness(boxes, s, keep, e, work, states, shapes)
+    kernels.shape.shapes(every, boxes, s, keep, e, slack, work, states, forms)
+    kernels.ghost.skewness(boxes, s, keep, e, work, states, forms)

@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.extractors.frames.mirror.records import Light
+from algorithms.kernels.records import Records, record
 
 #: Standard deviations of a dark pixel by which the brightest block must be above the background,
 #: and a lit one; the fraction of the brightest block's light that a lit one must have.
@@ -28,11 +30,42 @@ _RIVAL = 0.15
 _LOOSE = 1.25
 #: Regions from which on a frame is taken for noise.
 _MOST = 256
-#: Sums of a region: see `_add_run`.
-_SUMS = 14
-#: What `find_lights` writes of a frame; why there is no light, in the last column.
-FOUND = 9
-DARK, SEVERAL, EDGE = 1.0, 2.0, 3.0
+#: Why there is no light.
+DARK, SEVERAL, EDGE = 1, 2, 3
+
+
+class Region:
+    """Sums over the blocks of a region that is lit.
+
+    Attributes
+    ----------
+    light
+        Above the background.
+    above, above_x, above_y
+        Light above the cut, and that times x and y.
+    blocks, x, y, xx, yy, xy
+        Number of blocks, and sums of their places and of the products of these.
+    left, right, top, bottom
+        First and last column, first and last row.
+    """
+
+    light: float
+    above: float
+    above_x: float
+    above_y: float
+    blocks: float
+    x: float
+    y: float
+    xx: float
+    yy: float
+    xy: float
+    left: float
+    right: float
+    top: float
+    bottom: float
+
+
+_REGION = record(Region)
 
 
 @compiled
@@ -135,13 +168,9 @@ def _root(parents: NDArray[np.int64], label: int) -> int:
 
 @compiled
 def _add_run(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    row: NDArray[Any], i: int, first: int, end: int, base: float, cut: float, sums: Floats
+    row: NDArray[Any], i: int, first: int, end: int, base: float, cut: float, region: Region
 ) -> None:
-    """Add the blocks ``first .. end - 1`` of row i to a region.
-
-    `sums`: light, light above the cut and its x and y; blocks, their x, y, x^2, y^2 and x y;
-    first and last column, first and last row.
-    """
+    """Add the blocks ``first .. end - 1`` of row i to a region."""
     # Every other block to the other sums: one alone waits for itself.
     light, other, light_x, other_x = 0.0, 0.0, 0.0, 0.0
     n = end - first
@@ -160,20 +189,20 @@ def _add_run(  # noqa: PLR0917 - Numba takes no keyword-only ones
     light += other
     x = 0.5 * n * (first + end - 1)
     above = light - n * (cut - base)
-    sums[0] += light
-    sums[1] += above
-    sums[2] += light_x + other_x + first * light - x * (cut - base)
-    sums[3] += i * above
-    sums[4] += n
-    sums[5] += x
-    sums[6] += i * n
-    sums[7] += x * x / n + n * (n * n - 1.0) / 12.0
-    sums[8] += i * i * n
-    sums[9] += i * x
-    sums[10] = min(sums[10], first)
-    sums[11] = max(sums[11], end - 1)
-    sums[12] = min(sums[12], i)
-    sums[13] = max(sums[13], i)
+    region.light += light
+    region.above += above
+    region.above_x += light_x + other_x + first * light - x * (cut - base)
+    region.above_y += i * above
+    region.blocks += n
+    region.x += x
+    region.y += i * n
+    region.xx += x * x / n + n * (n * n - 1.0) / 12.0
+    region.yy += i * i * n
+    region.xy += i * x
+    region.left = min(region.left, first)
+    region.right = max(region.right, end - 1)
+    region.top = min(region.top, i)
+    region.bottom = max(region.bottom, i)
 
 
 @compiled
@@ -202,7 +231,7 @@ def _regions(  # noqa: C901, PLR0917 - one scan, its cases
     lit: NDArray[np.int32],
     runs: NDArray[np.int64],
     parents: NDArray[np.int64],
-    sums: Floats,
+    regions: Records,
 ) -> int:
     """Gather the connected regions above a cut; return how many labels were given, -1 for too many.
 
@@ -236,7 +265,7 @@ def _regions(  # noqa: C901, PLR0917 - one scan, its cases
                     label = other
                 elif other != label:
                     parents[other] = label
-                    _join(sums[label], sums[other])
+                    _join(regions[label], regions[other])
                 q += 1
             if label < 0:
                 if labels == len(parents):
@@ -244,10 +273,8 @@ def _regions(  # noqa: C901, PLR0917 - one scan, its cases
                 label = labels
                 labels += 1
                 parents[label] = label
-                sums[label] = 0.0
-                sums[label, 10], sums[label, 11] = np.inf, -np.inf
-                sums[label, 12], sums[label, 13] = np.inf, -np.inf
-            _add_run(row, i, first, j, base, cut, sums[label])
+                _clear(regions[label])
+            _add_run(row, i, first, j, base, cut, regions[label])
             runs[new, 0, here], runs[new, 1, here], runs[new, 2, here] = first, j, label
             here += 1
         above = here
@@ -255,34 +282,55 @@ def _regions(  # noqa: C901, PLR0917 - one scan, its cases
 
 
 @compiled
-def _join(sums: Floats, other: Floats) -> None:
-    """Add the sums of one region to those of another one."""
-    sums[:10] += other[:10]
-    sums[10], sums[12] = min(sums[10], other[10]), min(sums[12], other[12])
-    sums[11], sums[13] = max(sums[11], other[11]), max(sums[13], other[13])
+def _clear(region: Region) -> None:
+    """Begin a region without any block."""
+    region.light, region.above, region.above_x, region.above_y = 0.0, 0.0, 0.0, 0.0
+    region.blocks, region.x, region.y = 0.0, 0.0, 0.0
+    region.xx, region.yy, region.xy = 0.0, 0.0, 0.0
+    region.left, region.right, region.top, region.bottom = np.inf, -np.inf, np.inf, -np.inf
 
 
 @compiled
-def _compact(s: Floats) -> bool:
+def _join(region: Region, other: Region) -> None:
+    """Add the sums of another region to those of one."""
+    region.light += other.light
+    region.above += other.above
+    region.above_x += other.above_x
+    region.above_y += other.above_y
+    region.blocks += other.blocks
+    region.x += other.x
+    region.y += other.y
+    region.xx += other.xx
+    region.yy += other.yy
+    region.xy += other.xy
+    region.left, region.right = min(region.left, other.left), max(region.right, other.right)
+    region.top, region.bottom = min(region.top, other.top), max(region.bottom, other.bottom)
+
+
+@compiled
+def _compact(region: Region) -> bool:
     """Whether a region's blocks lie together as those of an ellipse or a square do."""
-    n = s[4]
-    xx = s[7] / n - (s[5] / n) ** 2 + 1.0 / 12.0
-    yy = s[8] / n - (s[6] / n) ** 2 + 1.0 / 12.0
-    xy = s[9] / n - s[5] * s[6] / (n * n)
+    n = region.blocks
+    xx = region.xx / n - (region.x / n) ** 2 + 1.0 / 12.0
+    yy = region.yy / n - (region.y / n) ** 2 + 1.0 / 12.0
+    xy = region.xy / n - region.x * region.y / (n * n)
     area: float = 4.0 * math.pi * math.sqrt(max(xx * yy - xy * xy, 0.0))
     return area <= _LOOSE * max(float(n), 4.0)
 
 
 @compiled
-def find_lights(  # noqa: C901 - one frame, its cases
-    frames: NDArray[Any], unusable: NDArray[np.bool_], out: Floats
-) -> None:
-    """Write to `out` (N, 9) where the one light of a frame is; NaN rows where there is not one.
+def _refuse(light: Light, refusal: int) -> None:
+    """Say that there is no light, and why."""
+    light.middle[:], light.half[:] = np.nan, np.nan
+    light.base, light.noise, light.peak, light.fill = np.nan, np.nan, np.nan, np.nan
+    light.refusal = refusal
 
-    Columns: x, y of its blocks' light above the cut, half its extent along x and y, background,
-    variance of a dark pixel, light of the brightest block, and mean light of the lit ones over it;
-    last, zero, or why there is none: `DARK`, `SEVERAL` or `EDGE`.
-    """
+
+@compiled
+def find_lights(  # noqa: C901 - one frame, its cases
+    frames: NDArray[Any], unusable: NDArray[np.bool_], lights: Records
+) -> None:
+    """Write where the one light of each frame is, or why there is not one."""
     count, height, width = frames.shape
     flat = frames.reshape(count, height * width)
     least = np.empty((height - 1, width), dtype=frames.dtype)
@@ -291,10 +339,10 @@ def find_lights(  # noqa: C901 - one frame, its cases
     work = np.empty((4, 2 * (height + width)))
     runs = np.empty((2, 3, width), dtype=np.int64)
     parents = np.empty(_MOST, dtype=np.int64)
-    sums = np.empty((_MOST, _SUMS))
+    regions = np.empty(_MOST, dtype=_REGION)
     for k in range(count):
-        out[k] = np.nan
-        out[k, 8] = DARK
+        light = lights[k]
+        _refuse(light, DARK)
         if unusable[k]:
             continue
         frame = frames[k]
@@ -305,33 +353,30 @@ def find_lights(  # noqa: C901 - one frame, its cases
         if not peak > _SEEN * sigma:
             continue
         cut = base + max(_CUT * peak, _LIT * sigma)
-        labels = _regions(least, maxima, base, cut, columns, lit, runs, parents, sums)
+        labels = _regions(least, maxima, base, cut, columns, lit, runs, parents, regions)
         best, total = -1, 0.0
         if labels < 0:
             continue
         for label in range(labels):
             if parents[label] == label:
-                total += sums[label, 0]
-                if best < 0 or sums[label, 0] > sums[best, 0]:
+                total += regions[label].light
+                if best < 0 or regions[label].light > regions[best].light:
                     best = label
         if best < 0:
             continue
-        s = sums[best]
-        inside = s[10] > 0 and s[12] > 0 and s[11] < width - 2 and s[13] < height - 2
-        alone = total - s[0] <= _RIVAL * s[0]
-        if not (s[4] >= 2 and s[1] > 0.0):
+        s = regions[best]
+        inside = s.left > 0 and s.top > 0 and s.right < width - 2 and s.bottom < height - 2
+        alone = total - s.light <= _RIVAL * s.light
+        if not (s.blocks >= 2 and s.above > 0.0):
             continue
         if not inside or not alone or not _compact(s):
-            out[k, 8] = EDGE if not inside else SEVERAL
+            light.refusal = EDGE if not inside else SEVERAL
             continue
         # A block's middle is half a pixel beyond its first pixel.
-        x, y = s[2] / s[1] + 0.5, s[3] / s[1] + 0.5
-        out[k, 0] = x
-        out[k, 1] = y
-        out[k, 2] = max(x - s[10], s[11] + 1.0 - x)
-        out[k, 3] = max(y - s[12], s[13] + 1.0 - y)
-        out[k, 4] = base
-        out[k, 5] = noise
-        out[k, 6] = peak
-        out[k, 7] = s[0] / (s[4] * peak)
-        out[k, 8] = 0.0
+        x, y = s.above_x / s.above + 0.5, s.above_y / s.above + 0.5
+        light.middle[0], light.middle[1] = x, y
+        light.half[0] = max(x - s.left, s.right + 1.0 - x)
+        light.half[1] = max(y - s.top, s.bottom + 1.0 - y)
+        light.base, light.noise, light.peak = base, noise, peak
+        light.fill = s.light / (s.blocks * peak)
+        light.refusal = 0

@@ -9,8 +9,8 @@ import numpy as np
 
 from algorithms.contract import SensorGeometry, UnsuitableDesignError
 from algorithms.extractors.frames.multi_spot.aperture_pattern import (
-    Apertures,
     FieldPx,
+    PatternSearch,
     nearest_distance,
 )
 from algorithms.inputs import require_positive
@@ -73,28 +73,23 @@ def _field(geometry: SensorGeometry, focal_px: float) -> FieldPx | None:
     return (*centre, round(reach, 6))
 
 
-def require_pattern(  # noqa: PLR0917 - the parameters in their order
-    by: str,
-    apertures_px: Apertures,
-    blur_px: float,
-    threshold: float,
-    tolerance_px: float,
-    faulty_lines: int,
-    field_px: FieldPx | None,
-) -> None:
+def require_pattern(search: PatternSearch) -> None:
     """Raise ValueError naming the first parameter of a pattern that is out of range."""
-    rows = np.array(apertures_px, dtype=np.float64) if apertures_px else np.empty((0, 3))
+    by, tolerance_px, field_px = search.about.name, search.tolerance_px, search.field_px
+    rows = (
+        np.array(search.apertures_px, dtype=np.float64) if search.apertures_px else np.empty((0, 3))
+    )
     if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) == 0 or not np.isfinite(rows).all():
         raise ValueError(f"{by}: apertures_px must be rows of finite x, y, width; got {rows.shape}")
     if not (rows[:, 2] > 0).all():
         raise ValueError(f"{by}: widths in apertures_px must be positive; got {rows[:, 2].min()}")
-    if not (math.isfinite(blur_px) and blur_px >= 0):
-        raise ValueError(f"{by}: blur_px must be finite and not negative; got {blur_px!r}")
-    if not 0.0 < threshold < 1.0:
-        raise ValueError(f"{by}: threshold must be in (0, 1); got {threshold!r}")
+    if not (math.isfinite(search.blur_px) and search.blur_px >= 0):
+        raise ValueError(f"{by}: blur_px must be finite and not negative; got {search.blur_px!r}")
+    if not 0.0 < search.threshold < 1.0:
+        raise ValueError(f"{by}: threshold must be in (0, 1); got {search.threshold!r}")
     require_positive(by, tolerance_px=tolerance_px)
-    if faulty_lines < 0:
-        raise ValueError(f"{by}: faulty_lines must not be negative; got {faulty_lines!r}")
+    if search.faulty_lines < 0:
+        raise ValueError(f"{by}: faulty_lines must not be negative; got {search.faulty_lines!r}")
     if field_px is not None and not (
         len(field_px) == 3 and all(map(math.isfinite, field_px)) and field_px[2] > 0
     ):

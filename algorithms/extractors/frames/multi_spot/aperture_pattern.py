@@ -6,12 +6,12 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.contract import Floats
+from algorithms.contract import AboutExtractor, Floats
 from algorithms.extractors.frames.multi_spot.pattern_memory import found_once
 from algorithms.row_arithmetic import medians
 
@@ -97,6 +97,36 @@ class Pattern(NamedTuple):
     ambiguous: NDArray[np.bool_]
 
 
+class PatternSearch(Protocol):
+    """What methods that read a mask's pattern of apertures say of it: see their parameters."""
+
+    about: ClassVar[AboutExtractor]
+
+    @property
+    def apertures_px(self) -> Apertures:
+        """The mask."""
+
+    @property
+    def blur_px(self) -> float:
+        """Width of the Sun's image behind a hole."""
+
+    @property
+    def threshold(self) -> float:
+        """Fraction of the spots' brightness that makes a spot."""
+
+    @property
+    def tolerance_px(self) -> float:
+        """Largest distance of a spot from its aperture's place."""
+
+    @property
+    def faulty_lines(self) -> int:
+        """Lines of apertures that may be dark or doubled at once."""
+
+    @property
+    def field_px(self) -> FieldPx | None:
+        """Middle and reach of the field of view."""
+
+
 def nearest_distance(apertures: Floats) -> float:
     """Least distance of two apertures (A, 3); infinite for one alone."""
     if len(apertures) == 1:
@@ -162,16 +192,8 @@ def frame_levels(frames: NDArray[Any], apertures_px: Apertures, threshold: float
     return Levels(maxima, floor, peak, level)
 
 
-def find_pattern(  # noqa: PLR0917 - the parameters in their order
-    frames: NDArray[Any],
-    levels: Levels,
-    apertures_px: Apertures,
-    blur_px: float,
-    tolerance_px: float,
-    faulty_lines: int,
-    field_px: FieldPx | None = None,
-    *,
-    sequence: bool = False,
+def find_pattern(
+    search: PatternSearch, frames: NDArray[Any], levels: Levels, *, sequence: bool = False
 ) -> Pattern:
     """Find the pattern in each of the frames (N, H, W) of `as_frames`.
 
@@ -180,11 +202,11 @@ def find_pattern(  # noqa: PLR0917 - the parameters in their order
     the least distance of two apertures from the frame before's. Not to be written to: it may be
     another method's too (`pattern_memory.shared_patterns`).
     """
-    limits = blur_px, tolerance_px, faulty_lines, field_px, sequence
+    limits = search.blur_px, search.tolerance_px, search.faulty_lines, search.field_px, sequence
     return found_once(
         frames,
-        (apertures_px, limits, levels.threshold.tobytes()),
-        lambda: _find_pattern(frames, levels, apertures_px, limits),
+        (search.apertures_px, limits, levels.threshold.tobytes()),
+        lambda: _find_pattern(frames, levels, search.apertures_px, limits),
     )
 
 
@@ -290,30 +312,35 @@ def margin_px(blur_px: float) -> float:
 
 
 def followed(
-    follow: Callable[[int, int, Pattern], Floats], pattern: Pattern, nearest_px: float
+    search: PatternSearch,
+    frames: NDArray[Any],
+    follow: Callable[[NDArray[Any], Levels, Pattern], Floats],
 ) -> Floats:
     """Displacements (N, 2) of spots followed through a sequence, verified frame by frame.
 
     Parameters
     ----------
+    search
+        The method.
+    frames
+        (N, H, W) of `as_frames`, in the order of time.
     follow
-        ``follow(start, end, pattern)`` follows the spots from frame ``start``, whose pattern
-        alone it is given, and returns the displacements of the frames up to ``end - 1``, NaN
-        from where it lost them.
-    pattern
-        What `find_pattern` found in the sequence.
-    nearest_px
-        Least distance of two apertures.
+        ``follow(frames, levels, pattern)`` follows the spots through some of the frames, of whose
+        first alone it is given the pattern, and returns their displacements, NaN from where it
+        lost them.
 
     Returns
     -------
     ndarray, shape (N, 2)
-        NaN where no pattern was found. Where the pattern moves by a quarter of `nearest_px` or
-        more, or what is followed is as far from it, the spots are taken anew from the pattern.
+        NaN where no pattern was found. Where the pattern moves by a quarter of the least distance
+        of two apertures or more, or what is followed is as far from it, the spots are taken anew
+        from the pattern.
     """
+    levels = frame_levels(frames, search.apertures_px, search.threshold)
+    pattern = find_pattern(search, frames, levels, sequence=True)
     count = len(pattern.displacement)
     found = np.full((count, 2), np.nan)
-    astray = nearest_px / 4.0
+    astray = lattice(search.apertures_px).nearest_px / 4.0
     known: NDArray[np.bool_] = np.isfinite(pattern.displacement[:, 0])
     start = 0
     while start < count:
@@ -331,7 +358,7 @@ def followed(
             pattern.spots[start : start + 1],
             pattern.ambiguous[start : start + 1],
         )
-        part = follow(start, end, here)
+        part = follow(frames[start:end], levels.part(start, end), here)
         away = np.hypot(*(part - pattern.displacement[start:end]).T)
         lost = np.flatnonzero(~(away < astray))
         done = int(lost[0]) if len(lost) else end - start

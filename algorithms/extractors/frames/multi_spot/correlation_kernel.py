@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.extractors.frames.multi_spot.view_kernel import is_whole
 
 _ROUNDS = 5  # of moving the windows, at most
 _STAY = 0.5  # px from the windows' centres within which they stay
@@ -105,9 +106,8 @@ def _sum_up(  # noqa: PLR0917 - Numba takes no keyword-only ones
     for a in range(apertures.shape[0]):
         at_x = apertures[a, 0] + x
         at_y = apertures[a, 1] + y
-        half = 0.5 * apertures[a, 2] + margin
-        if not (half <= at_x < width - 1 - half and half <= at_y < height - 1 - half):
-            continue  # also where NaN
+        if not is_whole(at_x, at_y, 0.5 * apertures[a, 2] + margin, height, width):
+            continue
         expected += 1
         column = math.floor(at_x + 0.5)
         line = math.floor(at_y + 0.5)

@@ -154,15 +154,7 @@ class ImageCorrelation(Extractor):
     field_px: FieldPx | None = None
 
     def __post_init__(self) -> None:
-        require_pattern(
-            self.about.name,
-            self.apertures_px,
-            self.blur_px,
-            self.threshold,
-            self.tolerance_px,
-            self.faulty_lines,
-            self.field_px,
-        )
+        require_pattern(self)
         if self.shape not in get_args(Shape):
             raise ValueError(
                 f"{self.about.name}: shape must be one of {', '.join(get_args(Shape))}; "
@@ -227,31 +219,15 @@ class ImageCorrelation(Extractor):
         of two apertures or more, and where the spots are lost, the windows start anew from it.
         ValueError on wrong input.
         """
-        frames = as_frames(observations)
-        levels = frame_levels(frames, self.apertures_px, self.threshold)
 
-        def follow(start: int, end: int, first: Pattern) -> Floats:
-            part = levels.part(start, end)
-            return self._correlate(frames[start:end], part, first.displacement, sequence=True)[0]
+        def follow(frames: NDArray[Any], levels: Levels, first: Pattern) -> Floats:
+            return self._correlate(frames, levels, first.displacement, sequence=True)[0]
 
-        pattern = self._pattern(frames, levels, sequence=True)
-        return followed(follow, pattern, lattice(self.apertures_px).nearest_px)
-
-    def _pattern(self, frames: NDArray[Any], levels: Levels, *, sequence: bool = False) -> Pattern:
-        return find_pattern(
-            frames,
-            levels,
-            self.apertures_px,
-            self.blur_px,
-            self.tolerance_px,
-            self.faulty_lines,
-            self.field_px,
-            sequence=sequence,
-        )
+        return followed(self, as_frames(observations), follow)
 
     def _correlated(self, frames: Frames) -> tuple[Floats, Floats, Pattern]:
         levels = frame_levels(frames, self.apertures_px, self.threshold)
-        pattern = self._pattern(frames, levels)
+        pattern = find_pattern(self, frames, levels)
         return *self._correlate(frames, levels, pattern.displacement, sequence=False), pattern
 
     def _correlate(

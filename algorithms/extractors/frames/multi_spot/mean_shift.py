@@ -153,15 +153,7 @@ class MeanShift(Extractor):
     field_px: FieldPx | None = None
 
     def __post_init__(self) -> None:
-        require_pattern(
-            self.about.name,
-            self.apertures_px,
-            self.blur_px,
-            self.threshold,
-            self.tolerance_px,
-            self.faulty_lines,
-            self.field_px,
-        )
+        require_pattern(self)
         require_positive(
             self.about.name, bandwidth_px=self.bandwidth_px, convergence_px=self.convergence_px
         )
@@ -222,31 +214,15 @@ class MeanShift(Extractor):
         apertures or more, and where the spots are lost, the shift starts anew from it with a goal
         of that frame. ValueError on wrong input.
         """
-        frames = as_frames(observations)
-        levels = frame_levels(frames, self.apertures_px, self.threshold)
 
-        def follow(start: int, end: int, first: Pattern) -> Floats:
-            part = levels.part(start, end)
-            return self._shift(frames[start:end], part, first, sequence=True)[0]
+        def follow(frames: NDArray[Any], levels: Levels, first: Pattern) -> Floats:
+            return self._shift(frames, levels, first, sequence=True)[0]
 
-        pattern = self._pattern(frames, levels, sequence=True)
-        return followed(follow, pattern, lattice(self.apertures_px).nearest_px)
-
-    def _pattern(self, frames: NDArray[Any], levels: Levels, *, sequence: bool = False) -> Pattern:
-        return find_pattern(
-            frames,
-            levels,
-            self.apertures_px,
-            self.blur_px,
-            self.tolerance_px,
-            self.faulty_lines,
-            self.field_px,
-            sequence=sequence,
-        )
+        return followed(self, as_frames(observations), follow)
 
     def _shifted(self, frames: Frames) -> tuple[Floats, Floats, Floats, Pattern]:
         levels = frame_levels(frames, self.apertures_px, self.threshold)
-        pattern = self._pattern(frames, levels)
+        pattern = find_pattern(self, frames, levels)
         return *self._shift(frames, levels, pattern, sequence=False), pattern
 
     def _shift(

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.extractors.frames.multi_spot.view_kernel import is_whole
 
 Bins = NDArray[np.int64]
 
@@ -215,12 +216,6 @@ def _place(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _whole(x: float, y: float, half: float, height: int, width: int) -> bool:
-    """Whether a spot of this half width is whole in the frame; not where it is NaN."""
-    return half <= x < width - 1 - half and half <= y < height - 1 - half
-
-
-@compiled
 def shift_spots(  # noqa: PLR0917 - Numba takes no keyword-only ones
     frames: NDArray[Any],
     levels: Floats,
@@ -289,7 +284,7 @@ def shift_spots(  # noqa: PLR0917 - Numba takes no keyword-only ones
             at_y = apertures[a, 1] + y
             if not fresh and not np.isnan(spots[k - 1, a, 0]):
                 at_x, at_y = spots[k - 1, a]
-            if not _whole(at_x, at_y, 0.5 * apertures[a, 2] + margin, height, width):
+            if not is_whole(at_x, at_y, 0.5 * apertures[a, 2] + margin, height, width):
                 continue
             expected += 1
             near_x, near_y, likeness = _place(

@@ -129,15 +129,7 @@ class MultipleCentroids(Extractor):
     field_px: FieldPx | None = None
 
     def __post_init__(self) -> None:
-        require_pattern(
-            self.about.name,
-            self.apertures_px,
-            self.blur_px,
-            self.threshold,
-            self.tolerance_px,
-            self.faulty_lines,
-            self.field_px,
-        )
+        require_pattern(self)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -174,15 +166,8 @@ class MultipleCentroids(Extractor):
         return mean_displacement(pattern.spots, lattice(self.apertures_px).apertures), pattern
 
     def _pattern(self, frames: Frames) -> Pattern:
-        return find_pattern(
-            frames,
-            frame_levels(frames, self.apertures_px, self.threshold),
-            self.apertures_px,
-            self.blur_px,
-            self.tolerance_px,
-            self.faulty_lines,
-            self.field_px,
-        )
+        levels = frame_levels(frames, self.apertures_px, self.threshold)
+        return find_pattern(self, frames, levels)
 
 
 def mean_displacement(spots: Floats, apertures: Floats) -> Floats:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.extractors.frames.multi_spot.spot_pixels_kernel import GX, GY, Form, R, U, X, Y
+from algorithms.kernels.records import Records, record
 
 #: Px between the knots of the profile, a cubic spline, and what keeps it smooth where no pixel is.
 _KNOTS, _SMOOTH = 0.65, 3e-2
@@ -25,8 +28,29 @@ _STEPS, _ASTRAY = 2, 0.7
 _LIGHT = 0.2
 #: Variance of the profile's slope, over that of a pixel and the number of them between knots.
 _UNSURE = 4.0
-#: Rows of a pixel's numbers: column, row, light, distance from its spot's middle, its slopes.
-_X, _Y, _U, _R, _GX, _GY = 0, 1, 2, 3, 4, 5
+
+
+class Sample:
+    """The profile at one distance from a spot's middle.
+
+    Attributes
+    ----------
+    light, slope
+        Of a spot of the mean light.
+    slope_around, light_around
+        Means of both around.
+    pixels
+        That tell the profile between its knots.
+    """
+
+    light: float
+    slope: float
+    slope_around: float
+    light_around: float
+    pixels: float
+
+
+_SAMPLE = record(Sample)
 
 # One interval of a cubic B-spline: the powers of t in each of the four that are not zero there.
 _BASIS = (
@@ -41,8 +65,8 @@ _BASIS = (
 def _measure(pixels: Floats, x: float, y: float, metric: tuple[float, float, float]) -> None:
     """Write the distances of one spot's pixels (6, P) from its middle, and their slopes."""
     xx, xy, yy = metric
-    across, along = pixels[_X], pixels[_Y]
-    r, gx, gy = pixels[_R], pixels[_GX], pixels[_GY]
+    across, along = pixels[X], pixels[Y]
+    r, gx, gy = pixels[R], pixels[GX], pixels[GY]
     for p in range(r.size):
         dx = across[p] - x
         dy = along[p] - y
@@ -85,8 +109,8 @@ def _moments(
         for p in range(begin, ends[s] if inverse > 0.0 else begin):
             if not kept[p]:
                 continue
-            u = pixels[_U, p] * inverse
-            t = pixels[_R, p] * (1.0 / _KNOTS)
+            u = pixels[U, p] * inverse
+            t = pixels[R, p] * (1.0 / _KNOTS)
             m = np.uint32(t)
             t -= m
             at = moments[m]
@@ -178,26 +202,32 @@ def _spline(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _sample(table: Floats, fine: Floats) -> None:
-    """Write the profile, its slope, the mean of both around, and the pixels between knots.
-
-    Columns of `fine` (F, 5), `_FINE` rows a px. The middle repeats itself on its other side.
-    """
+def _sample(table: Floats, fine: Records) -> None:
+    """Write `_FINE` samples a px of the profile. The middle repeats itself on its other side."""
     intervals = table.shape[0]
     for f in range(fine.shape[0]):
         t = f * (1.0 / (_FINE * _KNOTS))
         m = min(int(t), intervals - 1)
         t = min(t - m, 1.0)
         at = table[m]
-        fine[f, 0] = at[0] + t * (at[1] + t * (at[2] + t * at[3]))
-        fine[f, 1] = (at[1] + t * (2.0 * at[2] + t * 3.0 * at[3])) * (1.0 / _KNOTS)
-        fine[f, 4] = at[4]
+        fine[f].light = at[0] + t * (at[1] + t * (at[2] + t * at[3]))
+        fine[f].slope = (at[1] + t * (2.0 * at[2] + t * 3.0 * at[3])) * (1.0 / _KNOTS)
+        fine[f].pixels = at[4]
     last = fine.shape[0] - 1
     for f in range(fine.shape[0]):
-        near = abs(f - _AROUND)
-        far = min(f + _AROUND, last)
-        fine[f, 2] = (fine[far, 0] - fine[near, 0]) * (_FINE / (2.0 * _AROUND))
-        fine[f, 3] = 0.25 * (fine[near, 0] + fine[far, 0]) + 0.5 * fine[f, 0]
+        near = fine[abs(f - _AROUND)].light
+        far = fine[min(f + _AROUND, last)].light
+        fine[f].slope_around = (far - near) * (_FINE / (2.0 * _AROUND))
+        fine[f].light_around = 0.25 * (near + far) + 0.5 * fine[f].light
+
+
+@compiled
+def _at(fine: Records, r: float) -> tuple[Any, float]:
+    """Last sample before the distance r, and the profile there, interpolated."""
+    t = r * _FINE
+    m = np.uint32(t)
+    t -= m
+    return m, fine[m].light + t * (fine[m + 1].light - fine[m].light)
 
 
 @compiled
@@ -205,7 +235,7 @@ def _variances(  # noqa: PLR0917 - Numba takes no keyword-only ones
     pixels: Floats,
     ends: NDArray[np.int64],
     shares: Floats,
-    fine: Floats,
+    fine: Records,
     noise: float,
     kept: NDArray[np.bool_],
 ) -> tuple[float, bool]:
@@ -225,11 +255,8 @@ def _variances(  # noqa: PLR0917 - Numba takes no keyword-only ones
             for p in range(begin, ends[s] if shares[s] > 0.0 else begin):
                 if not kept[p]:
                     continue
-                t = pixels[_R, p] * _FINE
-                m = np.uint32(t)
-                t -= m
-                value = shares[s] * (fine[m, 0] + t * (fine[m + 1, 0] - fine[m, 0]))
-                e = pixels[_U, p] - value
+                value = shares[s] * _at(fine, pixels[R, p])[1]
+                e = pixels[U, p] - value
                 value = max(value, 0.0)
                 if turn > 0 and e * e > _BAD * _BAD * (noise + gain * value):
                     kept[p] = False
@@ -250,7 +277,7 @@ def _step(  # noqa: PLR0917 - Numba takes no keyword-only ones
     own: Floats,
     kept: NDArray[np.bool_],
     share: float,
-    fine: Floats,
+    fine: Records,
     noise: float,
     gain: float,
     out: Floats,
@@ -267,21 +294,20 @@ def _step(  # noqa: PLR0917 - Numba takes no keyword-only ones
     for p in range(own.shape[1]):
         if not kept[p]:
             continue
-        t = own[_R, p] * _FINE
-        m = np.uint32(t)
-        t -= m
-        e = own[_U, p] - share * (fine[m, 0] + t * (fine[m + 1, 0] - fine[m, 0]))
-        variance = noise + gain * max(share * fine[m, 3], 0.0)
+        m, light = _at(fine, own[R, p])
+        here = fine[m]
+        e = own[U, p] - share * light
+        variance = noise + gain * max(share * here.light_around, 0.0)
         misfit += e * e / variance
         number += 1
         # Of the squared slope, what its own noise explains is no slope.
-        slope = share * fine[m, 2]
-        sure = slope * slope * max(fine[m, 4], 1.0)
+        slope = share * here.slope_around
+        sure = slope * slope * max(here.pixels, 1.0)
         if sure <= _UNSURE * variance:
             continue
         weight = slope * (1.0 - _UNSURE * variance / sure) / variance
-        slope = share * fine[m, 1]
-        gx, gy = own[_GX, p], own[_GY, p]
+        slope = share * here.slope
+        gx, gy = own[GX, p], own[GY, p]
         b_x -= weight * gx * e
         b_y -= weight * gy * e
         squares += weight * weight * variance * (gx * gx + gy * gy)
@@ -305,7 +331,7 @@ def shared_profile(  # noqa: PLR0917 - Numba takes no keyword-only ones
     ends: NDArray[np.int64],
     shares: Floats,
     spots: Floats,
-    form: Floats,
+    form: Form,
     variances: Floats,
     misfits: Floats,
 ) -> None:
@@ -324,15 +350,15 @@ def shared_profile(  # noqa: PLR0917 - Numba takes no keyword-only ones
         departure of a spot's pixels, in their variances.
     """
     number = ends.size
-    metric = (form[0], form[1], form[2])
-    reach = form[4]
-    brightest = pixels[_U, : ends[number - 1]].max()
-    noise = max(form[5], (_FLOOR * brightest) ** 2, 1e-300)
+    metric = (form.xx, form.xy, form.yy)
+    reach = form.reach
+    brightest = pixels[U, : ends[number - 1]].max()
+    noise = max(form.noise, (_FLOOR * brightest) ** 2, 1e-300)
     intervals = int(reach / _KNOTS) + 4  # what a step may move a pixel further out
     table = np.empty((intervals, 5))
     moments = np.empty((intervals, 11))
     band = np.empty((intervals + 3, 5))
-    fine = np.empty((int((intervals + 1) * _KNOTS * _FINE), 5))
+    fine = np.empty(int((intervals + 1) * _KNOTS * _FINE), dtype=_SAMPLE)
     kept = np.ones(ends[number - 1], dtype=np.bool_)
     out = np.empty((number, 4))
     mean = shares.mean()

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels.records import record
 
 #: Reach of a spot's pixels beyond its rim: over its radius, and px; of these the outermost show
 #: the background.
@@ -18,8 +19,55 @@ _WIDER, _MARGIN, _RING = 0.1, 3.0, 1.5
 _SLOPE = 3.0
 #: Deviations of a ring's variance from the median one from which other light is in it.
 _UNEVEN = 5.0
-#: Rows of a pixel's numbers: column, row, light, distance from its spot's middle.
-_X, _Y, _U, _R = 0, 1, 2, 3
+#: Rows of a pixel's numbers: column, row, light, distance from its spot's middle, its slopes.
+X, Y, U, R, GX, GY = 0, 1, 2, 3, 4, 5
+
+
+class Form:
+    """Shape that all spots of a frame have in common.
+
+    Attributes
+    ----------
+    xx, xy, yy
+        Metric of determinant one in which spots are round.
+    radius, reach
+        Of the spots and of their pixels in that metric, px.
+    noise
+        Variance of a background pixel.
+    """
+
+    xx: float
+    xy: float
+    yy: float
+    radius: float
+    reach: float
+    noise: float
+
+
+FORM = record(Form)
+
+
+class SlopeSums:
+    """Sums over background pixels that tell a slope: number, places, products, with light u.
+
+    Attributes
+    ----------
+    n, x, y, xx, xy, yy, u, ux, uy
+        Places are counted from the first pixel.
+    """
+
+    n: float
+    x: float
+    y: float
+    xx: float
+    xy: float
+    yy: float
+    u: float
+    ux: float
+    uy: float
+
+
+_SLOPE_SUMS = record(SlopeSums)
 
 
 @compiled
@@ -82,11 +130,11 @@ def _gather(  # noqa: PLR0917 - Numba takes no keyword-only ones
             first = max(math.ceil(x + shift - side), 0)
             last = min(math.floor(x + shift + side), width - 1)
             for j in range(first, last + 1):
-                pixels[_X, end] = j
-                pixels[_Y, end] = i
+                pixels[X, end] = j
+                pixels[Y, end] = i
                 dx = j - x
-                pixels[_U, end] = frame[i, j] - floor
-                pixels[_R, end] = math.sqrt(max((xx * dx + 2.0 * xy * dy) * dx + yy * dy * dy, 0.0))
+                pixels[U, end] = frame[i, j] - floor
+                pixels[R, end] = math.sqrt(max((xx * dx + 2.0 * xy * dy) * dx + yy * dy * dy, 0.0))
                 end += 1
         ends[s] = end
 
@@ -105,8 +153,8 @@ def _background(own: Floats, ring: float, mean: float, spread: float) -> tuple[f
         total = 0.0
         square = 0.0
         for p in range(own.shape[1]):
-            u = own[_U, p] - mean
-            if own[_R, p] > ring and abs(u) <= spread:
+            u = own[U, p] - mean
+            if own[R, p] > ring and abs(u) <= spread:
                 n += 1
                 total += u
                 square += u * u
@@ -133,7 +181,7 @@ def _flatten(pixels: Floats, ends: NDArray[np.int64], ring: float, lights: Float
         grounds[0, s], grounds[1, s], grounds[2, s] = mean, variance, n
         begin = ends[s]
     noise = float(np.median(grounds[1]))
-    sums = np.zeros(9)  # n, x, y, xx, xy, yy, u, ux, uy about the first pixel
+    sums = np.zeros(1, dtype=_SLOPE_SUMS)[0]
     begin = 0
     for s in range(ends.size):
         own = pixels[:, begin : ends[s]]
@@ -141,24 +189,24 @@ def _flatten(pixels: Floats, ends: NDArray[np.int64], ring: float, lights: Float
         spread = 4.0 * math.sqrt(grounds[1, s])
         if grounds[1, s] > noise * (1.0 + _UNEVEN * math.sqrt(2.0 / max(n, 1.0))):
             spread = 4.0 * math.sqrt(noise)
-            beyond = own[_U][own[_R] > ring]
+            beyond = own[U][own[R] > ring]
             mean, _, _ = _background(own, ring, float(np.median(beyond)), spread)
         light = 0.0
         for p in range(own.shape[1]):
-            u = own[_U, p]
-            if own[_R, p] > ring and abs(u - mean) <= spread:
-                x = own[_X, p] - pixels[_X, 0]
-                y = own[_Y, p] - pixels[_Y, 0]
-                sums[0] += 1.0
-                sums[1] += x
-                sums[2] += y
-                sums[3] += x * x
-                sums[4] += x * y
-                sums[5] += y * y
-                sums[6] += u
-                sums[7] += u * x
-                sums[8] += u * y
-            own[_U, p] = u - mean
+            u = own[U, p]
+            if own[R, p] > ring and abs(u - mean) <= spread:
+                x = own[X, p] - pixels[X, 0]
+                y = own[Y, p] - pixels[Y, 0]
+                sums.n += 1.0
+                sums.x += x
+                sums.y += y
+                sums.xx += x * x
+                sums.xy += x * y
+                sums.yy += y * y
+                sums.u += u
+                sums.ux += u * x
+                sums.uy += u * y
+            own[U, p] = u - mean
             light += u - mean
         lights[s] = light
         begin = ends[s]
@@ -169,14 +217,14 @@ def _flatten(pixels: Floats, ends: NDArray[np.int64], ring: float, lights: Float
 
 
 @compiled
-def _slope(sums: Floats) -> tuple[float, float, float]:
-    """Slope of u along x and y of the sums n, x, y, xx, xy, yy, u, ux, uy; squares it explains."""
-    n = max(sums[0], 1.0)
-    xx = sums[3] - sums[1] * sums[1] / n
-    xy = sums[4] - sums[1] * sums[2] / n
-    yy = sums[5] - sums[2] * sums[2] / n
-    ux = sums[7] - sums[6] * sums[1] / n
-    uy = sums[8] - sums[6] * sums[2] / n
+def _slope(sums: SlopeSums) -> tuple[float, float, float]:
+    """Slope of the light along x and y, and the squares that it explains."""
+    n = max(sums.n, 1.0)
+    xx = sums.xx - sums.x * sums.x / n
+    xy = sums.xy - sums.x * sums.y / n
+    yy = sums.yy - sums.y * sums.y / n
+    ux = sums.ux - sums.u * sums.x / n
+    uy = sums.uy - sums.u * sums.y / n
     determinant = xx * yy - xy * xy
     if not determinant > 1e-9 * xx * yy:
         return 0.0, 0.0, 0.0
@@ -191,10 +239,10 @@ def _tilt(pixels: Floats, ends: NDArray[np.int64], slope_x: float, slope_y: floa
     begin = 0
     for s in range(ends.size):
         own = pixels[:, begin : ends[s]]
-        x = own[_X].mean()
-        y = own[_Y].mean()
+        x = own[X].mean()
+        y = own[Y].mean()
         for p in range(own.shape[1]):
-            own[_U, p] -= slope_x * (own[_X, p] - x) + slope_y * (own[_Y, p] - y)
+            own[U, p] -= slope_x * (own[X, p] - x) + slope_y * (own[Y, p] - y)
         begin = ends[s]
 
 
@@ -209,7 +257,7 @@ def spot_pixels(  # noqa: PLR0917 - Numba takes no keyword-only ones
     pixels: Floats,
     ends: NDArray[np.int64],
     lights: Floats,
-    form: Floats,
+    form: Form,
 ) -> bool:
     """List the pixels of each spot and its surroundings; False where they have no common shape.
 
@@ -225,8 +273,7 @@ def spot_pixels(  # noqa: PLR0917 - Numba takes no keyword-only ones
         (6, P), of which the first four rows receive column, row, light and distance from the
         spot's middle; (S,) where each spot's end; (S,) its light.
     form
-        (6,) receives xx, xy, yy of the metric of that distance, of determinant one, in which
-        spots are round; their radius and reach in it; the variance of a background pixel.
+        Receives the shape of the spots.
     """
     half = max(min(math.ceil(0.5 * size) + 2, int(room)), 1)
     xx, xy, yy, radius = _shape(frame, level, spots, half)
@@ -238,5 +285,6 @@ def spot_pixels(  # noqa: PLR0917 - Numba takes no keyword-only ones
         return False
     _gather(frame, floor, spots, (xx, xy, yy), reach, pixels, ends)
     noise = _flatten(pixels, ends, reach - _RING, lights)
-    form[:] = np.array([xx, xy, yy, radius, reach, noise])
+    form.xx, form.xy, form.yy = xx, xy, yy
+    form.radius, form.reach, form.noise = radius, reach, noise
     return True

@@ -26,6 +26,12 @@ _DIM = 0.8
 
 
 @compiled
+def is_whole(x: float, y: float, half: float, height: int, width: int) -> bool:
+    """Whether a spot of this half width is whole in the frame; not where it is NaN."""
+    return half <= x < width - 1 - half and half <= y < height - 1 - half
+
+
+@compiled
 def _is_dark(frame: NDArray[Any], level: float, x: float, y: float, radius: float) -> bool:
     """Whether few of the pixels within `radius` of (x, y) are above the level."""
     height, width = frame.shape
@@ -70,8 +76,7 @@ def _look(  # noqa: PLR0917 - Numba takes no keyword-only ones
         px = apertures[a, 0] + x
         py = apertures[a, 1] + y
         half = 0.5 * apertures[a, 2]
-        edge = half + margin
-        whole += edge <= px < width - 1 - edge and edge <= py < height - 1 - edge
+        whole += is_whole(px, py, half + margin, height, width)
         if partner[a] >= 0:
             state[a] = SPOT
             found += 1

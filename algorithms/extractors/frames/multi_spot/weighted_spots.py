@@ -146,15 +146,7 @@ class WeightedSpots(Extractor):
     longest_px: float | None = None
 
     def __post_init__(self) -> None:
-        require_pattern(
-            self.about.name,
-            self.apertures_px,
-            self.blur_px,
-            self.threshold,
-            self.tolerance_px,
-            self.faulty_lines,
-            self.field_px,
-        )
+        require_pattern(self)
         require_light(self.about.name, "spot", self.longest_px)
 
     @classmethod
@@ -198,15 +190,7 @@ class WeightedSpots(Extractor):
         from algorithms.extractors.frames.multi_spot import combination_kernel  # noqa: PLC0415 - Numba, at first use
 
         levels = frame_levels(frames, self.apertures_px, self.threshold)
-        pattern = find_pattern(
-            frames,
-            levels,
-            self.apertures_px,
-            self.blur_px,
-            self.tolerance_px,
-            self.faulty_lines,
-            self.field_px,
-        )
+        pattern = find_pattern(self, frames, levels)
         centres, variances, misfits = self._centres(frames, levels, pattern.spots)
         known = lattice(self.apertures_px).apertures
         found, sure = np.empty((2, len(frames), 2))
@@ -239,7 +223,7 @@ class WeightedSpots(Extractor):
         # a spot's pixels and its surroundings', elongated as spots of great incidence are
         most = min((math.ceil(2.0 * size) + 9) ** 2, height * width)
         pixels = np.empty((6, starts.shape[1] * most))
-        form = np.empty(6)
+        form = np.empty(1, dtype=spot_pixels_kernel.FORM)[0]
         centres = np.full_like(starts, np.nan)
         variances, misfits = np.full((2, *starts.shape[:2]), np.nan)
         for k, frame in enumerate(frames):

@@ -19,7 +19,7 @@ from algorithms.chain import Chain
 from algorithms.compensations.interference.sun_and_earth import SunAndEarth
 from algorithms.contract import FeatureKind, Floats
 from algorithms.extractors.currents.photodiode import DirectSignals
-from algorithms.models.filters.consider import ConsiderKalmanFilter
+from algorithms.models.filters import ConsiderKalmanFilter
 from algorithms.models.physics_informed.assembled_faces import AssembledFaces
 from benchmark.claims.benches import Seen, middles, ratio, rms, rms_within, separation
 from benchmark.claims.experiment import Trial

@@ -18,8 +18,7 @@ import numpy as np
 from algorithms.contract import Extractor
 from algorithms.extractors.currents.photodiode import DirectSignals
 from algorithms.extractors.frames.centroid import ThresholdedCentroid
-from algorithms.models.filters.assembly_drift import AssemblyDriftFilter
-from algorithms.models.filters.extended import ExtendedKalmanFilter
+from algorithms.models.filters import AssemblyDriftFilter, ExtendedKalmanFilter
 from benchmark.claims.benches import Seen, middles, ratio, rms, rms_within
 from benchmark.claims.experiment import Line, Trial
 from benchmark.claims.experiments.coarse.in_sunlight import orbits_since

@@ -23,9 +23,9 @@ from benchmark.claims.experiments.frames.spot_grids import (
     middles_px,
     present,
 )
-from benchmark.reference.light import BACKGROUND_E, READ_NOISE_E, detected, peak_e, spots
-from benchmark.reference.series import REFERENCE_SNR
 from benchmark.seeds import generator
+from benchmark.synthetic_features.light import BACKGROUND_E, READ_NOISE_E, detected, peak_e, spots
+from benchmark.synthetic_features.series import REFERENCE_SNR
 
 SKETCH = Sketch(log_across=True)
 

@@ -24,8 +24,8 @@ from benchmark.claims.experiment import Sketch, Trial
 from benchmark.claims.experiments.frames.single_discs import error_px
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.standard import event_single_aperture
-from benchmark.reference.light import spots
 from benchmark.seeds import generator
+from benchmark.synthetic_features.light import spots
 
 SKETCH = Sketch(log_across=True)
 

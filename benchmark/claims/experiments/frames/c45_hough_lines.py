@@ -17,8 +17,8 @@ from algorithms.extractors.frames.centroid import ThresholdedCentroid
 from benchmark.claims.benches import ratio
 from benchmark.claims.experiment import Sketch, Trial
 from benchmark.claims.experiments.frames.single_discs import error_px
-from benchmark.reference.shapes import EDGE_PX, Shape, rendered
 from benchmark.seeds import generator
+from benchmark.synthetic_features.shapes import EDGE_PX, Shape, rendered
 
 SKETCH = Sketch()
 

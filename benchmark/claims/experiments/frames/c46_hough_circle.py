@@ -26,8 +26,8 @@ from benchmark.claims.experiments.frames.single_discs import (
     shipped,
     single,
 )
-from benchmark.reference.shapes import EDGE_PX
 from benchmark.seeds import generator
+from benchmark.synthetic_features.shapes import EDGE_PX
 
 SKETCH = Sketch()
 

@@ -22,7 +22,7 @@ from benchmark.claims.experiments.frames.spot_grids import (
     middles_px,
     present,
 )
-from benchmark.reference.series import KEPT_PX
+from benchmark.synthetic_features.series import KEPT_PX
 
 SKETCH = Sketch()
 

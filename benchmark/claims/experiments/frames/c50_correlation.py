@@ -30,7 +30,7 @@ from benchmark.claims.experiments.frames.spot_grids import (
     middles_px,
     present,
 )
-from benchmark.reference.light import BACKGROUND_E
+from benchmark.synthetic_features.light import BACKGROUND_E
 
 SKETCH = Sketch()
 

@@ -1,9 +1,10 @@
 """Single discs (or Gaussian spots) in Gaussian noise of a stated share of their peak.
 
-The discs are those of `benchmark.reference`: radius 8 px, rim of 0.7 px, 64 x 64 px, anywhere
-within 16 px of the middle. The light's peak is one. `frames` are what is left when a camera's
-known dark level is taken off, so that noise is of both signs and nothing but noise disturbs a
-centroid; `digital` are the same as whole numbers above a pedestal, as a camera hands them over.
+The discs are those of `benchmark.synthetic_features`: radius 8 px, rim of 0.7 px, 64 x 64 px,
+anywhere within 16 px of the middle. The light's peak is one. `frames` are what is left when a
+camera's known dark level is taken off, so that noise is of both signs and nothing but noise
+disturbs a centroid; `digital` are the same as whole numbers above a pedestal, as a camera hands
+them over.
 """
 
 from __future__ import annotations
@@ -17,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Extractor, Floats, SensorGeometry
-from benchmark.reference.light import Profile, position_bound, spots
-from benchmark.reference.spots import DiscSeries
 from benchmark.seeds import generator
+from benchmark.synthetic_features.light import Profile, position_bound, spots
+from benchmark.synthetic_features.spots import DiscSeries
 
 RADIUS_PX: Final = 8.0
 SIZE_PX: Final = 64

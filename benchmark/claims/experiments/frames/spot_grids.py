@@ -1,7 +1,8 @@
 """Grids of spots that move together, some of them missing.
 
-The spots are those of `benchmark.reference`: discs of radius 4 px with a rim of 0.7 px, 16.37 px
-apart, so that no two fall alike on the pixels; a peak of 50 times the noise of light and read-out.
+The spots are those of `benchmark.synthetic_features`: discs of radius 4 px with a rim of 0.7 px,
+16.37 px apart, so that no two fall alike on the pixels; a peak of 50 times the noise of light and
+read-out.
 The truth is where the grid's middle falls.
 """
 
@@ -14,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats, SensorGeometry
-from benchmark.reference.light import BACKGROUND_E, detected, peak_e, spots
-from benchmark.reference.series import REFERENCE_SNR, Setting
-from benchmark.reference.spots import GridSeries
 from benchmark.seeds import generator
+from benchmark.synthetic_features.light import BACKGROUND_E, detected, peak_e, spots
+from benchmark.synthetic_features.series import REFERENCE_SNR, Setting
+from benchmark.synthetic_features.spots import GridSeries
 
 SIZE_PX: Final = 192
 RADIUS_PX: Final = 4.0

@@ -14,7 +14,7 @@ import numpy as np
 
 from algorithms.contract import Extractor, Floats, SensorGeometry
 from benchmark.claims.benches import rms
-from benchmark.reference.light import position_bound
+from benchmark.synthetic_features.light import position_bound
 
 DESIGN_PITCH_MM = 0.0125
 _FOCAL_MM = 1.25

@@ -8,7 +8,7 @@ from scipy.special import ndtr
 
 from algorithms.contract import FeatureKind, Observation, SensorGeometry
 from algorithms.discovery import discover_extractors
-from algorithms.extractors.frames.matched import GaussianFit, MatchedProfile
+from algorithms.extractors.frames.gaussian import GaussianFit
 from algorithms.extractors.frames.one_light import judge, light_of, refused
 from algorithms.measurement import Doubt
 
@@ -74,7 +74,6 @@ def test_all_methods_of_ours_are_held_to_it():
     assert set(METHODS) == {
         "energy-filter",
         "gaussian-fit",
-        "matched-profile",
         "mirror",
         "weighted-spots",
     }
@@ -124,8 +123,8 @@ def test_designs_without_a_hole_take_any_light_but_no_hot_pixel():
 def test_parameters_that_are_none_are_refused():
     with pytest.raises(ValueError, match="gaussian-fit: light must be one of spot, any; got 'all'"):
         GaussianFit(light="all")
-    with pytest.raises(ValueError, match="matched-profile: longest_px must be positive"):
-        MatchedProfile(longest_px=-1.0)
+    with pytest.raises(ValueError, match="gaussian-fit: longest_px must be positive"):
+        GaussianFit(longest_px=-1.0)
 
 
 def gaussians(count, rng):
@@ -136,9 +135,7 @@ def gaussians(count, rng):
     return read(light, rng), centres
 
 
-@pytest.mark.parametrize(
-    ("name", "own"), [("gaussian-fit", False), ("matched-profile", True), ("mirror", True)]
-)
+@pytest.mark.parametrize(("name", "own"), [("gaussian-fit", False), ("mirror", True)])
 def test_the_covariance_is_about_that_of_the_errors(name, own):
     """Of 300 frames, two coordinates' normalised errors squared average 2 within a third."""
     rng = np.random.default_rng(775)
@@ -154,7 +151,7 @@ def test_the_covariance_is_about_that_of_the_errors(name, own):
 
 
 @pytest.mark.parametrize("dark", [0.0, 50.0])
-@pytest.mark.parametrize("name", ["gaussian-fit", "matched-profile", "mirror"])
+@pytest.mark.parametrize("name", ["gaussian-fit", "mirror"])
 def test_frames_without_noise_are_answered(name, dark):
     """Nothing scatters that an error could be told by: no covariance, or next to none."""
     line = np.exp(-((np.arange(SIZE) - 31.4) ** 2) / 18.0)
@@ -180,7 +177,7 @@ def test_no_covariance_is_stated_where_the_light_is_of_another_shape(spoilt):
     frames = read(light, rng)
     if spoilt == "dead":
         frames[:, [28, 31, 34], [33, 30, 32]] = 0
-    for name, answers in (("matched-profile", 0.9), ("gaussian-fit", 0.9), ("mirror", 0.0)):
+    for name, answers in (("gaussian-fit", 0.9), ("mirror", 0.0)):
         found = METHODS[name].measure(frames)
         answered = np.isfinite(found.features[:, 0])
         stated = np.isfinite(found.covariance).all(axis=(1, 2))

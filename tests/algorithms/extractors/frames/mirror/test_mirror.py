@@ -9,7 +9,6 @@ import pytest
 from scipy.special import j1, ndtr
 
 from algorithms.contract import SensorGeometry, UnsuitableDesignError
-from algorithms.extractors.frames.matched import MatchedProfile
 from algorithms.extractors.frames.mirror import fit_kernel
 from algorithms.extractors.frames.mirror import taps as filters
 from algorithms.extractors.frames.mirror.extractor import MirrorRegistration
@@ -92,13 +91,9 @@ def test_every_point_symmetric_spot_is_found_at_its_bound(shape):
     assert rms(MirrorRegistration().extract(frames), centres) < 1.2 * bound(shape, centres[:4])
 
 
-def test_an_ellipse_is_found_where_a_round_template_fails():
+def test_an_ellipse_is_found():
     frames, centres, _ = spots(ellipse, 30, 32, margin=28.0)
     assert rms(MirrorRegistration().extract(frames), centres) < 0.01
-    round_one = MatchedProfile().extract(frames)
-    answered = np.isfinite(round_one[:, 0])  # half a pixel off is no answer
-    assert answered.sum() > 10
-    assert rms(round_one[answered], centres[answered]) > 0.1
 
 
 @pytest.mark.parametrize("shape", [disc, ellipse, square, gaussian])

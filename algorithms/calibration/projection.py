@@ -1,0 +1,28 @@
+"""`ProjectionModel`: a model of one spot's place that starts from the drawing's projection."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self
+
+from algorithms.calibration.calibrated import CalibratedModel
+from algorithms.contract import FeatureKind, SensorGeometry
+from algorithms.models.nominal_projection import nominal_projection, require_projection
+
+
+@dataclass
+class ProjectionModel(CalibratedModel):
+    """A model of spots or balances with the drawing's focal length, unit and centre."""
+
+    focal_length_mm: float
+    unit_mm: float
+    centre: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
+        """Return the model that starts from the sensor's drawing."""
+        return cls(**nominal_projection(geometry, kind, cls.about))

@@ -1,0 +1,396 @@
+"""Kalman filters of the Sun's direction: one model, `SunFilter`, and a rule of update for each."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from algorithms.contract import AboutModel, FeatureKind
+from algorithms.documented import documented
+from algorithms.filtering.drift import EARTH, GAINS, HEAD_SHIFTS, HEAD_TURNS, Drift, wandering
+from algorithms.filtering.sequence import CONTEXT, SunFilter
+from algorithms.inputs import require_positive
+
+if TYPE_CHECKING:
+    from algorithms.filtering.filters import Filter
+
+
+_READS: dict[str, Any] = {"accepts": frozenset(FeatureKind), "context": CONTEXT}
+#: Of filters that the survey names in its section on online methods, and says no more of.
+_ONLINE: dict[str, Any] = {"taxonomy": "None", "labels": ("model:mnc",), **_READS}
+
+
+@documented
+@dataclass
+class ExtendedKalmanFilter(SunFilter):
+    """Extended Kalman filter of the Sun in a turning body.
+
+    The gyroscope carries the direction from sample to sample, and each reading corrects it by what
+    the calibration says a Sun there would read. Dynamics and readings are linearised where the
+    estimate is.
+
+    Notes
+    -----
+    Implements: the online section's EKF, of the filters that model:mnc names.
+
+    Cost: 20 us a step of the machine this was written on.
+
+    Examples
+    --------
+    >>> from algorithms.examples import turning_body
+    >>> spots, sun, context = turning_body()
+    >>> model = ExtendedKalmanFilter().fit(spots, sun, context)
+    >>> model.predict(spots, context)[-1].round(2)
+    array([0.49, 0.38, 0.79])
+    """
+
+    about: ClassVar = AboutModel(name="extended-kalman", **_ONLINE)
+
+
+@documented
+@dataclass
+class CubatureKalmanFilter(SunFilter):
+    """Cubature Kalman filter of the Sun in a turning body.
+
+    Covariances go through dynamics and readings by the cubature rule of third degree: 2 n points of
+    equal weight, none in the middle. Nothing is to be chosen, and no weight is negative.
+
+    Notes
+    -----
+    Implements: the online section's CKF, of the filters that model:mnc names.
+
+    Examples
+    --------
+    >>> from algorithms.examples import turning_body
+    >>> spots, sun, context = turning_body()
+    >>> model = CubatureKalmanFilter().fit(spots, sun, context)
+    >>> model.predict(spots, context)[-1].round(2)
+    array([0.49, 0.38, 0.79])
+    """
+
+    about: ClassVar = AboutModel(name="cubature-kalman", **_ONLINE)
+
+    def rule(self) -> Filter:
+        """Take the cubature rule's points."""
+        from algorithms.filtering.filters import CUBATURE  # noqa: PLC0415 - Numba
+
+        return replace(CUBATURE, considered=self.considered())
+
+
+@documented
+@dataclass
+class UnscentedKalmanFilter(SunFilter):
+    """Unscented Kalman filter of the Sun in a turning body.
+
+    Covariances go through dynamics and readings by points on both sides of the estimate, so that
+    their curvature counts and no derivative is needed. Points of directions lie on the sphere.
+
+    Parameters
+    ----------
+    kappa : float
+        Spread of the points: they stand ``sqrt(n + kappa)`` standard deviations off; from 0 up.
+
+    Notes
+    -----
+    Implements: the online section's UKF, of the filters that model:mnc names.
+
+    Examples
+    --------
+    >>> from algorithms.examples import turning_body
+    >>> spots, sun, context = turning_body()
+    >>> model = UnscentedKalmanFilter().fit(spots, sun, context)
+    >>> model.predict(spots, context)[-1].round(2)
+    array([0.49, 0.38, 0.79])
+    """
+
+    about: ClassVar = AboutModel(name="unscented-kalman", **_ONLINE)
+
+    kappa: float = 1.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0 <= self.kappa < float("inf"):
+            raise ValueError(f"{self.about.name}: kappa must be 0 or more; got {self.kappa!r}")
+
+    def rule(self) -> Filter:
+        """Take points on both sides."""
+        from algorithms.filtering.filters import SigmaPointKalman  # noqa: PLC0415 - Numba
+
+        return SigmaPointKalman(kappa=self.kappa, considered=self.considered())
+
+
+@documented
+@dataclass
+class RobustKalmanFilter(SunFilter):
+    """Extended Kalman filter that a wild reading cannot pull away.
+
+    An innovation beyond some of its standard deviations counts with a variance raised in proportion
+    (Huber), so that its pull is bounded however wild it is. Readings within count in full.
+
+    Parameters
+    ----------
+    limit : float
+        Standard deviations up to which a reading counts in full, positive.
+
+    Notes
+    -----
+    Implements: the online section's RKF, of the filters that model:mnc names.
+
+    Cost: 30 us a step of the machine this was written on.
+
+    Examples
+    --------
+    >>> from algorithms.examples import turning_body
+    >>> spots, sun, context = turning_body()
+    >>> model = RobustKalmanFilter().fit(spots, sun, context)
+    >>> model.predict(spots, context)[-1].round(2)
+    array([0.49, 0.38, 0.79])
+    """
+
+    about: ClassVar = AboutModel(name="robust-kalman", **_ONLINE)
+
+    limit: float = 2.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_positive(self.about.name, limit=self.limit)
+
+    def rule(self) -> Filter:
+        """Weigh readings by how far off they are."""
+        from algorithms.filtering.filters import RobustKalman  # noqa: PLC0415 - Numba
+
+        return RobustKalman(self.considered(), limit=self.limit)
+
+
+@documented
+@dataclass
+class AdaptiveKalmanFilter(SunFilter):
+    """Extended Kalman filter that learns the noise of its readings as it goes.
+
+    Residuals and what is still unknown after each update add up to the noise of the readings; their
+    running mean is the noise of the next update. It is too sure where errors last.
+
+    Parameters
+    ----------
+    window : float
+        Readings over which the noise is averaged, above 1.
+
+    Notes
+    -----
+    Implements: the online section's AKF, of the filters that model:mnc names: ``R <- R + (e e' + H
+    P H' - R) / window``.
+
+    Examples
+    --------
+    >>> from algorithms.examples import turning_body
+    >>> spots, sun, context = turning_body()
+    >>> model = AdaptiveKalmanFilter().fit(spots, sun, context)
+    >>> model.predict(spots, context)[-1].round(2)
+    array([0.49, 0.38, 0.79])
+    """
+
+    about: ClassVar = AboutModel(name="adaptive-kalman", **_ONLINE)
+
+    window: float = 50.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 1 < self.window < float("inf"):
+            raise ValueError(f"{self.about.name}: window must be above 1; got {self.window!r}")
+
+    def rule(self) -> Filter:
+        """Let the noise follow the residuals."""
+        from algorithms.filtering.filters import AdaptiveKalman  # noqa: PLC0415 - Numba
+
+        return AdaptiveKalman(self.considered(), window=self.window)
+
+
+@documented
+@dataclass
+class MultipleModelEstimation(SunFilter):
+    """Extended Kalman filters that expect different noise, and their mixture.
+
+    Each filter takes the noise of readings as another multiple of the calibration's, and counts by
+    how likely it has made all readings so far. The direction is that of their mean.
+
+    Parameters
+    ----------
+    noise_scales : tuple of float
+        Standard deviation of readings, over the calibration's, that each filter expects; positive.
+
+    Notes
+    -----
+    Implements: the online section's MMAE, of the filters that model:mnc names: Magill's bank.
+
+    Cost: 50 us a step of the machine this was written on.
+
+    Examples
+    --------
+    >>> from algorithms.examples import turning_body
+    >>> spots, sun, context = turning_body()
+    >>> model = MultipleModelEstimation().fit(spots, sun, context)
+    >>> model.predict(spots, context)[-1].round(2)
+    array([0.49, 0.38, 0.79])
+    """
+
+    about: ClassVar = AboutModel(name="multiple-models", **_ONLINE)
+
+    noise_scales: tuple[float, ...] = (0.25, 1.0, 4.0)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.noise_scales:
+            raise ValueError(f"{self.about.name}: noise_scales must not be empty")
+        for scale in self.noise_scales:
+            require_positive(self.about.name, noise_scales=scale)
+
+    def rule(self) -> Filter:
+        """Keep a filter for each scale."""
+        from algorithms.filtering.hypotheses import MultipleModels  # noqa: PLC0415 - Numba
+
+        return MultipleModels(tuple(self.noise_scales), considered=self.considered())
+
+
+@documented
+@dataclass
+class ConsiderKalmanFilter(SunFilter):
+    """Extended Kalman filter that allows for a calibration that is off, and leaves it so.
+
+    Gains and the Earth's brightness, or focal length and offsets behind a spot, are considered:
+    their covariance, and what they have in common with the direction, enter every gain, but no
+    reading moves them. So the filter is as unsure as it should be of errors that last.
+
+    Parameters
+    ----------
+    gain_deviation : float
+        Of what each face's gain is off, relative, positive.
+    albedo_deviation : float
+        Of what the Earth's light is off, over what the calibration found, positive.
+    shift_deviation : float
+        Of offsets, over the focal length, and of the focal length, relative, positive.
+
+    Notes
+    -----
+    Implements: model:mnc (OKeefe2017, eq:mnoise), ``V = C (V_d + V_alpha + nu)`` with the
+    calibration factors C and the strength of the albedo V_alpha considered. Survey prints V_alpha
+    negative; corrected because light adds. V_d and V_alpha are as the calibration found them: a
+    cubic of the cosine in place of the cosine, polynomials of nadir in place of the integral over
+    the Earth (ours). ``K = P H' S^-1`` with the rows of what is considered set to nothing; Joseph's
+    form.
+
+    Cost: 30 us a step of the machine this was written on, for six faces.
+
+    Examples
+    --------
+    >>> from algorithms.examples import turning_body
+    >>> spots, sun, context = turning_body()
+    >>> model = ConsiderKalmanFilter().fit(spots, sun, context)
+    >>> model.predict(spots, context)[-1].round(2)
+    array([0.49, 0.38, 0.79])
+    """
+
+    about: ClassVar = AboutModel(
+        name="consider-kalman",
+        taxonomy="ECM/Noise",
+        studies=("OKeefe2017",),
+        labels=("model:mnc", "eq:mnoise"),
+        origin="survey",
+        **_READS,
+    )
+
+    gain_deviation: float = 0.01
+    albedo_deviation: float = 0.3
+    shift_deviation: float = 3e-4
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_positive(
+            self.about.name,
+            gain_deviation=self.gain_deviation,
+            albedo_deviation=self.albedo_deviation,
+            shift_deviation=self.shift_deviation,
+        )
+
+    def uncertain(self, years: float) -> Sequence[Drift]:
+        """Consider gains and the Earth, or focal length and offsets, however long ago."""
+        del years
+        faces = len(self.face_normals)
+        if faces:
+            gains = (Drift(GAINS + face, self.gain_deviation, 0.0) for face in range(faces))
+            return (Drift(EARTH, self.albedo_deviation, 0.0), *gains)
+        return tuple(Drift(place, self.shift_deviation, 0.0) for place in HEAD_SHIFTS)
+
+
+@documented
+@dataclass
+class AssemblyDriftFilter(SunFilter):
+    """Extended Kalman filter of the Sun and of the sensor's own assembly.
+
+    Gains and normals of faces, or turn, focal length and offsets of the head behind a spot, stand
+    in the state beside the direction: what the body's known turning does not explain, they do.
+    Each wanders by its deviation in a day.
+
+    Parameters
+    ----------
+    gain_deviation : float
+        Of what each face's gain is off, relative, positive; one a face.
+    turn_deviation_deg : float
+        Of what each face's normal, or the head behind a spot, is turned by, an axis, positive.
+    shift_deviation : float
+        Of offsets, over the focal length, and of the focal length, relative, positive.
+
+    Notes
+    -----
+    Implements: model:assem (Radan2019), in orbit: installation error, offsets of the detector and
+    misalignment by EKF, from what the calibration on the ground found (assembled-faces is its half
+    on the ground, for faces). The survey gives no equations since every sensor has its own (ours).
+
+    Cost: 40 us a step of the machine this was written on, for six faces.
+
+    Examples
+    --------
+    >>> from algorithms.examples import turning_body
+    >>> spots, sun, context = turning_body()
+    >>> model = AssemblyDriftFilter().fit(spots, sun, context)
+    >>> model.predict(spots, context)[-1].round(2)
+    array([0.49, 0.38, 0.79])
+    """
+
+    about: ClassVar = AboutModel(
+        name="assembly-drift",
+        taxonomy="ACM",
+        studies=("Radan2019",),
+        labels=("model:assem", "model:mnc"),
+        origin="survey",
+        **_READS,
+    )
+
+    gain_deviation: float = 0.01
+    turn_deviation_deg: float = 0.05
+    shift_deviation: float = 3e-4
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_positive(
+            self.about.name,
+            gain_deviation=self.gain_deviation,
+            turn_deviation_deg=self.turn_deviation_deg,
+            shift_deviation=self.shift_deviation,
+        )
+
+    def uncertain(self, years: float) -> Sequence[Drift]:
+        """Nothing: what ages is estimated."""
+        del years
+        return ()
+
+    def drifts(self) -> Sequence[Drift]:
+        """Everything about the assembly, beside the light's strength."""
+        faces, turn = len(self.face_normals), math.radians(self.turn_deviation_deg)
+        if faces:
+            gains = [wandering(GAINS + face, self.gain_deviation) for face in range(faces)]
+            tilts = [wandering(GAINS + faces + tilt, turn) for tilt in range(2 * faces)]
+            return (*super().drifts(), *gains, *tilts)
+        turns = [wandering(place, turn) for place in HEAD_TURNS]
+        return (*turns, *(wandering(place, self.shift_deviation) for place in HEAD_SHIFTS))

@@ -1,0 +1,1 @@
+"""Every experiment beside the scores: a module each, found by discovery."""

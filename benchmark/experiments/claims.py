@@ -1,0 +1,63 @@
+"""The survey's claims: every trial of each, by the rules and plans of `benchmark.claims.rules`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from benchmark.claims.experiment import found
+from benchmark.claims.outcomes import RECORD, outcome_of, outcome_of_row, plan_digest, row_of
+from benchmark.claims.rules import FIRST_TRIAL, claims
+from benchmark.claims.verification import contradictions
+from benchmark.results.closure import closure_digest
+from benchmark.results.row_file import Row
+from benchmark.running.experiment import Recorded
+from benchmark.running.threads import one_thread
+
+
+class Claims(Recorded[str]):
+    """A row of each claim that has a module of `benchmark.claims.experiments`, by its id.
+
+    A row holds what was measured, never the verdict: that is computed at reading, by the rules as
+    they stand.
+    """
+
+    name = "claims"
+    record = RECORD
+
+    def keys(self) -> Mapping[str, str]:
+        """Return the digests of plan and code, apart so that it shows which has changed."""
+        return {
+            name: f"{plan_digest(claims()[name])} {closure_digest(one.module)}"
+            for name, one in found().items()
+        }
+
+    def outdated(self, row: Row, key: str) -> str:
+        """Say whether plan or code has changed, or the numbers cannot be of the plan."""
+        plan, _, code = key.partition(" ")
+        outcome = outcome_of_row(row)
+        if outcome.plan != plan:
+            return "rules or plan changed"
+        if outcome.code != code:
+            return "code changed"
+        return next(contradictions(claims()[row["claim"]], outcome), "")
+
+    def tasks(self, cells: Sequence[str]) -> Sequence[str]:
+        """Make a task of each claim."""
+        return cells
+
+    @staticmethod
+    def measure(task: str) -> list[tuple[str, Row]]:
+        """Make every trial of a claim, one after the other."""
+        with one_thread():
+            last = FIRST_TRIAL + claims()[task].trials
+            trials = [found()[task].trial(number) for number in range(FIRST_TRIAL, last)]
+        return [(task, row_of(outcome_of(claims()[task], trials)))]
+
+    def comparable(self, row: Row) -> Row:
+        """Leave out ratios of run times, and the lines of claims that have any."""
+        timed = {rule.name for rule in claims()[row["claim"]].rules if rule.timed}
+        kept = {
+            member: {name: values for name, values in row[member].items() if name not in timed}
+            for member in ("values", "second")
+        }
+        return {**kept, "lines": {} if timed else row["lines"]}

@@ -1,0 +1,81 @@
+"""Error of every method, and its bound, over noise, feature size, sub-pixel phase and more."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from itertools import groupby
+
+from benchmark.canonical import digest
+from benchmark.results.components import current
+from benchmark.results.digests import modules_digest, series_digest
+from benchmark.results.row_file import Row
+from benchmark.running.experiment import Recorded
+from benchmark.sweeps.measure import Task, measure
+from benchmark.sweeps.plan import SERIES, Planned, planned
+from benchmark.sweeps.points import Point
+from benchmark.sweeps.record import RECORD, point_of
+
+#: Modules between series and methods.
+_CODE = ("algorithms.pipeline", "benchmark.metrics.score", "benchmark.sweeps.measure")
+_DIGITS = 16
+
+
+def series_digests() -> dict[str, str]:
+    """Digest of each series of synthetic features."""
+    return {name: series_digest(series) for name, series in SERIES.items()}
+
+
+class Sweeps(Recorded[Point]):
+    """A row of every extractor at each point of the series that it fits, and why not elsewhere."""
+
+    name = "sweeps"
+    record = RECORD
+
+    @cached_property
+    def plan(self) -> Planned:
+        """Settings by point, and reasons of what is not measured."""
+        return planned(self.parts.extractors)
+
+    def keys(self) -> Mapping[Point, str]:
+        """Digest the code, series and extractor of each."""
+        code, series = modules_digest(*_CODE), series_digests()
+        extractors = current(self.parts.of_extractors())
+        return {
+            point: digest(
+                [
+                    code,
+                    series.get(point.series, ""),
+                    extractors.digest("extractors", point.extractor),
+                ]
+            )[:_DIGITS]
+            for point in sorted({*self.plan.settings, *self.plan.refused})
+        }
+
+    def outdated(self, row: Row, key: str) -> str:
+        """Say also that a row failed, or that the plan refuses it no more or otherwise."""
+        if row["status"] == "failed":
+            return "failed"
+        reason = self.plan.refused.get(point_of(row))
+        if (row["reason"] != reason) if reason else (not row["n"]):
+            return "refused otherwise"
+        return super().outdated(row, key)
+
+    def name_of(self, cell: Point) -> str:
+        """Return the extractor."""
+        return cell.extractor
+
+    def tasks(self, cells: Sequence[Point]) -> Iterator[Task]:
+        """Group methods that see the same observations."""
+        for _, group in groupby(sorted(cells), key=lambda p: (p.series, p.sweep, p.point)):
+            found = tuple(group)
+            yield Task(
+                {point: self.parts.extractor(point.extractor) for point in found},
+                next((self.plan.settings[p] for p in found if p in self.plan.settings), None),
+                {p: self.plan.refused[p] for p in found if p in self.plan.refused},
+            )
+
+    @staticmethod
+    def measure(task: Task) -> list[tuple[Point, Row]]:
+        """Draw a point's observations, extract with every method, compare."""
+        return measure(task)

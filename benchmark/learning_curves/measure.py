@@ -1,0 +1,224 @@
+"""What one worker does: a data set's leaders calibrated on growing subsets of its poses.
+
+Features are found once for each unit of the sensor, in readings corrected by its references; a
+subset only fits the model anew, to the true directions of its poses: the error over the whole test
+split is the own error, without a bench's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.chain import Scored
+from algorithms.contract import Context, Extractor, Floats, UnusableDataError
+from algorithms.pipeline import Pipeline
+from benchmark.contract import Preset
+from benchmark.datasets.corrected import correction
+from benchmark.datasets.features import features_of
+from benchmark.learning_curves.draws import Rows, sizes, subsets
+from benchmark.learning_curves.leaders import Leader
+from benchmark.metrics.score import score
+from benchmark.running.task import reason_of
+from benchmark.running.threads import one_thread
+from benchmark.simulator.light.memory import memory
+
+#: Units of the sensor, and draws of poses on each of them.
+UNITS = (0, 1)
+DRAWS = 3
+
+_SPLITS = ("calibration", "test")
+
+
+@dataclass(frozen=True)
+class Task:
+    """A data set's leaders, in order, with what they are made of.
+
+    Attributes
+    ----------
+    preset
+        Of unit 0.
+    leaders
+        Of one condition of it.
+    extractors, models
+        By name, those that the leaders name.
+    all_observable
+        Whether the direction is known to be observable from every test sample.
+    bounds_deg
+        Cramer-Rao bound of each leader's score, root mean square.
+    bench_deg
+        Fixed error of the standard bench's directions, root mean square; None where none is pinned.
+    """
+
+    preset: Preset
+    leaders: tuple[Leader, ...]
+    extractors: Mapping[str, type[Extractor]]
+    models: Mapping[str, Scored]
+    all_observable: bool
+    bounds_deg: Mapping[Leader, float]
+    bench_deg: float | None
+
+
+@dataclass(frozen=True)
+class Learnt:
+    """Errors of one pipeline by unit, draw and size.
+
+    Attributes
+    ----------
+    leader
+        Which pipeline.
+    sizes
+        Numbers of poses (S,), the last all of them.
+    in_order
+        Whether the poses are a time series.
+    rms_deg, availability
+        (U, D, S); NaN where the model refused the poses. All draws share the last size.
+    refusals
+        Reasons (U, D, S), empty where there is an error.
+    """
+
+    leader: Leader
+    sizes: tuple[int, ...]
+    in_order: bool
+    rms_deg: Floats
+    availability: Floats
+    refusals: NDArray[np.object_]
+
+
+@dataclass(frozen=True)
+class _Part:
+    """One split as a unit sees it: features by extractor, true Suns, and what else is known."""
+
+    features: Mapping[str, Floats]
+    sun: Floats
+    context: Context | None
+
+
+def measure(task: Task) -> list[Learnt]:
+    """Calibrate every leader of a data set on every subset of poses, and score it.
+
+    Raises
+    ------
+    Exception
+        What an implementation raises beside its word for poses that it cannot be calibrated on.
+    """
+    with one_thread():
+        preset, condition = task.preset, task.leaders[0].condition
+        geometry = preset.geometry_for(condition)
+        names = {leader.extractor for leader in task.leaders}
+        extractors = {name: task.extractors[name].for_sensor(geometry) for name in sorted(names)}
+        seen = _observable(task, condition)
+        measured: dict[Leader, list[list[list[_Point]]]] = {leader: [] for leader in task.leaders}
+        steps: tuple[int, ...] = ()
+        for unit in UNITS:
+            memory.remember((preset.name, unit), preset.name)
+            seen_by = preset.as_unit(unit) if unit else preset
+            known, asked = (_part(seen_by, condition, split, extractors) for split in _SPLITS)
+            steps = sizes(len(known.sun))
+            for leader in task.leaders:
+                trial = _Trial(
+                    extractors[leader.extractor],
+                    task.models[leader.model],
+                    task,
+                    known,
+                    asked,
+                    seen,
+                )
+                measured[leader].append(trial.draws(unit))
+        return [
+            _learnt(leader, steps, measured[leader], in_order=bool(preset.context_columns))
+            for leader in task.leaders
+        ]
+
+
+def _observable(task: Task, condition: str) -> NDArray[np.bool_] | None:
+    """Test samples (N,) whose direction is observable, for every unit; None for all."""
+    if task.all_observable:
+        return None
+    memory.remember((task.preset.name, 0), task.preset.name)
+    return np.asarray(task.preset.bound(condition, "test").observable, dtype=np.bool_)
+
+
+def _part(preset: Preset, condition: str, split: str, extractors: Mapping[str, Extractor]) -> _Part:
+    """Generate one split and keep what is found in it: frames are let go before the next."""
+    samples, by = preset.generate(condition, split), correction(preset, condition)
+    features = {name: features_of(extractor, samples, by) for name, extractor in extractors.items()}
+    return _Part(features, samples.truth, samples.context)
+
+
+@dataclass(frozen=True)
+class _Point:
+    rms_deg: float = np.nan
+    availability: float = np.nan
+    refusal: str = ""
+
+
+@dataclass(frozen=True)
+class _Trial:
+    """One pipeline on one unit."""
+
+    extractor: Extractor
+    model: Scored
+    task: Task
+    known: _Part
+    asked: _Part
+    observable: NDArray[np.bool_] | None
+
+    def draws(self, unit: int) -> list[list[_Point]]:
+        """Points by draw and size."""
+        preset, poses = self.task.preset, len(self.known.sun)
+        everything = self.point(np.arange(poses))
+        found = []
+        for draw in range(DRAWS):
+            rows = subsets(
+                poses, preset.name, "unit", unit, "draw", draw,
+                in_order=bool(preset.context_columns),
+            )  # fmt: skip
+            found.append(
+                [everything if size == poses else self.point(chosen) for size, chosen in rows]
+            )
+        return found
+
+    def point(self, rows: Rows) -> _Point:
+        """Calibrate on some poses and score on the test split."""
+        name = self.extractor.about.name
+        geometry = self.task.preset.geometry_for(self.task.leaders[0].condition)
+        model = self.model.for_sensor(geometry, self.extractor.about.kind)
+        pipeline = Pipeline(self.extractor, model)
+        told: Mapping[str, NDArray[Any]] | None = None
+        if self.known.context is not None:
+            told = {
+                column: np.asarray(values)[rows] for column, values in self.known.context.items()
+            }
+        try:
+            pipeline.fit_features(self.known.features[name][rows], self.known.sun[rows], told)
+        except UnusableDataError as error:
+            return _Point(refusal=reason_of(error))
+        predicted = pipeline.predict_features(self.asked.features[name], self.asked.context)
+        seen = np.ones(len(predicted), np.bool_) if self.observable is None else self.observable
+        result = score(predicted, self.asked.sun, None, seen)
+        return _Point(result.rms_deg, result.availability)
+
+
+def _learnt(
+    leader: Leader,
+    steps: tuple[int, ...],
+    units: Sequence[Sequence[Sequence[_Point]]],
+    *,
+    in_order: bool,
+) -> Learnt:
+    def table(name: str, kind: Any) -> NDArray[Any]:
+        return np.array([[[getattr(p, name) for p in d] for d in u] for u in units], dtype=kind)
+
+    return Learnt(
+        leader,
+        steps,
+        in_order,
+        table("rms_deg", np.float64),
+        table("availability", np.float64),
+        table("refusal", np.object_),
+    )

@@ -1,0 +1,184 @@
+"""Files of the record with a row for each cell: a JSON object a line, or a line of a table."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Generic, Protocol, TypeVar
+
+from benchmark.results import recorded
+from benchmark.results.store import PUBLISHED
+from benchmark.results.tables import Reader, StoreError, read, text_of
+from files.reading import FileRefusedError
+from files.strict_json import members, read_json, require_kind
+
+#: Plain JSON values.
+Row = dict[str, Any]
+#: What a row is of: hashable and ordered.
+C = TypeVar("C")
+
+
+class Record(Protocol[C]):
+    """Where an experiment keeps its rows."""
+
+    @property
+    def name(self) -> str:
+        """Return the name of the file, in the folder of a record."""
+
+    def read(self, directory: Path | str = PUBLISHED) -> dict[C, Row]:
+        """Return rows by cell, in order; none where there is no file.
+
+        Raises
+        ------
+        StoreError
+            For a file that holds anything else; the message names the row.
+        """
+
+    def write(self, rows: Mapping[C, Row], directory: Path | str = PUBLISHED) -> bool:
+        """Write the file, whole or not at all; True when it changed."""
+
+
+@dataclass(frozen=True)
+class RowFile(Generic[C]):
+    """How the rows of one experiment are written and read.
+
+    Attributes
+    ----------
+    name
+        Of the file, in the folder of a record.
+    listed
+        Name of the list that holds the rows.
+    schema
+        Layout of a row; raised when a member changes its meaning.
+    cell_of
+        Returns the cell that a row is of.
+    require_row
+        Raises FileRefusedError for what is no row; is given the path and the row.
+    """
+
+    name: str
+    listed: str
+    schema: int
+    cell_of: Callable[[Row], C]
+    require_row: Callable[[Path, object], None]
+
+    def read(self, directory: Path | str = PUBLISHED) -> dict[C, Row]:
+        """Return rows by cell, sorted; none where there is no file.
+
+        Raises
+        ------
+        StoreError
+            For a file that holds anything else; the message names the row.
+        """
+        path = Path(directory) / self.name
+        try:
+            held = members(read_json(path), path, {"schema": int, self.listed: list})
+            if held["schema"] != self.schema:
+                raise StoreError(f"{path}: expected schema {self.schema}, got {held['schema']!r}")
+            found: dict[C, Row] = {}
+            for number, row in enumerate(held[self.listed], start=1):
+                try:
+                    self.require_row(path, row)
+                except FileRefusedError as error:
+                    said = f"{self.listed}, row {number}: {error.reason}"
+                    raise FileRefusedError(path, said) from error
+                cell = self.cell_of(row)
+                if cell in found:
+                    raise StoreError(f"{path}, row {number}: {cell} is there twice")
+                found[cell] = row
+        except FileNotFoundError:
+            return {}
+        except FileRefusedError as error:
+            raise StoreError(str(error)) from error
+        return {cell: found[cell] for cell in sorted(found)}  # type: ignore[type-var]
+
+    def write(self, rows: Mapping[C, Row], directory: Path | str = PUBLISHED) -> bool:
+        """Write the file, whole or not at all; True when it changed."""
+        lines = ",\n".join(
+            json.dumps(rows[cell], allow_nan=False, ensure_ascii=False, separators=(",", ":"))
+            for cell in sorted(rows)  # type: ignore[type-var]
+        )
+        text = f'{{"schema":{self.schema},"{self.listed}":[\n{lines}\n]}}\n'
+        return recorded.write(Path(directory), {self.name: text})
+
+
+@dataclass(frozen=True)
+class TableFile(Generic[C]):
+    """How the rows of an experiment are kept as a table, where there are many of them.
+
+    What all rows of a group share stands once, in a file of JSON beside the table: a change of
+    code that leaves the numbers as they are is a change of a few lines.
+
+    Attributes
+    ----------
+    name
+        Of the table, in the folder of a record; the file beside it ends in ``.json``.
+    columns
+        How a cell of each column is read.
+    shared
+        Members that stand once a group, ``key`` among them, with their types.
+    cell_of
+        Returns the cell that a row is of.
+    group_of
+        Returns the group that a row is of.
+    place_of
+        Returns what rows are sorted by.
+    """
+
+    name: str
+    columns: Mapping[str, Reader]
+    shared: Mapping[str, type]
+    cell_of: Callable[[Row], C]
+    group_of: Callable[[Row], str]
+    place_of: Callable[[Row], Any]
+
+    @property
+    def shared_name(self) -> str:
+        """Return the name of the file of JSON."""
+        return str(Path(self.name).with_suffix(".json"))
+
+    def read(self, directory: Path | str = PUBLISHED) -> dict[C, Row]:
+        """As `RowFile.read`."""
+        path, groups = Path(directory) / self.name, self._groups(Path(directory))
+        found: dict[C, Row] = {}
+        for line, row in read(path, self.columns):
+            cell, group = self.cell_of(row), self.group_of(row)
+            if cell in found:
+                raise StoreError(f"{path}, line {line}: {cell} is there twice")
+            if group not in groups:
+                raise StoreError(f"{path}, line {line}: {group!r} is not in {self.shared_name}")
+            found[cell] = {**row, **groups[group]}
+        return found
+
+    def write(self, rows: Mapping[C, Row], directory: Path | str = PUBLISHED) -> bool:
+        """As `RowFile.write`; a row of another key than the last one of its group is left out."""
+        groups = {
+            self.group_of(row): {name: row[name] for name in self.shared} for row in rows.values()
+        }
+        kept: list[Row] = [
+            row for row in rows.values() if row["key"] == groups[self.group_of(row)]["key"]
+        ]
+        lines = ",\n".join(
+            f"{json.dumps(group)}:{json.dumps(groups[group], separators=(',', ':'))}"
+            for group in sorted(groups)
+        )
+        contents = {
+            self.name: text_of(list(self.columns), self._sorted(kept)),
+            self.shared_name: f"{{\n{lines}\n}}\n",
+        }
+        return recorded.write(Path(directory), contents)
+
+    def _sorted(self, rows: list[Row]) -> list[Row]:
+        return sorted(rows, key=self.place_of)
+
+    def _groups(self, directory: Path) -> dict[str, Row]:
+        path = directory / self.shared_name
+        try:
+            held = require_kind(read_json(path), dict, path, "groups")
+            return {group: members(facts, path, self.shared) for group, facts in held.items()}
+        except FileNotFoundError:
+            return {}
+        except FileRefusedError as error:
+            raise StoreError(str(error)) from error

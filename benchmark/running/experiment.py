@@ -1,0 +1,310 @@
+"""What an experiment declares, and the one way in which all of them are planned and measured.
+
+An experiment is a module of `benchmark.experiments` with one class: its *cells* (what is to be
+measured), its *measure* (numbers of some cells that share work, in one worker) and either a file of
+the record, in which a row stays until the digest of what it depends on changes (`Recorded`), or
+lines that are printed (`Report`). Rows depend on the cell alone, never on time, machine or number
+of workers.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import math
+import pkgutil
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import closing, nullcontext
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, ClassVar, Generic
+
+from benchmark.contract import UnknownNameError
+from benchmark.plan.parts import Parts, installed
+from benchmark.progress import ProgressCallback, terminal_progress
+from benchmark.results.row_file import C, Record, Row
+from benchmark.results.store import PUBLISHED
+from files.locks import held_alone
+
+#: Numbers of another processor may differ by this share.
+RELATIVE_TOLERANCE = 2e-4
+
+
+class Experiment(ABC, Generic[C]):
+    """One thing that is measured.
+
+    Parameters
+    ----------
+    directory
+        Of the record, whose scores may say what is to be measured.
+    parts
+        Data sets and implementations; those installed by default.
+
+    Attributes
+    ----------
+    name
+        As the command line knows it.
+    """
+
+    name: ClassVar[str]
+
+    def __init__(self, directory: Path | str = PUBLISHED, parts: Parts | None = None) -> None:
+        self.directory = Path(directory)
+        self._parts = parts
+
+    @cached_property
+    def parts(self) -> Parts:
+        """Data sets and implementations."""
+        return self._parts or installed()
+
+    @abstractmethod
+    def cells(self) -> Sequence[C]:
+        """List what is to be measured, in order."""
+
+    @abstractmethod
+    def tasks(self, cells: Sequence[C]) -> Iterable[Any]:
+        """Group cells, in order, by the work that they share: a worker is given one task."""
+
+    @staticmethod
+    @abstractmethod
+    def measure(task: Any) -> list[tuple[Any, Row]]:
+        """Return the rows of a task by cell; a pure function, run in a worker process."""
+
+    def name_of(self, cell: C) -> str:
+        """Return the word by which a caller asks for a cell; several cells may share it."""
+        return str(cell)
+
+    def named(self, names: Collection[str]) -> list[C]:
+        """Return the cells of these names.
+
+        Raises
+        ------
+        UnknownNameError
+            For a name of no cell.
+        """
+        known: dict[str, list[C]] = {}
+        for cell in self.cells():
+            known.setdefault(self.name_of(cell), []).append(cell)
+        for name in names:
+            if name not in known:
+                raise UnknownNameError(f"cell of {self.name}", name, known)
+        return [cell for name in known if name in names for cell in known[name]]
+
+
+class Recorded(Experiment[C]):
+    """An experiment whose rows are kept in the record.
+
+    Attributes
+    ----------
+    record
+        The file.
+    """
+
+    record: ClassVar[Record[Any]]
+
+    @abstractmethod
+    def keys(self) -> Mapping[C, str]:
+        """Return, by cell, a digest of all that its row depends on."""
+
+    def cells(self) -> Sequence[C]:
+        """List what is to be measured, in order."""
+        return list(self.keys())
+
+    def outdated(self, row: Row, key: str) -> str:
+        """Say why a row is not of this key; empty where it is."""
+        return "" if row["key"] == key else "of other code or data"
+
+    def comparable(self, row: Row) -> Row:
+        """Return those members of a row that another run repeats."""
+        return {name: value for name, value in row.items() if name != "key"}
+
+
+class Report(Experiment[C]):
+    """An experiment that keeps nothing: its rows are printed."""
+
+    @abstractmethod
+    def lines(self, rows: Mapping[C, Row]) -> Iterator[str]:
+        """Yield what is printed."""
+
+    def passed(self, rows: Mapping[C, Row]) -> bool:  # noqa: ARG002 - subclasses read it
+        """Say whether the rows are as they should be."""
+        return True
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What was done: cells in all, and measured now; seconds."""
+
+    planned: int
+    computed: int
+    seconds: float
+
+
+def experiments() -> dict[str, type[Recorded[Any] | Report[Any]]]:
+    """Return every experiment by name.
+
+    Raises
+    ------
+    ValueError
+        For a module of `benchmark.experiments` that defines no experiment, or several.
+    """
+    package = importlib.import_module("benchmark.experiments")
+    found: dict[str, type[Recorded[Any] | Report[Any]]] = {}
+    for info in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
+        if info.name.endswith("__main__"):
+            continue
+        module = importlib.import_module(info.name)
+        defined = [
+            value
+            for value in vars(module).values()
+            if isinstance(value, type)
+            and issubclass(value, Recorded | Report)
+            and value.__module__ == module.__name__
+        ]
+        if len(defined) != 1:
+            raise ValueError(f"{info.name}: expected one experiment, got {len(defined)}")
+        found[defined[0].name] = defined[0]
+    return found
+
+
+def due(experiment: Recorded[C]) -> list[tuple[C, str]]:
+    """List the cells whose row is missing, out of date or no longer wanted, sorted, and why."""
+    return list(_due(experiment, experiment.record.read(experiment.directory), experiment.keys()))
+
+
+def _due(
+    experiment: Recorded[C], stored: Mapping[C, Row], keys: Mapping[C, str]
+) -> Iterator[tuple[C, str]]:
+    for cell in sorted(stored.keys() | keys.keys()):  # type: ignore[type-var]
+        if cell not in keys:
+            yield cell, "no longer wanted"
+        elif cell not in stored:
+            yield cell, "absent"
+        elif reason := experiment.outdated(stored[cell], keys[cell]):
+            yield cell, reason
+
+
+def update(
+    experiment: Recorded[C],
+    workers: int = 1,
+    progress: ProgressCallback | None = None,
+    *,
+    only: Collection[C] | None = None,
+) -> Summary:
+    """Measure what is due, drop what is no longer wanted, write the file.
+
+    It is written after every task, so that a call that is broken off is gone on with.
+
+    Parameters
+    ----------
+    experiment
+        Bound to a record.
+    workers
+        Number of processes; the file does not depend on it.
+    progress
+        Called as ``progress(done, total, what)`` in cells; a bar on a terminal by default.
+    only
+        Measure these cells instead, due or not.
+
+    Raises
+    ------
+    ValueError
+        For less than one worker.
+    StoreError, ComponentsError
+        For a file that cannot be read.
+    HeldError
+        When another process brings the experiment up to date.
+    """
+    _require_workers(workers)
+    started = time.perf_counter()
+    record, directory = experiment.record, experiment.directory
+    directory.mkdir(parents=True, exist_ok=True)
+    with held_alone(directory / record.name):
+        keys, stored = experiment.keys(), record.read(directory)
+        old = {cell for cell, _ in _due(experiment, stored, keys)}
+        missing = [cell for cell in keys if cell in (old if only is None else only)]
+        rows = {cell: row for cell, row in stored.items() if cell in keys}
+        if only is None:
+            rows = {cell: row for cell, row in rows.items() if cell not in old}
+        for found in measured(experiment, missing, workers, progress):
+            for cell, row in found:
+                rows.pop(cell, None)  # what is new stands last
+                rows[cell] = {**row, "key": keys[cell]}
+            record.write(rows, directory)
+        if rows.keys() != stored.keys():
+            record.write(rows, directory)
+    return Summary(len(keys), len(missing), time.perf_counter() - started)
+
+
+def measured(
+    experiment: Experiment[C],
+    cells: Sequence[C],
+    workers: int = 1,
+    progress: ProgressCallback | None = None,
+) -> Iterator[list[tuple[C, Row]]]:
+    """Measure cells and yield the rows of each task as soon as they are there, in any order.
+
+    Parameters as `update`.
+    """
+    from benchmark.running.workers import as_completed  # noqa: PLC0415 - slow to load
+
+    _require_workers(workers)
+    tasks = list(experiment.tasks(cells)) if cells else []
+    shown = terminal_progress(experiment.name) if progress is None else nullcontext(progress)
+    with shown as report:
+        report(0, len(cells), "")
+        done = 0
+        work = type(experiment).measure
+        with closing(as_completed(work, tasks, workers if len(tasks) > 1 else 1)) as results:
+            for found in results:
+                yield found
+                done += len(found)
+                report(done, len(cells), experiment.name_of(found[0][0]) if found else "")
+
+
+def repeated(
+    experiment: Recorded[C], sample: int, seed: int, workers: int = 1
+) -> Iterator[tuple[C, str]]:
+    """Measure cells drawn at random again, and yield what is not as the record has it.
+
+    Each cell's lot is a digest of the seed and the cell.
+    """
+    stored = experiment.record.read(experiment.directory)
+
+    def lot(cell: C) -> bytes:
+        return hashlib.sha256(f"{seed} {cell}".encode()).digest()
+
+    known = set(experiment.cells())
+    drawn = sorted((cell for cell in stored if cell in known), key=lot)[:sample]
+    drawn.sort()
+    for found in measured(experiment, drawn, workers):
+        for cell, row in found:
+            one, other = experiment.comparable(stored[cell]), experiment.comparable(row)
+            for place, text in differences(one, other):
+                yield cell, f"{place}{text}"
+
+
+def differences(known: Any, again: Any, place: str = "") -> Iterator[tuple[str, str]]:
+    """Yield (place, what differs) of two JSON values; numbers may differ by the tolerance."""
+    if isinstance(known, Mapping) and isinstance(again, Mapping):
+        for name in dict.fromkeys((*known, *again)):
+            yield from differences(known.get(name), again.get(name), f"{place}{name}, ")
+    elif isinstance(known, list) and isinstance(again, list) and len(known) == len(again):
+        for number, (one, other) in enumerate(zip(known, again, strict=True), start=1):
+            yield from differences(one, other, f"{place}{number}, ")
+    elif not _alike(known, again):
+        yield place, f"is {known!r}; measured again it is {again!r}"
+
+
+def _alike(one: Any, other: Any) -> bool:
+    if isinstance(one, int | float) and isinstance(other, int | float):
+        return math.isclose(one, other, rel_tol=RELATIVE_TOLERANCE, abs_tol=1e-12)
+    return bool(one == other)
+
+
+def _require_workers(workers: int) -> None:
+    if workers < 1:
+        raise ValueError(f"workers must be at least 1; got {workers}")

@@ -1,0 +1,273 @@
+"""The designs that meet a question, ranked: all of them at once, as arrays.
+
+`registry.answer_json` writes an answer as JSON. Needs NumPy, so that only modules that answer
+questions import it.
+"""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Sequence
+from functools import cached_property, lru_cache
+from operator import attrgetter
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from registry.contradiction import against_advice
+from registry.designs import Candidate, DesignTable, Place
+from registry.judging import Question, advice_for
+from registry.mapping.advice import Advice
+from registry.pipelines import PipelineErrors, begins
+from registry.ranking import (
+    Regret,
+    Sort,
+    TaskMeasure,
+    joint_cost,
+    key_of,
+    pareto,
+    regret,
+    task_measures,
+)
+from registry.relaxation import Blocked, explain
+
+Numbers = NDArray[np.float64]
+Positions = NDArray[np.int64]
+
+#: Architectures of questions whose advice and measures are kept, some 200 bytes each.
+MOST_PLACES = 4096
+
+
+class RankedPlace(NamedTuple):
+    """An architecture that meets the requirements.
+
+    Attributes
+    ----------
+    key : what it is ranked by
+    number : its position in the table
+    studies : its studies (bits) that have what is asked of studies
+    stated : those of them whose stated numbers keep the limits, too
+    start, end : its part of `Answer.designs`
+    best_at : position of the design with the smallest error
+    advice : the survey's advice for what is asked
+    advised_tasks : tasks of that advice
+    measures : the own measures of the tasks asked for
+    """
+
+    key: tuple[float, ...]
+    number: int
+    place: Place
+    studies: int
+    stated: int
+    start: int
+    end: int
+    best_at: int
+    error_deg: float
+    advice: tuple[Advice, ...]
+    advised_tasks: frozenset[str]
+    measures: tuple[TaskMeasure, ...]
+
+
+class Answer:
+    """Designs that meet a question, best first; equals in the order of the table.
+
+    A calibration whose extractor or model has no name in the taxonomy comes last, but by what is
+    measured.
+
+    Attributes
+    ----------
+    designs : positions of the designs, by architecture and then best first
+    places : the architectures, best first
+    """
+
+    def __init__(self, question: Question, sort: Sort) -> None:
+        self.question = question
+        self.sort = sort
+        self.best = question.best
+        self._at = np.flatnonzero(question.meeting)
+        self._of = question.arrays.place_of[self._at]
+        self.designs: Positions = self._ranked()
+        self._starts = np.flatnonzero(begins(self._of)) if len(self._of) else self._of
+        self.places: Sequence[RankedPlace] = sorted(self._places(), key=attrgetter("key"))
+
+    @property
+    def count(self) -> int:
+        """How many designs meet the question."""
+        return len(self.designs)
+
+    def _places(self) -> list[RankedPlace]:
+        """Return the architectures in the order of the table."""
+        if not self.count:
+            return []
+        question, best, sort = self.question, self.best, self.sort
+        include, advising = question.asked.include, question.advising
+        tasks, of_errors = include.get("task", ()), "error" in include
+        studies, stated = question.studies, question.all_stated
+        facts = _place_facts(question.table)
+        starts: list[int] = self._starts.tolist()
+        least = best.at_order[np.minimum.reduceat(best.order[self._at], self._starts)]
+        found = []
+        for number, start, end, best_at, row, error in zip(
+            self._of[self._starts].tolist(),
+            starts,
+            (*starts[1:], self.count),
+            least.tolist(),
+            best.row[least].tolist(),
+            best.error[least].tolist(),
+            strict=True,
+        ):
+            place = question.table.places[number]
+            has = place.studies & studies
+            advice, advised_tasks = facts.advice(number, advising)
+            own: float | None = None
+            measures: tuple[TaskMeasure, ...] = ()
+            if tasks:
+                own, measures = facts.measures(number, tasks, best.errors, row, error)
+            backing = has.bit_count()
+            key = key_of(sort, bool(advice), backing, error, own, of_errors=of_errors)
+            found.append(
+                RankedPlace(
+                    *(key, number, place, has, place.studies & stated, start, end),
+                    *(best_at, error, advice, advised_tasks, measures),
+                )
+            )
+        return found
+
+    def _ranked(self) -> Positions:
+        """Return all designs by place and rank.
+
+        What designs are ranked by goes into one number each, the most important part in its
+        highest bits: sorting those is many times quicker than sorting by one part after another.
+        The cube root of the support, which rises with it, can be left out.
+        """
+        best, arrays, at = self.best, self.question.arrays, self._at
+        many, with_model, taken = arrays.counted(self.question.studies)
+        if self.question.all_stated != self.question.studies:
+            _, with_model_stated, taken_stated = arrays.counted(self.question.all_stated)
+            with_model = np.where(arrays.measured, with_model, with_model_stated)
+            taken = np.where(arrays.measured, taken, taken_stated)
+        self._taken = taken
+        backing = many[self._of] * with_model[at] * taken[at]
+        most = (1 << arrays.support_bits) - 1
+        backed = (most - backing, arrays.support_bits)
+        error = (best.rank[at], arrays.rank_bits)
+        advised = (arrays.not_advised[at], 1)
+        parts = {
+            "measured": (error, advised, backed),
+            "support": ((arrays.not_stated[at], 1), backed, error, advised),
+            "advice": (error, advised, backed),
+        }[self.sort]
+        key = self._of.astype(np.int64)
+        for values, bits in (*parts, (best.order[at], arrays.design_bits)):
+            key = (key << bits) | values
+        key.sort()
+        ranked: Positions = best.at_order[key & ((1 << arrays.design_bits) - 1)]
+        return ranked
+
+    @cached_property
+    def usual(self) -> dict[int, int]:
+        """The measured calibration that most studies used, by architecture; both by position.
+
+        Of several the one with the smallest error, then the first.
+        """
+        arrays = self.question.arrays
+        taken = self._taken[self.designs]
+        at = np.flatnonzero(arrays.measured[self.designs] & (taken > 0))
+        designs = self.designs[at]
+        of = arrays.place_of[designs]
+        at = at[np.lexsort((self.best.rank[designs], -taken[at], of))]
+        first = at[begins(of)]
+        places = arrays.place_of[self.designs[first]].tolist()
+        return dict(zip(places, self.designs[first].tolist(), strict=True))
+
+    def candidate(self, design: int) -> Candidate:
+        """Return a design, given by position, with its best pipeline."""
+        return self.best.candidate(design)
+
+    def rank_of_best(self, place: RankedPlace) -> int:
+        """Return the rank of the design with the smallest error on its architecture."""
+        designs = self.designs[place.start : place.end]
+        return 1 if designs[0] == place.best_at else int((designs == place.best_at).argmax()) + 1
+
+    def reached(self, values: Numbers) -> list[float]:
+        """Return the least of some values of designs on each architecture, best first."""
+        least = np.minimum.reduceat(values[self.designs], self._starts).tolist()
+        by_number = dict(zip(self._of[self._starts].tolist(), least, strict=True))
+        return [by_number[place.number] for place in self.places]
+
+    def reached_by(self, place: RankedPlace, values: Numbers) -> int:
+        """Return the design on an architecture that reaches the least of some values."""
+        designs = self.designs[place.start : place.end]
+        found = values[designs]
+        order = self.best.order[designs[found == found.min()]].min()
+        return int(self.best.at_order[order])
+
+    @cached_property
+    def contradictions(self) -> tuple[str, ...]:
+        """Where an architecture that is not advised does better at a task than those advised."""
+        return against_advice(self, self.question.asked.include.get("task", ()))
+
+    @cached_property
+    def regret(self) -> Regret | None:
+        """Error of the first calibration beside the best one's; None if none is measured."""
+        if not self.places:
+            return None
+        least = min(self.places, key=attrgetter("error_deg"))
+        first = self.candidate(int(self.designs[self.places[0].start]))
+        return regret(first, self.candidate(least.best_at))
+
+    @cached_property
+    def pareto(self) -> frozenset[int]:
+        """Positions of the architectures that none beats in both studies and error."""
+        return pareto([(-one.studies.bit_count(), one.error_deg) for one in self.places])
+
+    @property
+    def untried(self) -> dict[str, tuple[tuple[str, str], ...]]:
+        """Architectures that no data set tries a hazard on, by the hazards asked for."""
+        question = self.question
+        return {hazard: question.arrays.untried(hazard) for hazard in question.asked.survive}
+
+    @property
+    def untimed(self) -> int:
+        """How many measured pipelines a limit on latency cannot judge; 0 where none is asked."""
+        if self.question.asked.max_latency_us is None:
+            return 0
+        return int(np.isinf(self.question.arrays.latency_us).sum())
+
+    @cached_property
+    def blocked(self) -> Blocked | None:
+        """Why nothing meets the requirements, if nothing does."""
+        return None if self.places else explain(self.question.table, self.question.asked)
+
+
+class _PlaceFacts:
+    """Advice and measures of the architectures of a table, kept for the next question."""
+
+    def __init__(self, table: DesignTable) -> None:
+        self._table = table
+        self.advice = lru_cache(MOST_PLACES)(self._advice)
+        self.measures = lru_cache(MOST_PLACES)(self._measures)
+
+    def _advice(
+        self, number: int, advising: tuple[tuple[str, ...] | None, ...]
+    ) -> tuple[tuple[Advice, ...], frozenset[str]]:
+        return advice_for(self._table.places[number], advising)
+
+    def _measures(
+        self, number: int, tasks: tuple[str, ...], errors: PipelineErrors, row: int, error: float
+    ) -> tuple[float, tuple[TaskMeasure, ...]]:
+        pipeline = None if row < 0 else errors.table.rows[row]
+        architecture = self._table.places[number].architecture
+        measures = task_measures(tasks, architecture, pipeline, error)
+        return joint_cost(measures), measures
+
+
+_FACTS: weakref.WeakKeyDictionary[DesignTable, _PlaceFacts] = weakref.WeakKeyDictionary()
+
+
+def _place_facts(table: DesignTable) -> _PlaceFacts:
+    found = _FACTS.get(table)
+    if found is None:
+        found = _FACTS[table] = _PlaceFacts(table)
+    return found

@@ -1,0 +1,263 @@
+"""The one table that requirements are put to: designs and their measured pipelines as arrays.
+
+Made once of the designs (`registry.designs`), whose order it keeps. A requirement becomes a mask
+over designs. Needs NumPy, so that only modules that answer questions import it.
+"""
+
+from __future__ import annotations
+
+import itertools
+import weakref
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from registry.designs import NOTHING, Candidate, Design, DesignTable, Limits, Place
+from registry.measured import Measured
+from registry.pipelines import PipelineErrors, PipelineTable, begins
+
+Flags = NDArray[np.bool_]
+Numbers = NDArray[np.float64]
+Positions = NDArray[np.int64]
+Words = NDArray[np.uint64]
+
+WORD_BITS = 64
+_LARGEST_KEY = 63
+#: Questions whose best pipelines are kept, some 60 kB each.
+MOST_BEST = 64
+
+
+class BestPipelines:
+    """The best pipeline of each design among those that keep limits.
+
+    Attributes
+    ----------
+    row : position of the pipeline, shape (designs,); -1 where none keeps the limits
+    error : its error; infinite where there is none
+    rank : of the error; equal errors share a rank
+    order : place of each design by error, measured ones first among equals, shape (designs,)
+    at_order : the design at each place of that order
+    """
+
+    def __init__(self, arrays: DesignArrays, limits: Limits) -> None:
+        self.arrays = arrays
+        self.limits = limits
+        self.errors = arrays.errors(limits.hazards, limits.half_field_deg, limits.draws)
+        by_error = self.errors.by_error
+        by_error = by_error[self.errors.keeping(limits)[by_error]]
+        designs = arrays.design_of[by_error]
+        first = by_error[begins(designs)]
+        has = arrays.design_of[first]
+        self.row = np.full(len(arrays.designs), -1)
+        self.row[has] = first
+        self.error = np.full(len(arrays.designs), np.inf)
+        self.error[has] = self.errors.error_deg[first]
+        self.rank = np.full(len(arrays.designs), len(arrays.rows))
+        self.rank[has] = self.errors.rank[first]
+        self.rank[np.isinf(self.error)] = len(arrays.rows)
+        key = ((self.rank << 1 | ~arrays.measured) << arrays.design_bits) | arrays.numbers
+        key.sort()
+        self.at_order = key & ((1 << arrays.design_bits) - 1)
+        self.order = np.empty_like(self.at_order)
+        self.order[self.at_order] = arrays.numbers
+
+    @cached_property
+    def repeatability_deg(self) -> Numbers:
+        """Spread of the answers to one pose, of each design; infinite where it is not judged.
+
+        An answer in steps repeats exactly, which says nothing: the pipelines have none then.
+        """
+        return self._of_designs(self.arrays.repeatability_deg)
+
+    @cached_property
+    def negated_half_field_deg(self) -> Numbers:
+        """Half field of each design, negated; infinite where it is not judged."""
+        return self._of_designs(-self.arrays.half_fov_deg)
+
+    def _of_designs(self, of_rows: Numbers) -> Numbers:
+        known = (self.row >= 0) & np.isfinite(self.error)
+        found = np.full(len(self.row), np.inf)
+        found[known] = of_rows[self.row[known]]
+        found[np.isnan(found)] = np.inf
+        return found
+
+    def pipeline(self, design: int) -> Measured | None:
+        """Return the best pipeline of a design, given by position; None for none."""
+        row = int(self.row[design])
+        return None if row < 0 else self.arrays.rows[row]
+
+    def candidate(self, design: int) -> Candidate:
+        """Return a design, given by position, with its best pipeline."""
+        return self.arrays.candidate(design, int(self.row[design]), self.errors)
+
+
+class DesignArrays(PipelineTable):
+    """Designs and their pipelines as arrays.
+
+    Parameters
+    ----------
+    places : architectures of the table
+    studies : how many studies there are
+    """
+
+    def __init__(self, places: Sequence[Place], studies: int) -> None:
+        self.places = places
+        self.designs: tuple[Design, ...] = tuple(d for place in places for d in place.designs)
+        self.numbers = np.arange(len(self.designs))
+        self.place_of = _repeated([len(place.designs) for place in places])
+        design_of = _repeated([len(design.rows) for design in self.designs])
+        rows = tuple(row for design in self.designs for row in design.rows)
+        super().__init__(rows, self.place_of[design_of], design_of)
+        self.first_row = [0, *itertools.accumulate(len(design.rows) for design in self.designs)]
+        self.words = studies // WORD_BITS + 1
+        self.taken = self.words_of(design.taken for design in self.designs)
+        self.with_model = self.words_of(design.with_model for design in self.designs)
+        self.measured = np.array([bool(design.rows) for design in self.designs], bool)
+        self.not_advised = np.array([not design.advised for design in self.designs], np.int64)
+        self.not_stated = np.array([not design.stated for design in self.designs], np.int64)
+        self.unmeasured = np.flatnonzero(~self.measured)
+        self.place_studies = self.words_of(place.studies for place in places)
+        self.without_studies = np.array([not place.studies for place in places], bool)
+        self.best = lru_cache(MOST_BEST)(self._best)
+        self.counted = lru_cache(MOST_BEST)(self._counted)
+        self.stated = lru_cache(MOST_BEST)(self._stated)
+        self.untried = lru_cache(None)(self._untried)
+        self.design_bits = max(1, len(self.designs).bit_length())
+        self.rank_bits = len(rows).bit_length()
+        self.support_bits = max(1, (studies**3).bit_length())
+        bits = self.support_bits + self.rank_bits + self.design_bits
+        if 2 + len(places).bit_length() + bits > _LARGEST_KEY:
+            raise ValueError(
+                f"{len(self.designs)} designs of {studies} studies are too many to be ranked"
+            )
+
+    @cached_property
+    def _having(self) -> Mapping[tuple[str, str], Flags]:
+        """Designs with each value of detector, mask, extractor and model."""
+        found: dict[tuple[str, str], Flags] = {}
+        for at, design in enumerate(self.designs):
+            detector, mask = design.architecture
+            for key in (
+                *(("detector", detector), ("mask", mask), ("extractor", design.extractor)),
+                *(("model", stage) for stage in design.stages),
+            ):
+                found.setdefault(key, np.zeros(len(self.designs), bool))[at] = True
+        return found
+
+    @cached_property
+    def _advised(self) -> Mapping[tuple[str, str], Flags]:
+        """Architectures that the survey advises for each value of what is asked of studies."""
+        found: dict[tuple[str, str], Flags] = {}
+        for at, place in enumerate(self.places):
+            for advice in place.advice:
+                key = (advice.requirement, advice.value)
+                found.setdefault(key, np.zeros(len(self.places), bool))[at] = True
+        return found
+
+    def having(self, attribute: str, values: Iterable[str]) -> Flags:
+        """Return the designs with one of some values of detector, mask, extractor, model."""
+        return _one_of(self._having, attribute, values, len(self.designs))
+
+    def advised_for(self, requirement: str, values: Iterable[str]) -> Flags:
+        """Return the architectures that the survey advises for one of some values."""
+        return _one_of(self._advised, requirement, values, len(self.places))
+
+    def with_one_of(self, studies: int) -> Flags:
+        """Return the architectures that one of some studies (bits) has."""
+        words = self.place_studies & self.words_of([studies])
+        found: Flags = np.bitwise_or.reduce(words, axis=0) != 0
+        return found
+
+    def words_of(self, sets: Iterable[int]) -> Words:
+        """Return sets of studies as words, shape (words, sets)."""
+        size = 8 * self.words
+        data = b"".join(bits.to_bytes(size, "little") for bits in sets)
+        return np.ascontiguousarray(np.frombuffer(data, "<u8").reshape(-1, self.words).T)
+
+    def _counted(self, studies: int) -> tuple[Positions, Positions, Positions]:
+        """Return how many of some studies (bits) have each architecture, and use each design.
+
+        Of designs first those that use compensations and model, then those that use the extractor,
+        too.
+        """
+        words = self.words_of([studies])
+        sets = (self.place_studies & words, self.with_model & words, self.taken & words)
+        many, with_model, taken = (
+            np.bitwise_count(found).sum(axis=0, dtype=np.int64) for found in sets
+        )
+        return many, with_model, taken
+
+    def _stated(self, studies: int) -> Flags:
+        """Return the designs that nothing measures and one of some studies (bits) used."""
+        found = np.zeros(len(self.designs), bool)
+        taken = self.taken[:, self.unmeasured] & self.words_of([studies])
+        found[self.unmeasured] = taken.any(axis=0)
+        return found
+
+    def candidate(self, design: int, row: int, errors: PipelineErrors) -> Candidate:
+        """Return a design with one of its pipelines; both by position, -1 for no pipeline."""
+        if row < 0:
+            return Candidate(self.designs[design], None, NOTHING)
+        return Candidate(self.designs[design], self.rows[row], errors.of(row))
+
+    def broken(self, having: Mapping[int, Flags]) -> Positions:
+        """Return, of each design, the requirements (bits) that it breaks.
+
+        `having` maps a requirement's bit to the designs that meet it.
+        """
+        found = np.zeros(len(self.designs), np.int64)
+        for bit, designs in having.items():
+            found[~designs] |= bit
+        return found
+
+    def broken_by_place(
+        self, by_design: Positions, by_row: Iterable[tuple[int, Flags]]
+    ) -> list[set[int]]:
+        """Return, of each place, the sets of requirements (bits) that its pipelines break.
+
+        Each breaks those of its design, beside one of the sets that it is among the flags of.
+        """
+        found: list[set[int]] = [set() for _ in self.places]
+        for bits, rows in by_row:
+            designs = np.unique(self.design_of[rows])
+            for place, of_design in zip(
+                self.place_of[designs].tolist(), by_design[designs].tolist(), strict=True
+            ):
+                found[place].add(of_design | bits)
+        return found
+
+    def _best(self, limits: Limits) -> BestPipelines:
+        return BestPipelines(self, limits)
+
+    def _untried(self, hazard: str) -> tuple[tuple[str, str], ...]:
+        """Return the architectures that no data set tries a hazard on."""
+        tried = set(self.row_place[self.tried(hazard)].tolist())
+        return tuple(p.architecture for at, p in enumerate(self.places) if at not in tried)
+
+
+def _one_of(
+    having: Mapping[tuple[str, str], Flags], name: str, values: Iterable[str], size: int
+) -> Flags:
+    found = np.zeros(size, bool)
+    for value in values:
+        flags = having.get((name, value))
+        if flags is not None:
+            found |= flags
+    return found
+
+
+def _repeated(lengths: Sequence[int]) -> Positions:
+    return np.repeat(np.arange(len(lengths)), np.array(lengths, int))
+
+
+_ARRAYS: weakref.WeakKeyDictionary[DesignTable, DesignArrays] = weakref.WeakKeyDictionary()
+
+
+def design_arrays(table: DesignTable) -> DesignArrays:
+    """Return the designs of a table as arrays, made at the first call."""
+    found = _ARRAYS.get(table)
+    if found is None:
+        found = _ARRAYS[table] = DesignArrays(table.places, len(table.facts.keys))
+    return found

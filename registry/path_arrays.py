@@ -1,0 +1,146 @@
+"""The paths behind an answer: which studies took which, all paths at once.
+
+Needs NumPy, so that only modules that answer questions import it.
+"""
+
+from __future__ import annotations
+
+import itertools
+import weakref
+from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from registry.answer import Answer
+from registry.design_arrays import WORD_BITS, DesignArrays, design_arrays
+from registry.designs import DesignTable
+from registry.paths import PathTable, path_table
+
+Flags = NDArray[np.bool_]
+Words = NDArray[np.uint64]
+
+#: Sets of studies whose paths are kept, some 10 kB each.
+MOST_SETS = 256
+_POSITION_BYTES = 8
+
+
+class StudySets(NamedTuple):
+    """Paths behind an answer, their nodes and their links, with the studies of each.
+
+    Each set is packed: the position of its path, node or link, and the studies as bits
+    (`unpacked`). Paths are in the order of the taxonomy, nodes and links in chart order.
+    """
+
+    paths: Sequence[bytes]
+    nodes: Sequence[bytes]
+    links: Sequence[bytes]
+
+
+class PathArrays:
+    """The paths of facts as they belong to designs.
+
+    Parameters
+    ----------
+    table : the paths
+    arrays : the designs
+    """
+
+    def __init__(self, table: PathTable, arrays: DesignArrays) -> None:
+        self.arrays = arrays
+        self._size = len(table.paths)
+        self._among = lru_cache(MOST_SETS)(self._studies_among)
+        self._studies = arrays.words_of(table.sets)
+        # Paths that lead to each design, as bits.
+        leading = [sum(1 << at for at in table.of(d)) if d.taken else 0 for d in arrays.designs]
+        size = 8 * (self._size // WORD_BITS + 1)
+        data = b"".join(paths.to_bytes(size, "little") for paths in leading)
+        self._leading = np.frombuffer(data, "<u8").reshape(len(leading), size // 8)
+        self._of_task: dict[str, Flags] = {}
+        for at, (task, *_) in enumerate(table.paths):
+            self._of_task.setdefault(task, np.zeros(self._size, bool))[at] = True
+        kinds = ([[at] for at in range(self._size)], table.nodes_on, table.links_on)
+        steps = [_paths_by_step(kind) for kind in kinds]
+        self._paths = np.array([at for kind in steps for step in kind for at in step], int)
+        lengths = [len(step) for kind in steps for step in kind]
+        self._starts = np.array([0, *itertools.accumulate(lengths)][:-1], int)
+        self._firsts = np.cumsum([len(kind) for kind in steps])[:-1]
+        self._packed = np.zeros((len(lengths), 1 + arrays.words), "<u8")
+        self._packed[:, 0] = np.concatenate([np.arange(len(kind)) for kind in steps])
+
+    def sets(self, answer: Answer) -> StudySets:
+        """Return the paths that lead to the designs of an answer, their nodes and their links.
+
+        A study counts that meets what is asked; where a design is not measured, one whose stated
+        numbers keep the limits.
+        """
+        if not self._size:
+            return StudySets((), (), ())
+        question, measured = answer.question, self.arrays.measured
+        among = self._of_tasks(question.asked.include, question.asked.exclude)
+        if question.studies == question.all_stated:
+            parts = [(question.meeting, question.studies)]
+        else:
+            parts = [
+                (question.meeting & measured, question.studies),
+                (question.meeting & ~measured, question.all_stated),
+            ]
+        studies = [self._among(of) * (self._led_to(designs) & among) for designs, of in parts]
+        return self._present(studies[0] if len(studies) == 1 else studies[0] | studies[1])
+
+    def _led_to(self, designs: Flags) -> Flags:
+        """Return the paths that lead to one of some designs."""
+        found = np.bitwise_or.reduce(self._leading[designs], axis=0).view(np.uint8)
+        return np.unpackbits(found, count=self._size, bitorder="little").view(bool)
+
+    def _of_tasks(
+        self, include: Mapping[str, Iterable[str]], exclude: Mapping[str, Iterable[str]]
+    ) -> Flags:
+        """Return the paths from a task that is asked for."""
+        tasks = set(include.get("task", self._of_task)) - set(exclude.get("task", ()))
+        found = np.zeros(self._size, bool)
+        for task in tasks & self._of_task.keys():
+            found |= self._of_task[task]
+        return found
+
+    def _studies_among(self, studies: int) -> Words:
+        """Return those of some studies (bits) that took each path."""
+        return self._studies & self.arrays.words_of([studies])
+
+    def _present(self, studies: Words) -> StudySets:
+        """Return the sets that are not empty; `studies` is of paths, shape (words, paths)."""
+        words = np.bitwise_or.reduceat(studies.take(self._paths, axis=1), self._starts, axis=1)
+        at = np.bitwise_or.reduce(words, axis=0).nonzero()[0]
+        rows = self._packed.take(at, axis=0)
+        rows[:, 1:] = words.take(at, axis=1).T
+        sets = rows.view(f"V{rows.itemsize * rows.shape[1]}").ravel().tolist()
+        first_node, first_link = at.searchsorted(self._firsts).tolist()
+        return StudySets(sets[:first_node], sets[first_node:first_link], sets[first_link:])
+
+
+def unpacked(packed: bytes) -> tuple[int, int]:
+    """Return the position that a packed set is of, and its studies (bits)."""
+    position, studies = packed[:_POSITION_BYTES], packed[_POSITION_BYTES:]
+    return int.from_bytes(position, "little"), int.from_bytes(studies, "little")
+
+
+def _paths_by_step(steps_of_paths: Sequence[Sequence[int]]) -> list[list[int]]:
+    """Return the paths of each step; every step is on one at least."""
+    found: dict[int, list[int]] = {}
+    for path, steps in enumerate(steps_of_paths):
+        for step in steps:
+            found.setdefault(step, []).append(path)
+    return [found[step] for step in sorted(found)]
+
+
+_ARRAYS: weakref.WeakKeyDictionary[DesignTable, PathArrays] = weakref.WeakKeyDictionary()
+
+
+def path_arrays(table: DesignTable) -> PathArrays:
+    """Return the paths of the facts of a table of designs, made at the first call."""
+    found = _ARRAYS.get(table)
+    if found is None:
+        found = _ARRAYS[table] = PathArrays(path_table(table.facts), design_arrays(table))
+    return found

@@ -1,0 +1,358 @@
+"""Measured pipelines as arrays: the errors, shares and times that requirements are held against.
+
+`registry.measured` judges one pipeline by the same rules. Needs NumPy, so that only modules that
+answer questions import it.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Sequence
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from registry.designs import Limits
+from registry.draws import at_confidence, unit_errors
+from registry.measured import LEAST_ANSWERED, Draws, Judged, Measured, Score
+from registry.requirements import UNITS
+
+Flags = NDArray[np.bool_]
+Numbers = NDArray[np.float64]
+Positions = NDArray[np.int64]
+
+
+NOT_COUNTED = 255
+"""Stands for a number of units where none is asked for."""
+
+#: Fields and sets of hazards whose errors are kept, some 200 kB each.
+MOST_ERRORS = 96
+
+
+class PipelineTable:
+    """Measured pipelines as arrays.
+
+    Parameters
+    ----------
+    rows : the pipelines
+    places : position of the architecture of each
+    design_of : position of the design of each
+    """
+
+    def __init__(self, rows: tuple[Measured, ...], places: Positions, design_of: Positions) -> None:
+        self.rows = rows
+        self.row_place = places
+        self.design_of = design_of
+        self.scores = lru_cache(None)(self._scores_under)
+        self.reading = lru_cache(None)(self._reading)
+        self._errors = lru_cache(MOST_ERRORS)(self._errors_under)
+
+    def half_field(self, half_field_deg: float | None) -> float | None:
+        """Return the least half field that tells apart the same pipelines as one asked for does.
+
+        A field is only ever held against the edges of cones and data sets: between two of them
+        all questions are the same question.
+        """
+        if half_field_deg is None:
+            return None
+        at = int(np.searchsorted(self._edges, half_field_deg))
+        return float(self._edges[at]) if at < len(self._edges) else math.inf
+
+    @cached_property
+    def _edges(self) -> Numbers:
+        halves = {half for row in self.rows for s in _scores(row) for half, _ in s.cones}
+        halves |= {row.half_fov_deg for row in self.rows if row.half_fov_deg is not None}
+        return np.array(sorted(halves), float)
+
+    @cached_property
+    def half_fov_deg(self) -> Numbers:
+        """Half field of view of the data set of each pipeline; NaN where it has none."""
+        return numbers(row.half_fov_deg for row in self.rows)
+
+    @cached_property
+    def latency_us(self) -> Numbers:
+        """Latency of each pipeline; infinite where it was not timed."""
+        found = numbers(row.latency_us for row in self.rows)
+        return np.where(np.isnan(found), np.inf, found)
+
+    @cached_property
+    def repeatability_deg(self) -> Numbers:
+        """Spread of the answers of each pipeline to one pose; NaN where there is none."""
+        return numbers(row.nominal.repeatability_deg or None for row in self.rows)
+
+    @cached_property
+    def cone_edges(self) -> tuple[tuple[float, Flags], ...]:
+        """Half fields over which a pipeline has a nominal error, widest first, and which do."""
+        having: dict[float, list[int]] = {}
+        for at, row in enumerate(self.rows):
+            halves = {half for half, error in row.nominal.cones if error is not None}
+            if row.half_fov_deg is not None:
+                halves.add(row.half_fov_deg)
+            for half in halves:
+                having.setdefault(half, []).append(at)
+        found = []
+        for half in sorted(having, reverse=True):
+            flags = np.zeros(len(self.rows), bool)
+            flags[having[half]] = True
+            found.append((half, flags))
+        return tuple(found)
+
+    @cached_property
+    def unit_ratios(self) -> Numbers:
+        """Errors of ten units over their geometric mean, shape (pipelines, 10)."""
+        return np.array([row.unit_ratios for row in self.rows], float).reshape(-1, UNITS)
+
+    @cached_property
+    def bench_deg(self) -> Numbers:
+        """Fixed error of the standard bench of each pipeline's data set."""
+        return numbers(row.bench_deg for row in self.rows)
+
+    def _reading(self, need: str) -> Flags:
+        """Return the pipelines that read something beside the sensor."""
+        return np.array([need in row.needs for row in self.rows], bool)
+
+    def errors(
+        self,
+        hazards: tuple[str, ...],
+        half_field_deg: float | None,
+        draws: Draws | None = None,
+    ) -> PipelineErrors:
+        """Return the errors of all pipelines under hazards, over a field, at a confidence."""
+        return self._errors(hazards, self.half_field(half_field_deg), draws)
+
+    def _errors_under(
+        self, hazards: tuple[str, ...], half: float | None, draws: Draws | None
+    ) -> PipelineErrors:
+        return PipelineErrors(self, hazards, half, draws)
+
+    def _scores_under(self, hazard: str) -> Scores:
+        """Return the scores of all pipelines under a hazard; "" for the nominal ones."""
+        pairs = [
+            (at, score)
+            for at, row in enumerate(self.rows)
+            for score in (row.hazards.get(hazard, ()) if hazard else (row.nominal,))
+        ]
+        return Scores(pairs, self.half_fov_deg)
+
+    def tried(self, hazard: str) -> Flags:
+        """Say of each pipeline whether a condition of its data set tries a hazard."""
+        return self.scores(hazard).tried
+
+
+class PipelineErrors:
+    """Errors of all pipelines under hazards, over a field, at a confidence.
+
+    Attributes
+    ----------
+    own_deg : largest error with true directions, shape (pipelines,); infinite where a pipeline
+        answers too seldom or its data set lacks the field
+    error_deg : the same on calibration benches, as `Measured.judged` computes it
+    nominal_deg : error of the first condition alone
+    by_error : positions of the pipelines, by design and then by error
+    rank : position of each error among all different ones; equal errors share a rank
+    """
+
+    def __init__(
+        self,
+        table: PipelineTable,
+        hazards: tuple[str, ...],
+        half: float | None,
+        draws: Draws | None,
+    ) -> None:
+        self.table = table
+        self.hazards = hazards
+        self.half = half
+        self.draws = draws
+        self.nominal_deg = table.scores("").over(half)
+        self.own_deg = self.nominal_deg.copy()
+        for hazard in hazards:
+            scores = table.scores(hazard)
+            np.maximum.at(self.own_deg, scores.rows, scores.over(half))
+        self.error_deg = self.own_deg
+        if draws is not None:
+            share = draws[1]
+            self.error_deg = at_confidence(self.own_deg, table.unit_ratios, self.bench_deg, share)
+        self.by_error = np.lexsort((self.error_deg, table.design_of))
+        self.rank = np.unique(self.error_deg, return_inverse=True)[1]
+        self.of = lru_cache(None)(self._judged)
+
+    @property
+    def bench_deg(self) -> Numbers:
+        """Fixed error of the bench of each pipeline: the one asked for, or its data set's."""
+        bench = None if self.draws is None else self.draws[0]
+        own = self.table.bench_deg
+        return own if bench is None else np.full(len(own), bench)
+
+    def _judged(self, row: int) -> Judged:
+        """Return the error of one pipeline, with its condition and field."""
+        return self.table.rows[row].judged(self.hazards, self.half, self.draws)
+
+    @cached_property
+    def _unit_errors(self) -> Numbers:
+        """Error that each of ten units keeps at the confidence, shape (pipelines, 10)."""
+        assert self.draws is not None  # noqa: S101 - without draws no unit is counted
+        ratios, share = self.table.unit_ratios, self.draws[1]
+        return unit_errors(self.own_deg, ratios, self.bench_deg, share)
+
+    def units_within(self, limit_deg: float | None) -> NDArray[np.uint8]:
+        """Return how many of ten units of each pipeline keep a limit on the error.
+
+        `NOT_COUNTED` where no limit is asked for, and where a pipeline has no error.
+        """
+        if limit_deg is None or self.draws is None:
+            return np.full(len(self.own_deg), NOT_COUNTED, np.uint8)
+        found: NDArray[np.uint8] = (self._unit_errors <= limit_deg).sum(axis=1, dtype=np.uint8)
+        found[np.isinf(self.own_deg)] = NOT_COUNTED
+        return found
+
+    @cached_property
+    def tried(self) -> Flags:
+        """Whether the data set of a pipeline tries all of the hazards."""
+        found = np.ones(len(self.table.rows), bool)
+        for hazard in self.hazards:
+            found &= self.table.tried(hazard)
+        return found
+
+    @cached_property
+    def availability(self) -> Numbers:
+        """Least answered share, as `Measured.availability`; NaN where one is unknown."""
+        found = self.table.scores("").share.copy()
+        for hazard in self.hazards:
+            scores = self.table.scores(hazard)
+            with np.errstate(invalid="ignore"):  # an unknown share makes the least unknown
+                np.minimum.at(found, scores.rows, scores.share)
+        return found
+
+    @cached_property
+    def _seldom(self) -> tuple[Positions, Positions]:
+        """Pipelines that answer too seldom to be judged, by place and error, and their places.
+
+        As `Measured.partly` finds them, of those that answer often enough to be named.
+        """
+        table, half = self.table, self.half
+        known, judged = self.tried.copy(), np.ones(len(table.rows), bool)
+        if half is not None:
+            known &= table.half_fov_deg >= half
+        largest = np.zeros(len(table.rows))
+        for hazard in ("", *self.hazards):
+            scores = table.scores(hazard)
+            over = scores.over(half)
+            seldom = np.isinf(over)
+            error = np.where(seldom, scores.rms, over)
+            known[scores.rows[np.isnan(error)]] = False
+            judged[scores.rows[seldom]] = False
+            with np.errstate(invalid="ignore"):  # those are left out
+                np.maximum.at(largest, scores.rows, error)
+        named = np.flatnonzero(known & ~judged & (self.availability >= LEAST_ANSWERED))
+        places = table.row_place[named]
+        order = np.lexsort((largest[named], places))
+        return named[order], places[order]
+
+    def finest(self, limits: Limits, designs: Flags) -> dict[int, int]:
+        """Return what errs least of what answers too seldom, by place; both by position.
+
+        Parameters
+        ----------
+        limits : of these hazards and this field; those on answers and time are kept
+        designs : those whose pipelines may be named
+        """
+        table, (rows, places) = self.table, self._seldom
+        if not len(rows):
+            return {}
+        among = designs[table.design_of[rows]]
+        if limits.min_availability is not None:
+            among &= self.availability[rows] >= limits.min_availability
+        if limits.max_latency_us is not None:
+            among &= table.latency_us[rows] <= limits.max_latency_us
+        rows, places = rows[among], places[among]
+        first = begins(places)
+        return dict(zip(places[first].tolist(), rows[first].tolist(), strict=True))
+
+    def document(self, row: int, units_within: int, finer: int) -> dict[str, object]:
+        """Return one pipeline as in the HTTP answer.
+
+        Parameters
+        ----------
+        row : position of the pipeline
+        units_within : units that keep the limit on the error, or `NOT_COUNTED`
+        finer : pipeline on the same sensor that answers too seldom to be judged; -1 for none
+        """
+        rows, field = self.table.rows, (self.hazards, self.half)
+        partly = None if finer < 0 else rows[finer].partly(*field)
+        return rows[row].to_dict(
+            self.of(row),
+            rows[row].judged(*field),
+            *field,
+            bench_deg=None if self.draws is None else self.draws[0],
+            units_within=None if units_within == NOT_COUNTED else units_within,
+            partly=() if partly is None else (partly,),
+        )
+
+    def keeping(self, limits: Limits, max_error_deg: float | None = None) -> Flags:
+        """Say of each pipeline whether it keeps limits, which are of these hazards and field."""
+        found = np.ones(len(self.error_deg), bool)
+        if limits.half_field_deg is not None:
+            found &= ~np.isinf(self.nominal_deg)
+        if self.hazards:
+            found &= self.tried & ~np.isinf(self.error_deg)
+        if limits.min_availability is not None:
+            found &= self.availability >= limits.min_availability
+        if limits.max_latency_us is not None:
+            found &= self.table.latency_us <= limits.max_latency_us
+        if limits.exclude_needs:
+            for need in limits.exclude_needs:
+                found &= ~self.table.reading(need)
+        if max_error_deg is not None:
+            found &= self.error_deg <= max_error_deg
+        return found
+
+
+class Scores:
+    """Scores as columns; ``rows`` are the pipelines that they are of."""
+
+    def __init__(self, pairs: Sequence[tuple[int, Score]], half_fov_deg: Numbers) -> None:
+        self.rows = np.array([at for at, _ in pairs], int)
+        scores = [score for _, score in pairs]
+        self.tried = np.zeros(len(half_fov_deg), bool)
+        self.tried[self.rows] = True
+        self.whole = half_fov_deg[self.rows]
+        rms = numbers(score.rms_deg for score in scores)
+        available = np.array([score.available for score in scores], bool)
+        self.rms = rms
+        self.error = np.where(available & ~np.isnan(rms), rms, np.inf)
+        self.share = np.where(np.isnan(rms), 0.0, numbers(score.availability for score in scores))
+        most = max((len(score.cones) for score in scores), default=0)
+        self.cones = [
+            (
+                numbers(s.cones[at][0] if at < len(s.cones) else None for s in scores),
+                numbers(s.cones[at][1] if at < len(s.cones) else None for s in scores),
+            )
+            for at in range(most)
+        ]
+
+    def over(self, half: float | None) -> Numbers:
+        """Return the error of each over a field, as `Measured.over` finds it."""
+        if half is None:
+            return self.error
+        found = np.where(self.whole >= half, self.error, np.inf)
+        for edge, error in reversed(self.cones):
+            found = np.where((edge >= half) & ~np.isnan(error), error, found)
+        return found
+
+
+def begins(values: Positions) -> Flags:
+    """Say of ascending values which are the first of equal ones."""
+    found = np.ones(len(values), bool)
+    np.not_equal(values[1:], values[:-1], out=found[1:])
+    return found
+
+
+def numbers(values: Iterable[float | None]) -> Numbers:
+    """Return numbers as an array, NaN for None."""
+    return np.array([math.nan if value is None else value for value in values], float)
+
+
+def _scores(row: Measured) -> Iterable[Score]:
+    return itertools.chain((row.nominal,), *row.hazards.values())

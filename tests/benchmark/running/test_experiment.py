@@ -1,0 +1,153 @@
+"""The runner of experiments: what is due alone is measured, whatever the number of workers."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from benchmark.contract import UnknownNameError
+from benchmark.experiments import __main__ as command
+from benchmark.progress import silent
+from benchmark.results.row_file import Row, RowFile
+from benchmark.results.tables import StoreError
+from benchmark.running.experiment import Recorded, Report, due, experiments, repeated, update
+from files.strict_json import members
+
+
+def _require(path: Path, row: object) -> None:
+    members(row, path, {"cell": str, "square": float, "key": str})
+
+
+class Squares(Recorded[str]):
+    name = "squares"
+    record = RowFile("squares.json", "squares", 1, lambda row: str(row["cell"]), _require)
+    wanted: tuple[str, ...] = ("1", "2", "3")
+    code = "first"
+
+    def keys(self) -> dict[str, str]:
+        return {cell: f"{self.code} {cell}" for cell in self.wanted}
+
+    def tasks(self, cells: Sequence[str]) -> list[Sequence[str]]:
+        return [cells[:2], cells[2:]] if len(cells) > 2 else [cells]
+
+    @staticmethod
+    def measure(task: Sequence[str]) -> list[tuple[str, Row]]:
+        return [(cell, {"cell": cell, "square": float(cell) ** 2}) for cell in task]
+
+
+def computed(experiment: Squares, workers: int = 1, **options: Any) -> int:
+    return update(experiment, workers, silent, **options).computed
+
+
+def test_what_is_due_alone_is_measured_and_what_is_gone_is_dropped(tmp_path: Path) -> None:
+    experiment = Squares(tmp_path)
+    assert [why for _, why in due(experiment)] == ["absent"] * 3
+    assert computed(experiment) == 3
+    assert computed(experiment) == 0
+    assert due(experiment) == []
+    experiment.wanted = ("2", "3", "4")
+    assert due(experiment) == [("1", "no longer wanted"), ("4", "absent")]
+    assert computed(experiment) == 1
+    assert list(experiment.record.read(tmp_path)) == ["2", "3", "4"]
+    experiment.code = "second"
+    assert {why for _, why in due(experiment)} == {"of other code or data"}
+    assert computed(experiment, only=["3"]) == 1
+    assert [cell for cell, _ in due(experiment)] == ["2", "4"]
+
+
+def test_the_file_is_the_same_for_any_number_of_workers(tmp_path: Path) -> None:
+    experiment = Squares(tmp_path)
+    path = tmp_path / "squares.json"
+    computed(experiment)
+    text = path.read_bytes()
+    path.unlink()
+    computed(experiment, 2)
+    assert path.read_bytes() == text
+    with pytest.raises(ValueError, match="workers"):
+        computed(experiment, 0)
+
+
+def test_a_number_that_another_run_does_not_repeat_is_named(tmp_path: Path) -> None:
+    experiment = Squares(tmp_path)
+    computed(experiment)
+    assert list(repeated(experiment, 3, 1)) == []
+    path = tmp_path / "squares.json"
+    path.write_text(path.read_text().replace("9.0", "9.1"))
+    assert list(repeated(experiment, 3, 1)) == [("3", "square, is 9.1; measured again it is 9.0")]
+
+
+def test_cells_are_asked_for_by_name(tmp_path: Path) -> None:
+    assert Squares(tmp_path).named(["3", "1"]) == ["1", "3"]
+    with pytest.raises(UnknownNameError, match="squares"):
+        Squares(tmp_path).named(["nine"])
+
+
+@pytest.mark.parametrize(
+    ("edit", "said"),
+    [
+        (lambda held: held["squares"][1].pop("square"), "row 2: the member 'square' is missing"),
+        (lambda held: held["squares"].append(held["squares"][0]), "row 4: 1 is there twice"),
+        (lambda held: held.update(schema=2), "expected schema 1, got 2"),
+    ],
+)
+def test_a_row_that_is_none_is_named(tmp_path: Path, edit: Any, said: str) -> None:
+    experiment = Squares(tmp_path)
+    computed(experiment)
+    path = tmp_path / "squares.json"
+    held = json.loads(path.read_text())
+    edit(held)
+    path.write_text(json.dumps(held))
+    with pytest.raises(StoreError, match=said):
+        due(experiment)
+
+
+class Sums(Report[int]):
+    name = "sums"
+
+    def cells(self) -> list[int]:
+        return [1, 2]
+
+    def tasks(self, cells: Sequence[int]) -> Sequence[int]:
+        return cells
+
+    @staticmethod
+    def measure(task: int) -> list[tuple[int, Row]]:
+        return [(task, {"sum": task + task})]
+
+    def lines(self, rows: Mapping[int, Row]) -> Iterator[str]:
+        return (f"{cell} and itself are {row['sum']}" for cell, row in rows.items())
+
+    def passed(self, rows: Mapping[int, Row]) -> bool:
+        return all(row["sum"] < 4 for row in rows.values())
+
+
+def test_a_report_is_printed_and_its_exit_code_says_whether_it_passed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(command, "experiments", lambda: {"sums": Sums})
+    assert command.main(["sums", "1"]) == 0
+    assert capsys.readouterr().out == "1 and itself are 2\n"
+    assert command.main(["sums"]) == 1
+    assert "2 and itself are 4" in capsys.readouterr().out
+
+
+def test_every_module_of_the_folder_is_an_experiment() -> None:
+    found = experiments()
+    recorded = {name for name, kind in found.items() if issubclass(kind, Recorded)}
+    assert recorded == {"claims", "error_budget", "learning_curves", "sweeps"}
+    assert found.keys() - recorded == {"networks", "regret", "selection"}
+
+
+def test_calls_that_make_no_sense_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    for call, said in (
+        (["error_budgett"], "did you mean"),
+        (["error_budget", "--workers", "0"], "--workers"),
+        (["error_budget", "ccd-slitt"], "ccd-slitt"),
+    ):
+        with pytest.raises(SystemExit):
+            command.main(call)
+        assert said in capsys.readouterr().err
