@@ -78,6 +78,7 @@ GROUPS: Mapping[str, Group] = {
                 *_in(_METRICS, "score"),
                 *_in(_DATASETS, "repeatability"),
             ),
+            "benchmark/metrics/ranking.py": _in(_METRICS, "ranking"),
             "benchmark/metrics/rings.py": _in(_METRICS, "rings"),
             "benchmark/metrics/noise_products.py": _in(_METRICS, "common_noise"),
             "benchmark/metrics/noise_products_kernel.py": _in(_METRICS, "common_noise"),
