@@ -14,7 +14,7 @@ from typing import Any
 from benchmark.contract import ON_BENCH, Cell, UnknownNameError
 from benchmark.leaderboard import scope
 from benchmark.leaderboard.board import Row, build
-from benchmark.leaderboard.ranking import order
+from benchmark.metrics.ranking import order
 from benchmark.plan.combinations import cells, incompatible
 from benchmark.plan.parts import Parts, installed
 from benchmark.progress import ProgressCallback
