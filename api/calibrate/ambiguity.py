@@ -1,4 +1,4 @@
-"""Folds: where the reading stops telling the direction, as a quadrant's does beyond its light's edge."""
+"""Folds: directions that readings do not tell apart, as beyond the edge of a quadrant's light."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def folded(features: Floats, sun: Floats) -> NDArray[np.bool_]:
     away, at = (np.asarray(a) for a in cKDTree(used[zone]).query(used[inner]))
     same = (away < step) & (separation_deg(sun[inner], sun[zone][at]) > _APART_DEG)
     zone[inner[same]] = True
-    return zone
+    return np.asarray(zone)
 
 
 def _middle(sun: Floats) -> Floats:

@@ -1,4 +1,4 @@
-"""`calibrate`: from files of readings and directions to a model that is chosen, judged and bounded."""
+"""`calibrate`: from files of readings and directions to a model, its verdict and its limits."""
 
 from __future__ import annotations
 
@@ -137,12 +137,12 @@ class Calibration:
     sources: tuple[str, ...]
 
     def deviation_deg(self, features: Floats, context: dict[str, Floats] | None = None) -> Floats:
-        """Return the 1-sigma (N,) of a tangent axis at features (N, F), degrees, that intervals back."""
+        """Return the 1-sigma (N,) of a tangent axis at features (N, F), degrees."""
         stated = deviation_of(self.model, features, context or {})
         return stated * (1.0 if self.intervals is None else self.intervals.factor)
 
 
-def calibrate(
+def calibrate(  # noqa: PLR0915 - the steps in their order
     paths: Sequence[Path],
     settings: Settings | None = None,
     *,
@@ -280,8 +280,9 @@ def _require_two_axes(readings: Readings) -> None:
     size = np.linalg.svd(readings.sun, compute_uv=False)
     if len(readings) < 3 or size[2] < _ONE_AXIS * size[1]:
         raise UnusableDataError(
-            f"the {len(readings)} poses lie along one axis: a second axis would settle a calibration "
-            "(turn the sensor by 90 deg about its boresight, or sweep the other gimbal, and add the rows)"
+            f"the {len(readings)} poses lie along one axis: a second axis would settle the "
+            "calibration (turn the sensor by 90 deg about its boresight, or sweep the other "
+            "gimbal, and add the rows)"
         )
 
 
@@ -293,15 +294,15 @@ def _explained(candidate: Candidate, readings: Readings) -> Candidate:
         return candidate
     return Candidate(
         candidate.name,
-        refused=f"errs {candidate.rms_deg:.3g} deg where directions spread over {spread:.3g} deg: readings "
-        "and directions do not belong together",
+        refused=f"errs {candidate.rms_deg:.3g} deg where directions spread over {spread:.3g} deg: "
+        "readings and directions do not belong together",
     )
 
 
 def _kept_by_model(
     scored: Scored, chosen: Candidate, sound: Readings, readings: Readings, geometry: SensorGeometry
 ) -> NDArray[np.bool_]:
-    """Samples (N,) of all sound ones that the chosen model explains; samples it cannot answer stay.
+    """Return which sound samples (N,) the chosen model explains; those it cannot answer stay.
 
     What no smooth map explained may be what only this model explains, and the other way round.
     """
@@ -322,7 +323,7 @@ def _kept_by_model(
 
 
 def _around(features: Floats, inside: NDArray[np.bool_], errors: Floats) -> Floats:
-    """Median error (N,) of the samples inside that are nearest in features: noise is not the same everywhere."""
+    """Return the median error (N,) of the samples inside that are nearest in features."""
     from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
 
     used = normalised(features)

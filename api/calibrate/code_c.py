@@ -56,7 +56,10 @@ def c_files(table: FlightTable, name: str, said: Mapping[str, str]) -> dict[str,
         "last_x": f"{columns - 1}.0F", "last_y": f"{rows - 1}.0F",
         "vectors": str(_VECTORS + 8),
     }  # fmt: skip
-    fill = lambda text: _filled(text, numbers)  # noqa: E731 - six uses below
+
+    def fill(text: str) -> str:
+        return _filled(text, numbers)
+
     return {
         f"{name}.h": fill(_HEADER),
         f"{name}.c": fill(_SOURCE),
@@ -114,9 +117,9 @@ def _data(table: FlightTable) -> str:
     return "\n\n".join(
         [
             _array("const float", "nodes_f", [_float(v) for v in flat], "_NODES"),
-            _array("const int32_t", "nodes_q30", [_int(int(v)) for v in scaled], "_NODES"),
-            _array("const float", "sides_f", [_float(v) for v in sides.reshape(-1)], "_SIDE_NUMBERS"),
-            _array("const int32_t", "sides_q16", [_int(int(v)) for v in fixed.reshape(-1)], "_SIDE_NUMBERS"),
+            _array("const int32_t", "nodes_q30", [str(int(v)) for v in scaled], "_NODES"),
+            _array("const float", "sides_f", [_float(v) for v in sides.flat], "_SIDE_NUMBERS"),
+            _array("const int32_t", "sides_q16", [f"{v:d}" for v in fixed.flat], "_SIDE_NUMBERS"),
         ]
     )  # fmt: skip
 
@@ -131,10 +134,6 @@ def _array(kind: str, name: str, values: list[str], size: str) -> str:
 def _float(value: float) -> str:
     text = f"{np.float32(value):.9g}"
     return f"{text}F" if any(c in text for c in ".e") else f"{text}.0F"
-
-
-def _int(value: int) -> str:
-    return str(value)
 
 
 def _comment(text: str) -> str:
@@ -152,9 +151,9 @@ _HEADER = """/*
 %said%
  *
  * Frame: +z is the boresight; the result is the unit vector from the sensor to the Sun.
- * Flash: about %flash% bytes of constants and code. Stack: below 160 bytes. No memory is allocated and
- * nothing is kept between calls. Operations: 42 multiplications, %sides% hull sides of two each, and one
- * square root, whatever the reading.
+ * Flash: about %flash% bytes of constants and code. Stack: below 160 bytes. No memory is
+ * allocated and nothing is kept between calls. Operations: 42 multiplications, %sides% hull sides
+ * of two each, and one square root, whatever the reading.
  */
 #ifndef %NAME%_H
 #define %NAME%_H
@@ -424,7 +423,7 @@ _TABLE = """/* Numbers of %name%.h; load them as a table of the flight executive
 @DATA@
 """
 
-_VECTORS_H = """/* Readings with the directions that the calibration's own software gives for them. */
+_VECTORS_H = """/* Readings with the directions that the calibration's software gives for them. */
 #ifndef %NAME%_VECTORS_H
 #define %NAME%_VECTORS_H
 
@@ -448,7 +447,7 @@ static const %name%_vector_t %name%_vectors[%NAME%_VECTORS] =
 #endif /* %NAME%_VECTORS_H */
 """
 
-_SELFTEST = """/* Compares float and fixed point with the test vectors; exit status 0 where all agree. */
+_SELFTEST = """/* Compares float and fixed point with the test vectors; exit status 0: all agree. */
 #include "%name%.h"
 #include "%name%_vectors.h"
 
@@ -520,7 +519,8 @@ int main(void)
             /* outside for both, as it has to be */
         }
     }
-    (void)printf("%u vectors, %d flags wrong, float within %.2e deg, fixed point within %.2e deg\\n",
+    (void)printf("%u vectors, %d flags wrong, float within %.2e deg, "
+                 "fixed point within %.2e deg\\n",
                  %NAME%_VECTORS, wrong, worst_f, worst_q);
     return ((wrong == 0) && (worst_f <= 1e-4) && (worst_q <= 0.01)) ? 0 : 1;
 }

@@ -24,7 +24,7 @@ from api.calibrate.readings import (
 from api.calibrate.robust import SmoothMap, normalised, robust_map, terms
 from api.calibrate.settings import Form, Settings, Transform
 
-#: A hypothesis is reported where what it leaves is below this share of what the file as it is leaves.
+#: A hypothesis is reported where it leaves less than this share of the residual as stated.
 _BETTER = 0.8
 #: And named likely, not possible, below this.
 _MUCH_BETTER = 0.5
@@ -36,15 +36,15 @@ _SHIFTS = (-3, -2, -1, 1, 2, 3)
 #: Correlation of all quadrants' sum with the cosine of incidence that says they are inverted.
 _FALLING = 0.5
 _AMBIGUOUS = {
-    "rotate-180": "two inverted outputs, a sensor turned by 180 deg and angles of the other sign look "
-    "the same in the file",
+    "rotate-180": "two inverted outputs, a sensor turned by 180 deg and angles of the other sign "
+    "look the same in the file",
     "mirror-x": "an inverted x output and an angle of the other sign look the same in the file",
     "mirror-y": "an inverted y output and an angle of the other sign look the same in the file",
     "swap-xy": "exchanged outputs and exchanged angles look the same in the file",
-    "rotate-90": "a sensor turned by 90 deg and exchanged outputs, one of them inverted, look the same",
-    "rotate-270": "a sensor turned by 270 deg and exchanged outputs, one of them inverted, look the same",
-    "swap-negated-xy": "exchanged and inverted outputs and exchanged angles of the other sign look the "
-    "same",
+    "rotate-90": "a sensor turned by 90 deg and exchanged outputs, one inverted, look the same",
+    "rotate-270": "a sensor turned by 270 deg and exchanged outputs, one inverted, look the same",
+    "swap-negated-xy": "exchanged and inverted outputs and exchanged angles of the other sign "
+    "look the same",
 }
 
 
@@ -226,7 +226,7 @@ def _of_rows(readings: Readings) -> Iterator[Finding]:
 
 
 def _shifted_left(readings: Readings, shift: int) -> tuple[float, float] | None:
-    """Median residuals, degrees, of smooth maps of the same poses: own readings, and `shift` rows later.
+    """Residuals, degrees, of smooth maps of the same poses: own readings, and `shift` rows later.
 
     None where fewer than half of the poses have such a row in their run.
     """
@@ -290,7 +290,8 @@ def _of_quadrants(readings: Readings, settings: Settings) -> Iterator[Finding]:
     if np.corrcoef(total, readings.sun[:, 2])[0, 1] < -_FALLING:
         yield Finding(
             "light",
-            "readings fall when light rises: say inverted = true, and their level without light as dark",
+            "readings fall when light rises: say inverted = true, and dark = their level without "
+            "light",
             np.nan, np.nan, {}, True,
         )  # fmt: skip
         return
@@ -315,7 +316,8 @@ def _of_quadrants(readings: Readings, settings: Settings) -> Iterator[Finding]:
         columns = tuple(settings.readings.columns[at] for at in best)
         yield Finding(
             "quadrants", f"the quadrants seem to stand in the order {', '.join(columns)}",
-            left[stated], left[best], {"readings": {"columns": columns}}, left[best] < 0.3 * left[stated],
+            left[stated], left[best], {"readings": {"columns": columns}},
+            left[best] < 0.3 * left[stated],
             "which quadrant comes first only the axes tell, once the order is right",
         )  # fmt: skip
 
@@ -337,14 +339,15 @@ def _of_faces(readings: Readings, settings: Settings) -> Iterator[Finding]:
         nearest = int(np.argmax(cosine[at]))
         if nearest != at and cosine[at, nearest] > 0.8 and cosine[at, at] < 0.5:
             yield Finding(
-                "faces", f"channel {name} looks where {settings.readings.columns[nearest]} is stated to",
+                "faces",
+                f"channel {name} looks where {settings.readings.columns[nearest]} is stated to",
                 float(np.degrees(np.arccos(np.clip(cosine[at, at], -1, 1)))),
                 float(np.degrees(np.arccos(np.clip(cosine[at, nearest], -1, 1)))), {}, True,
             )  # fmt: skip
 
 
 def face_normals(readings: Readings) -> tuple[Floats, Floats]:
-    """Return the direction (K, 3) that each channel looks to, and how it goes with light there (K,).
+    """Return where each channel looks (K, 3), and how it goes with the light there (K,).
 
     By least squares of signal over the cosine, on the samples that light it most.
     """
@@ -372,7 +375,7 @@ def face_normals(readings: Readings) -> tuple[Floats, Floats]:
 
 
 def _left_deg(readings: Readings, sun: Floats) -> float:
-    """RMS, degrees, of what a projective map with cubic distortion leaves, the middle nine tenths."""
+    """RMS residual, degrees, of a projective map with cubic distortion, without the worst tenth."""
     finite = np.isfinite(sun).all(axis=1) & (sun[:, 2] > 0)
     used, features = sun[finite], readings.features[finite]
     middle, width = np.median(features, axis=0), np.maximum(np.std(features), 1e-12)

@@ -68,7 +68,7 @@ class SavedCalibration:
         return self.model.predict(features, told)
 
     def predict_table(self, table: Table) -> Floats:
-        """Return unit vectors of the rows of a file with the calibration's own columns that can be used."""
+        """Return unit vectors of the usable rows of a file with the calibration's columns."""
         readings = readings_of(table, self.settings)
         return self.predict(readings.features, readings.context)
 
@@ -153,10 +153,13 @@ def load(path: Path) -> SavedCalibration:
     try:
         stored = read_document(path)
         if not isinstance(stored, dict) or stored.get("schema") != SCHEMA:
-            raise UnreadableCalibrationError(f"{path.name}: expected a document of {SCHEMA}")
+            raise UnreadableCalibrationError(  # noqa: TRY301 - one place for all refusals
+                f"{path.name}: expected a document of {SCHEMA}"
+            )
         if stored.get("schema_version") != SCHEMA_VERSION:
-            raise UnreadableCalibrationError(
-                f"{path.name}: expected version {SCHEMA_VERSION}; got {stored.get('schema_version')!r}"
+            raise UnreadableCalibrationError(  # noqa: TRY301 - as above
+                f"{path.name}: expected version {SCHEMA_VERSION}; "
+                f"got {stored.get('schema_version')!r}"
             )
         require_whole(stored, _MEMBERS)
         return SavedCalibration(

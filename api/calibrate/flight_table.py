@@ -1,4 +1,4 @@
-"""A fitted chain of two features as a table that flight software can read: bicubic, with its hull."""
+"""A fitted chain of two features as a bicubic table with its hull, for flight software."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def flight_table(model: Model, features: Floats, context: Mapping[str, Floats]) 
     """
     if features.shape[1] != 2:
         raise NoTableError(
-            f"code for flight is written for sensors of two features; this one has {features.shape[1]}"
+            f"flight code is written for sensors of two features; this one has {features.shape[1]}"
         )
     if tuple(model.about.context):
         raise NoTableError(f"code for flight knows no {', '.join(model.about.context)}")
@@ -164,7 +164,8 @@ def _weights(t: Floats) -> Floats:
 def _inside(low: Floats, high: Floats, sides: Floats, size: int) -> Floats:
     x, y = (np.linspace(low[k], high[k], size + 1 + k) for k in (0, 1))
     grid = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-    return grid[(grid @ sides[:, :2].T + sides[:, 2]).max(axis=1) <= 0.0]
+    inside = (grid @ sides[:, :2].T + sides[:, 2]).max(axis=1) <= 0.0
+    return np.asarray(grid[inside])
 
 
 def _fewest(sides: Floats) -> Floats:
@@ -173,4 +174,4 @@ def _fewest(sides: Floats) -> Floats:
     ordered = sides[order]
     if len(ordered) <= _MOST_SIDES:
         return ordered
-    return ordered[np.linspace(0, len(ordered) - 1, _MOST_SIDES).round().astype(int)]
+    return np.asarray(ordered[np.linspace(0, len(ordered) - 1, _MOST_SIDES).round().astype(int)])

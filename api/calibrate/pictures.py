@@ -70,8 +70,8 @@ def _residuals(places: Floats, along: Floats, errors: Floats) -> str:
     reach = float(np.ptp(places)) / 25.0
     points = axes.scatter(*places[known].T, c=errors[known], s=9, cmap="viridis")
     axes.quiver(
-        *places[known].T, *(along[known].T / size * reach), angles="xy", scale_units="xy", scale=1.0,
-        width=0.0022,
+        *places[known].T, *(along[known].T / size * reach),
+        angles="xy", scale_units="xy", scale=1.0, width=0.0022,
     )  # fmt: skip
     figure.colorbar(points, label="residual, deg")
     axes.set_title(f"an arrow of {reach:.2g} deg is {size:.2g} deg", fontsize=9)

@@ -17,7 +17,7 @@ from files.atomic import replace_file
 def products(found: Calibration, name: str, command: str = "") -> dict[str, str]:
     """Return the text of every file by its name.
 
-    C and Python are left out where a table cannot stand for the model; ``NAME_no_code.txt`` says why.
+    C and Python are left out where no table can stand for the model; ``NAME_no_code.txt`` says so.
     """
     prefix = c_name(name)
     made = {

@@ -140,7 +140,7 @@ def readings_of(table: Table, settings: Settings) -> Readings:
 
 
 def directions(columns: Floats, settings: DirectionSettings) -> tuple[Floats, Floats | None]:
-    """Return unit vectors (N, 3) of a file's columns, and its angles in degrees where it has any."""
+    """Return unit vectors (N, 3) of a file's columns, and its angles in degrees if any."""
     if settings.form == "vector":
         length = np.linalg.norm(columns, axis=1)
         near = (length > 0.5) & (length < 2.0)
@@ -229,7 +229,7 @@ def _context(table: Table, settings: Settings) -> dict[str, Floats]:
 
 
 def _shifted(run: NDArray[np.int64], shift: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Places of poses and of the readings that belong to them, `shift` rows later in the same run."""
+    """Places of poses and of their readings, `shift` rows later in the same run."""
     pose = np.arange(len(run))
     reading = pose + shift
     inside = (reading >= 0) & (reading < len(run))
@@ -241,7 +241,8 @@ def _shifted(run: NDArray[np.int64], shift: int) -> tuple[NDArray[np.int64], NDA
 def joined(parts: Sequence[Readings]) -> Readings:
     """Return the samples of several files, each file's runs apart from the others'."""
     first = parts[0]
-    run, names = [], []
+    run: list[NDArray[np.int64]] = []
+    names: list[str] = []
     for part in parts:
         run.append(part.run + len(names))
         names += part.run_names

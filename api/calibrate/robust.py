@@ -53,13 +53,15 @@ def terms(scaled: Floats, degree: int) -> Floats:
     """Return all products of features (N, F) up to a degree, (N, terms)."""
     columns = [np.ones(len(scaled))]
     for order in range(1, degree + 1):
-        for chosen in combinations_with_replacement(range(scaled.shape[1]), order):
-            columns.append(np.prod(scaled[:, list(chosen)], axis=1))
+        columns += [
+            np.prod(scaled[:, list(chosen)], axis=1)
+            for chosen in combinations_with_replacement(range(scaled.shape[1]), order)
+        ]
     return np.column_stack(columns)
 
 
 def degree_for(samples: int, features: int) -> int:
-    """Return the largest degree that leaves ten samples a term; at least 1, at most 5 (of many: 2)."""
+    """Return the largest degree with ten samples a term, from 1 to 5 (to 2 of many features)."""
     most = 5 if features == 2 else 2
     for degree in range(most, 1, -1):
         count = len(terms(np.zeros((1, features)), degree)[0])
@@ -69,7 +71,7 @@ def degree_for(samples: int, features: int) -> int:
 
 
 def normalised(features: Floats) -> Floats:
-    """Return signals over their length where there are more than two, which light's strength leaves."""
+    """Return signals over their length where there are more than two: free of light's strength."""
     if features.shape[1] == 2:
         return features
     length = np.linalg.norm(features, axis=1)
@@ -79,7 +81,7 @@ def normalised(features: Floats) -> Floats:
 def robust_map(
     features: Floats, sun: Floats, degree: int | None = None
 ) -> tuple[SmoothMap, Floats]:
-    """Fit a polynomial from features to directions that up to a tenth of wrong poses leave in place.
+    """Fit a polynomial from features to directions that a tenth of wrong poses does not move.
 
     Parameters
     ----------
@@ -102,9 +104,9 @@ def robust_map(
     # a channel that hardly changes is no coordinate: its noise would outweigh the others
     width = np.maximum(width, max(1e-3 * float(width.max()), 1e-12))
     design = terms((used - middle) / width, degree)
-    weight = np.ones(len(used))
+    weight: Floats = np.ones(len(used))
     residual = np.zeros((len(used), 3))
-    coefficients = np.zeros((design.shape[1], 3))
+    coefficients: Floats = np.zeros((design.shape[1], 3))
     for turn in range(_ROUNDS):
         root = np.sqrt(weight)[:, None]
         coefficients = np.linalg.lstsq(design * root, sun * root, rcond=1e-10)[0]
@@ -112,7 +114,9 @@ def robust_map(
         size = np.linalg.norm(residual, axis=1)
         scale = max(_MAD * float(np.median(size)), 1e-12)
         # absolute values first, so that the start is near what most samples say
-        wanted = scale / np.maximum(size, scale) if turn < 20 else bisquare(size / scale)
+        wanted = np.asarray(
+            scale / np.maximum(size, scale) if turn < 20 else bisquare(size / scale)
+        )
         if turn > 20 and np.max(np.abs(wanted - weight)) < 1e-6:
             break
         weight = wanted

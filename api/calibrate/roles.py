@@ -1,10 +1,10 @@
-"""Guessing what columns are from their names; the guess is written out for the reader to correct."""
+"""Guessing what columns are from their names; the reader can correct the guess."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import TypeVar
+from typing import Literal, TypeVar
 
 from api.calibrate.settings import (
     DirectionSettings,
@@ -100,17 +100,13 @@ def guess(table: Table) -> Settings:
     form, directions = _first(_DIRECTIONS, names)
     if form is None:
         raise TableError(
-            f"{table.source}: no columns of the light's direction among {', '.join(names)}; expected "
-            "sun_x, sun_y, sun_z, or alpha, beta, or azimuth, elevation; name them in a config "
-            "(--init writes one)"
+            f"{table.source}: no columns of the light's direction among {', '.join(names)}; "
+            "expected sun_x, sun_y, sun_z, or alpha, beta, or azimuth, elevation; name them in a "
+            "config (--init writes one)"
         )
     rest = [name for name in names if name not in directions]
-    extra = {
-        "run": _match(_RUN, rest),
-        "time_s": _match(_TIME, rest),
-        "temperature_K": _match(_TEMPERATURE, rest),
-    }
-    rest = [name for name in rest if name not in extra.values()]
+    run, time_s, temperature = (_match(p, rest) for p in (_RUN, _TIME, _TEMPERATURE))
+    rest = [name for name in rest if name not in (run, time_s, temperature)]
     faces = [name for name in rest if _face(name)]
     channels = [name for name in rest if _CHANNEL.fullmatch(name)]
     kind, readings = _first(_READINGS, rest)
@@ -122,14 +118,16 @@ def guess(table: Table) -> Settings:
         kind, readings = "channels", tuple(channels)
     if kind is None:
         raise TableError(
-            f"{table.source}: no columns of readings recognised among {', '.join(rest) or 'none'}; name "
-            "them in a config (--init writes one)"
+            f"{table.source}: no columns of readings recognised among {', '.join(rest) or 'none'}; "
+            "name them in a config (--init writes one)"
         )
-    unit = "rad" if any(name.lower().endswith("rad") for name in directions) else "deg"
+    unit: Literal["deg", "rad"] = (
+        "rad" if any(name.lower().endswith("rad") for name in directions) else "deg"
+    )
     return Settings(
         readings=ReadingsSettings(kind=kind, columns=readings),
         direction=DirectionSettings(columns=directions, form=form, unit=unit),
-        rows=RowSettings(**extra),
+        rows=RowSettings(run=run, time_s=time_s, temperature_K=temperature),
         sensor=SensorSettings(face_normals=normals),
     )
 

@@ -35,8 +35,8 @@ class RunOffset:
 def off_runs(readings: Readings) -> list[RunOffset]:
     """Return runs off from what the others agree on, the farthest first; fewer than half of them.
 
-    Between every two runs that overlap the rotation is told by a map fitted to one and asked for the
-    other's readings; a run's own is the median over the others, so that one bad run leaves them theirs.
+    The rotation between every two runs that overlap is that between one run's directions and those
+    that a map fitted to the other gives; a run's own is the median over the others.
     """
     numbers = [int(n) for n in np.unique(readings.run) if (readings.run == n).sum() >= _FEWEST]
     if not 3 <= len(numbers) <= _MOST_RUNS:
@@ -68,7 +68,7 @@ def off_runs(readings: Readings) -> list[RunOffset]:
 
 
 def _rotation(predicted: Floats, sun: Floats) -> tuple[float, float]:
-    """Size of the rotation between two sets of directions (small), and the scatter left, degrees."""
+    """Size of the small rotation between two sets of directions, and what it leaves, degrees."""
     # median of the offsets and not the least-squares rotation: some poses may be wrong
     small = np.cross(predicted, sun)
     design = np.zeros((3 * len(sun), 3))

@@ -113,7 +113,7 @@ def geometry_of(readings: Readings, settings: Settings) -> SensorGeometry:
 
 
 def as_cube(normals: Floats) -> Floats:
-    """Return normals (K, 3) turned to the nearest axes where all six of a cube's are within 10 deg."""
+    """Return normals (K, 3), turned to the nearest axes where all are a cube's within 10 deg."""
     nearest = np.zeros_like(normals)
     at = np.argmax(np.abs(normals), axis=1)
     nearest[np.arange(len(normals)), at] = np.sign(normals[np.arange(len(normals)), at])
@@ -219,7 +219,7 @@ def unbounded(model: Any) -> Any:
 
 
 def numbers_in(model: Any) -> int:
-    """Count the parameters that a fit names with their standard errors; 0 of tables and networks."""
+    """Count the parameters that a fit names; 0 of tables and networks."""
     stages = [*getattr(model, "compensations", ()), getattr(model, "model", model)]
     return sum(len(stage.quality_.parameters) for stage in stages if hasattr(stage, "quality_"))
 

@@ -80,10 +80,10 @@ class DirectionSettings(_Strict):
 
     columns: tuple[str, ...] = Field(description="Names of two or three columns.")
     form: Form = Field(
-        description="vector: s_x, s_y, s_z towards the light; projection: alpha, beta with tan(alpha) = "
-        "s_y/s_z, tan(beta) = s_x/s_z; alpha-inner: rotations of a turntable, the alpha axis next to the "
-        "sensor; beta-inner: likewise; azimuth-elevation: azimuth from +x to +y, elevation above the "
-        "detector's plane; azimuth-zenith: angle from the boresight instead."
+        description="vector: s_x, s_y, s_z towards the light; projection: alpha, beta with "
+        "tan(alpha) = s_y/s_z, tan(beta) = s_x/s_z; alpha-inner: rotations of a turntable, the "
+        "alpha axis next to the sensor; beta-inner: likewise; azimuth-elevation: azimuth from +x "
+        "to +y, elevation above the detector's plane; azimuth-zenith: angle from the boresight."
     )
     unit: Literal["deg", "rad"] = Field(default="deg", description="Of the angles.")
 
@@ -160,7 +160,7 @@ def parse_settings(stated: dict[str, Any], source: str) -> Settings:
 
 
 def read_settings(path: Path) -> Settings:
-    """Return the settings of a TOML file; SettingsError or FileRefusedError where there are none."""
+    """Return the settings of a TOML file; SettingsError or FileRefusedError where it has none."""
     try:
         stated = tomllib.loads(read_text(path, 1_000_000))
     except tomllib.TOMLDecodeError as error:

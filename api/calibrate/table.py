@@ -72,7 +72,7 @@ def read_table(path: Path) -> Table:
     Parameters
     ----------
     path : Path
-        ``.csv``, ``.txt``, ``.tsv`` (comma, semicolon, tab; a header), ``.parquet``, ``.npz`` (arrays by
+        ``.csv``, ``.txt``, ``.tsv`` (comma, semicolon, tab; a header), ``.parquet``, ``.npz`` (by
         name), ``.npy`` (structured), ``.xlsx``.
 
     Returns

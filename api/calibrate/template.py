@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 
+from pydantic import BaseModel
+
 from api.calibrate.settings import (
     BenchSettings,
     DirectionSettings,
@@ -32,7 +34,7 @@ def template(settings: Settings, names: list[str]) -> str:
         "# rotate-90, rotate-180, rotate-270, swap-negated-xy.",
         f"apply = {_value(settings.apply)}",
     ]
-    parts = {
+    parts: dict[str, tuple[type[BaseModel], BaseModel]] = {
         "readings": (ReadingsSettings, settings.readings),
         "direction": (DirectionSettings, settings.direction),
         "rows": (RowSettings, settings.rows),

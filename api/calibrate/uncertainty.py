@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from algorithms.chain import Scored
 from algorithms.contract import Floats, SensorGeometry, UnusableDataError
@@ -44,9 +43,8 @@ def tangent_offsets(offsets: Floats, sun: Floats) -> Floats:
     first = np.cross(sun, np.where(np.abs(sun[:, [0]]) < 0.9, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]]))
     first /= np.linalg.norm(first, axis=1)[:, None]
     second = np.cross(sun, first)
-    return np.degrees(
-        np.column_stack([(offsets * first).sum(axis=1), (offsets * second).sum(axis=1)])
-    )
+    along = np.column_stack([(offsets * first).sum(axis=1), (offsets * second).sum(axis=1)])
+    return np.asarray(np.degrees(along))
 
 
 def intervals(candidate: Candidate, readings: Readings) -> Intervals | None:
@@ -55,8 +53,9 @@ def intervals(candidate: Candidate, readings: Readings) -> Intervals | None:
         return None
     used = _compared(readings, len(candidate.offsets))
     along = np.abs(tangent_offsets(candidate.offsets, used.sun))
+    errors = np.asarray(candidate.errors)
     ratio = along / candidate.deviation[:, None]
-    usable = np.isfinite(ratio).all(axis=1) & np.isfinite(candidate.errors)
+    usable = np.isfinite(ratio).all(axis=1) & np.isfinite(errors)
     ratio = ratio[usable]
     if len(ratio) < 40:
         return None
@@ -79,7 +78,7 @@ def _compared(readings: Readings, count: int) -> Readings:
 def noise_deg(offsets: Floats, sun: Floats) -> float:
     """Return the RMS noise of samples, degrees: what neighbours in pose differ by.
 
-    A model's own error is the same for neighbours; half the mean square of their difference is noise.
+    A model errs alike on neighbours: half the mean square of their difference is noise.
     """
     from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
 
@@ -98,7 +97,7 @@ def _middle(square: Floats) -> float:
     return float(kept.mean())
 
 
-def refits(
+def refits(  # noqa: PLR0917 - what a fit is made of
     scored: Scored,
     readings: Readings,
     geometry: SensorGeometry,
@@ -146,8 +145,3 @@ def _with_sun(readings: Readings, sun: Floats) -> Readings:
     from dataclasses import replace  # noqa: PLC0415 - one use
 
     return replace(readings, sun=sun)
-
-
-def halves(readings: Readings, fold: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Return the half (N,) of each sample: whole runs or blocks of poses, every other one."""
-    return np.asarray(fold % 2 == 0)

@@ -1,4 +1,4 @@
-"""The verdict on a calibration: good, model misfit, poses missing, or noise; and what to do next."""
+"""The verdict on a calibration: good, model misfit or poses missing; and what to do next."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Verdict:
     next_poses: Floats
 
 
-def judge(
+def judge(  # noqa: PLR0917 - the numbers it is made of
     rms_deg: float,
     residual_deg: float,
     noise: float,
@@ -101,7 +101,7 @@ def judge(
     if rms_deg > 1.6 * residual_deg and rms_deg > 1.3 * told:
         word: Word = "poses missing"
         reason = (
-            f"samples left out err {rms_deg:.3g} deg where those fitted err {residual_deg:.3g} deg: "
+            f"samples left out err {rms_deg:.3g} deg, those fitted {residual_deg:.3g} deg: "
             "there are too few poses for this model, or too far apart"
         )
     elif gap > _GAP:
@@ -120,15 +120,15 @@ def judge(
     else:
         word = "good"
         reason = (
-            f"samples left out err {rms_deg:.3g} deg, those fitted {residual_deg:.3g} deg, noise is "
-            f"{told:.3g} deg"
+            f"samples left out err {rms_deg:.3g} deg, those fitted {residual_deg:.3g} deg, "
+            f"noise is {told:.3g} deg"
         )
     return Verdict(word, reason, split_ratio, patterns, next_poses)
 
 
 def patterns_in(offsets: Floats, readings: Readings) -> tuple[Pattern, ...]:
     """Return what errors (N, 3) of samples go with, the largest share first."""
-    known = np.isfinite(offsets).all(axis=1)
+    known = np.asarray(np.isfinite(offsets).all(axis=1))
     used = readings.only(known)
     if len(used) < 40:
         return ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 import typer
 
@@ -44,9 +44,9 @@ def calibrate(
 ) -> int:
     """Calibrate a sensor from a turntable file.
 
-    Reads the file, finds its conventions and wrong poses, compares every model that applies on samples
-    left out, and writes a report (HTML), the calibration (JSON), a Python module and C99 code. The exit
-    code is 0 for the verdict good, 3 otherwise.
+    Reads the file, finds its conventions and wrong poses, compares every model that applies on
+    samples left out, and writes a report (HTML), the calibration (JSON), a Python module and C99
+    code. The exit code is 0 for the verdict good, 3 otherwise.
     """
     from api.calibrate.calibration import calibrate as run  # noqa: PLC0415 - SciPy
     from api.calibrate.products import write_products  # noqa: PLC0415 - as above
@@ -77,7 +77,7 @@ def calibrate(
 class _Bar:
     """A progress bar on a terminal; nothing elsewhere."""
 
-    def __enter__(self) -> _Bar:
+    def __enter__(self) -> Self:
         from rich.console import Console  # noqa: PLC0415 - Rich, where it is shown
         from rich.progress import Progress  # noqa: PLC0415 - as above
 

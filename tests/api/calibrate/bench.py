@@ -46,7 +46,7 @@ def spots(sun: np.ndarray, seed: int) -> np.ndarray:
 
 
 def quadrants(sun: np.ndarray, seed: int, width: float = 2.0, focal: float = 1.5) -> np.ndarray:
-    """Light on four quadrants of a detector as large as its square aperture's patch, to their edges.
+    """Light on four quadrants of a detector under a square aperture of half its width.
 
     Beyond the edge of the patch light is lost on one side, and the balance falls again.
     """

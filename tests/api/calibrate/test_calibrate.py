@@ -155,9 +155,12 @@ def test_a_saved_calibration_answers_the_same_bits(camera, tmp_path):
 
 def test_python_without_the_package_answers_what_the_model_does(camera, tmp_path):
     write_products(camera, tmp_path, "cam")
-    said = "import cam, json; print(json.dumps(cam.sun([512.0, 700.5, 5.0], [512.0, 300.25, 5.0]).tolist()))"
+    said = (
+        "import cam, json\n"
+        "print(json.dumps(cam.sun([512.0, 700.5, 5.0], [512.0, 300.25, 5.0]).tolist()))"
+    )
     run = subprocess.run(
-        [sys.executable, "-I", "-c", f"import sys; sys.path.insert(0, {str(tmp_path)!r}); {said}"],
+        [sys.executable, "-I", "-c", f"import sys; sys.path.insert(0, {str(tmp_path)!r})\n{said}"],
         check=True, capture_output=True, text=True,
     )  # fmt: skip
     answered = np.array(json.loads(run.stdout.replace("NaN", "null")), dtype=float)
