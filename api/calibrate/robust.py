@@ -109,7 +109,8 @@ def robust_map(
     coefficients: Floats = np.zeros((design.shape[1], 3))
     for turn in range(_ROUNDS):
         root = np.sqrt(weight)[:, None]
-        coefficients = np.linalg.lstsq(design * root, sun * root, rcond=1e-10)[0]
+        solved = np.linalg.lstsq(design * root, sun * root, rcond=1e-10)[0]
+        coefficients = np.asarray(solved, dtype=np.float64)
         residual = sun - design @ coefficients
         size = np.linalg.norm(residual, axis=1)
         scale = max(_MAD * float(np.median(size)), 1e-12)
