@@ -49,6 +49,7 @@ COMMANDS: dict[str, str] = {
     "curves": "Show how many calibration poses the leaders need.",
     "assess": "Show the survey's scores of extractors beside measured ones.",
     "claims": "Show the survey's claims about algorithms, with verdicts.",
+    "calibrate": "Calibrate your own sensor from a turntable file.",
     "dataset": "List, describe, export or verify the standard datasets.",
     "deposit": "Build, verify, upload or publish the bundle an archive takes.",
     "guide": "Build the guide, the site that the service has at /guide.",

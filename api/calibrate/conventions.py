@@ -1,0 +1,431 @@
+"""Conventions of a file found by their likelihood: axes, angles, order of rows, signs of runs.
+
+Each hypothesis changes one thing that a bench may do otherwise, and is judged by how well a
+low-order map with the sensor's own geometry explains the file then. Nothing is changed here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import permutations
+from typing import get_args
+
+import numpy as np
+
+from algorithms.angles import tangents_from_sun
+from algorithms.contract import FeatureKind, Floats
+from api.calibrate.readings import (
+    MATRICES,
+    Readings,
+    quadrant_balances,
+    sun_of_angles,
+)
+from api.calibrate.robust import SmoothMap, normalised, robust_map, terms
+from api.calibrate.settings import Form, Settings, Transform
+
+#: A hypothesis is reported where it leaves less than this share of the residual as stated.
+_BETTER = 0.8
+#: And named likely, not possible, below this.
+_MUCH_BETTER = 0.5
+#: Directions up to this far off the boresight tell about axes.
+_WITHIN_DEG = 60.0
+#: Azimuths of a field span more.
+_WIDE_AZIMUTH_DEG = 200.0
+_SHIFTS = (-3, -2, -1, 1, 2, 3)
+#: Correlation of all quadrants' sum with the cosine of incidence that says they are inverted.
+_FALLING = 0.5
+_AMBIGUOUS = {
+    "rotate-180": "two inverted outputs, a sensor turned by 180 deg and angles of the other sign "
+    "look the same in the file",
+    "mirror-x": "an inverted x output and an angle of the other sign look the same in the file",
+    "mirror-y": "an inverted y output and an angle of the other sign look the same in the file",
+    "swap-xy": "exchanged outputs and exchanged angles look the same in the file",
+    "rotate-90": "a sensor turned by 90 deg and exchanged outputs, one inverted, look the same",
+    "rotate-270": "a sensor turned by 270 deg and exchanged outputs, one inverted, look the same",
+    "swap-negated-xy": "exchanged and inverted outputs and exchanged angles of the other sign "
+    "look the same",
+}
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A convention that the file seems to follow in place of the one stated.
+
+    Attributes
+    ----------
+    about : str
+        ``axes``, ``boresight``, ``angles``, ``unit``, ``rows``, ``runs``, ``quadrants``, ``faces``,
+        ``light``.
+    found : str
+        What was found, in a sentence.
+    before_deg, after_deg : float
+        RMS of what a low-order map leaves with the file as stated, and with the change.
+    change : dict
+        Settings that would apply it; empty where none can.
+    certain : bool
+        Whether the evidence leaves hardly a doubt.
+    note : str
+        What else would look the same.
+    """
+
+    about: str
+    found: str
+    before_deg: float
+    after_deg: float
+    change: dict[str, object]
+    certain: bool
+    note: str = ""
+
+
+def findings(readings: Readings, settings: Settings) -> list[Finding]:
+    """Return what the file's conventions seem to be where they are not those stated.
+
+    Parameters
+    ----------
+    readings : Readings
+        As the settings have them.
+    settings : Settings
+        As stated.
+
+    Returns
+    -------
+    list of Finding
+        The most certain first; empty where nothing speaks against the settings.
+    """
+    found = list(_of_rows(readings)) + list(_of_runs(readings))
+    if readings.kind is FeatureKind.SIGNALS:
+        found += _of_faces(readings, settings)
+    else:
+        found += _of_quadrants(readings, settings)
+        found += _of_axes(readings)
+        found += _of_angles(readings, settings)
+    return sorted(
+        found, key=lambda one: (not one.certain, one.after_deg / max(one.before_deg, 1e-12))
+    )
+
+
+def linear_map(readings: Readings) -> tuple[Floats, Floats] | None:
+    """Return slope (2, 2) and offset (2,) of features over tangents (s_x/s_z, s_y/s_z), robustly.
+
+    None where the poses near the boresight do not spread both ways.
+    """
+    tangents = tangents_from_sun(readings.sun)[:, ::-1]
+    near = np.linalg.norm(tangents, axis=1) < np.tan(np.radians(_WITHIN_DEG))
+    if near.sum() < 8:
+        return None
+    reach = np.percentile(np.linalg.norm(tangents[near], axis=1), 60)
+    near &= np.linalg.norm(tangents, axis=1) <= max(float(reach), 1e-9)
+    where = np.column_stack([np.ones(int(near.sum())), tangents[near]])
+    singular = np.linalg.svd(where[:, 1:] - where[:, 1:].mean(axis=0), compute_uv=False)
+    if len(where) < 8 or singular[1] < 0.05 * singular[0]:
+        return None
+    weight = np.ones(len(where))
+    fit = np.zeros((3, 2))
+    for _ in range(20):
+        root = np.sqrt(weight)[:, None]
+        fit = np.linalg.lstsq(where * root, readings.features[near] * root, rcond=None)[0]
+        size = np.linalg.norm(readings.features[near] - where @ fit, axis=1)
+        weight = 1.0 / np.maximum(size, max(float(np.median(size)), 1e-15))
+    return fit[1:].T, fit[0]
+
+
+def _of_axes(readings: Readings) -> Iterator[Finding]:
+    told = linear_map(readings)
+    if told is None:
+        return
+    slope, _ = told
+    scale = np.sqrt(abs(np.linalg.det(slope))) or 1.0
+    distance = {
+        name: float(np.linalg.norm(np.asarray(matrix) @ slope / scale - np.eye(2)))
+        for name, matrix in MATRICES.items()
+    }
+    as_stated = float(np.linalg.norm(slope / scale - np.eye(2)))
+    name = min(distance, key=lambda word: distance[word])
+    spread = _spread_deg(readings)
+    if distance[name] < _BETTER * as_stated and as_stated > 0.75:
+        yield Finding(
+            "axes",
+            f"the readings' axes are those of the sensor frame after {name}",
+            as_stated / 2**0.5 * spread,
+            distance[name] / 2**0.5 * spread,
+            {"apply": (name,)},
+            distance[name] < _MUCH_BETTER * as_stated,
+            _AMBIGUOUS[name],
+        )
+        slope = np.asarray(MATRICES[name]) @ slope
+    turn = float(np.degrees(np.arctan2(slope[1, 0] - slope[0, 1], slope[0, 0] + slope[1, 1])))
+    if abs(turn) > 2.0:
+        yield Finding(
+            "boresight",
+            f"the sensor is turned about its boresight by {turn:.1f} deg"
+            + (" beside that" if as_stated > 0.75 else ""),
+            spread * abs(float(np.radians(turn))),
+            0.0,
+            {},
+            abs(turn) > 10.0,
+            "models with a free rotation take it up; nothing needs to be changed",
+        )
+
+
+def _of_angles(readings: Readings, settings: Settings) -> Iterator[Finding]:
+    if readings.angles is None or settings.direction.form == "vector":
+        return
+    stated = settings.direction.form
+    left = {stated: _left_deg(readings, readings.sun)}
+    angles = readings.angles
+    largest = float(np.nanmax(np.abs(angles)))
+    if settings.direction.unit == "deg" and largest <= np.pi:
+        turned = sun_of_angles(np.degrees(angles), stated)
+        if (turned[:, 2] > 0.05).mean() > 0.95:
+            after = _left_deg(readings, turned)
+            before = left[stated] * 180.0 / np.pi  # the same share of a field 57 times as large
+            if after < _BETTER * before:
+                yield Finding(
+                    "unit",
+                    f"the angles seem to be radians: as degrees none exceeds {largest:.3g} deg",
+                    before, after, {"direction": {"unit": "rad"}}, after < _MUCH_BETTER * before,
+                    "a sensor of a very narrow field measured in degrees would look alike",
+                )  # fmt: skip
+                return
+    for form in get_args(Form):
+        if form in ("vector", stated):
+            continue
+        if form.startswith("azimuth") and np.ptp(angles[:, 0]) < _WIDE_AZIMUTH_DEG:
+            continue
+        sun = sun_of_angles(angles, form)
+        if not (np.isfinite(sun).all() and (sun[:, 2] > 0).all()):
+            continue
+        left[form] = _left_deg(readings, sun)
+    best = min(left, key=lambda word: left[word])
+    if best != stated and left[best] < _BETTER * left[stated]:
+        yield Finding(
+            "angles",
+            f"the angles seem to be of the form {best}, not {stated}",
+            left[stated], left[best], {"direction": {"form": best}},
+            left[best] < _MUCH_BETTER * left[stated],
+            "only sensors that image tangents (pinholes, slits, quadrants) can tell forms apart",
+        )  # fmt: skip
+
+
+def _of_rows(readings: Readings) -> Iterator[Finding]:
+    found = {
+        shift: left for shift in _SHIFTS if (left := _shifted_left(readings, shift)) is not None
+    }
+    if not found:
+        return
+    best = min(found, key=lambda shift: found[shift][1] / max(found[shift][0], 1e-12))
+    before, after = found[best]
+    if after < _MUCH_BETTER * before:
+        yield Finding(
+            "rows",
+            f"readings belong to poses {abs(best)} row{'s' if abs(best) > 1 else ''} "
+            f"{'before' if best > 0 else 'after'} their own",
+            before, after, {"rows": {"shift": best}}, after < 0.4 * before,
+        )  # fmt: skip
+
+
+def _shifted_left(readings: Readings, shift: int) -> tuple[float, float] | None:
+    """Residuals, degrees, of smooth maps of the same poses: own readings, and `shift` rows later.
+
+    None where fewer than half of the poses have such a row in their run.
+    """
+    place = {
+        (run, row): at
+        for at, (run, row) in enumerate(zip(readings.run, readings.rows, strict=True))
+    }
+    pairs = [
+        (at, later)
+        for (run, row), at in place.items()
+        if (later := place.get((run, row + shift))) is not None
+    ]
+    if len(pairs) < max(40, len(readings) // 2):
+        return None
+    pose, reading = np.array(pairs).T
+    step = max(len(pose) // 4000, 1)
+    sun, features = readings.sun[pose][::step], readings.features
+    own, other = (robust_map(features[at][::step], sun)[1] for at in (pose, reading))
+    # along a row of a grid a shifted reading is a smooth function too: its ends tell
+    by_median = float(np.median(own)), float(np.median(other))
+    by_rms = float(np.sqrt(np.mean(own**2))), float(np.sqrt(np.mean(other**2)))
+    return min(by_median, by_rms, key=lambda pair: pair[1] / max(pair[0], 1e-12))
+
+
+def _of_runs(readings: Readings) -> Iterator[Finding]:
+    names = readings.run_names
+    if len(np.unique(readings.run)) < 2:
+        return
+    for number in np.unique(readings.run):
+        mine = readings.run == number
+        if mine.sum() < 20 or (~mine).sum() < 20:
+            continue
+        others, _ = robust_map(readings.features[~mine], readings.sun[~mine])
+        own = readings.only(mine)
+        before = _median_deg(others, own.features, own.sun)
+        for what, flipped in _flips(own):
+            after = _median_deg(others, flipped, own.sun)
+            if after < 0.3 * before and after < 0.2 * _spread_deg(own):
+                yield Finding(
+                    "runs", f"run {names[number]}: {what} of the other sign than in the other runs",
+                    before, after, {}, after < 0.15 * before,
+                )  # fmt: skip
+                break
+
+
+def _flips(readings: Readings) -> Iterator[tuple[str, Floats]]:
+    if readings.features.shape[1] != 2:
+        return
+    centre = (
+        np.median(readings.features, axis=0) if readings.kind is FeatureKind.SPOT else np.zeros(2)
+    )
+    for what, sign in (("x is", (-1, 1)), ("y is", (1, -1)), ("both are", (-1, -1))):
+        yield what, centre + (readings.features - centre) * np.asarray(sign)
+
+
+def _of_quadrants(readings: Readings, settings: Settings) -> Iterator[Finding]:
+    if settings.readings.kind != "quadrants":
+        return
+    signals = readings.raw
+    total = signals.sum(axis=1)
+    if np.corrcoef(total, readings.sun[:, 2])[0, 1] < -_FALLING:
+        yield Finding(
+            "light",
+            "readings fall when light rises: say inverted = true, and dark = their level without "
+            "light",
+            np.nan, np.nan, {}, True,
+        )  # fmt: skip
+        return
+    if np.median(total) < 0:
+        yield Finding(
+            "light", "readings fall when light rises: say inverted = true", np.nan, np.nan,
+            {"readings": {"inverted": True}}, True,
+        )  # fmt: skip
+        return
+    left = {}
+    for order in permutations(range(4)):
+        if order[0] == 0:  # turned orders differ by axes alone
+            features = quadrant_balances(signals[:, order])
+            usable = np.isfinite(features).all(axis=1)
+            if usable.all():
+                _, size = robust_map(features, readings.sun)
+                left[order] = float(np.median(size))
+    stated = (0, 1, 2, 3)
+    best = min(left, key=lambda order: left[order])
+    # (0, 1, 2, 3) and (0, 3, 2, 1) go round the same way but for a mirror
+    if best not in (stated, (0, 3, 2, 1)) and left[best] < _MUCH_BETTER * left[stated]:
+        columns = tuple(settings.readings.columns[at] for at in best)
+        yield Finding(
+            "quadrants", f"the quadrants seem to stand in the order {', '.join(columns)}",
+            left[stated], left[best], {"readings": {"columns": columns}},
+            left[best] < 0.3 * left[stated],
+            "which quadrant comes first only the axes tell, once the order is right",
+        )  # fmt: skip
+
+
+def _of_faces(readings: Readings, settings: Settings) -> Iterator[Finding]:
+    normals, explained = face_normals(readings)
+    inverted = [at for at, share in enumerate(explained) if share < -0.3]
+    if len(inverted) == len(explained):
+        yield Finding(
+            "light", "readings fall when light rises: say inverted = true", np.nan, np.nan,
+            {"readings": {"inverted": True}}, True,
+        )  # fmt: skip
+        return
+    stated = settings.sensor.face_normals
+    if stated is None or np.median(explained) < 0.5:
+        return
+    cosine = normals @ np.asarray(stated).T
+    for at, name in enumerate(settings.readings.columns):
+        nearest = int(np.argmax(cosine[at]))
+        if nearest != at and cosine[at, nearest] > 0.8 and cosine[at, at] < 0.5:
+            yield Finding(
+                "faces",
+                f"channel {name} looks where {settings.readings.columns[nearest]} is stated to",
+                float(np.degrees(np.arccos(np.clip(cosine[at, at], -1, 1)))),
+                float(np.degrees(np.arccos(np.clip(cosine[at, nearest], -1, 1)))), {}, True,
+            )  # fmt: skip
+
+
+def face_normals(readings: Readings) -> tuple[Floats, Floats]:
+    """Return where each channel looks (K, 3), and how it goes with the light there (K,).
+
+    By least squares of signal over the cosine, on the samples that light it most.
+    """
+    sun, signals = readings.sun, readings.features
+    normals = np.zeros((signals.shape[1], 3))
+    explained = np.zeros(signals.shape[1])
+    for at, signal in enumerate(signals.T):
+        centred = signal - np.median(signal)
+        start = (centred[:, None] * sun).mean(axis=0)
+        normal = start / (np.linalg.norm(start) or 1.0)
+        for _ in range(20):
+            lit = sun @ normal > 0.2
+            if lit.sum() < 6:
+                break
+            found = np.linalg.lstsq(sun[lit], signal[lit], rcond=None)[0]
+            length = np.linalg.norm(found)
+            if not length > 0:
+                break
+            normal = found / length
+        normals[at] = normal
+        with np.errstate(invalid="ignore"):
+            share = np.corrcoef(signal, np.maximum(sun @ normal, 0.0))[0, 1]
+        explained[at] = share if np.isfinite(share) else 0.0
+    return normals, explained
+
+
+def _left_deg(readings: Readings, sun: Floats) -> float:
+    """RMS residual, degrees, of a projective map with cubic distortion, without the worst tenth."""
+    finite = np.isfinite(sun).all(axis=1) & (sun[:, 2] > 0)
+    used, features = sun[finite], readings.features[finite]
+    middle, width = np.median(features, axis=0), np.maximum(np.std(features), 1e-12)
+    tangents = tangents_from_sun(used)[:, ::-1]
+    scaled = (features - middle) / width
+    columns = np.column_stack([np.ones(len(scaled)), scaled])
+    radial = (scaled**2).sum(axis=1)[:, None] * scaled
+    guess = tangents
+    weight = np.ones(len(scaled))
+    for _ in range(15):
+        root = np.sqrt(weight)
+        rows, aims = [], []
+        for axis in (0, 1):
+            block = np.zeros((len(scaled), 10))
+            block[:, 3 * axis : 3 * axis + 3] = columns
+            block[:, 6:8] = -guess[:, [axis]] * scaled
+            block[:, 8 + axis] = radial[:, axis]
+            rows.append(block * root[:, None])
+            aims.append(tangents[:, axis] * root)
+        fit = np.linalg.lstsq(np.vstack(rows), np.concatenate(aims), rcond=1e-10)[0]
+        below = 1.0 + scaled @ fit[6:8]
+        guess = np.column_stack(
+            [(columns @ fit[3 * a : 3 * a + 3] + radial[:, a] * fit[8 + a]) / below for a in (0, 1)]
+        )
+        size = np.linalg.norm(guess - tangents, axis=1) / (1.0 + (tangents**2).sum(axis=1))
+        weight = 1.0 / np.maximum(size, max(float(np.median(size)), 1e-15))
+    kept = np.sort(size)[: max(int(0.9 * len(size)), 1)]
+    return float(np.degrees(np.sqrt(np.mean(kept**2))))
+
+
+def _median_deg(fitted: SmoothMap, features: Floats, sun: Floats) -> float:
+    scaled = (normalised(features) - fitted.middle) / fitted.width
+    scaled = np.clip(scaled, -3.0, 3.0)
+    left = sun - terms(scaled, fitted.degree) @ fitted.coefficients
+    return float(np.degrees(np.median(np.linalg.norm(left, axis=1))))
+
+
+def _spread_deg(readings: Readings) -> float:
+    middle = readings.sun.mean(axis=0)
+    return float(np.degrees(np.sqrt(np.mean(((readings.sun - middle) ** 2).sum(axis=1)))))
+
+
+def change_of(settings: Settings, finding: Finding) -> Settings:
+    """Return settings with a finding's change applied; as they are where it has none."""
+    changed = settings
+    for part, values in finding.change.items():
+        if part == "apply":
+            transforms: tuple[Transform, ...] = (*changed.apply, *values)  # type: ignore[misc]
+            changed = changed.model_copy(update={"apply": transforms})
+        else:
+            inner = getattr(changed, part).model_copy(update=values)
+            changed = changed.model_copy(update={part: inner})
+    return changed

@@ -1,0 +1,56 @@
+"""Files that a calibration leaves: report, JSON, Python and C, all of them or none."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from api.calibrate.calibration import Calibration
+from api.calibrate.code_c import c_files, c_name
+from api.calibrate.code_python import python_module
+from api.calibrate.documents import document
+from api.calibrate.flight_table import FlightTable, NoTableError, flight_table
+from api.calibrate.report import report
+from files.atomic import replace_file
+
+
+def products(found: Calibration, name: str, command: str = "") -> dict[str, str]:
+    """Return the text of every file by its name.
+
+    C and Python are left out where no table can stand for the model; ``NAME_no_code.txt`` says so.
+    """
+    prefix = c_name(name)
+    made = {
+        f"{prefix}.json": json.dumps(document(found, command), indent=1, allow_nan=False) + "\n"
+    }
+    table: FlightTable | None = None
+    said = {
+        "Files": ", ".join(found.sources),
+        "Data SHA-256": found.digest,
+        "Model": f"{found.chosen.name}, {found.chosen.rms_deg:.3g} deg RMS on samples left out",
+        "Verdict": f"{found.verdict.word}: {found.verdict.reason}",
+        "Command": command,
+    }
+    try:
+        table = flight_table(found.model, found.readings.features, found.readings.context)
+    except NoTableError as error:
+        made[f"{prefix}_no_code.txt"] = f"No code was written: {error}.\n"
+    else:
+        said["Table"] = f"adds at most {table.largest_deg:.2g} deg to the model"
+        made[f"{prefix}.py"] = python_module(table, said)
+        made |= c_files(table, prefix, said)
+    made[f"{prefix}_report.html"] = report(found, command, table)
+    return made
+
+
+def write_products(found: Calibration, directory: Path, name: str, command: str = "") -> list[Path]:
+    """Write every file, the report last; returns their paths.
+
+    Everything is made before the first is written, and each is written whole or not at all.
+    """
+    texts = products(found, name, command)
+    directory.mkdir(parents=True, exist_ok=True)
+    paths = [directory / file for file in texts]
+    for path, text in zip(paths, texts.values(), strict=True):
+        replace_file(path, text)
+    return paths

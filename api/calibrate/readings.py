@@ -1,0 +1,266 @@
+"""Readings and directions of a calibration file, row by row, after its settings."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.angles import sun_from_angles, sun_from_rotations
+from algorithms.contract import FeatureKind, Floats
+from api.calibrate.settings import DirectionSettings, Form, ReadingsSettings, Settings, Transform
+from api.calibrate.table import Table, TableError
+
+#: What each transform does to the two features of a row, as a matrix.
+MATRICES: dict[Transform, tuple[tuple[float, float], tuple[float, float]]] = {
+    "swap-xy": ((0.0, 1.0), (1.0, 0.0)),
+    "mirror-x": ((-1.0, 0.0), (0.0, 1.0)),
+    "mirror-y": ((1.0, 0.0), (0.0, -1.0)),
+    "rotate-90": ((0.0, -1.0), (1.0, 0.0)),
+    "rotate-180": ((-1.0, 0.0), (0.0, -1.0)),
+    "rotate-270": ((0.0, 1.0), (-1.0, 0.0)),
+    "swap-negated-xy": ((0.0, -1.0), (-1.0, 0.0)),
+}
+_KINDS = {"spot": FeatureKind.SPOT, "channels": FeatureKind.SIGNALS}
+
+
+@dataclass(frozen=True)
+class Readings:
+    """Samples of a calibration.
+
+    Parameters
+    ----------
+    features : ndarray, shape (N, F)
+        Spots, balances or signals.
+    sun : ndarray, shape (N, 3)
+        Unit vectors to the light.
+    kind : FeatureKind
+        What the features are.
+    rows : ndarray of int, shape (N,)
+        Number of each sample's row in the file.
+    run : ndarray of int, shape (N,)
+        Number of each sample's run, from 0.
+    run_names : tuple of str
+        Of the runs.
+    context : mapping of str to ndarray
+        ``time_s`` and ``temperature_K`` where the file has them.
+    angles : ndarray, shape (N, 2), optional
+        The file's two angles, degrees, where it has angles.
+    raw : ndarray, shape (N, K)
+        Readings less dark over gain, before balances are made.
+    dropped : mapping of str to int
+        Rows left out of the file, by reason.
+    """
+
+    features: Floats
+    sun: Floats
+    kind: FeatureKind
+    rows: NDArray[np.int64]
+    run: NDArray[np.int64]
+    run_names: tuple[str, ...]
+    raw: Floats
+    context: Mapping[str, Floats] = field(default_factory=dict)
+    angles: Floats | None = None
+    dropped: Mapping[str, int] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def only(self, kept: NDArray[np.bool_] | NDArray[np.int64]) -> Readings:
+        """Return the samples that a mask or places select."""
+        return replace(
+            self,
+            features=self.features[kept],
+            sun=self.sun[kept],
+            rows=self.rows[kept],
+            run=self.run[kept],
+            raw=self.raw[kept],
+            context={name: column[kept] for name, column in self.context.items()},
+            angles=None if self.angles is None else self.angles[kept],
+        )
+
+
+def readings_of(table: Table, settings: Settings) -> Readings:
+    """Return the samples of a table.
+
+    Parameters
+    ----------
+    table : Table
+        As `api.calibrate.table.read_table` gives it.
+    settings : Settings
+        What its columns are.
+
+    Returns
+    -------
+    Readings
+        Rows without a finite reading and direction, of zeros alone, or whose light's direction is
+        no vector are left out and counted by reason.
+
+    Raises
+    ------
+    TableError
+        If a column is missing or holds no numbers, or no row is left.
+    """
+    raw = np.column_stack([table.numbers(name) for name in settings.readings.columns])
+    told = np.column_stack([table.numbers(name) for name in settings.direction.columns])
+    sun, angles = directions(told, settings.direction)
+    signals = _signals(raw, settings.readings)
+    features = _features(signals, settings.readings)
+    for transform in settings.apply:
+        features = (
+            features @ np.asarray(MATRICES[transform]).T if features.shape[1] == 2 else features
+        )
+    run, names = _runs(table, settings)
+    context = _context(table, settings)
+    rows = np.arange(len(table)) + table.first_row
+    if settings.rows.shift:
+        kept, other = _shifted(run, settings.rows.shift)
+        features, signals, raw = features[other], signals[other], raw[other]
+        sun, told, rows, run = sun[kept], told[kept], rows[kept], run[kept]
+        angles = None if angles is None else angles[kept]
+        context = {name: column[kept] for name, column in context.items()}
+    reasons = _reasons(raw, told, sun, features, settings)
+    for name, column in context.items():
+        reasons[f"{name} is not a number"] = ~np.isfinite(column)
+    usable, dropped = np.ones(len(rows), dtype=np.bool_), Counter[str]()
+    for reason, bad in reasons.items():
+        dropped[reason] += int((bad & usable).sum())
+        usable &= ~bad
+    if not usable.any():
+        counts = ", ".join(f"{count} {reason}" for reason, count in dropped.items() if count)
+        raise TableError(f"{table.source}: no row can be used ({counts})")
+    made = Readings(
+        features, sun, _KINDS.get(settings.readings.kind, FeatureKind.BALANCE), rows, run, names,
+        signals, context, angles, {reason: count for reason, count in dropped.items() if count},
+    )  # fmt: skip
+    return made.only(usable)
+
+
+def directions(columns: Floats, settings: DirectionSettings) -> tuple[Floats, Floats | None]:
+    """Return unit vectors (N, 3) of a file's columns, and its angles in degrees if any."""
+    if settings.form == "vector":
+        length = np.linalg.norm(columns, axis=1)
+        near = (length > 0.5) & (length < 2.0)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            sun = columns / length[:, None]
+        sun[~near] = np.nan
+        return sun, None
+    angles = np.degrees(columns) if settings.unit == "rad" else columns
+    return sun_of_angles(angles, settings.form), angles
+
+
+def sun_of_angles(angles_deg: Floats, form: Form) -> Floats:
+    """Return unit vectors (N, 3) of two angles (N, 2), degrees, of one of the forms."""
+    if form == "projection":
+        return sun_from_angles(angles_deg)
+    if form in ("alpha-inner", "beta-inner"):
+        return sun_from_rotations(angles_deg, inner="alpha" if form == "alpha-inner" else "beta")
+    azimuth, other = np.radians(angles_deg).T
+    off = np.pi / 2 - other if form == "azimuth-elevation" else other
+    return np.column_stack(
+        [np.sin(off) * np.cos(azimuth), np.sin(off) * np.sin(azimuth), np.cos(off)]
+    )
+
+
+def _signals(raw: Floats, settings: ReadingsSettings) -> Floats:
+    sign = -1.0 if settings.inverted else 1.0
+    return np.asarray(sign * (raw - np.asarray(settings.dark)) / np.asarray(settings.gain))
+
+
+def _features(signals: Floats, settings: ReadingsSettings) -> Floats:
+    if settings.kind == "quadrants":
+        return quadrant_balances(signals)
+    if settings.kind == "electrodes":
+        halves = signals.reshape(-1, 2, 2)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            balances = (halves[:, :, 0] - halves[:, :, 1]) / halves.sum(axis=2)
+        balances[~(halves.sum(axis=2) > 0)] = np.nan
+        return np.asarray(balances)
+    return signals
+
+
+def quadrant_balances(signals: Floats) -> Floats:
+    """Return balances (N, 2) of quadrants (N, 4) at (-x, +y), (+x, +y), (+x, -y), (-x, -y)."""
+    first, second, third, fourth = signals.T
+    total = signals.sum(axis=1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        balances = np.column_stack(
+            [(second + third - first - fourth) / total, (first + second - third - fourth) / total]
+        )
+    balances[~(total > 0)] = np.nan
+    return balances
+
+
+def _reasons(
+    raw: Floats, told: Floats, sun: Floats, features: Floats, settings: Settings
+) -> dict[str, NDArray[np.bool_]]:
+    zeros = (raw == 0).all(axis=1)
+    if settings.direction.form == "vector":
+        zeros |= (told == 0).all(axis=1)
+    found = {
+        "a cell is empty or not a finite number": ~(
+            np.isfinite(raw).all(axis=1) & np.isfinite(told).all(axis=1)
+        ),
+        "all readings, or the direction, are zero": zeros,
+        "the direction is no unit vector, or 90 deg or more off": ~np.isfinite(sun).all(axis=1),
+        "the signals have no positive sum": ~np.isfinite(features).all(axis=1),
+    }
+    if settings.readings.kind != "channels":
+        found["the light is behind the sensor"] = ~(sun[:, 2] > 0)
+    return found
+
+
+def _runs(table: Table, settings: Settings) -> tuple[NDArray[np.int64], tuple[str, ...]]:
+    if settings.rows.run is None:
+        return np.zeros(len(table), dtype=np.int64), (table.source,)
+    if settings.rows.run not in table.columns:
+        table.numbers(settings.rows.run)
+    column = np.asarray(table.columns[settings.rows.run])
+    names, run = np.unique(column.astype(str), return_inverse=True)
+    return run.reshape(-1).astype(np.int64), tuple(str(name) for name in names)
+
+
+def _context(table: Table, settings: Settings) -> dict[str, Floats]:
+    stated = {"time_s": settings.rows.time_s, "temperature_K": settings.rows.temperature_K}
+    return {name: table.numbers(column) for name, column in stated.items() if column is not None}
+
+
+def _shifted(run: NDArray[np.int64], shift: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Places of poses and of their readings, `shift` rows later in the same run."""
+    pose = np.arange(len(run))
+    reading = pose + shift
+    inside = (reading >= 0) & (reading < len(run))
+    pose, reading = pose[inside], reading[inside]
+    same = run[pose] == run[reading]
+    return pose[same], reading[same]
+
+
+def joined(parts: Sequence[Readings]) -> Readings:
+    """Return the samples of several files, each file's runs apart from the others'."""
+    first = parts[0]
+    run: list[NDArray[np.int64]] = []
+    names: list[str] = []
+    for part in parts:
+        run.append(part.run + len(names))
+        names += part.run_names
+    dropped = Counter[str]()
+    for part in parts:
+        dropped.update(part.dropped)
+    shared = set.intersection(*(set(part.context) for part in parts))
+    return Readings(
+        np.vstack([part.features for part in parts]),
+        np.vstack([part.sun for part in parts]),
+        first.kind,
+        np.concatenate([part.rows for part in parts]),
+        np.concatenate(run),
+        tuple(names),
+        np.vstack([part.raw for part in parts]),
+        {name: np.concatenate([part.context[name] for part in parts]) for name in sorted(shared)},
+        np.vstack([a for part in parts if (a := part.angles) is not None])
+        if first.angles is not None
+        else None,
+        dict(dropped),
+    )

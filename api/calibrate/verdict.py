@@ -1,0 +1,236 @@
+"""The verdict on a calibration: good, model misfit or poses missing; and what to do next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from algorithms.angles import separation_deg
+from algorithms.calibration.hull import Hull
+from algorithms.contract import Floats, UnusableDataError
+from api.calibrate.readings import Readings
+from api.calibrate.uncertainty import tangent_offsets
+
+Word = Literal["good", "model misfit", "poses missing"]
+#: Ratio of the difference of two halves' fits to what their stated uncertainties add up to.
+RATIO_GOOD, RATIO_MISFIT = (0.7, 1.4), 2.0
+#: Share of the residuals' variance that a pattern explains to be named, and its significance.
+_SHARE, _CHANCE = 0.05, 1e-4
+_NEXT = 20
+#: Steps between poses from which a hole in the field is said.
+_GAP = 5.0
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """A pattern left in the residuals.
+
+    Attributes
+    ----------
+    name : str
+        What the residuals go with.
+    share : float
+        Of their variance that it explains.
+    chance : float
+        That residuals without it would go with it as much.
+    """
+
+    name: str
+    share: float
+    chance: float
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a calibration is worth.
+
+    Attributes
+    ----------
+    word : {"good", "model misfit", "poses missing"}
+    reason : str
+        In one or two sentences.
+    split_ratio : float
+        Difference of fits to two halves over their stated uncertainties added; NaN where not known.
+    patterns : tuple of Pattern
+        Left in the errors of samples left out, the largest first.
+    next_poses : ndarray, shape (20, 3)
+        Directions that would add most.
+    """
+
+    word: Word
+    reason: str
+    split_ratio: float
+    patterns: tuple[Pattern, ...]
+    next_poses: Floats
+
+
+def judge(  # noqa: PLR0917 - the numbers it is made of
+    rms_deg: float,
+    residual_deg: float,
+    noise: float,
+    floor_deg: float,
+    split_ratio: float,
+    patterns: tuple[Pattern, ...],
+    next_poses: Floats,
+    gap: float,
+) -> Verdict:
+    """Return the verdict.
+
+    Parameters
+    ----------
+    rms_deg, residual_deg : float
+        Error of samples left out, and of those fitted, degrees.
+    noise : float
+        Of single samples, degrees.
+    floor_deg : float
+        Of the bench, degrees.
+    split_ratio : float
+        See `Verdict`.
+    patterns : tuple of Pattern
+        In the errors.
+    next_poses : ndarray
+        To take where poses are missing.
+    gap : float
+        Largest distance of a direction of the field to a pose, in usual steps.
+    """
+    told = np.hypot(noise if np.isfinite(noise) else 0.0, floor_deg)
+    smooth = [one for one in patterns if one.share > 0.25]
+    if rms_deg > 1.6 * residual_deg and rms_deg > 1.3 * told:
+        word: Word = "poses missing"
+        reason = (
+            f"samples left out err {rms_deg:.3g} deg, those fitted {residual_deg:.3g} deg: "
+            "there are too few poses for this model, or too far apart"
+        )
+    elif gap > _GAP:
+        word = "poses missing"
+        reason = (
+            f"parts of the field are {gap:.0f} steps from any pose: there the model is not tested "
+            f"(where it is, samples left out err {rms_deg:.3g} deg)"
+        )
+    elif split_ratio > RATIO_MISFIT or (smooth and residual_deg > 1.5 * told):
+        word = "model misfit"
+        reason = (
+            f"fits to two halves differ {split_ratio:.2g} times as much as noise explains"
+            if split_ratio > RATIO_MISFIT
+            else f"residuals of {residual_deg:.3g} deg are more than the noise of {told:.3g} deg"
+        ) + (f", and go with {smooth[0].name}" if smooth else "")
+    else:
+        word = "good"
+        reason = (
+            f"samples left out err {rms_deg:.3g} deg, those fitted {residual_deg:.3g} deg, "
+            f"noise is {told:.3g} deg"
+        )
+    return Verdict(word, reason, split_ratio, patterns, next_poses)
+
+
+def patterns_in(offsets: Floats, readings: Readings) -> tuple[Pattern, ...]:
+    """Return what errors (N, 3) of samples go with, the largest share first."""
+    known = np.asarray(np.isfinite(offsets).all(axis=1))
+    used = readings.only(known)
+    if len(used) < 40:
+        return ()
+    errors = tangent_offsets(offsets[known], used.sun)
+    designs: dict[str, Floats] = {}
+    if len(np.unique(used.run)) > 1:
+        designs["the run: an offset of its own in some"] = np.eye(len(readings.run_names))[used.run]
+    for name, word in (("time_s", "time"), ("temperature_K", "temperature")):
+        if name in used.context and np.ptp(used.context[name]) > 0:
+            designs[f"{word}: a drift"] = _powers(used.context[name], 1)
+    designs["the order of rows: a drift"] = _powers(np.arange(len(used), dtype=np.float64), 1)
+    designs["the direction: a smooth pattern over the field"] = _surface(used.sun)
+    if used.features.shape[1] == 2:
+        phase = 2.0 * np.pi * used.features
+        if np.ptp(used.features) > 20.0:
+            designs["the fraction of a pixel"] = np.column_stack([np.sin(phase), np.cos(phase)])
+    found = [_pattern(name, design, errors) for name, design in designs.items()]
+    named = [one for one in found if one and one.share > _SHARE and one.chance < _CHANCE]
+    return tuple(sorted(named, key=lambda one: -one.share))
+
+
+def next_poses(sun: Floats, count: int = _NEXT) -> tuple[Floats, float]:
+    """Return directions (count, 3) inside the field measured that lie farthest from any pose.
+
+    And the distance of the first, in usual steps between poses.
+    """
+    try:
+        hull = Hull.of_directions(sun, "poses")
+    except UnusableDataError:
+        return np.empty((0, 3)), 0.0
+    turns = np.arange(4000)
+    z = 1.0 - 2.0 * (turns + 0.5) / len(turns)
+    angle = np.pi * (1.0 + 5.0**0.5) * turns
+    grid = np.column_stack(
+        [np.sqrt(1 - z**2) * np.cos(angle), np.sqrt(1 - z**2) * np.sin(angle), z]
+    )
+    middle = sun.mean(axis=0)
+    reach = float(np.max(separation_deg(sun, np.broadcast_to(middle, sun.shape))))
+    if np.linalg.norm(middle) > 0.05 and reach < 80.0:  # a denser grid of a narrow field
+        middle = middle / np.linalg.norm(middle)
+        radius = np.radians(reach) * np.sqrt((turns + 0.5) / len(turns))
+        flat = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+        first = np.cross(middle, [0.0, 1.0, 0.0] if abs(middle[1]) < 0.9 else [1.0, 0.0, 0.0])
+        first /= np.linalg.norm(first)
+        grid = middle + flat[:, [0]] * first + flat[:, [1]] * np.cross(middle, first)
+        grid /= np.linalg.norm(grid, axis=1)[:, None]
+    inside = grid[hull.holds(grid)] if len(hull.facets) else grid
+    if not len(inside):
+        return np.empty((0, 3)), 0.0
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
+
+    poses = np.unique(np.round(sun, 6), axis=0)
+    tree = cKDTree(poses)
+    step = float(np.median(np.asarray(tree.query(poses, k=2)[0])[:, 1]))
+    away = np.asarray(tree.query(inside)[0])
+    gap = float(away.max()) / max(step, 1e-9)
+    chosen = []
+    for _ in range(min(count, len(inside))):
+        at = int(np.argmax(away))
+        chosen.append(inside[at])
+        away = np.minimum(away, np.linalg.norm(inside - inside[at], axis=1))
+    return np.array(chosen), gap
+
+
+def _pattern(name: str, design: Floats, errors: Floats) -> Pattern | None:
+    from scipy.stats import f as distribution  # noqa: PLC0415 - SciPy, at the first use
+
+    count = len(errors)
+    centred = errors - errors.mean(axis=0)
+    columns = np.column_stack([np.ones(count), design])
+    rank = int(np.linalg.matrix_rank(columns)) - 1
+    if rank < 1 or count <= rank + 2:
+        return None
+    left = centred - columns @ np.linalg.lstsq(columns, centred, rcond=1e-10)[0]
+    total, rest = float((centred**2).sum()), float((left**2).sum())
+    if not total > 0:
+        return None
+    share = 1.0 - rest / total
+    expected = rank / (count - 1)  # of errors that go with nothing
+    ratio = (total - rest) / rank / max(rest / (count - rank - 1), 1e-300)
+    chance = float(distribution.sf(ratio, 2 * rank, 2 * (count - rank - 1)))
+    return Pattern(name, max(share - expected, 0.0), chance)
+
+
+def _powers(column: Floats, degree: int) -> Floats:
+    scaled = (column - column.mean()) / max(float(np.ptp(column)), 1e-12)
+    return np.column_stack([scaled**power for power in range(1, degree + 1)])
+
+
+def _surface(sun: Floats) -> Floats:
+    x, y = sun[:, 0], sun[:, 1]
+    return np.column_stack([x**a * y**b for a in range(5) for b in range(5 - a) if a + b > 0])
+
+
+def as_text(verdict: Verdict) -> Mapping[str, object]:
+    """Return the verdict as plain data."""
+    return {
+        "verdict": verdict.word,
+        "reason": verdict.reason,
+        "split_half_ratio": None
+        if not np.isfinite(verdict.split_ratio)
+        else round(verdict.split_ratio, 3),
+        "patterns": [vars(one) for one in verdict.patterns],
+        "next_poses": [[round(float(c), 4) for c in pose] for pose in verdict.next_poses],
+    }

@@ -1,0 +1,115 @@
+"""`sunatlas calibrate`: from a turntable file to a calibrated sensor, a report and flight code."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+import typer
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
+
+
+@app.command()
+def calibrate(
+    *,
+    files: Annotated[
+        list[Path],
+        typer.Argument(help="CSV, Parquet, NumPy or Excel; several files are runs of one sensor."),
+    ],
+    config: Annotated[
+        Path | None, typer.Option(help="What the columns are; by default guessed from their names.")
+    ] = None,
+    init: Annotated[
+        Path | None,
+        typer.Option(help="Write a commented config guessed from the header here, and stop."),
+    ] = None,
+    out: Annotated[
+        Path, typer.Option(help="Directory for report, JSON and code; made if need be.")
+    ] = Path("calibration"),
+    name: Annotated[
+        str, typer.Option(help="Prefix of the files and of names in C.")
+    ] = "sun_sensor",
+    apply: Annotated[
+        bool, typer.Option("--apply", help="Apply conventions that were found beyond doubt.")
+    ] = False,
+    thorough: Annotated[
+        bool, typer.Option("--thorough", help="Try networks too, which takes minutes.")
+    ] = False,
+    model: Annotated[
+        list[str] | None, typer.Option(help="Only this model, such as polynomial-2d; repeatable.")
+    ] = None,
+) -> int:
+    """Calibrate a sensor from a turntable file.
+
+    Reads the file, finds its conventions and wrong poses, compares every model that applies on
+    samples left out, and writes a report (HTML), the calibration (JSON), a Python module and C99
+    code. The exit code is 0 for the verdict good, 3 otherwise.
+    """
+    from api.calibrate.calibration import calibrate as run  # noqa: PLC0415 - SciPy
+    from api.calibrate.products import write_products  # noqa: PLC0415 - as above
+    from api.calibrate.roles import guess  # noqa: PLC0415 - as above
+    from api.calibrate.settings import read_settings  # noqa: PLC0415 - as above
+    from api.calibrate.table import read_table  # noqa: PLC0415 - as above
+    from api.calibrate.template import template  # noqa: PLC0415 - as above
+    from files.atomic import replace_file  # noqa: PLC0415 - as above
+
+    if init is not None:
+        table = read_table(files[0])
+        replace_file(init, template(guess(table), list(table.columns)))
+        typer.echo(
+            f"wrote {init}; correct it and run: sunatlas calibrate {files[0]} --config {init}"
+        )
+        return 0
+    settings = None if config is None else read_settings(config)
+    command = shlex.join(["sunatlas", *sys.argv[1:]])
+    with _Bar() as bar:
+        found = run(
+            files, settings, apply=apply, thorough=thorough, models=model, progress=bar.show
+        )
+        written = write_products(found, out, name, command)
+    _print(found, written, out)
+    return 0 if found.verdict.word == "good" else 3
+
+
+class _Bar:
+    """A progress bar on a terminal; nothing elsewhere."""
+
+    def __enter__(self) -> Self:
+        from rich.console import Console  # noqa: PLC0415 - Rich, where it is shown
+        from rich.progress import Progress  # noqa: PLC0415 - as above
+
+        self._progress = Progress(
+            console=Console(file=sys.stderr), transient=True, disable=not sys.stderr.isatty()
+        )
+        self._progress.start()
+        self._task = self._progress.add_task("reading", total=None)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._progress.stop()
+
+    def show(self, step: str, done: int, total: int) -> None:
+        """Show a step and how many of all are done."""
+        self._progress.update(self._task, description=step, completed=done, total=total)
+
+
+def _print(found: Any, written: list[Path], out: Path) -> None:
+    verdict = found.verdict
+    typer.echo(f"verdict: {verdict.word} - {verdict.reason}")
+    typer.echo(
+        f"model: {found.chosen.name}, {found.chosen.rms_deg:.3g} deg RMS on samples left out"
+    )
+    for one in found.findings:
+        done = (
+            "applied" if one in found.applied else ("--apply would change it" if one.change else "")
+        )
+        typer.echo(f"found: {one.found}" + (f" ({done})" if done else ""))
+    counts: dict[str, int] = {}
+    for one in found.excluded:
+        counts[one.reason] = counts.get(one.reason, 0) + 1
+    for reason, count in {**found.readings.dropped, **counts}.items():
+        typer.echo(f"left out: {count} rows: {reason}")
+    typer.echo(f"wrote {', '.join(path.name for path in written)} in {out}")

@@ -1,0 +1,8 @@
+"""Puts `bench`, which makes the files, where these tests find it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
