@@ -93,7 +93,8 @@ def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> N
 
 def _query_parameter(name: str, schema: Mapping[str, Any]) -> dict[str, Any]:
     """Return a parameter of a query that a dependency reads, as FastAPI documents its own."""
-    described = {"name": name, "in": "query", "required": False, "schema": dict(schema)}
+    kept = {key: value for key, value in schema.items() if (key, value) != ("default", None)}
+    described = {"name": name, "in": "query", "required": False, "schema": kept}
     return {**described, "description": schema["description"]}
 
 
