@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from registry.contradiction import against_advice
 from registry.designs import Candidate, DesignTable, Place
 from registry.judging import Question, advice_for
 from registry.mapping.advice import Advice
@@ -202,11 +201,6 @@ class Answer:
         found = values[designs]
         order = self.best.order[designs[found == found.min()]].min()
         return int(self.best.at_order[order])
-
-    @cached_property
-    def contradictions(self) -> tuple[str, ...]:
-        """Where an architecture that is not advised does better at a task than those advised."""
-        return against_advice(self, self.question.asked.include.get("task", ()))
 
     @cached_property
     def regret(self) -> Regret | None:

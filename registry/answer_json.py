@@ -15,7 +15,7 @@ from typing import Any
 from pydantic_core import to_json
 
 from registry.answer import Answer, RankedPlace
-from registry.contradiction import against_literature, regret_words
+from registry.contradiction import against_advice, against_literature, regret_words
 from registry.design_arrays import design_arrays
 from registry.designs import DesignTable
 from registry.judging import Question, advice_for
@@ -81,7 +81,11 @@ class AnswerTexts:
             b',"sort":"%b","count":%d,"designs":%d,"architectures":['
             % (answer.sort.encode(), len(answer.places), answer.count),
             *self._architectures(answer, limit, calibrations),
-            *(b'],"contradictions":', encoded(answer.contradictions), b',"regret":'),
+            *(
+                b'],"contradictions":',
+                encoded(against_advice(answer, answer.question.asked.include.get("task", ()))),
+                b',"regret":',
+            ),
             encoded(None if regret is None else regret.to_dict(regret_words(regret))),
             *(b',"untried":', encoded(untried), b',"untimed":%d' % answer.untimed),
             *(b',"paths":[', self._behind(sets), b'],"left_out":', self._left_out),
