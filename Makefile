@@ -102,7 +102,7 @@ faults-load: $(COMPILED) ## 20 mixed requests a second on the service for MINUTE
 leaderboard: $(SERVING) ## bring scores and leaderboard up to date with code and data
 	$(BIN)/sunatlas leaderboard update --workers $(WORKERS)
 	$(BIN)/python -m benchmark.experiments --workers $(WORKERS)
-	$(BIN)/python -m api.pictures --publish
+	$(BIN)/python -m api.previews --publish
 
 docs: $(DEVELOPING) ## regenerate the generated parts of docs/
 	$(BIN)/python -m api.docs.documentation

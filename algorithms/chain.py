@@ -53,13 +53,13 @@ class Chain:
         return AboutModel(
             name=" + ".join(part.name for part in parts),
             taxonomy=parts[0].taxonomy,
-            studies=_united(part.studies for part in parts),
-            labels=_united(part.labels for part in parts),
+            studies=_unite(part.studies for part in parts),
+            labels=_unite(part.labels for part in parts),
             origin="survey" if all(part.origin == "survey" for part in parts) else "ours",
             version=sum(part.version for part in parts) - len(parts) + 1,
-            needs=_united(part.needs for part in parts),
+            needs=_unite(part.needs for part in parts),
             accepts=accepts,
-            context=_united(part.context for part in parts),
+            context=_unite(part.context for part in parts),
         )
 
     @property
@@ -160,6 +160,6 @@ def chains(
     return dict(sorted(found.items()))
 
 
-def _united(words: Iterable[tuple[str, ...]]) -> tuple[str, ...]:
+def _unite(words: Iterable[tuple[str, ...]]) -> tuple[str, ...]:
     """Every word once, in the order they come."""
     return tuple(dict.fromkeys(word for some in words for word in some))

@@ -26,7 +26,7 @@ from algorithms.about import (
 )
 from algorithms.context import Context
 from algorithms.design import SensorGeometry, UnsuitableDesignError
-from algorithms.measurement import Measurement, measured
+from algorithms.measurement import Measurement, measurement_of
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -110,7 +110,9 @@ class Extractor(Protocol):
 
         A single sample is a batch of one; `bad`, True for a bad pixel, has one sample's shape.
         """
-        return measured(self.extract, self.about.observation, self.about.name, observations, bad)
+        return measurement_of(
+            self.extract, self.about.observation, self.about.name, observations, bad
+        )
 
 
 @runtime_checkable

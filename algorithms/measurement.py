@@ -16,7 +16,7 @@ _BATCH_DIMENSIONS = {"frames": 3, "profiles": 2, "currents": 2, "events": 3}
 _WITH_NEIGHBOURS = frozenset({"frames", "profiles"})
 
 
-class Doubt(enum.IntFlag):
+class QualityFlag(enum.IntFlag):
     """Why an answer is missing or may be wrong; several at once are joined by ``|``.
 
     A row of NaN carries its reason; beside a finite answer a doubt says what to be careful of.
@@ -57,7 +57,7 @@ class Measurement:
         Of the errors that noise makes, in the features' units squared; NaN where the method states
         none.
     doubts : ndarray of int, shape (N,)
-        Joined `Doubt` flags; 0 for none. ``Doubt(doubts[k])`` names them.
+        Joined `QualityFlag` flags; 0 for none. ``QualityFlag(doubts[k])`` names them.
 
     Raises
     ------
@@ -67,7 +67,7 @@ class Measurement:
     Examples
     --------
     >>> found = Measurement(np.array([[3.0, 4.0]]), np.eye(2)[None], np.array([8]))
-    >>> Doubt(found.doubts[0]) is Doubt.SATURATED
+    >>> QualityFlag(found.doubts[0]) is QualityFlag.SATURATED
     True
     >>> found.deviations
     array([[1., 1.]])
@@ -202,7 +202,7 @@ def without_bad(batch: ArrayLike, bad: ArrayLike, by: str) -> NDArray[Any]:
     return repaired
 
 
-def measured(
+def measurement_of(
     extract: Callable[[ArrayLike], NDArray[np.float64]],
     observation: str,
     by: str,
@@ -237,7 +237,7 @@ def measured(
     Examples
     --------
     >>> from algorithms.extractors.frames.centroid import BasicCentroid
-    >>> measured(BasicCentroid().extract, "frames", "bcm", np.eye(3)).features
+    >>> measurement_of(BasicCentroid().extract, "frames", "bcm", np.eye(3)).features
     array([[1., 1.]])
     """
     batch = as_batch(observations, observation)
@@ -253,5 +253,5 @@ def measured(
     features = extract(batch)
     n, f = features.shape
     missing = np.isnan(features).any(axis=1)
-    doubts = np.where(missing, int(Doubt.NO_SPOT), 0).astype(np.int64)
+    doubts = np.where(missing, int(QualityFlag.NO_SPOT), 0).astype(np.int64)
     return Measurement(features, np.full((n, f, f), np.nan), doubts)

@@ -1,8 +1,8 @@
 """Extractor, compensations and model put together: what is scored, and what a user calls.
 
 The stages meet in features (N, F), float64. To calibrate several models on what one extractor
-found, extract once with `extracted` and hand the features to each pipeline's `fit_features` and
-`predict_features`.
+found, extract once with `extract_features` and hand the features to each pipeline's `fit_features`
+and `predict_features`.
 """
 
 from __future__ import annotations
@@ -108,8 +108,8 @@ class Pipeline:
         return replace(self, model=model)
 
     def features(self, observations: ArrayLike, origin_px: ArrayLike | None = None) -> Floats:
-        """Features (N, F) as `extracted` gives them."""
-        return extracted(self.extractor, observations, origin_px)
+        """Features (N, F) as `extract_features` gives them."""
+        return extract_features(self.extractor, observations, origin_px)
 
     def fit(
         self,
@@ -194,7 +194,7 @@ def staged(
     return tuple(stages), geometry
 
 
-def extracted(
+def extract_features(
     extractor: Extractor, observations: ArrayLike, origin_px: ArrayLike | None = None
 ) -> Floats:
     """Features of observations, checked, in detector coordinates.
@@ -218,20 +218,23 @@ def extracted(
     ------
     ValueError
         If the observations are not what the extractor reads, if `origin_px` has another shape
-        than spots need, or if the extractor breaks its contract (`checked`).
+        than spots need, or if the extractor breaks its contract (`check_features`).
 
     Examples
     --------
     >>> from algorithms.extractors.frames.centroid import BasicCentroid
-    >>> extracted(BasicCentroid(), [[[0, 0], [0, 7]], [[0, 0], [0, 0]]], [[10, 20], [10, 20]])
+    >>> frames = [[[0, 0], [0, 7]], [[0, 0], [0, 0]]]
+    >>> extract_features(BasicCentroid(), frames, [[10, 20], [10, 20]])
     array([[11., 21.],
            [nan, nan]])
     """
-    features = checked(extractor, extractor.extract(observations), len(np.asarray(observations)))
+    features = check_features(
+        extractor, extractor.extract(observations), len(np.asarray(observations))
+    )
     return in_detector_coordinates(features, extractor.about.kind, origin_px)
 
 
-def checked(extractor: Extractor, features: Floats, count: int) -> Floats:
+def check_features(extractor: Extractor, features: Floats, count: int) -> Floats:
     """Hold what an extractor gave for `count` observations to its contract.
 
     Parameters
@@ -256,7 +259,7 @@ def checked(extractor: Extractor, features: Floats, count: int) -> Floats:
     Examples
     --------
     >>> from algorithms.extractors.frames.centroid import BasicCentroid
-    >>> checked(BasicCentroid(), np.zeros((3, 4)), 3)
+    >>> check_features(BasicCentroid(), np.zeros((3, 4)), 3)
     Traceback (most recent call last):
     ValueError: bcm must give float64 features of shape (3, 2); got float64 (3, 4)
     """

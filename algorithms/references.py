@@ -83,7 +83,7 @@ class ReferenceCorrection:
         object.__setattr__(self, "bad", bad)
         object.__setattr__(self, "gain", np.where(bad, 1.0, gain))
 
-    def corrected(self, observations: ArrayLike, origin_px: ArrayLike | None = None) -> Floats:
+    def correct(self, observations: ArrayLike, origin_px: ArrayLike | None = None) -> Floats:
         """Return corrected observations (N, ...), float64.
 
         Parameters

@@ -41,7 +41,7 @@ def quotient_rows(numerators: Floats, divisors: Floats, valid: NDArray[np.bool_]
     return quotients
 
 
-def normalised(vectors: Floats) -> Floats:
+def normalise(vectors: Floats) -> Floats:
     """Rows scaled to unit length; a NaN row where the length is zero or not finite.
 
     Column by column: rows of three numbers are too short for NumPy's inner loops.

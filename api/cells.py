@@ -35,7 +35,7 @@ def cell(value: Any) -> str:  # noqa: PLR0911 - a kind of value each
 
     The taxonomy's value "None" is spelled out (`registry.taxonomy.NONE_STATED`), also in lists.
     Numbers have all their digits; the record spells its own shorter, to be compared by line
-    (`benchmark.results.tables.spelt`).
+    (`benchmark.results.csv_tables.format_cell`).
     """
     # What most cells hold is told by its exact type: tables have hundreds of thousands of them, and
     # asking whether text is a mapping takes longer than to write it.

@@ -57,24 +57,24 @@ _SURE = {
 }
 
 
-def identified(studies: Sequence[Study]) -> list[Study]:
+def list_identifiers(studies: Sequence[Study]) -> list[Study]:
     """Return the studies whose title is known."""
     return [study for study in studies if study["title"]]
 
 
 def bibtex(studies: Sequence[Study]) -> str:
     """Write the identified studies as BibTeX, UTF-8, keys as the survey's."""
-    return "\n".join(_bibtex(study) for study in identified(studies))
+    return "\n".join(_bibtex(study) for study in list_identifiers(studies))
 
 
 def ris(studies: Sequence[Study]) -> str:
     """Write the identified studies as RIS, UTF-8."""
-    return "\n".join(_ris(study) for study in identified(studies))
+    return "\n".join(_ris(study) for study in list_identifiers(studies))
 
 
 def csl_json(studies: Sequence[Study]) -> str:
     """Write the identified studies as CSL JSON, a list of items."""
-    items = [_csl(study) for study in identified(studies)]
+    items = [_csl(study) for study in list_identifiers(studies)]
     return json.dumps(items, indent=2, ensure_ascii=False) + "\n"
 
 
@@ -105,10 +105,10 @@ def _blank(study: Study) -> str:
     kind = _KINDS.get(study["type"], _OTHER)
     sure = study["identity"] == "confirmed"
     fields = {
-        "title": "{" + _escaped(study["title"]) + "}" if sure and study["title"] else "",
+        "title": "{" + _escape(study["title"]) + "}" if sure and study["title"] else "",
         "author": " and ".join(map(_person, names(study["authors"]))) if sure else "",
         "year": str(study["year"] or ""),
-        kind.bibtex_venue: _escaped(study["venue"]) if sure else "",
+        kind.bibtex_venue: _escape(study["venue"]) if sure else "",
         "doi": _bare(study["doi"]) if sure else "",
     }
     perhaps = " ".join(study["title"].replace("@", "").split()) if not sure else ""
@@ -157,14 +157,14 @@ def _bibtex(study: Study) -> str:
     kind = _KINDS.get(study["type"], _OTHER)
     arxiv = _ARXIV.fullmatch(study["doi"])
     fields = {
-        "title": "{" + _escaped(study["title"]) + "}",
+        "title": "{" + _escape(study["title"]) + "}",
         "author": " and ".join(map(_person, names(study["authors"]))),
         "year": str(study["year"] or ""),
-        kind.bibtex_venue: _escaped(study["venue"]),
+        kind.bibtex_venue: _escape(study["venue"]),
         "doi": _bare(study["doi"]),
         **({"eprint": _bare(arxiv[1]), "archiveprefix": "arXiv"} if arxiv else {}),
         "url": _bare(_link(study)),
-        "note": _escaped(_sureness(study)),
+        "note": _escape(_sureness(study)),
     }
     lines = "".join(f"  {name} = {{{text}}},\n" for name, text in fields.items() if text)
     return f"@{kind.bibtex}{{{study['key']},\n{lines}}}\n"
@@ -174,11 +174,11 @@ def _person(name: tuple[str, str]) -> str:
     """Return a name as BibTeX takes it: a word that it would read as a separator in braces."""
     if not any(name):
         return "others"
-    text = _escaped(", ".join(part for part in name if part))
+    text = _escape(", ".join(part for part in name if part))
     return "{" + text + "}" if " and " in f" {text} ".casefold() else text
 
 
-def _escaped(text: str) -> str:
+def _escape(text: str) -> str:
     return "".join(_SPECIAL.get(character, character) for character in text)
 
 

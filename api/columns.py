@@ -12,7 +12,7 @@ from typing import Any
 
 from api.cells import cell
 from files.csv_writing import csv_text
-from registry.taxonomy import exported
+from registry.taxonomy import taxonomy_rows
 
 Row = Mapping[str, Any]
 
@@ -201,7 +201,7 @@ def csv_of(columns: Sequence[str], rows: Iterable[Row]) -> str:
     columns : of the table, in order; what rows have besides is left out
     rows : one mapping a row; a member of a nested mapping is the column `outer_inner`. Lists are
         joined by "; ", mappings that are a column themselves are JSON, nothing (None, NaN) is
-        empty, and the taxonomy's "None" is spelled out (`registry.taxonomy.exported`)
+        empty, and the taxonomy's "None" is spelled out (`registry.taxonomy.taxonomy_rows`)
 
     Returns
     -------
@@ -209,7 +209,7 @@ def csv_of(columns: Sequence[str], rows: Iterable[Row]) -> str:
         A header and a line a row.
     """
     made = (flat(row, columns).items() for row in rows)
-    return csv_text(columns, ([cell(exported(*one)) for one in row] for row in made))
+    return csv_text(columns, ([cell(taxonomy_rows(*one)) for one in row] for row in made))
 
 
 def _values(row: Row, wanted: frozenset[str], prefix: str = "") -> Iterator[tuple[str, Any]]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from benchmark.leaderboard.architectures import architectures as best_of_each
-from registry.measured import Partly, finer_for
+from registry.measured_pipelines import Partly, finer_for
 from registry.taxonomy import InvalidValueError
 from survey_data.nearest import nearest
 
@@ -99,7 +99,7 @@ def compare_architectures(known: Knowledge, architectures: Sequence[str]) -> dic
         far less on the part of the samples that it answers, by the leaderboard's rule; that of a
         condition is any pipeline of the data set that errs far less there and answers half of the
         samples or more, as another than the nominal best is chosen where that condition is asked
-        for (`registry.measured.finer_for`). None where nothing does.
+        for (`registry.measured_pipelines.finer_for`). None where nothing does.
 
     Raises
     ------

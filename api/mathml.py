@@ -29,10 +29,10 @@ def mathml(tex: str, *, block: bool = False) -> str:
     for unknown, known in _UNKNOWN_TEX.items():
         tex = re.sub(re.escape(unknown) + r"(?![a-zA-Z])", known.replace("\\", r"\\"), tex)
     tex = _NUMBERED.sub(r"\\mathrm{\1}", tex)
-    return _VARIABLE.sub(_named, convert(tex, display="block" if block else "inline"))
+    return _VARIABLE.sub(_name_of, convert(tex, display="block" if block else "inline"))
 
 
-def _named(found: re.Match[str]) -> str:
+def _name_of(found: re.Match[str]) -> str:
     """Return a variable's element with the class that styles know it by; any other as it is."""
     letter = unescape(found[1])
     known = letter.isalpha() and (ord(letter) in _LETTERS or ord(letter) in _GREEK)

@@ -32,7 +32,7 @@ def canonical_json(value: object) -> str:
         For a value that has no canonical spelling.
     """
     return json.dumps(
-        plain(value, _rounded, _arguments),
+        plain(value, _round_to, _arguments),
         sort_keys=True,
         separators=(",", ":"),
         ensure_ascii=False,
@@ -90,7 +90,7 @@ def _plain_container(value: object, number: Number, members: Members) -> Any:
     raise TypeError(f"{type(value).__name__} has no canonical spelling: {value!r}")
 
 
-def _rounded(value: float) -> object:
+def _round_to(value: float) -> object:
     return float(f"{value:.12g}") if math.isfinite(value) else repr(value)
 
 

@@ -156,7 +156,7 @@ class Preset(Protocol):
         """Return the nominal design under one condition."""
         ...
 
-    def as_unit(self, number: int) -> Preset:
+    def for_unit(self, number: int) -> Preset:
         """Return the dataset as another unit of its sensor sees it; 0 is the standard one."""
         ...
 

@@ -29,7 +29,7 @@ from registry.ranking import (
     regret,
     task_measures,
 )
-from registry.relaxation import Blocked, explain
+from registry.relaxation import BlockingConstraint, explain
 
 Numbers = NDArray[np.float64]
 Positions = NDArray[np.int64]
@@ -100,7 +100,7 @@ class Answer:
         if not self.count:
             return []
         question, best, sort = self.question, self.best, self.sort
-        include, advising = question.asked.include, question.advising
+        include, advising = question.asked.include, question.advice_key
         tasks, of_errors = include.get("task", ()), "error" in include
         studies, stated = question.studies, question.all_stated
         facts = _place_facts(question.table)
@@ -230,7 +230,7 @@ class Answer:
         return int(np.isinf(self.question.arrays.latency_us).sum())
 
     @cached_property
-    def blocked(self) -> Blocked | None:
+    def blocked(self) -> BlockingConstraint | None:
         """Why nothing meets the requirements, if nothing does."""
         return None if self.places else explain(self.question.table, self.question.asked)
 

@@ -96,7 +96,7 @@ class AnswerTexts:
         self, answer: Answer, limit: int | None, calibrations: int | None
     ) -> list[bytes]:
         question, best, first_row = answer.question, answer.best, self.arrays.first_row
-        errors, finer, advising = best.errors, question.finer, question.advising
+        errors, finer, advising = best.errors, question.finer, question.advice_key
         units = errors.units_within(question.asked.largest_deg).tobytes()
         rows: list[int] = best.row.tolist()
         ends = {

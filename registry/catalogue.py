@@ -109,7 +109,7 @@ class Catalogue:
         self.taxonomy.require("model", value)
         return tuple(self.models[name] for name in self._models_for.get(value, ()))
 
-    def listing(self, role: Role | None = None) -> tuple[Implementation, ...]:
+    def implementations(self, role: Role | None = None) -> tuple[Implementation, ...]:
         """Every implementation, extractors first, each by taxonomy order and name."""
         found = [
             *(self._describe_extractor(c) for c in self.extractors.values()),

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from registry.designs import NOTHING, Candidate, Design, DesignTable, Limits, Place
-from registry.measured import Measured
+from registry.measured_pipelines import MeasuredPipeline
 from registry.pipelines import PipelineErrors, PipelineTable, begins
 
 Flags = NDArray[np.bool_]
@@ -83,7 +83,7 @@ class BestPipelines:
         found[np.isnan(found)] = np.inf
         return found
 
-    def pipeline(self, design: int) -> Measured | None:
+    def pipeline(self, design: int) -> MeasuredPipeline | None:
         """Return the best pipeline of a design, given by position; None for none."""
         row = int(self.row[design])
         return None if row < 0 else self.arrays.rows[row]

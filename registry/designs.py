@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from registry.mapping.advice import Advice
-from registry.measured import Judged, Measured, Measurements
+from registry.measured_pipelines import MeasuredPipeline, Measurements, PipelineJudgement
 from registry.studies import Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture, Taxonomy
 
@@ -26,7 +26,7 @@ COMPENSATIONS = "Physics-Informed"
 
 Stages = tuple[str, ...]
 
-NOTHING = Judged(math.inf, "", None)
+NOTHING = PipelineJudgement(math.inf, "", None)
 """What is not measured."""
 
 
@@ -43,7 +43,7 @@ class Design:
     stages: Stages
     with_model: int
     taken: int
-    rows: tuple[Measured, ...]
+    rows: tuple[MeasuredPipeline, ...]
     advice: tuple[Advice, ...]
 
     @cached_property
@@ -67,8 +67,8 @@ class Candidate:
     """A design and its best measured pipeline; without one the error is infinite."""
 
     design: Design
-    row: Measured | None
-    judged: Judged
+    row: MeasuredPipeline | None
+    judged: PipelineJudgement
 
     @property
     def error_deg(self) -> float:
@@ -157,12 +157,12 @@ class DesignTable:
         self,
         architecture: Architecture,
         studies: Mapping[int, Study],
-        rows: Iterable[Measured],
+        rows: Iterable[MeasuredPipeline],
         order: Mapping[str, Mapping[str, int]],
     ) -> Place:
         taxonomy = self.facts.taxonomy
         advice = tuple(a for a in self.facts.advice if a.means(architecture))
-        measured: dict[tuple[str, Stages], list[Measured]] = {}
+        measured: dict[tuple[str, Stages], list[MeasuredPipeline]] = {}
         for row in rows:
             measured.setdefault((row.extractor_taxonomy, row.stages), []).append(row)
         uses = [_Use(at, study, taxonomy) for at, study in studies.items()]
@@ -185,7 +185,7 @@ class DesignTable:
                 stages,
                 *found[extractor, stages],
                 tuple(measured.get((extractor, stages), ())),
-                tuple(a for a in advice if a.names(*_named(taxonomy, extractor, stages))),
+                tuple(a for a in advice if a.names(*_name_of(taxonomy, extractor, stages))),
             )
             for extractor, stages in sorted(
                 found,
@@ -219,8 +219,8 @@ class _Use:
     bare: bool = field(init=False)  # compensations, and no model behind them
 
     def __post_init__(self) -> None:
-        self.extractors = self.study.supported("extractor")
-        self.models = self.study.supported("model")
+        self.extractors = self.study.has_value("extractor")
+        self.models = self.study.has_value("model")
         kinds = (self.taxonomy.kinds("model", model) for model in self.models)
         self.kinds = frozenset(itertools.chain.from_iterable(kinds))
         self.bare = all(
@@ -249,7 +249,7 @@ def _within(taxonomy: Taxonomy, model: str, stages: Stages) -> bool:
     return not set(taxonomy.kinds("model", model)).isdisjoint(stages)
 
 
-def _named(
+def _name_of(
     taxonomy: Taxonomy, extractor: str, stages: Stages
 ) -> tuple[tuple[str, str], frozenset[str]]:
     """Return what advice may call an extractor, and the categories of its stages."""
@@ -263,7 +263,7 @@ def _stated(study: Study, attribute: str) -> float | None:
     """Return a number that a study states as a limit is judged by it: an accuracy as an RMS."""
     if attribute != "accuracy_deg":
         return study.number(attribute)
-    found = study.reported("accuracy")
+    found = study.report("accuracy")
     return None if found is None else found.rms_deg
 
 

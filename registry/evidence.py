@@ -18,7 +18,7 @@ from typing import Literal
 
 from registry.catalogue import Catalogue
 from registry.fitting import stages
-from registry.measured import Measured
+from registry.measured_pipelines import MeasuredPipeline
 from registry.possibility import Possibility, Value
 from registry.taxonomy import Plan, attribute_of
 
@@ -27,7 +27,7 @@ STATES: tuple[State, ...] = ("measured", "studied", "impossible", "unknown", "un
 
 
 @dataclass(frozen=True, order=True)
-class Run:
+class PipelineRun:
     """A pipeline on a data set, by the names that the command line takes."""
 
     dataset: str
@@ -68,8 +68,8 @@ class PairEvidence:
     reason: str
     unknown: tuple[str, ...]
     pipelines: int
-    best: Measured | None
-    planned: Run | None
+    best: MeasuredPipeline | None
+    planned: PipelineRun | None
     nearest: str
 
 
@@ -85,14 +85,16 @@ class Evidence:
         Every pipeline that can be scored, by architecture.
     """
 
-    def __init__(self, catalogue: Catalogue, measured: Sequence[Measured], plan: Plan) -> None:
+    def __init__(
+        self, catalogue: Catalogue, measured: Sequence[MeasuredPipeline], plan: Plan
+    ) -> None:
         self._taxonomy = catalogue.taxonomy
         self._possibility = Possibility(catalogue)
-        self._measured: dict[Run, Measured] = {}
-        self._having: dict[Value, set[Run]] = {}
-        self._found: dict[Value, set[Run]] = {}
+        self._measured: dict[PipelineRun, MeasuredPipeline] = {}
+        self._having: dict[Value, set[PipelineRun]] = {}
+        self._found: dict[Value, set[PipelineRun]] = {}
         for one in measured:
-            run = Run(one.dataset, one.extractor, one.model)
+            run = PipelineRun(one.dataset, one.extractor, one.model)
             self._measured[run] = one
             self._note(run, (one.detector, one.mask), one.extractor_taxonomy, one.stages)
         for architecture, pairs in plan.items():
@@ -100,23 +102,23 @@ class Evidence:
                 of = catalogue.extractor(extractor).about.taxonomy
                 own = stages(catalogue.model(model))
                 for dataset in datasets:
-                    self._note(Run(dataset, extractor, model), architecture, of, own)
+                    self._note(PipelineRun(dataset, extractor, model), architecture, of, own)
 
     def _note(
-        self, run: Run, sensor: tuple[str, str], extractor: str, models: Iterable[str]
+        self, run: PipelineRun, sensor: tuple[str, str], extractor: str, models: Iterable[str]
     ) -> None:
         values = (("detector", sensor[0]), ("mask", sensor[1]), ("extractor", extractor))
         for value in (*values, *(("model", model) for model in models)):
             self._having.setdefault(value, set()).add(run)
 
-    def _runs(self, level: str, value: str) -> set[Run]:
+    def _runs(self, level: str, value: str) -> set[PipelineRun]:
         """Return the pipelines with a value; a parent's are those of its kinds."""
         if (level, value) in self._found:
             return self._found[level, value]
         base = attribute_of(level)
         found = self._found[level, value] = set()
         for one in self._taxonomy.values(base):
-            if self._taxonomy.derived(level, one) == value:
+            if self._taxonomy.derived_values(level, one) == value:
                 for kind in self._taxonomy.kinds(base, one):
                     found |= self._having.get((base, kind), set())
         return found
@@ -165,7 +167,7 @@ class Evidence:
         )
 
 
-def counted(states: Iterable[State]) -> dict[str, int]:
+def count(states: Iterable[State]) -> dict[str, int]:
     """Return how many pairs are in each state, in the order of `STATES`."""
     found = list(states)
     return {state: found.count(state) for state in STATES}

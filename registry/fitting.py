@@ -41,7 +41,7 @@ COMPENSATIONS = "Physics-Informed"
 
 
 @dataclass(frozen=True)
-class Chosen:
+class ChosenMethod:
     """A method by name, the stated values that it runs, and what it stands in for.
 
     ``stands_for`` is a stated value that nothing runs here, or "None" where the study states none;
@@ -59,15 +59,15 @@ class Chosen:
 
 
 @dataclass(frozen=True)
-class Fitted:
+class FittedPipeline:
     """A pipeline of the plan that stands for a study's methods, and where it is scored."""
 
-    extractor: Chosen
-    model: Chosen
+    extractor: ChosenMethod
+    model: ChosenMethod
     datasets: tuple[str, ...]
 
 
-class Fitting:
+class PipelinesOfStudy:
     """The plan's pipelines by a study's methods.
 
     Parameters
@@ -94,7 +94,7 @@ class Fitting:
 
     def fitted(
         self, study: Study, architectures: Iterable[Architecture]
-    ) -> dict[Architecture, list[Fitted]]:
+    ) -> dict[Architecture, list[FittedPipeline]]:
         """Return the pipelines of a study on each architecture.
 
         Methods are its own where any fit on one of the architectures. Else one of them is the
@@ -122,7 +122,7 @@ class Fitting:
         """Return the values that run for a stated one: itself, and a parent's kinds."""
         return self.catalogue.taxonomy.kinds(attribute, value)
 
-    def _on(self, study: Study, place: Architecture, near: Collection[str]) -> list[Fitted]:
+    def _on(self, study: Study, place: Architecture, near: Collection[str]) -> list[FittedPipeline]:
         pairs = self.plan.get(place, {})
         models = self._nearest_models if "model" in near else self._own_models
         found = [] if "model" in near else self._variants(study, pairs)
@@ -132,13 +132,13 @@ class Fitting:
         self,
         study: Study,
         pairs: Mapping[Pair, Sequence[str]],
-        models: Callable[[Study, Sequence[str]], list[Chosen]],
+        models: Callable[[Study, Sequence[str]], list[ChosenMethod]],
         near: Collection[str],
-    ) -> list[Fitted]:
+    ) -> list[FittedPipeline]:
         """Return the pipelines of the first extractors that any model fits."""
         for group in self._extractors(study, near="extractor" in near):
             found = [
-                Fitted(extractor, model, tuple(pairs[extractor.name, model.name]))
+                FittedPipeline(extractor, model, tuple(pairs[extractor.name, model.name]))
                 for extractor in group
                 for model in models(study, [m for e, m in pairs if e == extractor.name])
             ]
@@ -146,7 +146,7 @@ class Fitting:
                 return found
         return []
 
-    def _variants(self, study: Study, pairs: Mapping[Pair, Sequence[str]]) -> list[Fitted]:
+    def _variants(self, study: Study, pairs: Mapping[Pair, Sequence[str]]) -> list[FittedPipeline]:
         """Return the pipelines that carry out models as the study does."""
         found = []
         for value in study.of("model"):
@@ -157,9 +157,9 @@ class Fitting:
             within = self._carried_out(study, value)
             extractors = {one.name for one in self._extractors_of(variant.extractor)}
             found += [
-                Fitted(
-                    Chosen(extractor, runs, variant=variant),
-                    Chosen(model, (value, *within), variant=variant),
+                FittedPipeline(
+                    ChosenMethod(extractor, runs, variant=variant),
+                    ChosenMethod(model, (value, *within), variant=variant),
                     tuple(datasets),
                 )
                 for (extractor, model), datasets in pairs.items()
@@ -185,7 +185,7 @@ class Fitting:
         within = self.facts.within
         return tuple(v for v in study.of("model") if model in within(study.key, v))
 
-    def _extractors(self, study: Study, *, near: bool) -> list[list[Chosen]]:
+    def _extractors(self, study: Study, *, near: bool) -> list[list[ChosenMethod]]:
         """Return the extractors to try, group after group until one fits."""
         own = [v for v in study.of("extractor") if v != NO_IMPLEMENTATION_STATED]
         if near:
@@ -204,15 +204,15 @@ class Fitting:
             if simple not in own
         ]
 
-    def _extractors_of(self, value: str, stands_for: str = "") -> list[Chosen]:
+    def _extractors_of(self, value: str, stands_for: str = "") -> list[ChosenMethod]:
         runs = () if stands_for else (value,)
         return [
-            Chosen(cls.about.name, runs, stands_for)
+            ChosenMethod(cls.about.name, runs, stands_for)
             for kind in self.kinds("extractor", value)
             for cls in self.catalogue.extractors_for(kind)
         ]
 
-    def _own_models(self, study: Study, planned: Sequence[str]) -> list[Chosen]:
+    def _own_models(self, study: Study, planned: Sequence[str]) -> list[ChosenMethod]:
         """Return of what is planned what the study states, with all its compensations that fit."""
         of = {
             kind: value
@@ -247,10 +247,10 @@ class Fitting:
         if NO_IMPLEMENTATION_STATED in study.of("model") and not found:
             bare = {name: own for name, own in usable.items() if len(own) == 1}
             simplest = [n for n, own in _simplest(bare).items() if own[0] in SIMPLEST["model"]]
-            found = [Chosen(name, (), NO_IMPLEMENTATION_STATED) for name in simplest]
+            found = [ChosenMethod(name, (), NO_IMPLEMENTATION_STATED) for name in simplest]
         return found
 
-    def _nearest_models(self, study: Study, planned: Sequence[str]) -> list[Chosen]:
+    def _nearest_models(self, study: Study, planned: Sequence[str]) -> list[ChosenMethod]:
         """Return of what is planned what stands nearest to each model of the study.
 
         A compensation is no model to stand in for where the study states another.
@@ -259,12 +259,12 @@ class Fitting:
         of = [v for v in study.of("model") if v != NO_IMPLEMENTATION_STATED]
         category = self.catalogue.taxonomy.category
         models = [v for v in of if category("model", v) != COMPENSATIONS] or of
-        found: list[Chosen] = []
+        found: list[ChosenMethod] = []
         for value in models:
             for other in self._stand_ins("model", value):
                 names = [n for n, own in bare.items() if own[0] == other]
                 if names:
-                    found += [Chosen(name, (), value) for name in names]
+                    found += [ChosenMethod(name, (), value) for name in names]
                     break
         return found
 
@@ -291,14 +291,14 @@ class Fitting:
 
     def _chosen(
         self, study: Study, name: str, of: Mapping[str, str], stands_for: str = ""
-    ) -> Chosen:
+    ) -> ChosenMethod:
         run = [of[stage] for stage in self._stages[name] if stage in of]
         unsaid = next((of[s] for s in self._stages[name] if of.get(s, s) != s), "")
         missed = next(filter(None, (self.facts.variant(study.key, value) for value in run)), None)
         if missed and self._is_of(name, missed):
             missed = None
         carried = [v for value in run for v in self._carried_out(study, value)]
-        return Chosen(
+        return ChosenMethod(
             name, tuple(dict.fromkeys((*run, *carried))), stands_for, unsaid, None, missed
         )
 

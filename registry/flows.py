@@ -186,7 +186,7 @@ def allowed_values(where: Where, taxonomy: Taxonomy) -> dict[str, frozenset[str]
             taxonomy.require(level, value)
             values.update(taxonomy.kinds(level, value) if level == base else (value,))
         meeting = frozenset(
-            v for v in taxonomy.values(base) if taxonomy.derived(level, v) in values
+            v for v in taxonomy.values(base) if taxonomy.derived_values(level, v) in values
         )
         allowed[base] = allowed.get(base, meeting) & meeting
     return allowed
@@ -300,7 +300,7 @@ def _combinations(
     return list(
         dict.fromkeys(
             tuple(
-                None if (value := row[i]) is None else taxonomy.derived(level, value)
+                None if (value := row[i]) is None else taxonomy.derived_values(level, value)
                 for level, i in zip(levels, at, strict=True)
             )
             for row in itertools.product(*choices)

@@ -147,7 +147,7 @@ class Question:
         return self.errors.finest(self.best.limits, allowed)
 
     @property
-    def advising(self) -> tuple[tuple[str, ...] | None, ...]:
+    def advice_key(self) -> tuple[tuple[str, ...] | None, ...]:
         """The tasks and accuracies asked for."""
         return tuple(self.asked.include.get(name) for name in ADVISING)
 
@@ -224,7 +224,7 @@ def advice_for(
     place
         The architecture.
     advising
-        The tasks and accuracies asked for (`Question.advising`); for any if neither is.
+        The tasks and accuracies asked for (`Question.advice_key`); for any if neither is.
     """
     include = {n: v for n, v in zip(ADVISING, advising, strict=True) if v is not None}
     found = tuple(

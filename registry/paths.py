@@ -95,7 +95,7 @@ class PathTable:
 
 def _paths_of(study: Study) -> Iterator[tuple[str, ...]]:
     """Give every path of a study: what it stands for, on the sensors that it can have had."""
-    for path in itertools.product(*(study.supported(level) for level in PATH_LEVELS)):
+    for path in itertools.product(*(study.has_value(level) for level in PATH_LEVELS)):
         if study.has_sensor(dict(zip(PATH_LEVELS, path, strict=True))):
             yield path
 

@@ -1,7 +1,7 @@
 """Measured pipelines as arrays: the errors, shares and times that requirements are held against.
 
-`registry.measured` judges one pipeline by the same rules. Needs NumPy, so that only modules that
-answer questions import it.
+`registry.measured_pipelines` judges one pipeline by the same rules. Needs NumPy, so that only
+modules that answer questions import it.
 """
 
 from __future__ import annotations
@@ -16,7 +16,13 @@ from numpy.typing import NDArray
 
 from registry.designs import Limits
 from registry.draws import at_confidence, unit_errors
-from registry.measured import LEAST_ANSWERED, Draws, Judged, Measured, Score
+from registry.measured_pipelines import (
+    LEAST_ANSWERED,
+    Draws,
+    MeasuredPipeline,
+    PipelineJudgement,
+    Score,
+)
 from registry.requirements import UNITS
 
 Flags = NDArray[np.bool_]
@@ -41,7 +47,9 @@ class PipelineTable:
     design_of : position of the design of each
     """
 
-    def __init__(self, rows: tuple[Measured, ...], places: Positions, design_of: Positions) -> None:
+    def __init__(
+        self, rows: tuple[MeasuredPipeline, ...], places: Positions, design_of: Positions
+    ) -> None:
         self.rows = rows
         self.row_place = places
         self.design_of = design_of
@@ -148,7 +156,7 @@ class PipelineErrors:
     ----------
     own_deg : largest error with true directions, shape (pipelines,); infinite where a pipeline
         answers too seldom or its data set lacks the field
-    error_deg : the same on calibration benches, as `Measured.judged` computes it
+    error_deg : the same on calibration benches, as `MeasuredPipeline.judged` computes it
     nominal_deg : error of the first condition alone
     by_error : positions of the pipelines, by design and then by error
     rank : position of each error among all different ones; equal errors share a rank
@@ -185,7 +193,7 @@ class PipelineErrors:
         own = self.table.bench_deg
         return own if bench is None else np.full(len(own), bench)
 
-    def _judged(self, row: int) -> Judged:
+    def _judged(self, row: int) -> PipelineJudgement:
         """Return the error of one pipeline, with its condition and field."""
         return self.table.rows[row].judged(self.hazards, self.half, self.draws)
 
@@ -217,7 +225,7 @@ class PipelineErrors:
 
     @cached_property
     def availability(self) -> Numbers:
-        """Least answered share, as `Measured.availability`; NaN where one is unknown."""
+        """Least answered share, as `MeasuredPipeline.availability`; NaN where one is unknown."""
         found = self.table.scores("").share.copy()
         for hazard in self.hazards:
             scores = self.table.scores(hazard)
@@ -229,7 +237,7 @@ class PipelineErrors:
     def _seldom(self) -> tuple[Positions, Positions]:
         """Pipelines that answer too seldom to be judged, by place and error, and their places.
 
-        As `Measured.partly` finds them, of those that answer often enough to be named.
+        As `MeasuredPipeline.partly` finds them, of those that answer often enough to be named.
         """
         table, half = self.table, self.half
         known, judged = self.tried.copy(), np.ones(len(table.rows), bool)
@@ -333,7 +341,7 @@ class Scores:
         ]
 
     def over(self, half: float | None) -> Numbers:
-        """Return the error of each over a field, as `Measured.over` finds it."""
+        """Return the error of each over a field, as `MeasuredPipeline.over` finds it."""
         if half is None:
             return self.error
         found = np.where(self.whole >= half, self.error, np.inf)
@@ -354,5 +362,5 @@ def numbers(values: Iterable[float | None]) -> Numbers:
     return np.array([math.nan if value is None else value for value in values], float)
 
 
-def _scores(row: Measured) -> Iterable[Score]:
+def _scores(row: MeasuredPipeline) -> Iterable[Score]:
     return itertools.chain((row.nominal,), *row.hazards.values())

@@ -59,8 +59,8 @@ class Possibility:
         base = attribute_of(rows)
         if base == attribute_of(columns):
             shared = rows == columns or any(
-                self._taxonomy.derived(rows, value) == one
-                and self._taxonomy.derived(columns, value) == other
+                self._taxonomy.derived_values(rows, value) == one
+                and self._taxonomy.derived_values(columns, value) == other
                 for value in self._taxonomy.values(base)
             )
             return "" if shared else f"no {base} is of both"
@@ -74,7 +74,7 @@ class Possibility:
         base = attribute_of(level)
         found: set[str] = set()
         for one in self._taxonomy.values(base):
-            if self._taxonomy.derived(level, one) == value:
+            if self._taxonomy.derived_values(level, one) == value:
                 readings = self._of(base, one)
                 if readings is None:
                     return None

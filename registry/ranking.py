@@ -17,7 +17,7 @@ from types import MappingProxyType
 from typing import Literal
 
 from registry.designs import Candidate
-from registry.measured import Measured
+from registry.measured_pipelines import MeasuredPipeline
 from registry.taxonomy import Architecture
 from survey_data.hardware import hardware
 
@@ -202,7 +202,7 @@ class TaskMeasure:
 
 
 def task_measures(
-    tasks: Iterable[str], architecture: Architecture, row: Measured | None, error_deg: float
+    tasks: Iterable[str], architecture: Architecture, row: MeasuredPipeline | None, error_deg: float
 ) -> tuple[TaskMeasure, ...]:
     """Return the own measures of tasks, in their order.
 
@@ -230,7 +230,7 @@ def joint_cost(measures: Sequence[TaskMeasure]) -> float:
 
 
 def _measure(
-    task: str, architecture: Architecture, row: Measured | None, error_deg: float
+    task: str, architecture: Architecture, row: MeasuredPipeline | None, error_deg: float
 ) -> TaskMeasure:
     unit = _UNITS[task]
     if task in _PUBLISHED:

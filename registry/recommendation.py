@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 from registry import studies as registered
 from registry.designs import design_table
 from registry.judging import Question
-from registry.measured import Measured, Measurements
+from registry.measured_pipelines import MeasuredPipeline, Measurements
 from registry.ranking import SORTS, Sort
-from registry.relaxation import Blocked, Relaxation
+from registry.relaxation import BlockingConstraint, Relaxation
 from registry.requirements import Requirements
 from registry.studies import Facts
 from registry.taxonomy import InvalidValueError, unknown_name
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Architecture",
-    "Blocked",
+    "BlockingConstraint",
     "Calibration",
-    "Measured",
+    "MeasuredPipeline",
     "Measurements",
     "Recommendation",
     "Relaxation",
@@ -106,7 +106,7 @@ class Recommendation:
 
     requirements: Requirements
     architectures: tuple[Architecture, ...]
-    blocked: Blocked | None
+    blocked: BlockingConstraint | None
     document: Member
 
     @property
@@ -135,7 +135,7 @@ class Recommendation:
 
 def recommend(
     requirements: Requirements | Mapping[str, object] | None = None,
-    measured: Measurements | Iterable[Measured] = (),
+    measured: Measurements | Iterable[MeasuredPipeline] = (),
     *,
     sort: Sort = "advice",
     limit: int | None = None,
@@ -192,7 +192,7 @@ def _frozen(members: Member) -> dict[str, Any]:
 
 def answer(
     requirements: Requirements | Mapping[str, object] | None = None,
-    measured: Measurements | Iterable[Measured] = (),
+    measured: Measurements | Iterable[MeasuredPipeline] = (),
     *,
     sort: Sort = "advice",
     facts: Facts | None = None,

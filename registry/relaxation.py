@@ -69,7 +69,7 @@ class Relaxation:
 
 
 @dataclass(frozen=True)
-class Blocked:
+class BlockingConstraint:
     """The constraint that killed every design.
 
     ``constraints`` is the smallest set whose removal gives architectures again; of several as
@@ -97,19 +97,19 @@ class Blocked:
         }
 
 
-def explain(table: DesignTable, requirements: Requirements) -> Blocked:
+def explain(table: DesignTable, requirements: Requirements) -> BlockingConstraint:
     """Return what blocks `requirements`, which nothing meets."""
     names = requirements.names
     broken = _broken(Question(table, requirements), names)
     if not broken:
-        return Blocked((), "no study has an architecture, and nothing is measured", ())
+        return BlockingConstraint((), "no study has an architecture, and nothing is measured", ())
     fewest = min(bits.bit_count() for bits in broken)
     smallest = sorted(bits for bits in broken if bits.bit_count() == fewest)
     drops = []
     for bits in smallest:
         dropped = tuple(names[at] for at in positions(bits))
         found = _count(table, requirements.without(*dropped))
-        drops.append(Relaxation({n: _asked(requirements, n) for n in dropped}, {}, found))
+        drops.append(Relaxation({n: _ask(requirements, n) for n in dropped}, {}, found))
     drops.sort(key=lambda r: (-r.architectures, [names.index(n) for n in r.drop]))
     changed = [name for relaxation in drops for name in relaxation.drop] if fewest == 1 else []
     if "min_fov_deg" in names and "min_fov_deg" not in changed:
@@ -118,7 +118,7 @@ def explain(table: DesignTable, requirements: Requirements) -> Blocked:
     changes = [one for name in changed for one in _changes(table, requirements, name)]
     changes.sort(key=lambda r: -r.architectures)
     first = tuple(drops[0].drop)
-    asked = " and ".join(in_words(n, _asked(requirements, n)) for n in first)
+    asked = " and ".join(in_words(n, _ask(requirements, n)) for n in first)
     others = len(names) - len(first)
     detail = (
         f"nothing meets {asked}{' beside the other requirements' if others else ''}; without "
@@ -127,11 +127,11 @@ def explain(table: DesignTable, requirements: Requirements) -> Blocked:
     )
     unknown = [n for n in first if not _has_evidence(table, requirements, n)]
     if unknown:
-        words = " or ".join(in_words(n, _asked(requirements, n)) for n in unknown)
+        words = " or ".join(in_words(n, _ask(requirements, n)) for n in unknown)
         detail += f". Nothing measured or stated tells of {words}"
     if bench := _bench_that_would_do(table, requirements):
         detail += f". A calibration bench good to {bench:.2g} deg would do"
-    return Blocked(first, detail, (*drops[:MOST_SETS], *changes))
+    return BlockingConstraint(first, detail, (*drops[:MOST_SETS], *changes))
 
 
 _WORDS = {
@@ -273,7 +273,7 @@ def _count(table: DesignTable, requirements: Requirements) -> int:
 def _changes(table: DesignTable, requirements: Requirements, name: str) -> list[Relaxation]:
     """Return the values one constraint could ask instead, each with what it gives."""
     candidates: list[tuple[str, ...] | float]
-    asked = _asked(requirements, name)
+    asked = _ask(requirements, name)
     if name in LIMITS:
         nearest = _nearest_limit(table, requirements.without(name), name)
         candidates = [] if nearest is None else [nearest]
@@ -377,7 +377,7 @@ def _has_evidence(table: DesignTable, requirements: Requirements, name: str) -> 
     return True
 
 
-def _asked(requirements: Requirements, name: str) -> tuple[str, ...] | float:
+def _ask(requirements: Requirements, name: str) -> tuple[str, ...] | float:
     """Return what is asked of one of the requirements' own names."""
     asked = requirements.asked(name)
     if asked is None:

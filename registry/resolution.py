@@ -26,9 +26,9 @@ from registry import studies as registered
 from registry.catalogue import Catalogue
 from registry.fidelity.grading import Fidelity, fidelity
 from registry.fidelity.particulars import Purpose
-from registry.fidelity.purposes import PURPOSES, DataSet, Setting, purposes, settings
+from registry.fidelity.purposes import PURPOSES, DataSet, DatasetCondition, purposes, settings
 from registry.fidelity.runnable import ESSENTIAL, Gap, RunnablePipeline, strongest
-from registry.fitting import Chosen, Fitted, Fitting, stages
+from registry.fitting import ChosenMethod, FittedPipeline, PipelinesOfStudy, stages
 from registry.sensors import BASES, SENSOR, Basis, Part, Sensor, cell, sensors
 from registry.studies import METHODS, Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture, Plan
@@ -96,7 +96,7 @@ def resolve(
     """
     known = facts or registered.facts()
     found = known.study(study) if isinstance(study, str) else study
-    fitting = Fitting(plan, catalogue or implementations.catalogue(), known)
+    fitting = PipelinesOfStudy(plan, catalogue or implementations.catalogue(), known)
     return _resolve(found, fitting, data_sets or {})
 
 
@@ -109,7 +109,7 @@ def resolve_all(
 ) -> dict[str, Resolution]:
     """`resolve` of every study, by key."""
     known = facts or registered.facts()
-    fitting = Fitting(plan, catalogue or implementations.catalogue(), known)
+    fitting = PipelinesOfStudy(plan, catalogue or implementations.catalogue(), known)
     return {key: _resolve(study, fitting, data_sets or {}) for key, study in known.studies.items()}
 
 
@@ -129,20 +129,22 @@ def resolve_later(
     survey, every : facts of the survey, and of both editions
     """
     later = (study for key, study in every.studies.items() if key not in survey.studies)
-    fitting = Fitting(plan, catalogue or implementations.catalogue(), survey)
+    fitting = PipelinesOfStudy(plan, catalogue or implementations.catalogue(), survey)
     return {study.key: _resolve(study, fitting, data_sets or {}) for study in later}
 
 
-def _resolve(study: Study, fitting: Fitting, data_sets: Mapping[str, DataSet]) -> Resolution:
+def _resolve(
+    study: Study, fitting: PipelinesOfStudy, data_sets: Mapping[str, DataSet]
+) -> Resolution:
     facts = fitting.facts
     on = sensors(study, facts, fitting.plan, lambda pair: fitting.own(study, pair))
     wanted = purposes(study, facts)
-    own = _resolved(study, on, fitting, data_sets, wanted)
+    own = _resolve_all(study, on, fitting, data_sets, wanted)
     shown = all(departure.part != "condition" for departure in own.fidelity.departures)
     if not wanted or (own.pipelines and shown):
         return own
     elsewhere = (
-        _resolved(study, (sensor,), fitting, data_sets, wanted)
+        _resolve_all(study, (sensor,), fitting, data_sets, wanted)
         for sensor in _elsewhere(study, on, fitting.plan, wanted)
     )
     return min((own, *elsewhere), key=_remoteness)
@@ -178,10 +180,10 @@ def _elsewhere(
             )
 
 
-def _resolved(
+def _resolve_all(
     study: Study,
     on: Sequence[Sensor],
-    fitting: Fitting,
+    fitting: PipelinesOfStudy,
     data_sets: Mapping[str, DataSet],
     wanted: Mapping[Purpose, str],
 ) -> Resolution:
@@ -210,9 +212,9 @@ def _resolved(
 def _pipeline(
     study: Study,
     sensor: Sensor,
-    one: Fitted,
+    one: FittedPipeline,
     catalogue: Catalogue,
-    at: tuple[Setting, ...],
+    at: tuple[DatasetCondition, ...],
 ) -> RunnablePipeline:
     extractor, model = catalogue.extractors[one.extractor.name], catalogue.models[one.model.name]
     parts = {
@@ -235,7 +237,7 @@ def _pipeline(
     )
 
 
-def _method(study: Study, attribute: str, chosen: Chosen) -> Part:
+def _method(study: Study, attribute: str, chosen: ChosenMethod) -> Part:
     """Return what a method rests on: the weakest of its stated values, or a rule."""
     if chosen.stands_for:
         return Part(chosen.name, "defaulted", _stand_in(attribute, chosen))
@@ -251,7 +253,7 @@ def _method(study: Study, attribute: str, chosen: Chosen) -> Part:
     return Part(chosen.name, weakest.basis, weakest.rule)
 
 
-def _stand_in(attribute: str, chosen: Chosen) -> str:
+def _stand_in(attribute: str, chosen: ChosenMethod) -> str:
     """Say by what rule a method that a study does not state stands in its pipeline."""
     if chosen.runs:
         return f"{', '.join(chosen.runs)} ahead of the simplest model that fits"
@@ -296,7 +298,7 @@ def _architecture_gaps(
 
 
 def _method_gaps(
-    study: Study, ran: Sequence[Fitted], on: Sequence[Sensor], fitting: Fitting
+    study: Study, ran: Sequence[FittedPipeline], on: Sequence[Sensor], fitting: PipelinesOfStudy
 ) -> list[Gap]:
     """Return a gap for every extractor and model that no pipeline runs as it is stated."""
     where = _join(dict.fromkeys(" + ".join(sensor.architecture) for sensor in on))
@@ -327,7 +329,7 @@ def _nearest_gaps(study: Study) -> list[Gap]:
     ]
 
 
-def _why_not(attribute: str, value: str, where: str, fitting: Fitting) -> str:
+def _why_not(attribute: str, value: str, where: str, fitting: PipelinesOfStudy) -> str:
     """Say why nothing runs a value: nothing implements it, or it fits no data set."""
     known = fitting.catalogue
     kinds = fitting.kinds(attribute, value)

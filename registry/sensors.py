@@ -81,7 +81,7 @@ def sensors(
         How many of the study's own methods run on an architecture.
     """
     known = frozenset(simulated)
-    filled = {attribute: _filled(study, attribute, facts.defaults) for attribute in SENSOR}
+    filled = {attribute: _fill(study, attribute, facts.defaults) for attribute in SENSOR}
     if all(filled.values()):
         pairs = study.architectures or tuple(
             (d, m) for d in filled["detector"] for m in filled["mask"]
@@ -93,7 +93,7 @@ def sensors(
     return (relatives,) if relatives else ()
 
 
-def _filled(study: Study, attribute: str, defaults: Iterable[Default]) -> dict[str, Part]:
+def _fill(study: Study, attribute: str, defaults: Iterable[Default]) -> dict[str, Part]:
     """Return the values of an attribute: stated, or by the first rule that applies; or none."""
     if study.of(attribute):
         return {value: cell(study, attribute, value) for value in study.of(attribute)}

@@ -22,6 +22,7 @@ from registry.fidelity.particulars import (
     purpose_rule,
 )
 from registry.mapping.advice import Advice
+from registry.mapping.mapping_tables import Tables, rows_of
 from registry.mapping.study import (
     METHODS,
     AttributeValue,
@@ -30,7 +31,6 @@ from registry.mapping.study import (
     Study,
     Verification,
 )
-from registry.mapping.tables import Tables, rows_of
 from registry.taxonomy import (
     NUMERIC_ATTRIBUTES,
     InvalidValueError,
@@ -38,7 +38,7 @@ from registry.taxonomy import (
     TaxonomyEntry,
     unknown_name,
 )
-from survey_data import recorded_facts
+from survey_data import facts_manifest
 from survey_data.editions import (
     BY_STUDY,
     CHOICES,
@@ -110,13 +110,13 @@ class Facts:
 
     def within(self, study: str, compensation: str) -> tuple[str, ...]:
         """Return the models of a study that carry out one of its compensations themselves."""
-        return self._compensated(study, compensation, "within")
+        return self._compensate(study, compensation, "within")
 
     def behind(self, study: str, compensation: str) -> tuple[str, ...]:
         """Return the models that one of a study's compensations corrects the features of."""
-        return self._compensated(study, compensation, "ahead")
+        return self._compensate(study, compensation, "ahead")
 
-    def _compensated(self, study: str, compensation: str, relation: str) -> tuple[str, ...]:
+    def _compensate(self, study: str, compensation: str, relation: str) -> tuple[str, ...]:
         at = (study, compensation, relation)
         rows = (c for c in self.compensated if (c.study, c.compensation, c.relation) == at)
         return tuple(c.model for c in rows)
@@ -163,7 +163,7 @@ def facts(edition: Choice = "survey") -> Facts:
 
 @lru_cache(maxsize=len(CHOICES))
 def _facts(edition: Choice) -> Facts:
-    recorded_facts.require_unchanged()
+    facts_manifest.require_unchanged()
     tables = load_texts(_TABLES)
     if edition == "all":
         for table in BY_STUDY:
@@ -252,7 +252,7 @@ def facts_from(tables: Tables) -> Facts:
     for row in rows_of(tables.architectures):
         pair = (row["detector"], row["mask"])
         combined[row["study"]] = (*combined.get(row["study"], ()), pair)
-    names, verified = _names(tables), _verified(tables)
+    names, verified = _names(tables), _verify(tables)
     found: dict[str, Study] = {}
     for row in rows_of(tables.studies):
         key = row["key"]
@@ -305,7 +305,7 @@ def _names(tables: Tables) -> dict[str, dict[tuple[str, str], NameInStudy]]:
     return found
 
 
-def _verified(tables: Tables) -> dict[str, list[Verification]]:
+def _verify(tables: Tables) -> dict[str, list[Verification]]:
     """Return the confirmations by study; nothing where the tables have none."""
     found: dict[str, list[Verification]] = {}
     for row in rows_of(getattr(tables, "verifications", ())):

@@ -49,7 +49,7 @@ _OF_IMPLEMENTATIONS = frozenset({"taxonomy", "extractor_taxonomy", "model_taxono
 _CALIBRATION_NAMES = {"offline": "Offline calibration", "online": "Online calibration"}
 
 
-def exported(column: str, value: Any) -> Any:
+def taxonomy_rows(column: str, value: Any) -> Any:
     """Return a value as a table for others writes it, so that nothing reads ``None``.
 
     Parameters
@@ -69,9 +69,9 @@ def exported(column: str, value: Any) -> Any:
     return None if column in _OF_IMPLEMENTATIONS else NONE_STATED
 
 
-def exported_row(row: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a row with every cell as `exported` gives it."""
-    return {column: exported(column, value) for column, value in row.items()}
+def taxonomy_row(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a row with every cell as `taxonomy_rows` gives it."""
+    return {column: taxonomy_rows(column, value) for column, value in row.items()}
 
 
 class InvalidValueError(ValueError):
@@ -207,7 +207,7 @@ class Taxonomy:
             found = self._kinds[attribute, value] = (value, *kinds)
         return found
 
-    def derived(self, level: str, value: str) -> str:
+    def derived_values(self, level: str, value: str) -> str:
         """Return what `value` of the level's attribute means at `level`."""
         if level not in DERIVED_LEVELS:
             return value
@@ -245,7 +245,7 @@ class Taxonomy:
         if level not in DERIVED_LEVELS:
             return {value: entry.name for value, entry in self._entries[level].items()}
         base = self._entries[DERIVED_LEVELS[level]]
-        implied = dict.fromkeys(self.derived(level, value) for value in base)
+        implied = dict.fromkeys(self.derived_values(level, value) for value in base)
         return {value: _CALIBRATION_NAMES.get(value, value) for value in implied}
 
 

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from survey_data.importing.columns import ColumnMapping, match_columns
     from survey_data.importing.identities import BibliographyPlan, import_bibliography
     from survey_data.importing.plan import Difference, ImportPlan, differences, plan_import
-    from survey_data.importing.reading import read_table
     from survey_data.importing.table_import import apply_import, import_table
+    from survey_data.importing.table_reader import read_table
     from survey_data.problems import SurveyDataError, SurveyImportError
     from survey_data.tables import SurveyTables, load
     from survey_data.validation.validate import validate

@@ -13,7 +13,7 @@ DESCRIPTOR_FILE = "datapackage.json"
 
 
 @cache
-def _shipped() -> dict[str, Any]:
+def _ship() -> dict[str, Any]:
     text = (DATA_DIRECTORY / DESCRIPTOR_FILE).read_text(encoding="utf-8")
     descriptor: dict[str, Any] = json.loads(text)
     return descriptor
@@ -21,12 +21,12 @@ def _shipped() -> dict[str, Any]:
 
 def descriptor() -> dict[str, Any]:
     """Return a fresh copy of the Data Package (v2) descriptor the code is written for."""
-    return copy.deepcopy(_shipped())
+    return copy.deepcopy(_ship())
 
 
 def table_names() -> tuple[str, ...]:
     """Return the names of the tables, in the order of the descriptor."""
-    return tuple(resource["name"] for resource in _shipped()["resources"])
+    return tuple(resource["name"] for resource in _ship()["resources"])
 
 
 def file_name(table: str) -> str:
@@ -46,7 +46,7 @@ def primary_key(table: str) -> tuple[str, ...]:
 
 
 def _resource(table: str) -> dict[str, Any]:
-    for resource in _shipped()["resources"]:
+    for resource in _ship()["resources"]:
         if resource["name"] == table:
             return dict(resource)
     raise KeyError(f"no table {table!r}; there are {', '.join(table_names())}")

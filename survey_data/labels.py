@@ -9,7 +9,7 @@ from functools import cache
 
 from survey_data.texts import load_texts
 
-#: A label within a text; `named` leaves alone what only looks like one.
+#: A label within a text; `label_of` leaves alone what only looks like one.
 LABEL = re.compile(r"\b(?:sec|tab|fig|eq|fe|model|alg|rq|rqsum):\w+")
 _WORDS = {"question": "Research question"}
 
@@ -63,7 +63,7 @@ def name(label: str) -> str:
     return label if known is None else known.name
 
 
-def named(text: str) -> str:
+def label_of(text: str) -> str:
     """Return a text with what each label in it names in the label's place.
 
     Within a sentence an equation, a table and the like are named by their number alone.

@@ -41,7 +41,7 @@ class Statistic:
 
 
 @dataclass(frozen=True)
-class Reported:
+class ReportedAccuracy:
     """An accuracy or a precision as published, in degrees."""
 
     quantity: Quantity
@@ -96,7 +96,9 @@ def statistics(directory: Path | None = None) -> Mapping[str, Statistic]:
     )
 
 
-def reported(quantity: Quantity, value_deg: float, kind: str | None = None) -> Reported:
+def reported_accuracies(
+    quantity: Quantity, value_deg: float, kind: str | None = None
+) -> ReportedAccuracy:
     """Return a figure with its kind; without one it is unspecified.
 
     Raises
@@ -104,4 +106,4 @@ def reported(quantity: Quantity, value_deg: float, kind: str | None = None) -> R
     KeyError
         For a kind that is not in the table.
     """
-    return Reported(quantity, value_deg, statistics()[kind or UNSPECIFIED])
+    return ReportedAccuracy(quantity, value_deg, statistics()[kind or UNSPECIFIED])

@@ -60,7 +60,7 @@ def source_named(text: str) -> Source:
     An address that `fault` refuses is named by its host and leads nowhere.
     """
     if not text.startswith(("http://", "https://")):
-        return Source(labels.named(text))
+        return Source(labels.label_of(text))
     host = _host(text)
     if fault(text):
         return Source(host)

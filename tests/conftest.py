@@ -115,7 +115,7 @@ def _same_scores_are_read_once() -> Iterator[None]:
     """
     from benchmark.results import store
 
-    read, known = store.read, {}
+    read, known = store.read_csv, {}
 
     def kept(path, columns):
         if not path.is_file():
@@ -127,5 +127,5 @@ def _same_scores_are_read_once() -> Iterator[None]:
         return [(line, dict(row)) for line, row in known[key]]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(store, "read", kept)
+        patch.setattr(store, "read_csv", kept)
         yield

@@ -22,7 +22,7 @@ from algorithms.models.geometric.standard_projection import StandardProjection
 from api.http.service import create_app
 from benchmark import datasets
 from benchmark.results.closure import FIRST_PARTY
-from benchmark.running import generated
+from benchmark.running import condition_data
 from benchmark.running.task import Task, measure
 
 ROOT = Path(__file__).parents[1]
@@ -85,7 +85,7 @@ def test_a_frame_passes_the_functions_listed_from_data_set_to_score() -> None:
     task = Task(
         datasets.get("cmos-single-aperture"), "nominal", BasicCentroid, (StandardProjection,)
     )
-    generated.forget()
+    condition_data.forget()
     landmarks = [
         "benchmark/datasets/preset.py: Preset.generate",
         "algorithms/extractors/frames/centroid.py: BasicCentroid.extract",

@@ -56,7 +56,7 @@ OFFENCES = {
          "benchmark.datasets.conditions", "benchmark.datasets.standard"),
     ],
     "Inside the simulator: imports only point down": [
-        ("benchmark/simulator/masks/slits.py", "import benchmark.simulator.sensors.lines",
+        ("benchmark/simulator/masks/slits.py", "import benchmark.simulator.sensors.line_sensor",
          "benchmark.simulator.masks", "benchmark.simulator.sensors"),
     ],
     "Facts carry no scientific stack beyond pandas": [

@@ -69,7 +69,7 @@ def read_document(path: Path) -> Any:
         value = json.loads(
             data.decode("utf-8"),
             object_pairs_hook=_unique,
-            parse_constant=_refused,
+            parse_constant=_refuse,
             parse_float=_finite,
         )
     except json.JSONDecodeError as error:
@@ -106,7 +106,7 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return found
 
 
-def _refused(word: str) -> Any:
+def _refuse(word: str) -> Any:
     raise ValueError(f"{word} is no number")
 
 

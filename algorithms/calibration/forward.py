@@ -12,7 +12,7 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.parametric import ParametricModel
 from algorithms.contract import Floats
-from algorithms.row_arithmetic import normalised
+from algorithms.row_arithmetic import normalise
 
 SETTLED = 1e-9
 """Last step of an inversion, in tangents of the angles, at which a direction is found: 6e-8 deg."""
@@ -138,7 +138,7 @@ def outward(tangents: Floats, turns: tuple[float, float, float]) -> Floats:
     y, z = cx * y - sx * z, sx * y + cx * z
     with np.errstate(invalid="ignore"):
         z = np.where(z > 0, z, np.nan)
-    return normalised(np.stack([x, y, z], axis=1))
+    return normalise(np.stack([x, y, z], axis=1))
 
 
 def inward(sun: Floats, turns: tuple[float, float, float]) -> Floats:

@@ -74,7 +74,7 @@ class Hull:
         extra = beyond * width if beyond else 0.0
         return cls(
             np.asarray(found.equations, dtype=np.float64),
-            spacing(places) / 2.0 + extra,
+            median_spacing(places) / 2.0 + extra,
             (float(places[0, 0]), float(places[-1, 0])),
         )
 
@@ -108,7 +108,7 @@ class Hull:
             ) from error
         facets = np.asarray(found.equations, dtype=np.float64)
         through_sensor = np.abs(facets[:, 3]) < _ROUNDING
-        return cls(facets[through_sensor], spacing(places) / 2.0 + beyond)
+        return cls(facets[through_sensor], median_spacing(places) / 2.0 + beyond)
 
     def holds(self, points: Floats) -> NDArray[np.bool_]:
         """Whether each point (n, d) is inside or within the margin; False for NaN."""
@@ -174,7 +174,7 @@ class Hull:
         return low, high, float(edges[0]), float(1.0 / (edges[1] - edges[0]))
 
 
-def spacing(points: Floats) -> float:
+def median_spacing(points: Floats) -> float:
     """Median distance of points (n, d), all different, to their nearest neighbours."""
     from scipy.spatial import KDTree  # noqa: PLC0415 - SciPy, at the first fit only
 

@@ -65,7 +65,7 @@ def errors_of_orders(
     total, open_to_noise, count = np.zeros(len(sizes)), np.zeros(len(sizes)), 0
     for fitted, left_out in splits(fold):
         count += int(left_out.sum())
-        q, r, usable = _factored(design[fitted], sizes)
+        q, r, usable = _factor(design[fitted], sizes)
         error = np.full(len(sizes), np.inf)
         if usable:
             aim = q.T @ wanted[fitted]
@@ -76,7 +76,7 @@ def errors_of_orders(
             error[number] = float((off**2).sum())
         total += error
     error, left = total / max(count, 1), open_to_noise / max(count, 1)
-    _, r, usable = _factored(design, sizes)
+    _, r, usable = _factor(design, sizes)
     error[usable:] = np.inf
     if usable and len(between):
         swing = _variances(r, between, sizes[:usable]) / len(between)
@@ -84,7 +84,7 @@ def errors_of_orders(
     return error
 
 
-def _factored(design: Floats, sizes: list[int]) -> tuple[Floats, Floats, int]:
+def _factor(design: Floats, sizes: list[int]) -> tuple[Floats, Floats, int]:
     """Q and R of a design (n, terms), and how many of the orders its samples settle."""
     most = max((size for size in sizes if size <= len(design)), default=0)
     q, r = np.linalg.qr(design[:, :most])
@@ -107,7 +107,7 @@ def _variances(r: Floats, design: Floats, sizes: list[int]) -> Floats:
     return np.asarray(np.cumsum((terms**2).sum(axis=1))[np.array(sizes) - 1])
 
 
-def chosen(errors: Floats, by: str) -> Choice:
+def choose_order(errors: Floats, by: str) -> Choice:
     """Return the order with the smallest mean of squared errors; the smaller of equals.
 
     Equal is what differs by less than 1e-6, relative: rounding does not choose an order.

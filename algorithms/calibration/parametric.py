@@ -134,7 +134,7 @@ class ParametricModel(CalibratedModel):
                 f"({', '.join(name for name, _ in self.names())}); they must spread over the field "
                 "of view"
             )
-        moved = self._moved(best.x * scales, features, sun, axes, context)
+        moved = self._move(best.x * scales, features, sun, axes, context)
         covariance = parameter_covariance(
             jacobian.reshape(-1, 2, count), residuals(best.x).reshape(-1, 2), moved
         )
@@ -142,7 +142,7 @@ class ParametricModel(CalibratedModel):
         self.covariance_ = np.asarray(covariance * np.outer(scales, scales))
         self.condition_ = float(values[0] / values[-1])
 
-    def _moved(
+    def _move(
         self,
         vector: Floats,
         features: Floats,

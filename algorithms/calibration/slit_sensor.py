@@ -143,14 +143,17 @@ class SlitModel(ForwardModel):
         return self.pixel_pitch_mm / self.focal_length_mm, self.centre_px
 
     def glass(self, tangents: Floats) -> Floats:
-        """(N,) mm by which the drawing's plates shorten the focal length; see `shortening`."""
+        """(N,) mm by which the drawing's plates shorten the focal length.
+
+        See `refraction_height_mm`.
+        """
         total = np.zeros(len(tangents))
         for thickness, index in self.cover_glass:
-            total += shortening(tangents, thickness, index)
+            total += refraction_height_mm(tangents, thickness, index)
         return total
 
 
-def shortening(tangents: Floats, thickness_mm: float, index: float) -> Floats:
+def refraction_height_mm(tangents: Floats, thickness_mm: float, index: float) -> Floats:
     """Height (N,), mm, of air that would displace a ray as much less as a plate does.
 
     Snell's law (eq:refcomp1): a plate displaces by ``t sin(theta) / sqrt(n^2 - sin^2(theta))``,
@@ -158,7 +161,7 @@ def shortening(tangents: Floats, thickness_mm: float, index: float) -> Floats:
 
     Examples
     --------
-    >>> shortening(np.array([[0.0, 0.0]]), 0.5, 1.25).round(6)  # t (1 - 1 / n)
+    >>> refraction_height_mm(np.array([[0.0, 0.0]]), 0.5, 1.25).round(6)  # t (1 - 1 / n)
     array([0.1])
     """
     square = tangents[:, 0] ** 2 + tangents[:, 1] ** 2

@@ -14,7 +14,7 @@ from algorithms.contract import Floats
 
 
 @compiled
-def predicted(covariance: Floats, transition: Floats, noise: Floats) -> Floats:
+def predict(covariance: Floats, transition: Floats, noise: Floats) -> Floats:
     """``F P F' + Q`` (B, n, n), symmetric to the last bit; Q (n, n) for all."""
     count, n = covariance.shape[0], covariance.shape[1]
     out = np.empty((count, n, n))
@@ -95,7 +95,7 @@ def _whitened(root: Floats, innovation: Floats, white: Floats) -> float:
 
 
 @compiled
-def updated(  # noqa: C901, PLR0912 - one pass, nothing allocated between
+def update(  # noqa: C901, PLR0912 - one pass, nothing allocated between
     covariance: Floats,
     sensitivity: Floats,
     noise: Floats,
@@ -192,7 +192,7 @@ def foretold(spread: Floats, innovation: Floats) -> tuple[Floats, Floats]:
 def gained(
     covariance: Floats, crossed: Floats, spread: Floats, innovation: Floats
 ) -> tuple[Floats, Floats, Floats, Floats]:
-    """As `updated`, of sigma points: ``K = C S^-1``, ``P - K S K'``; C (B, n, m), S (B, m, m)."""
+    """As `update`, of sigma points: ``K = C S^-1``, ``P - K S K'``; C (B, n, m), S (B, m, m)."""
     count, n, m = crossed.shape
     step, out = np.zeros((count, n)), covariance.copy()
     squared, likelihood = np.full(count, np.nan), np.full(count, np.nan)
@@ -222,7 +222,7 @@ def gained(
 
 
 @compiled
-def crossed(first: Floats, second: Floats, weights: Floats) -> Floats:
+def cross(first: Floats, second: Floats, weights: Floats) -> Floats:
     """``sum_p w_p a_p b_p'`` (B, n, m) of deviations (B, p, n) and (B, p, m)."""
     count, points, n = first.shape
     m = second.shape[2]
@@ -255,7 +255,7 @@ def sigma_errors(covariance: Floats, scale: float) -> Floats:
 
 
 @compiled
-def centred(values: Floats, weights: Floats) -> tuple[Floats, Floats]:
+def centre(values: Floats, weights: Floats) -> tuple[Floats, Floats]:
     """Weighted means (B, q) of points (B, p, q), and the points less their mean."""
     count, points, size = values.shape
     mean, off = np.zeros((count, size)), np.empty((count, points, size))

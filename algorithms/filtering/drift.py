@@ -34,7 +34,7 @@ class Drift:
     walk: float
 
 
-def wandering(place: int, deviation: float) -> Drift:
+def random_walk(place: int, deviation: float) -> Drift:
     """Return a number that wanders by its deviation in a day."""
     return Drift(place, deviation, deviation / math.sqrt(_DAY_S))
 

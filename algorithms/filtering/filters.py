@@ -48,7 +48,7 @@ class Belief:
     weights: Floats
 
 
-def begun(space: StateSpace, states: Floats, covariance: Floats) -> Belief:
+def initial_state(space: StateSpace, states: Floats, covariance: Floats) -> Belief:
     """Belief before anything is read; covariance (B, n, n) or (n, n)."""
     count = len(states)
     n, m = space.errors, space.readings
@@ -98,7 +98,7 @@ class _OneBelief:
 
     def begin(self, space: StateSpace, states: Floats, covariance: Floats) -> Belief:
         """Belief before anything is read."""
-        return begun(space, states, covariance)
+        return initial_state(space, states, covariance)
 
     def estimate(self, space: StateSpace, belief: Belief) -> tuple[Floats, Floats]:
         """States and covariances of the belief."""
@@ -121,7 +121,7 @@ class ExtendedKalman(_OneBelief):
     >>> from algorithms.filtering.state_space import LinearStateSpace
     >>> one = np.eye(1)
     >>> space = LinearStateSpace(one, 0 * one, one, one)
-    >>> belief = begun(space, np.zeros((1, 1)), one)
+    >>> belief = initial_state(space, np.zeros((1, 1)), one)
     >>> belief = ExtendedKalman().update(space, belief, np.array([[2.0]]), np.zeros(0))
     >>> belief.states, belief.covariance
     (array([[1.]]), array([[[0.5]]]))
@@ -132,30 +132,30 @@ class ExtendedKalman(_OneBelief):
     def predict(self, space: StateSpace, belief: Belief, known: Floats, step_s: float) -> Belief:
         """Belief one step on."""
         transition = space.transition(belief.states, known, step_s)
-        covariance = algebra.predicted(belief.covariance, transition, space.process_noise(step_s))
-        states = space.propagated(belief.states, known, step_s)
+        covariance = algebra.predict(belief.covariance, transition, space.process_noise(step_s))
+        states = space.propagate(belief.states, known, step_s)
         return replace(belief, states=states, covariance=covariance)
 
     def update(self, space: StateSpace, belief: Belief, read: Floats, known: Floats) -> Belief:
         """Belief with readings (B, m)."""
         sensitivity = space.sensitivity(belief.states, known)
         innovation = read - space.measured(belief.states, known)
-        noise = self.weighed(belief, sensitivity, innovation)
-        step, covariance, squared, likelihood = algebra.updated(
+        noise = self.weigh(belief, sensitivity, innovation)
+        step, covariance, squared, likelihood = algebra.update(
             belief.covariance,
             sensitivity,
-            spread_over(noise, space.correlated()),
+            spread_over(noise, space.correlate()),
             innovation,
-            _estimated(space.errors, self.considered),
+            _estimate(space.errors, self.considered),
         )
-        if (space.correlated() > 1.0).any():  # a reading is as far off as readings are
+        if (space.correlate() > 1.0).any():  # a reading is as far off as readings are
             spread = algebra.innovation_covariance(belief.covariance, sensitivity, noise)
             squared, likelihood = algebra.foretold(spread, innovation)
         states = space.moved(belief.states, step)
         after = Belief(states, covariance, belief.noise, squared, likelihood, belief.weights)
         return self.learnt(space, after, read, known, sensitivity)
 
-    def weighed(self, belief: Belief, sensitivity: Floats, innovation: Floats) -> Floats:
+    def weigh(self, belief: Belief, sensitivity: Floats, innovation: Floats) -> Floats:
         """(B, m, m) covariance of these readings: that of the belief."""
         del sensitivity, innovation
         return belief.noise
@@ -229,7 +229,7 @@ class RobustKalman(ExtendedKalman):
 
     limit: float = 2.0
 
-    def weighed(self, belief: Belief, sensitivity: Floats, innovation: Floats) -> Floats:
+    def weigh(self, belief: Belief, sensitivity: Floats, innovation: Floats) -> Floats:
         """Give the readings' covariance, raised where they are far off."""
         spread = algebra.innovation_covariance(belief.covariance, sensitivity, belief.noise)
         variance = np.diagonal(spread, axis1=1, axis2=2)
@@ -277,14 +277,14 @@ class SigmaPointKalman(_OneBelief):
         means, spreads = self.weights(space.errors)
         points, _ = self._points(space, belief)
         count, number, size = points.shape
-        after = space.propagated(points.reshape(-1, size), known, step_s)
+        after = space.propagate(points.reshape(-1, size), known, step_s)
         middle = after[::number].copy()
         off = space.away(after, np.repeat(middle, number, axis=0))
-        mean, _ = algebra.centred(off.reshape(count, number, -1), means)
+        mean, _ = algebra.centre(off.reshape(count, number, -1), means)
         states = space.moved(middle, mean)
         # of the mean, in its own axes
         off = space.away(after, np.repeat(states, number, axis=0)).reshape(count, number, -1)
-        covariance = algebra.crossed(off, off, spreads)
+        covariance = algebra.cross(off, off, spreads)
         covariance += space.process_noise(step_s)
         return replace(belief, states=states, covariance=covariance)
 
@@ -294,15 +294,15 @@ class SigmaPointKalman(_OneBelief):
         points, errors = self._points(space, belief)
         count, number, size = points.shape
         seen = space.measured(points.reshape(-1, size), known).reshape(count, number, -1)
-        mean, off = algebra.centred(seen, means)
-        spread = algebra.crossed(off, off, spreads)
+        mean, off = algebra.centre(seen, means)
+        spread = algebra.cross(off, off, spreads)
         step, covariance, squared, likelihood = algebra.gained(
             belief.covariance,
-            algebra.crossed(errors, off, spreads),
-            spread + spread_over(belief.noise, space.correlated()),
+            algebra.cross(errors, off, spreads),
+            spread + spread_over(belief.noise, space.correlate()),
             read - mean,
         )
-        if (space.correlated() > 1.0).any():
+        if (space.correlate() > 1.0).any():
             squared, likelihood = algebra.foretold(spread + belief.noise, read - mean)
         if self.considered:  # what is known of them stays; of all the rest the gain is the best
             kept = np.ix_(range(count), self.considered, self.considered)
@@ -321,7 +321,7 @@ class SigmaPointKalman(_OneBelief):
 
 
 @lru_cache(maxsize=64)
-def _estimated(n: int, considered: tuple[int, ...]) -> Floats:
+def _estimate(n: int, considered: tuple[int, ...]) -> Floats:
     counts = np.ones(n)
     counts[list(considered)] = 0.0
     return counts

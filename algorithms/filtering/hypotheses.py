@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from algorithms.contract import Floats
-from algorithms.filtering.filters import Belief, ExtendedKalman, begun
+from algorithms.filtering.filters import Belief, ExtendedKalman, initial_state
 from algorithms.filtering.state_space import StateSpace
 
 
@@ -48,7 +48,9 @@ class MultipleModels:
         number = len(self.noise_scales)
         n = space.errors
         every = np.broadcast_to(covariance, (len(states), n, n))
-        belief = begun(space, np.repeat(states, number, axis=0), np.repeat(every, number, axis=0))
+        belief = initial_state(
+            space, np.repeat(states, number, axis=0), np.repeat(every, number, axis=0)
+        )
         scales = np.tile(np.square(self.noise_scales), len(states))
         weights = np.full(len(scales), 1.0 / number)
         return replace(belief, noise=belief.noise * scales[:, None, None], weights=weights)
@@ -64,7 +66,7 @@ class MultipleModels:
             space, belief, np.repeat(read, number, axis=0), known
         )
         # readings whose errors are correlated tell as much as fewer would
-        told = after.log_likelihood.reshape(-1, number) / space.correlated().mean()
+        told = after.log_likelihood.reshape(-1, number) / space.correlate().mean()
         best = told.max(axis=1, keepdims=True)
         likelihood = np.where(np.isfinite(best), np.exp(told - best), 1.0)
         weights = after.weights.reshape(-1, number) * likelihood

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from algorithms.calibration.blocks import between_poses, folds
-from algorithms.calibration.orders import chosen, errors_of_orders
+from algorithms.calibration.orders import choose_order, errors_of_orders
 from algorithms.calibration.quality import Setting
 from algorithms.contract import Floats, UnusableDataError
 from algorithms.filtering import readings_kernel as kernel
@@ -199,7 +199,7 @@ class SpotReadings:
         design = _spot_terms(at, powers)
         between = _spot_terms(between_poses(sun, at), powers)
         errors = errors_of_orders(design, sizes, spots, folds(sun), between)
-        size = sizes[chosen(errors, by).order]
+        size = sizes[choose_order(errors, by).order]
         solved, singular = _least_squares(design[:, :size], spots)
         if not singular[-1] > _SMALLEST * singular[0]:
             raise UnusableDataError(

@@ -227,7 +227,7 @@ class SunFilter(Model):
             self.readings_ = FaceReadings.learnt(normals, features, sun, known, by)
         else:
             self.readings_ = SpotReadings.learnt(features, sun, known, by)
-        residuals = features - self._explained(sun, known)
+        residuals = features - self._explain(sun, known)
         apart = np.diff(told["time_s"])
         self.step_s_ = float(np.median(apart))
         if not self.step_s_ > 0:
@@ -285,7 +285,7 @@ class SunFilter(Model):
         usable = complete(told, len(found)) & np.isfinite(found).all(axis=1)
         usable &= told["eclipse"] == 0
         usable &= np.where(usable, self.readings_.lit(found), 0.0) > 0
-        return self._followed(found, told["time_s"], _known(told), usable)
+        return self._follow(found, told["time_s"], _known(told), usable)
 
     def space(self, years: float = 0.0, noise: Floats | None = None) -> SunSpace:
         """State space of the sensor so long after its calibration, of its noise or another."""
@@ -305,7 +305,7 @@ class SunFilter(Model):
             turn=float(np.radians(self.reference_deg)),
         )
 
-    def _followed(
+    def _follow(
         self, found: Floats, time_s: Floats, known: Floats, usable: NDArray[np.bool_]
     ) -> Track:
         space, by = self.space(), self.rule()
@@ -362,7 +362,7 @@ class SunFilter(Model):
         """(N, 7) what states and readings go by, warmth counted from the calibration's middle."""
         return np.asarray(_known(told) - np.array([0.0] * 6 + [self.readings_.middle_k]))
 
-    def _explained(self, sun: Floats, known: Floats) -> Floats:
+    def _explain(self, sun: Floats, known: Floats) -> Floats:
         """Give readings (n, m) of known Suns."""
         from algorithms.filtering.sun_space import SunSpace  # noqa: PLC0415 - Numba
 

@@ -28,7 +28,7 @@ class StateSpace(Protocol):
         """Numbers m that are read."""
         ...
 
-    def propagated(self, states: Floats, known: Floats, step_s: float) -> Floats:
+    def propagate(self, states: Floats, known: Floats, step_s: float) -> Floats:
         """States (B, S) one step on, without noise: f."""
         ...
 
@@ -52,7 +52,7 @@ class StateSpace(Protocol):
         """(m, m) covariance R of readings."""
         ...
 
-    def correlated(self) -> Floats:
+    def correlate(self) -> Floats:
         """(m,) steps over which errors of readings are correlated, 1 of white ones."""
         ...
 
@@ -102,7 +102,7 @@ class LinearStateSpace:
         """Rows of H."""
         return len(self.observation)
 
-    def propagated(self, states: Floats, known: Floats, step_s: float) -> Floats:
+    def propagate(self, states: Floats, known: Floats, step_s: float) -> Floats:
         """``F x``."""
         del known, step_s
         return np.asarray(states @ self.dynamics.T)
@@ -131,7 +131,7 @@ class LinearStateSpace:
         """R."""
         return self.noise
 
-    def correlated(self) -> Floats:
+    def correlate(self) -> Floats:
         """White."""
         return np.ones(len(self.noise))
 

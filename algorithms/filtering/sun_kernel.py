@@ -37,7 +37,7 @@ def _turn(state: Floats, x: float, y: float, z: float, out: Floats) -> None:
 
 
 @compiled
-def propagated(states: Floats, rate: Floats, step_s: float) -> Floats:
+def propagate(states: Floats, rate: Floats, step_s: float) -> Floats:
     """States (B, S) after a body turned at `rate` (3,), rad/s as read, less its bias."""
     out = states.copy()
     for b in range(len(states)):
@@ -51,7 +51,7 @@ def propagated(states: Floats, rate: Floats, step_s: float) -> Floats:
 
 @compiled
 def transition(states: Floats, after: Floats, rate: Floats, step_s: float) -> Floats:
-    """Jacobian (B, n, n) of `propagated`, whose outcome is `after`."""
+    """Jacobian (B, n, n) of `propagate`, whose outcome is `after`."""
     count, n = len(states), states.shape[1] - 7
     out = np.zeros((count, n, n))
     turn = np.empty(3)
@@ -87,7 +87,7 @@ def transition(states: Floats, after: Floats, rate: Floats, step_s: float) -> Fl
 
 
 @compiled
-def moved(states: Floats, errors: Floats) -> Floats:
+def move(states: Floats, errors: Floats) -> Floats:
     """States (B, S) with errors (B, n) added; the axes turn with the direction."""
     out = states.copy()
     for b in range(len(states)):
@@ -115,7 +115,7 @@ def moved(states: Floats, errors: Floats) -> Floats:
 
 
 @compiled
-def headed(states: Floats, first: int) -> Floats:
+def turn_heading(states: Floats, first: int) -> Floats:
     """States (B, S) as a head sees them that is turned by their three numbers from `first` on."""
     out = states.copy()
     for b in range(len(states)):
@@ -127,7 +127,7 @@ def headed(states: Floats, first: int) -> Floats:
 
 
 @compiled
-def heading(states: Floats, slopes: Floats, first: int) -> None:
+def heading_slopes(states: Floats, slopes: Floats, first: int) -> None:
     """Write into `slopes` (B, m, n) how readings change with the head's small turns.
 
     A turn about an axis moves the direction by their cross product; by the axes across the
@@ -144,7 +144,7 @@ def heading(states: Floats, slopes: Floats, first: int) -> None:
 
 @compiled
 def away(states: Floats, origins: Floats) -> Floats:
-    """Errors (B, n) that take origins (B, S) to states, as `moved` adds them."""
+    """Errors (B, n) that take origins (B, S) to states, as `move` adds them."""
     count, n = len(states), states.shape[1] - 7
     out = np.empty((count, n))
     for b in range(count):

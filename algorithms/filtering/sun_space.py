@@ -71,14 +71,14 @@ class SunSpace:
         """Numbers read at a time."""
         return self._readings.count
 
-    def propagated(self, states: Floats, known: Floats, step_s: float) -> Floats:
+    def propagate(self, states: Floats, known: Floats, step_s: float) -> Floats:
         """States after the body turned."""
-        found: Floats = motion.propagated(states, known, step_s)
+        found: Floats = motion.propagate(states, known, step_s)
         return found
 
     def transition(self, states: Floats, known: Floats, step_s: float) -> Floats:
-        """Jacobian of `propagated`."""
-        after = motion.propagated(states, known, step_s)
+        """Jacobian of `propagate`."""
+        after = motion.propagate(states, known, step_s)
         found: Floats = motion.transition(states, after, known, step_s)
         return found
 
@@ -102,23 +102,23 @@ class SunSpace:
         return self._read(states, known)[1]
 
     def _read(self, states: Floats, known: Floats) -> tuple[Floats, Floats]:
-        seen = motion.headed(states, self._turn + 7) if self._turn else states
+        seen = motion.turn_heading(states, self._turn + 7) if self._turn else states
         values, slopes = self._readings.at(seen, self._chosen, known)
         if self._turn:
-            motion.heading(seen, slopes, self._turn + 7)
+            motion.heading_slopes(seen, slopes, self._turn + 7)
         return values, slopes
 
     def measurement_noise(self) -> Floats:
         """Covariance of readings."""
         return self._noise
 
-    def correlated(self) -> Floats:
+    def correlate(self) -> Floats:
         """Give the steps over which errors of readings are correlated."""
         return self._steps
 
     def moved(self, states: Floats, errors: Floats) -> Floats:
         """States with errors added."""
-        found: Floats = motion.moved(states, errors)
+        found: Floats = motion.move(states, errors)
         return found
 
     def away(self, states: Floats, origins: Floats) -> Floats:
@@ -168,7 +168,7 @@ class SunSpace:
             innovation = read - values + (slopes @ step[0])
             if not np.isfinite(innovation).all():
                 return None
-            step, covariance, _, _ = algebra.updated(prior, slopes, noise, innovation, estimated)
+            step, covariance, _, _ = algebra.update(prior, slopes, noise, innovation, estimated)
             state = self.moved(first, step)
         left, slopes = self._read(state, known)
         unsure = slopes[0][:, list(considered)] ** 2 @ np.diagonal(prior[0])[list(considered)]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from algorithms.contract import AboutModel, FeatureKind
 from algorithms.documented import documented
-from algorithms.filtering.drift import EARTH, GAINS, HEAD_SHIFTS, HEAD_TURNS, Drift, wandering
+from algorithms.filtering.drift import EARTH, GAINS, HEAD_SHIFTS, HEAD_TURNS, Drift, random_walk
 from algorithms.filtering.sequence import CONTEXT, SunFilter
 from algorithms.inputs import require_positive
 
@@ -389,8 +389,8 @@ class AssemblyDriftFilter(SunFilter):
         """Everything about the assembly, beside the light's strength."""
         faces, turn = len(self.face_normals), math.radians(self.turn_deviation_deg)
         if faces:
-            gains = [wandering(GAINS + face, self.gain_deviation) for face in range(faces)]
-            tilts = [wandering(GAINS + faces + tilt, turn) for tilt in range(2 * faces)]
+            gains = [random_walk(GAINS + face, self.gain_deviation) for face in range(faces)]
+            tilts = [random_walk(GAINS + faces + tilt, turn) for tilt in range(2 * faces)]
             return (*super().drifts(), *gains, *tilts)
-        turns = [wandering(place, turn) for place in HEAD_TURNS]
-        return (*turns, *(wandering(place, self.shift_deviation) for place in HEAD_SHIFTS))
+        turns = [random_walk(place, turn) for place in HEAD_TURNS]
+        return (*turns, *(random_walk(place, self.shift_deviation) for place in HEAD_SHIFTS))

@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from api.cli.tables import prose, table
+from api.cli.table_output import prose, table
 from registry.contradiction import calibration_words
 
 ORDERS = {
@@ -73,9 +73,9 @@ def _architecture(architecture: Mapping[str, Any], width: int) -> Iterator[str]:
     ]
     if tasks:
         yield from _paragraph("tasks", ", ".join(tasks), width)
-    yield from _paragraph("advised", _advised(architecture["advice"]), width)
-    yield from _paragraph("proposed", _proposed(architecture["studies"]), width)
-    yield from _paragraph("measured", _measured(architecture["best"]), width)
+    yield from _paragraph("advised", _advise(architecture["advice"]), width)
+    yield from _paragraph("proposed", _propose(architecture["studies"]), width)
+    yield from _paragraph("measured", _measure(architecture["best"]), width)
     for measure in architecture["measures"]:
         if measure["task"] != "Accuracy":
             yield from _paragraph("by task", measure["words"], width)
@@ -92,7 +92,7 @@ def _architecture(architecture: Mapping[str, Any], width: int) -> Iterator[str]:
         yield f"{_INDENT}... and {rest} more"
 
 
-def _advised(advice: Sequence[Mapping[str, Any]]) -> str:
+def _advise(advice: Sequence[Mapping[str, Any]]) -> str:
     """Return what the survey advises an architecture for, how calibrated, and in which section."""
     if not advice:
         return "no, not for what is asked"
@@ -106,13 +106,13 @@ def _advised(advice: Sequence[Mapping[str, Any]]) -> str:
     return f"{said} (in {', '.join(dict.fromkeys(one['section_name'] for one in advice))})"
 
 
-def _proposed(studies: Sequence[str]) -> str:
+def _propose(studies: Sequence[str]) -> str:
     if not studies:
         return "by no study that meets the requirements"
     return f"by {_many(len(studies), 'study', 'studies')}: {', '.join(studies)}"
 
 
-def _measured(best: Mapping[str, Any]) -> str:
+def _measure(best: Mapping[str, Any]) -> str:
     """Return what the best calibration of an architecture achieves, and where."""
     measured = best["measured"]
     if measured is None:

@@ -16,7 +16,7 @@ def _option(attribute: str) -> typer.models.OptionInfo:
     return _values(f"--{attribute}", attribute, text)
 
 
-def _excluded(attribute: str) -> typer.models.OptionInfo:
+def _exclude(attribute: str) -> typer.models.OptionInfo:
     text = f"Never this {attribute}; may be repeated."
     return _values(f"--exclude-{attribute}", attribute, text)
 
@@ -58,10 +58,10 @@ Mask = Annotated[list[str] | None, _option("mask")]
 Model = Annotated[list[str] | None, _option("model")]
 Extractor = Annotated[list[str] | None, _option("extractor")]
 
-NoTask = Annotated[list[str] | None, _excluded("task")]
-NoError = Annotated[list[str] | None, _excluded("error")]
-NoAccuracy = Annotated[list[str] | None, _excluded("accuracy")]
-NoDetector = Annotated[list[str] | None, _excluded("detector")]
-NoMask = Annotated[list[str] | None, _excluded("mask")]
-NoModel = Annotated[list[str] | None, _excluded("model")]
-NoExtractor = Annotated[list[str] | None, _excluded("extractor")]
+NoTask = Annotated[list[str] | None, _exclude("task")]
+NoError = Annotated[list[str] | None, _exclude("error")]
+NoAccuracy = Annotated[list[str] | None, _exclude("accuracy")]
+NoDetector = Annotated[list[str] | None, _exclude("detector")]
+NoMask = Annotated[list[str] | None, _exclude("mask")]
+NoModel = Annotated[list[str] | None, _exclude("model")]
+NoExtractor = Annotated[list[str] | None, _exclude("extractor")]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from api.cli.tables import prose, table
+from api.cli.table_output import prose, table
 from benchmark.leaderboard.overview import ROLES, WITHIN, suffix
 from benchmark.leaderboard.summaries import digits, tally
 from benchmark.metrics.score import AVAILABLE

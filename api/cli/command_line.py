@@ -131,9 +131,9 @@ def _refuse(error: Any) -> None:
     if context is not None and error.message == "Missing command.":
         typer.echo(context.get_help())
         sys.exit(error.exit_code)
-    from api.cli.refusals import said  # noqa: PLC0415 - the help does without it
+    from api.cli.refusals import usage_message  # noqa: PLC0415 - the help does without it
 
-    _stop(error, error.exit_code, said(error))
+    _stop(error, error.exit_code, usage_message(error))
 
 
 def _open_streams() -> None:

@@ -22,12 +22,12 @@ _PUBLISHED = _ROOT / "benchmark" / "published"
 
 def _completes(words: Callable[[], list[str]]) -> Complete:
     def complete(incomplete: str) -> list[str]:
-        return [_quoted(word) for word in words() if word.startswith(incomplete)]
+        return [_quote(word) for word in words() if word.startswith(incomplete)]
 
     return complete
 
 
-def _quoted(word: str) -> str:
+def _quote(word: str) -> str:
     """Return a word as it is typed: bash takes what is completed as it is."""
     return word.replace(" ", "\\ ") if os.environ.get(VARIABLE) == "complete_bash" else word
 

@@ -78,7 +78,7 @@ def laid_out(columns: Sequence[Column], width: int, indent: str = "") -> Layout:
         Lines without space at their end.
     """
     room = width - len(indent)
-    stack = _stacked(columns, room)
+    stack = _stack(columns, room)
     heading: list[str] = []
     for before, line in stack:
         heading += _lines([(column, column.heading) for column in line], line, indent + before)
@@ -91,7 +91,7 @@ def laid_out(columns: Sequence[Column], width: int, indent: str = "") -> Layout:
     return Layout(tuple(heading), tuple(rows))
 
 
-def wrapped(text: str, width: int) -> list[str]:
+def wrap(text: str, width: int) -> list[str]:
     """Return text in lines of at most `width` characters; only a word longer than that is divided.
 
     Such a word is divided behind a hyphen or another mark where it has one.
@@ -121,7 +121,7 @@ def _pieces(word: str, width: int) -> Iterator[str]:
 Line = dict[Column, int]  # columns that stand side by side, and the width of each
 
 
-def _stacked(columns: Sequence[Column], room: int) -> list[tuple[str, Line]]:
+def _stack(columns: Sequence[Column], room: int) -> list[tuple[str, Line]]:
     """Return the lines of a row, each with its indent and the widths of its columns."""
     lines: list[list[Column]] = [[]]
     for column in columns:
@@ -157,7 +157,7 @@ def _widths(columns: Sequence[Column], room: int) -> Line:
 
 def _lines(cells: Sequence[tuple[Column, str]], widths: Line, before: str) -> Iterator[str]:
     """Yield the lines of cells side by side, each wrapped in its column."""
-    parts = [wrapped(text, widths[column]) for column, text in cells]
+    parts = [wrap(text, widths[column]) for column, text in cells]
     for texts in itertools.zip_longest(*parts, fillvalue=""):
         line = (" " * GAP).join(
             text.rjust(widths[column]) if column.numeric else text.ljust(widths[column])

@@ -20,7 +20,7 @@ from api.cli import completion
 from api.cli.working import working_directory
 from benchmark.contract import Cell
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running.run import RunInterruptedError, run, stale
+from benchmark.running.runner import RunInterruptedError, run, stale
 from benchmark.running.times import times_of_code
 from benchmark.suites.selection import SUITES
 
@@ -78,7 +78,7 @@ def stores_of(directory: Path | None) -> tuple[Store, Store]:
 
 
 @dataclass(frozen=True)
-class Scored:
+class ScoredCells:
     """Rows of cells and where they came from.
 
     Attributes
@@ -108,9 +108,9 @@ class Scored:
         }
 
 
-def scored(
+def score_cells(
     cells: Iterable[Cell], workers: int, directory: Path | None, scheduler: str | None = None
-) -> Scored:
+) -> ScoredCells:
     """Read what is known of the cells and measure the rest.
 
     Raises
@@ -118,7 +118,7 @@ def scored(
     typer.Exit
         With 130 on Ctrl-C, after saying what is kept.
     StoreLockedError, StoreError, DaskMissingError, ClusterError, WorkerLostError
-        As `benchmark.running.run.run`.
+        As `benchmark.running.runner.run`.
     """
     wanted = sorted(set(cells))
     shipped, work = stores_of(directory)
@@ -134,7 +134,7 @@ def scored(
         time = times.get((cell.dataset, cell.extractor, cell.model))
         row["latency_us"] = time.latency_us if time else None
         row["time_ratio"] = time.time_ratio if time else None
-    return Scored(
+    return ScoredCells(
         rows=[found[cell] for cell in wanted],
         published=len(wanted) - len(elsewhere),
         kept=len(elsewhere) - len(missing),

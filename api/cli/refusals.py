@@ -22,7 +22,7 @@ _EXPECTED = {
 _LIMITS = {"ge": "at least {:g}", "gt": "more than {:g}", "le": "at most {:g}", "lt": "below {:g}"}
 
 
-def said(error: Any) -> str:
+def usage_message(error: Any) -> str:
     """Return a usage error of Typer's as a sentence without the words of its machinery.
 
     Parameters

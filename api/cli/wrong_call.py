@@ -11,7 +11,7 @@ class WrongCallError(typer.TyperException):
     exit_code = 2
 
 
-def refused(name: str, value: object, expected: str, nearest: str | None = None) -> WrongCallError:
+def refuse(name: str, value: object, expected: str, nearest: str | None = None) -> WrongCallError:
     """Return the error of a value of an option.
 
     Parameters
@@ -26,7 +26,7 @@ def refused(name: str, value: object, expected: str, nearest: str | None = None)
 
 
 def unfit(value: object, expected: str, nearest: str | None = None) -> str:
-    """Say that a value does not fit, and what would; parameters as of `refused`."""
+    """Say that a value does not fit, and what would; parameters as of `refuse`."""
     text = f"{value:g}" if isinstance(value, float) else str(value)
     try:
         number = float(text)

@@ -18,10 +18,10 @@ from typing import Any
 from api.deposit import bundle as building
 from api.deposit.bundle import Sources, fill, write_other_forms
 from api.deposit.database import DATABASE
-from api.deposit.frames import FOLDER, SPLITS, sample_size, sampled
+from api.deposit.deposit_tables import measured_tables, read_descriptor
+from api.deposit.frames import FOLDER, SPLITS, sample, sample_size
 from api.deposit.identity import identity
 from api.deposit.package import DESCRIPTOR
-from api.deposit.tables import measured_tables, read_descriptor
 from api.deposit.verification import Problem
 from benchmark import datasets
 from benchmark.datasets.checksums import ChecksumFileError, contents
@@ -70,7 +70,7 @@ def differences(
         made.mkdir()
         if (bundle / FOLDER).is_dir():
             shutil.copytree(bundle / FOLDER, made / FOLDER)
-        rows = [row for name in names for row in sampled(made, name, pins)]
+        rows = [row for name in names for row in sample(made, name, pins)]
         fill(
             made,
             who,

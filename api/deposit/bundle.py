@@ -23,6 +23,7 @@ from api.deposit.codemeta import NAME as CODEMETA
 from api.deposit.codemeta import codemeta_text
 from api.deposit.crate import CRATE, crate
 from api.deposit.database import DATABASE, write_database
+from api.deposit.deposit_tables import MeasuredTable, frames_table, measured_tables, read_descriptor
 from api.deposit.errors import write_errors
 from api.deposit.frames import write_frames
 from api.deposit.identity import Identity, identity
@@ -30,9 +31,8 @@ from api.deposit.package import DESCRIPTOR, NAME, package
 from api.deposit.packing import pack
 from api.deposit.parquet import write_parquet
 from api.deposit.readme import BIBLIOGRAPHY, readme
-from api.deposit.tables import MeasuredTable, frames_table, measured_tables, read_descriptor
 from api.deposit.terms import FACTS, terms
-from api.deposit.typed import typed_tables
+from api.deposit.typed_tables import typed_tables
 from api.metadata.bundled import documents
 from benchmark import datasets
 from benchmark.datasets.checksums import (

@@ -170,11 +170,11 @@ def _file(
         "sha256": file[1],
         "license": {"@id": _LICENCES[licence][0]},
     }
-    entity["description"] = described[1] if described else _described(path)
+    entity["description"] = described[1] if described else _describe(path)
     return entity
 
 
-def _described(path: str) -> str:
+def _describe(path: str) -> str:
     """Say what a file is that is no resource of the data package."""
     folder, _, rest = path.partition("/")
     if folder == "parquet":

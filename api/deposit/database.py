@@ -15,7 +15,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-from api.deposit.typed import TypedTable, Value
+from api.deposit.typed_tables import TypedTable, Value
 
 DATABASE = "sun-sensor-atlas.sqlite"
 TABLES, COLUMNS = "tables_of_the_atlas", "columns_of_the_atlas"
@@ -64,7 +64,7 @@ def _write(tables: Sequence[TypedTable], path: Path) -> None:
         base.execute("PRAGMA journal_mode = OFF")
         base.execute("PRAGMA foreign_keys = OFF")  # tables come before those that they refer to
         for table in tables:
-            base.execute(_created(table))
+            base.execute(_create(table))
             _insert(base, plain(table.name), table.rows)
         _describe(base, tables)
         for table in tables:
@@ -97,7 +97,7 @@ def plain(name: str) -> str:
     raise NameNotPlainError(f"{name!r} is no plain name in SQL; give it one in {__name__}")
 
 
-def _created(table: TypedTable) -> str:
+def _create(table: TypedTable) -> str:
     schema = table.resource["schema"]
     required = {f["name"] for f in table.fields if f.get("constraints", {}).get("required")}
     required |= set(schema.get("primaryKey", ()))
@@ -107,17 +107,17 @@ def _created(table: TypedTable) -> str:
         for field in table.fields
     ]
     if schema.get("primaryKey"):
-        parts.append(f"PRIMARY KEY ({_named(schema['primaryKey'])})")
+        parts.append(f"PRIMARY KEY ({_name_of(schema['primaryKey'])})")
     for key in schema.get("foreignKeys", ()):
         to = key["reference"]
         parts.append(
-            f"FOREIGN KEY ({_named(key['fields'])}) REFERENCES "
-            f"{plain(to['resource'])} ({_named(to['fields'])})"
+            f"FOREIGN KEY ({_name_of(key['fields'])}) REFERENCES "
+            f"{plain(to['resource'])} ({_name_of(to['fields'])})"
         )
     return f"CREATE TABLE {plain(table.name)} (\n  " + ",\n  ".join(parts) + "\n)"
 
 
-def _named(names: Iterable[str]) -> str:
+def _name_of(names: Iterable[str]) -> str:
     return ", ".join(plain(name) for name in names)
 
 

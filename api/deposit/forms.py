@@ -19,7 +19,7 @@ from api.deposit.identity import identity
 from api.deposit.package import CC_BY, MIT
 from api.deposit.parquet import arrow_table
 from api.deposit.terms import FACTS, terms
-from api.deposit.typed import TypedTable, typed_tables
+from api.deposit.typed_tables import TypedTable, typed_tables
 from files.temporary import temporary_directory
 
 Problem = tuple[str, str]
@@ -116,7 +116,7 @@ def _of_database(path: Path, tables: Sequence[TypedTable]) -> str | None:
 
 def _unlike(path: Path, made: Path) -> str | None:
     """Say in what one database differs from another, whose tables are trusted."""
-    with closing(_opened(path)) as theirs, closing(_opened(made)) as ours:
+    with closing(_open_record(path)) as theirs, closing(_open_record(made)) as ours:
         schema = "SELECT type, name, tbl_name, sql FROM sqlite_schema ORDER BY type, name"
         if theirs.execute(schema).fetchall() != (wanted := ours.execute(schema).fetchall()):
             return "has other tables than the tables in CSV make"
@@ -136,7 +136,7 @@ def _unlike(path: Path, made: Path) -> str | None:
     return None
 
 
-def _opened(path: Path) -> sqlite3.Connection:
+def _open_record(path: Path) -> sqlite3.Connection:
     """Open a database to be read, whatever it is: nothing in it is run, nothing beside it read."""
     base = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro&immutable=1", uri=True)
     base.execute("PRAGMA trusted_schema = OFF")

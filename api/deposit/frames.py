@@ -65,12 +65,12 @@ def write_frames(
             n=size,
             pins=pins,
         )
-        rows += sampled(bundle, name, pins)
+        rows += sample(bundle, name, pins)
     progress(len(names), len(names), "")
     return rows
 
 
-def sampled(bundle: Path, name: str, pins: Mapping[Place, Pin]) -> list[dict[str, Any]]:
+def sample(bundle: Path, name: str, pins: Mapping[Place, Pin]) -> list[dict[str, Any]]:
     """Return a row for each file of arrays of a data set's samples, as their card says."""
     return [
         {

@@ -62,8 +62,8 @@ def identity() -> Identity:
         Where a licence is not found.
     """
     number, summary, authors = _project()
-    written = _written("CITATION.cff")
-    released = _released(written)
+    written = _write("CITATION.cff")
+    released = _release(written)
     citation = written or generated_citation(number, summary, authors, released)
     return Identity(
         title="Sun Sensor Atlas",
@@ -84,21 +84,21 @@ def version() -> str:
 
 def generated_citation(number: str, summary: str, authors: tuple[str, ...], released: date) -> str:
     """Write a CITATION.cff from the metadata, for an installation without the file."""
-    names = "".join(f'  - name: "{_quoted(name)}"\n' for name in authors)
+    names = "".join(f'  - name: "{_quote(name)}"\n' for name in authors)
     return (
         "cff-version: 1.2.0\n"
         "message: If you use the dataset, the benchmark or the code, please cite it as below.\n"
         "type: software\n"
         "title: Sun Sensor Atlas\n"
-        f'abstract: "{_quoted(summary)}"\n'
+        f'abstract: "{_quote(summary)}"\n'
         f"authors:\n{names}"
-        f'version: "{_quoted(number)}"\n'
+        f'version: "{_quote(number)}"\n'
         f'date-released: "{released.isoformat()}"\n'
         "license:\n  - MIT\n  - CC-BY-4.0\n"
     )
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     return text.replace("\\", "\\\\").replace('"', '\\"')
 
 
@@ -127,7 +127,7 @@ def _project() -> tuple[str, str, tuple[str, ...]]:
     return metadata["Version"], metadata["Summary"], tuple(n for n in names if n)
 
 
-def _released(citation: str | None) -> date:
+def _release(citation: str | None) -> date:
     found = _DATE.search(citation or "")
     if found:
         return date.fromisoformat(found[1])
@@ -138,13 +138,13 @@ def _released(citation: str | None) -> date:
 
 
 def _licence(name: str) -> str:
-    text = _written(name)
+    text = _write(name)
     if text is None:
         raise MissingFileError(f"no {name} at {ROOT} or in the metadata of {DISTRIBUTION}")
     return text
 
 
-def _written(name: str) -> str | None:
+def _write(name: str) -> str | None:
     # survey_data/LICENSE is package data, beside this package in a checkout and in a wheel alike.
     path = ROOT / name
     if path.is_file() and (_checkout() or "/" in name):

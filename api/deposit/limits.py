@@ -18,7 +18,7 @@ _DEVICE = re.compile(
 _NOT_IN_NAMES = re.compile(r'[\x00-\x1f\x7f<>:"\\|?*]')
 
 
-def oversized(directory: Path, names: Iterable[str]) -> tuple[str, str] | None:
+def excess_size(directory: Path, names: Iterable[str]) -> tuple[str, str] | None:
     """Name what makes a directory too large for an archive, before a byte of it is read.
 
     Parameters

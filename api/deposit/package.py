@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from api.deposit.citation import Author
+from api.deposit.deposit_tables import MeasuredTable
 from api.deposit.identity import Identity
-from api.deposit.tables import MeasuredTable
 from benchmark.datasets.checksums import sha256
 
 DESCRIPTOR = "datapackage.json"
@@ -43,11 +43,11 @@ def package(
     errors : of each file of errors name, title, description, path
     """
     resources = [
-        _located(directory, f"survey/{resource['path']}", {**resource, "licenses": [CC_BY]})
+        _locate(directory, f"survey/{resource['path']}", {**resource, "licenses": [CC_BY]})
         for resource in survey["resources"]
     ]
     resources += [
-        _located(
+        _locate(
             directory,
             f"benchmark/{table.name}.csv",
             {
@@ -123,7 +123,7 @@ def _of_errors(directory: Path, row: Mapping[str, str]) -> dict[str, Any]:
     }
 
 
-def _located(directory: Path, path: str, resource: Mapping[str, Any]) -> dict[str, Any]:
+def _locate(directory: Path, path: str, resource: Mapping[str, Any]) -> dict[str, Any]:
     file = directory / path
     described = {
         **resource,

@@ -132,7 +132,7 @@ def _checked_entry(
     for field, value in expected.items():
         if found[field] != value:
             raise PackingError(f"{where}, {name}: {field} is {found[field]}, expected {value}")
-    crc = _compared(file, found["packed"], found["method"], path, f"{where}, {name}")
+    crc = _compare(file, found["packed"], found["method"], path, f"{where}, {name}")
     if found["crc"] != crc:
         raise PackingError(f"{where}, {name}: crc is {found['crc']:08x}, expected {crc:08x}")
     told = (found[field] for field in _FIELDS[:-2])
@@ -140,11 +140,11 @@ def _checked_entry(
     return _CENTRAL.pack(*central) + encoded
 
 
-def _compared(file: IO[bytes], packed: int, method: int, path: Path, what: str) -> int:
+def _compare(file: IO[bytes], packed: int, method: int, path: Path, what: str) -> int:
     """Compare what an entry unpacks to with a file; return the CRC-32 of both."""
     crc = 0
     with path.open("rb") as other:
-        for piece in _unpacked(file, packed, method, what):
+        for piece in _unpack(file, packed, method, what):
             if piece != other.read(len(piece)):
                 raise PackingError(f"{what}, unpacks to other bytes than the bundle has")
             crc = zlib.crc32(piece, crc)
@@ -153,7 +153,7 @@ def _compared(file: IO[bytes], packed: int, method: int, path: Path, what: str) 
     return crc
 
 
-def _unpacked(file: IO[bytes], packed: int, method: int, what: str) -> Iterator[bytes]:
+def _unpack(file: IO[bytes], packed: int, method: int, what: str) -> Iterator[bytes]:
     """Unpack so many bytes, a small piece at a time."""
     unpacker = zlib.decompressobj(-zlib.MAX_WBITS)
     while packed:

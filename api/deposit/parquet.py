@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from api.deposit.typed import TypedTable
+from api.deposit.typed_tables import TypedTable
 
 
 def write_parquet(table: TypedTable, path: Path) -> None:

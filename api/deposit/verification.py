@@ -16,7 +16,7 @@ from typing import Any
 from api.deposit.crate import CRATE, SPECIFICATION
 from api.deposit.fields import TABLE_SCHEMA
 from api.deposit.forms import of_forms, of_terms
-from api.deposit.limits import oversized, unfit_names
+from api.deposit.limits import excess_size, unfit_names
 from api.deposit.package import DESCRIPTOR, NAME, PROFILE
 from benchmark.datasets.checksums import CHECKSUMS, contents, differences, read_checksums
 
@@ -93,7 +93,7 @@ def verify(directory: Path) -> list[Problem]:
     if not (directory / CHECKSUMS).is_file():
         raise NoBundleError(f"{directory}: not a bundle, it has no {CHECKSUMS}")
     names = contents(directory)
-    if (large := oversized(directory, names)) is not None:
+    if (large := excess_size(directory, names)) is not None:
         return [large]
     if wrong := [*unfit_names(names), *differences(directory)]:
         return wrong

@@ -11,9 +11,9 @@ from api.docs.markdown import table as _table
 from benchmark.assessment import assess as assessment
 from benchmark.assessment import former
 from benchmark.assessment.definitions import DEFINITIONS
-from benchmark.results.tables import Row
-from benchmark.sweeps import pictures as sweep_pictures
-from benchmark.sweeps import tables as sweep_tables
+from benchmark.results.csv_tables import Row
+from benchmark.sweeps import plots as sweep_pictures
+from benchmark.sweeps import sweep_tables
 from benchmark.sweeps.plan import SERIES
 from benchmark.sweeps.record import swept
 
@@ -145,9 +145,11 @@ def _sweep_tables(wanted: Callable[[sweep_tables.Table], bool]) -> str:
     )
 
 
-def unmeasured() -> str:
+def features_without_measure() -> str:
     """List what no reference feature fits, with the reason."""
-    rows = [(f"`{n}`", s or "any", reason) for s, n, reason in sweep_tables.unmeasured(_rows())]
+    rows = [
+        (f"`{n}`", s or "any", reason) for s, n, reason in sweep_tables.unmeasured_settings(_rows())
+    ]
     return _table(("extractor", "series", "reason"), rows) if rows else "Nothing is left out."
 
 

@@ -12,7 +12,7 @@ from benchmark.learning_curves import pictures, record
 Row = Mapping[str, Any]
 
 
-def needed() -> str:
+def poses_needed() -> str:
     """List every leader with the poses it needs, its floor, and the poses there are."""
     rows = [
         (
@@ -59,7 +59,7 @@ def counts() -> str:
     )
 
 
-def unreached() -> str:
+def leaders_short_of_poses() -> str:
     """List the leaders of which some draw does not come near with all poses there are."""
     rows = [
         (
@@ -92,7 +92,7 @@ PICTURES: Mapping[str, Callable[[], str]] = {"learning-curves.svg": _picture}
 
 @cache
 def _rows() -> list[dict[str, Any]]:
-    return record.shown()
+    return record.published_curves()
 
 
 def _poses(number: int | None) -> str:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from api.deposit import codemeta
 from api.deposit.identity import identity
-from api.docs import assessment, boards, claims, curves, filters, front, limits, model_pages
+from api.docs import assessment, boards, claim_pages, curves, filters, front, limits, model_pages
 from api.docs.export import export_example
 from api.docs.parts import (
     command_line,
@@ -24,11 +24,11 @@ from api.docs.parts import (
     extractors,
     findings,
     http_examples,
-    missing,
+    missing_implementations,
     models,
     resolutions,
 )
-from api.guide import dictionary, found, words
+from api.guide import dictionary, measured_facts, words
 from api.guide.blocks import rerun
 from benchmark.processes import call_to_end
 from files.atomic import replace_file
@@ -48,7 +48,7 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
         "extractors": extractors,
         "model-pages": model_pages.index,
         "models": models,
-        "missing": missing,
+        "missing": missing_implementations,
     },
     "datasets.md": {"coverage": coverage, "example": export_example, "datasets": datasets},
     "leaderboard.md": {
@@ -64,14 +64,14 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
     },
     "learning-curves.md": {
         "counts": curves.counts,
-        "needed": curves.needed,
-        "unreached": curves.unreached,
+        "needed": curves.poses_needed,
+        "unreached": curves.leaders_short_of_poses,
     },
     "sweeps.md": {
         "features": assessment.features,
         "accuracy": assessment.accuracy,
         "faults": assessment.faults,
-        "unmeasured": assessment.unmeasured,
+        "unmeasured": assessment.features_without_measure,
     },
     "assessment.md": {
         "definitions": assessment.definitions,
@@ -81,21 +81,21 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
         "values": assessment.values,
     },
     "claims.md": {
-        "counts": claims.counts,
-        "verdicts": claims.verdicts,
-        "trials": claims.trials,
+        "counts": claim_pages.counts,
+        "verdicts": claim_pages.verdicts,
+        "trials": claim_pages.trials,
     },
     "filters.md": {"errors": filters.errors},
     "survey.md": {"findings": findings, "resolutions": resolutions},
     "http.md": {"endpoints": http_examples},
     "command-line.md": {"help": command_line},
     "guide/found.md": {
-        "findings": found.findings,
-        "error-budget": found.error_budget,
+        "findings": measured_facts.findings,
+        "error-budget": measured_facts.error_budget,
         "poses": curves.counts,
-        "tallies": found.tallies,
-        "refuted": found.refuted,
-        "useful": found.useful,
+        "tallies": measured_facts.tallies,
+        "refuted": measured_facts.refuted_claims,
+        "useful": measured_facts.useful,
     },
     "guide/glossary.md": {"terms": words.terms, "abbreviations": words.abbreviations},
     "guide/data-dictionary.md": {
@@ -134,7 +134,7 @@ def every_picture() -> Mapping[str, Make]:
         **assessment.PICTURES,
         **curves.PICTURES,
         **model_pages.pictures(),
-        **claims.pictures(),
+        **claim_pages.pictures(),
     }
 
 
@@ -145,7 +145,7 @@ def text_of(page: str, directory: Path = DIRECTORY) -> str:
     return model_pages.text_of(page, directory)
 
 
-def renewed(page: str, text: str, parts: Mapping[str, Make]) -> str:
+def renew_parts(page: str, text: str, parts: Mapping[str, Make]) -> str:
     """Return a page with its generated parts renewed.
 
     Parameters
@@ -189,7 +189,7 @@ def regenerate(directory: Path = DIRECTORY, *, write: bool = True) -> list[str]:
     behind = {}
     for page, parts in every_page(directory).items():
         path = directory / page
-        new = renewed(page, text_of(page, directory), parts)
+        new = renew_parts(page, text_of(page, directory), parts)
         if not path.is_file() or new != path.read_text("utf-8"):
             behind[page] = new
     for page in RUN:

@@ -91,24 +91,24 @@ def _exchange(request: str, body: Any, answer: tuple[int, str, str]) -> str:
         return f"```http\n{request}\n```\n\n{status}, `{media_type}`."
     asked = "" if body is None else f"\n\n{json.dumps(body, ensure_ascii=False)}"
     if "json" in media_type:
-        shown = "\n".join(_pretty(_shortened(json.loads(text))))
+        shown = "\n".join(_pretty(_shorten(json.loads(text))))
     else:
         shown = text.strip()[:LONGEST_TEXT]
     return f"```http\n{request}{asked}\n```\n\n{status}, `{media_type}`:\n\n```json\n{shown}\n```"
 
 
-def _shortened(value: Any, depth: int = 0) -> Any:
+def _shorten(value: Any, depth: int = 0) -> Any:
     """Cut long lists, saying how much was left out, and what lies deep."""
     if depth >= DEEPEST and len(json.dumps(value)) > LONGEST_TEXT // 2:
         return "…"
     if isinstance(value, dict):
         # Times change with every measuring; the docs should not.
         return {
-            name: "…" if name in TIMES and member is not None else _shortened(member, depth + 1)
+            name: "…" if name in TIMES and member is not None else _shorten(member, depth + 1)
             for name, member in value.items()
         }
     if isinstance(value, list):
-        kept = [_shortened(member, depth + 1) for member in value[:LONGEST_LIST]]
+        kept = [_shorten(member, depth + 1) for member in value[:LONGEST_LIST]]
         left = len(value) - len(kept)
         return [*kept, f"… {left} more"] if left else kept
     if isinstance(value, str) and len(value) > LONGEST_TEXT:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from benchmark.contract import Cell
-from benchmark.plan.parts import installed
+from benchmark.plan.parts import installed_parts
+from benchmark.results.csv_tables import Row
 from benchmark.results.store import Store
-from benchmark.results.tables import Row
 
 #: Data sets with the extractor whose features are read, and the conditions shown.
 SHOWN: Mapping[tuple[str, str], tuple[str, ...]] = {
@@ -27,7 +27,7 @@ def errors() -> str:
 def _table(
     scores: Mapping[Cell, Row], dataset: str, extractor: str, conditions: tuple[str, ...]
 ) -> str:
-    known = installed().models
+    known = installed_parts().models
     filters = [name for name, model in known.items() if getattr(model, "sequential", False)]
 
     def error(model: str, condition: str) -> float | None:

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 from api.docs.knowledge import knowledge
 from benchmark.claims.ledger import Entry, ledger, tally
-from benchmark.drawing import svg
 from benchmark.error_budget.record import RECORD as ERROR_BUDGET
 from benchmark.error_budget.sentences import NEAR, PARTS, verdict
 from benchmark.leaderboard import summaries
 from benchmark.leaderboard.architectures import architectures, first_boards
 from benchmark.metrics.score import is_available
+from benchmark.plot_style import svg
 from registry.fidelity.grading import tally_text
 from registry.recommendation import recommend
 from registry.resolution import Resolution
@@ -132,7 +132,7 @@ def _draw(axes: Axes, height: int, row: Row) -> None:
         return
     axes.plot([row["bound_deg"], row["own_deg"]], [height] * 2, color="#c5ccd3", linewidth=1.2)
     axes.plot(row["bound_deg"], height, "|", color=_BOUND, markersize=8)
-    built = _built().get(row["dataset"], ())
+    built = _build().get(row["dataset"], ())
     axes.plot(built, [height] * len(built), "^", color=_BUILT, markersize=4.5)
     used = _best_used(row["dataset"])
     if used is not None:
@@ -141,7 +141,7 @@ def _draw(axes: Axes, height: int, row: Row) -> None:
 
 
 @cache
-def _built() -> Mapping[str, Sequence[float]]:
+def _build() -> Mapping[str, Sequence[float]]:
     """Accuracies of the built sensors that each data set stands for, degrees."""
     return {
         row["dataset"]: [

@@ -17,7 +17,7 @@ from benchmark.results.store import Store
 
 def standings() -> str:
     """Set every data set's best pipeline beside its bound and the built sensors' accuracy."""
-    built, pins = _built(), Store().pins()
+    built, pins = _build(), Store().pins()
     rows = []
     for name, row in ERROR_BUDGET.read().items():
         judged, bound = verdict(row), bound_of(row)
@@ -58,7 +58,7 @@ def contributions() -> str:
 
 def sentences() -> str:
     """Say of every data set what was measured, and of the built sensors what is different."""
-    built, lines = _built(), []
+    built, lines = _build(), []
     for name, row in ERROR_BUDGET.read().items():
         said = verdict(row).sentence
         explained = (built.get(name) or {}).get("sentence")
@@ -103,7 +103,7 @@ def _angle(degrees: float | None) -> str:
 
 
 @cache
-def _built() -> Mapping[str, Mapping[str, Any]]:
+def _build() -> Mapping[str, Mapping[str, Any]]:
     return {row["dataset"]: row for row in realism(Store().rows(), _conditions())}
 
 

@@ -16,8 +16,8 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
-from api.docs import field_pictures
-from api.docs.field_pictures import Shown
+from api.docs import field_plots
+from api.docs.field_plots import PlottedPipeline
 from api.docs.knowledge import knowledge
 from api.docs.markdown import table
 from benchmark.leaderboard.board import board_of
@@ -29,12 +29,12 @@ DIRECTORY = Path(__file__).resolve().parents[2] / "docs"
 _STARTS = Path(__file__).with_name("starts")
 
 #: Whose residuals a category's page shows; of others, the pipeline nearest its bound.
-SHOWN: Mapping[str, Shown] = {
-    "LUT": Shown("ccd-single-aperture", "energy-filter", "lut"),
-    "Non-Physical": Shown("qpd-single-aperture", "voltage-balance", "polynomial-2d"),
-    "Geometric": Shown("ccd-slit", "eigen-analysis", "slit"),
-    "Physics-Informed": Shown("pd-maskless-pyramid", "direct", "assembled-faces"),
-    "Multiplex": Shown("pd-code-dial", "dial-tracks", "periodic"),
+SHOWN: Mapping[str, PlottedPipeline] = {
+    "LUT": PlottedPipeline("ccd-single-aperture", "energy-filter", "lut"),
+    "Non-Physical": PlottedPipeline("qpd-single-aperture", "voltage-balance", "polynomial-2d"),
+    "Geometric": PlottedPipeline("ccd-slit", "eigen-analysis", "slit"),
+    "Physics-Informed": PlottedPipeline("pd-maskless-pyramid", "direct", "assembled-faces"),
+    "Multiplex": PlottedPipeline("pd-code-dial", "dial-tracks", "periodic"),
 }
 
 _FRAME = """\
@@ -63,7 +63,7 @@ def pages(directory: Path = DIRECTORY) -> dict[str, dict[str, Callable[[], str]]
         page = page_of(category)
         makes: dict[str, Callable[[], str]] = {
             "models": partial(models, category),
-            "measured": partial(measured, category),
+            "measured": partial(measure, category),
             "picture": partial(picture, category),
         }
         if any(" + " in model.name for model in _of(category)):
@@ -76,9 +76,9 @@ def pages(directory: Path = DIRECTORY) -> dict[str, dict[str, Callable[[], str]]
 
 def pictures() -> dict[str, Callable[[], str]]:
     """Return what draws each category's picture, by the file's name."""
-    shown = {category: _shown(category) for category in categories()}
+    shown = {category: _show(category) for category in categories()}
     return {
-        _picture_of(category): partial(field_pictures.picture, one)
+        _picture_of(category): partial(field_plots.picture, one)
         for category, one in shown.items()
         if one is not None
     }
@@ -106,7 +106,10 @@ def categories() -> tuple[str, ...]:
     """Return the categories that have an implementation, in the taxonomy's order."""
     known = knowledge()
     order = [known.taxonomy.category("model", v) for v in known.taxonomy.values("model")]
-    there = {_category(i.taxonomy) for i in known.catalogue.listing("model")} - {None, "None"}
+    there = {_category(i.taxonomy) for i in known.catalogue.implementations("model")} - {
+        None,
+        "None",
+    }
     return tuple(category for category in dict.fromkeys(order) if category in there)
 
 
@@ -128,7 +131,7 @@ def models(category: str) -> str:
     )
 
 
-def measured(category: str) -> str:
+def measure(category: str) -> str:
     """Say how near their bounds a category's models come, each where it comes nearest."""
     best: dict[str, list[Mapping[str, Any]]] = {i.name: [] for i in _of(category)}
     for row in _board():
@@ -198,10 +201,10 @@ def gains(category: str) -> str:
 
 def picture(category: str) -> str:
     """Show the residuals of one pipeline over the field, with what they come to."""
-    shown = _shown(category)
+    shown = _show(category)
     if shown is None:
         return "Nothing is published yet."
-    errors = field_pictures.rms_deg(shown)
+    errors = field_plots.rms_deg(shown)
     said = f"`{shown.extractor} + {shown.model}` on `{shown.dataset}`: {errors['as_is']:.2g} deg "
     said += "as published"
     if "perfect" in errors:
@@ -234,7 +237,7 @@ def index() -> str:
 
 
 def _of(category: str) -> list[Any]:
-    listing = knowledge().catalogue.listing("model")
+    listing = knowledge().catalogue.implementations("model")
     return [i for i in listing if _category(i.taxonomy) == category]
 
 
@@ -242,7 +245,7 @@ def _category(value: str) -> str | None:
     return knowledge().taxonomy.category("model", value)
 
 
-def _shown(category: str) -> Shown | None:
+def _show(category: str) -> PlottedPipeline | None:
     if category in SHOWN:
         return SHOWN[category]
     names = {i.name for i in _of(category)}
@@ -250,7 +253,7 @@ def _shown(category: str) -> Shown | None:
     if not scored:
         return None
     nearest = min(scored, key=lambda row: row["over_bound"])
-    return Shown(nearest["dataset"], nearest["extractor"], nearest["model"])
+    return PlottedPipeline(nearest["dataset"], nearest["extractor"], nearest["model"])
 
 
 @cache

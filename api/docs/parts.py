@@ -28,7 +28,7 @@ __all__ = [
     "extractors",
     "findings",
     "http_examples",
-    "missing",
+    "missing_implementations",
     "models",
     "resolutions",
 ]
@@ -45,7 +45,7 @@ def extractors() -> str:
             ", ".join(i.studies),
             ", ".join(map(labels.mention, i.labels)),
         )
-        for i in knowledge().catalogue.listing("extractor")
+        for i in knowledge().catalogue.implementations("extractor")
     ]
     return _table(("name", "taxonomy", "what it does", "reads → gives", "studies", "survey"), rows)
 
@@ -61,12 +61,12 @@ def models() -> str:
             ", ".join(i.studies),
             ", ".join(map(labels.mention, i.labels)),
         )
-        for i in knowledge().catalogue.listing("model")
+        for i in knowledge().catalogue.implementations("model")
     ]
     return _table(("name", "taxonomy", "what it does", "reads", "studies", "survey"), rows)
 
 
-def missing() -> str:
+def missing_implementations() -> str:
     """List the taxonomy's values that nothing implements, with the studies that wait for them."""
     known = knowledge()
     rows = []
@@ -113,7 +113,7 @@ def findings() -> str:
             finding.statement if clause.clause == 1 else "",
             f"{clause.given or 'all studies'} → {clause.expects} ({clause.kind})",
             clause.verdict,
-            _ranked(clause.ranking),
+            _rank(clause.ranking),
             clause.settled_by,
         )
         for finding in report.findings
@@ -241,7 +241,7 @@ def _by_rule(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
         yield part, rule, ", ".join(keys)
 
 
-def _ranked(ranking: Sequence[tuple[str, int]]) -> str:
+def _rank(ranking: Sequence[tuple[str, int]]) -> str:
     """Write the counts of a finding, the rarest of many left out."""
     shown = ", ".join(f"{value} {count}" for value, count in ranking[:_COUNTS_SHOWN])
     more = len(ranking) - _COUNTS_SHOWN
@@ -250,13 +250,13 @@ def _ranked(ranking: Sequence[tuple[str, int]]) -> str:
 
 def _card(card: Any) -> str:
     rows = [
-        (condition, _number(card["bounds"].get(condition)), labels.named(setup["description"]))
+        (condition, _number(card["bounds"].get(condition)), labels.label_of(setup["description"]))
         for condition, setup in card["setups"].items()
     ]
     follows = ", ".join(card["follows"]) or "no study"
     return (
         f"### {card['name']}\n\n"
-        f"{labels.named(card['description'])}\n\n"
+        f"{labels.label_of(card['description'])}\n\n"
         f"Version {card['version']}; {card['detector']}, {card['mask']}; gives "
         f"{card['observation']}; follows {follows}.\n\n"
         + _table(("condition", "bound (rms, deg)", "what differs"), rows)

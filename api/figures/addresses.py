@@ -57,7 +57,9 @@ class Addresses:
         wanted = dict(self.where)
         for level, value in given.items():
             base = attribute_of(level)
-            implied = [v for v in taxonomy.values(base) if taxonomy.derived(level, v) == value]
+            implied = [
+                v for v in taxonomy.values(base) if taxonomy.derived_values(level, v) == value
+            ]
             allowed = wanted.get(base)
             wanted[base] = [v for v in implied if allowed is None or v in allowed]
         return wanted

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from api.figures import svg
-from api.figures.lettering import line_height, text_width, wrapped
+from api.figures.lettering import line_height, text_width, wrap
 from api.figures.svg import BODY, SMALL
 
 UPRIGHT = 200.0  # height of the highest bar, px
@@ -70,7 +70,7 @@ def upright_bars(bars: Sequence[Bar], top: float, width: float) -> tuple[str, fl
     return "".join(shapes + letters), ground + 4 + line_height(size)
 
 
-def lying_bars(bars: Sequence[Bar], top: float, width: float) -> tuple[str, float]:
+def horizontal_bars(bars: Sequence[Bar], top: float, width: float) -> tuple[str, float]:
     """Return lying bars from height `top` on, and the height below them.
 
     Labels stand left of the bars, or above them where they would take half of the width.
@@ -86,7 +86,7 @@ def lying_bars(bars: Sequence[Bar], top: float, width: float) -> tuple[str, floa
     y = top
     for bar in bars:
         if above:
-            lines = wrapped(bar.label, width, size, most=3)
+            lines = wrap(bar.label, width, size, most=3)
             letters.append(svg.text(0, y + len(lines) * line_height(size) / 2, lines, size=size))
             y += len(lines) * line_height(size) + 1
         step = THICKNESS + (8 if above else 5)

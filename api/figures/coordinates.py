@@ -9,11 +9,11 @@ from typing import Any
 from api import columns as table_columns
 from api.figures import wording
 from api.figures.addresses import Addresses
-from api.figures.coordinates_drawing import Axis, Polyline, Tick, draw_coordinates
+from api.figures.coordinates_svg import Axis, Polyline, Tick, draw_coordinates
 from api.figures.figure import Entry, Figure
 from registry.flows import LeftOut, Where, allowed_values, flows
 from registry.studies import Facts, Study
-from survey_data.reported import QUANTITIES, UNSPECIFIED, reported
+from survey_data.reported import QUANTITIES, UNSPECIFIED, reported_accuracies
 
 NAME = "coordinates"
 TITLE = "Performance in parallel coordinates"
@@ -44,7 +44,7 @@ def coordinates_figure(facts: Facts, addresses: Addresses, where: Where) -> Figu
     ]
     classes = [name for name in _COLOURS if any(row["accuracy"] == name for row in rows)]
     entries = [
-        Entry(_COLOURS[name], wording.named(facts.taxonomy, "accuracy", name))
+        Entry(_COLOURS[name], wording.value_name(facts.taxonomy, "accuracy", name))
         if name
         else Entry(_COLOURS[None], "class of accuracy not known")
         for name in sorted(classes, key=lambda name: (name is None, list(_COLOURS).index(name)))
@@ -71,13 +71,13 @@ def _number(study: Study, name: str) -> float | None:
     """Return what a study states as an axis shows it: an accuracy as the RMS of its kind."""
     if name == "fov_deg":
         return study.number(name)
-    accuracy = study.reported("accuracy")
+    accuracy = study.report("accuracy")
     return None if accuracy is None else accuracy.rms_deg
 
 
-def _reported(study: Study) -> dict[str, Any]:
+def _report(study: Study) -> dict[str, Any]:
     """Return accuracy and precision as printed, each with its kind; None is unknown."""
-    found = {quantity: study.reported(quantity) for quantity in QUANTITIES}
+    found = {quantity: study.report(quantity) for quantity in QUANTITIES}
     return {
         name: value
         for quantity, one in found.items()
@@ -106,7 +106,7 @@ def _sensors(study: Study, facts: Facts, where: Where) -> list[dict[str, Any]]:
             "detector": detector,
             "mask": mask,
             **{name: _number(study, name) for name in NUMBERS},
-            **_reported(study),
+            **_report(study),
             "accuracy": next(iter(study.of("accuracy")), None),
             "studies": [study.key],
         }
@@ -124,8 +124,8 @@ def _axes(rows: Sequence[dict[str, Any]], facts: Facts) -> tuple[Axis, ...]:
     worst, best = _decades(known)
     return (
         Axis("year", "Year", ticks=tuple(Tick(year, str(year)) for year in spaced)),
-        _named(rows, "detector", facts),
-        _named(rows, "mask", facts),
+        _name_of(rows, "detector", facts),
+        _name_of(rows, "mask", facts),
         Axis(
             "fov_deg",
             "Field of view",
@@ -148,27 +148,29 @@ def _decades(values: Sequence[float]) -> tuple[int, int]:
     return max(greatest, least + 1), least
 
 
-def _named(rows: Sequence[dict[str, Any]], level: str, facts: Facts) -> Axis:
+def _name_of(rows: Sequence[dict[str, Any]], level: str, facts: Facts) -> Axis:
     """Return an axis of names: those that occur, the first of the taxonomy on top."""
     met = {row[level] for row in rows}
     values = [value for value in facts.taxonomy.values(level) if value in met]
-    ticks = tuple(Tick(value, wording.shown(level, value)) for value in reversed(values))
+    ticks = tuple(Tick(value, wording.display_name(level, value)) for value in reversed(values))
     return Axis(level, wording.LEVELS[level], ticks=ticks, named=True)
 
 
 def _title(row: dict[str, Any], facts: Facts) -> str:
     parts = [str(row["year"])] if row["year"] else []
-    parts += [wording.shown(level, row[level]) for level in ("detector", "mask") if row[level]]
+    parts += [
+        wording.display_name(level, row[level]) for level in ("detector", "mask") if row[level]
+    ]
     fov = row["fov_deg"]
     parts.append("field of view not known" if fov is None else f"field of view {fov:g}°")
     figures = [
-        reported(quantity, row[f"{quantity}_deg"], row[f"{quantity}_kind"])
+        reported_accuracies(quantity, row[f"{quantity}_deg"], row[f"{quantity}_kind"])
         for quantity in QUANTITIES
         if row[f"{quantity}_deg"] is not None
     ]
     parts += [f"{figure.label} {figure.value_deg:g}°" for figure in figures]
     if row["accuracy_deg"] is None and row["accuracy"]:
-        name = wording.spelt(facts.taxonomy, "accuracy", row["accuracy"])
+        name = wording.value_label(facts.taxonomy, "accuracy", row["accuracy"])
         parts.append(f"accuracy class {name}")
     elif not figures:
         parts.append("accuracy not known")
@@ -182,7 +184,7 @@ def _text(studies: Sequence[Study], rows: Sequence[dict[str, Any]]) -> tuple[str
     accuracies, fields = (len(known[name]) for name in reversed(NUMBERS))
     numbers = f"the accuracy of {accuracies}, the field of view of {fields}, both of {both}"
     said = [f"{sensors}; known as numbers are {numbers} studies."]
-    told = [(study, one) for study in studies if (one := study.reported("accuracy")) is not None]
+    told = [(study, one) for study in studies if (one := study.report("accuracy")) is not None]
     stated = [(s, one) for s, one in told if one.statistic.kind != UNSPECIFIED]
     if stated:
         study, one = min(stated, key=lambda pair: pair[1].rms_deg)

@@ -10,7 +10,7 @@ from api import columns as table_columns
 from api.figures import wording
 from api.figures.addresses import Addresses
 from api.figures.figure import Figure, in_words
-from api.figures.sankey_drawing import Mark, SankeyMarks, draw_sankey
+from api.figures.sankey_svg import Mark, SankeyMarks, draw_sankey
 from registry.flows import Flows, Node, Where, flows
 from registry.studies import Facts
 
@@ -80,7 +80,7 @@ def flow_figure(name: str, facts: Facts, addresses: Addresses, where: Where) -> 
     rows: list[dict[str, object]] = []
     marks: dict[str, Mark] = {}
     for node in found.nodes:
-        said = wording.spelt(taxonomy, node.level, node.value)
+        said = wording.value_label(taxonomy, node.level, node.value)
         title = f"{wording.LEVELS[node.level]} {said}: {wording.studies(node.count)}"
         href = addresses.of(node.studies, {node.level: node.value}, len(rows))
         marks[node.id] = Mark(title, href)
@@ -88,7 +88,7 @@ def flow_figure(name: str, facts: Facts, addresses: Addresses, where: Where) -> 
     bands: dict[tuple[str, str], Mark] = {}
     for link in found.links:
         source, target = nodes[link.source], nodes[link.target]
-        ends = [wording.shown(end.level, end.value) for end in (source, target)]
+        ends = [wording.display_name(end.level, end.value) for end in (source, target)]
         title = f"{ends[0]} → {ends[1]}: {wording.studies(link.value)}"
         given = {source.level: source.value, target.level: target.value}
         href = addresses.of(link.studies, given, len(rows))
@@ -103,7 +103,7 @@ def flow_figure(name: str, facts: Facts, addresses: Addresses, where: Where) -> 
         columns=columns,
         values={(link.source, link.target): link.value for link in found.links},
         labels={
-            node.id: (wording.shown(node.level, node.value), wording.amount(node.count))
+            node.id: (wording.display_name(node.level, node.value), wording.amount(node.count))
             for node in found.nodes
         },
         colours={
@@ -146,12 +146,12 @@ def _text(found: Flows, facts: Facts) -> tuple[str, ...]:
     heads = [wording.LEVELS[level].lower() for level in found.levels]
     total = wording.studies(len(found.studies))
     wide = "a band is as wide as the studies that have both values"
-    said = [f"Flow of {total} through {wording.listed(heads)}, left to right; {wide}."]
+    said = [f"Flow of {total} through {wording.join_words(heads)}, left to right; {wide}."]
     for level in found.levels:
         nodes = [node for node in found.nodes if node.level == level]
         if nodes:
             most = max(nodes, key=lambda node: node.count)
-            value = wording.spelt(facts.taxonomy, level, most.value)
+            value = wording.value_label(facts.taxonomy, level, most.value)
             among = wording.plural(len(nodes), "value", "values")
             said.append(
                 f"Most frequent {wording.LEVELS[level].lower()}: {value}, "
@@ -163,7 +163,7 @@ def _text(found: Flows, facts: Facts) -> tuple[str, ...]:
         if links:
             widest = max(links, key=lambda link: link.value)
             ends = [
-                wording.shown(values[end].level, values[end].value)
+                wording.display_name(values[end].level, values[end].value)
                 for end in (widest.source, widest.target)
             ]
             said.append(

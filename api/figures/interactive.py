@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from api.figures import coordinates, matrix, publications, sunburst
 from api.figures.figure import Figure, Row
-from api.figures.wording import shown
+from api.figures.wording import display_name
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -43,7 +43,7 @@ def _sankey(rows: tuple[Row, ...]) -> list[dict[str, Any]]:
         {
             "type": "sankey",
             "node": {
-                "label": [shown(row["level"], row["value"]) for row in nodes],
+                "label": [display_name(row["level"], row["value"]) for row in nodes],
                 "customdata": [row["name"] for row in nodes],
                 "hovertemplate": "%{customdata}: %{value}<extra></extra>",
             },

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from api.figures import svg
 from api.figures.figure import Entry
-from api.figures.lettering import line_height, text_width, wrapped
+from api.figures.lettering import line_height, text_width, wrap
 from api.figures.svg import SMALL
 
 SWATCH = 10.0
@@ -21,7 +21,7 @@ def legend(entries: Sequence[Entry], top: float, width: float) -> tuple[str, flo
     x, y, low = 0.0, top, top
     room = width - SWATCH - _AFTER
     for entry in entries:
-        lines = wrapped(entry.text, room, SMALL, most=3)
+        lines = wrap(entry.text, room, SMALL, most=3)
         taken = SWATCH + _AFTER + max(text_width(line, SMALL) for line in lines)
         if x and x + taken > width:
             x, y = 0.0, low

@@ -48,7 +48,7 @@ def line_height(size: float) -> float:
     return LINE * size
 
 
-def shortened(text: str, width: float, size: float, *, bold: bool = False) -> str:
+def shorten(text: str, width: float, size: float, *, bold: bool = False) -> str:
     """Return `text`, its end replaced by an ellipsis where it is wider than `width` pixels."""
     if text_width(text, size, bold=bold) <= width:
         return text
@@ -58,7 +58,7 @@ def shortened(text: str, width: float, size: float, *, bold: bool = False) -> st
     return kept.rstrip() + ELLIPSIS
 
 
-def wrapped(
+def wrap(
     text: str, width: float, size: float, most: int = 2, *, bold: bool = False
 ) -> tuple[str, ...]:
     """Return `text` in at most `most` lines of at most `width` pixels, broken between words.
@@ -71,7 +71,7 @@ def wrapped(
         line = words.pop(0)
         while words and text_width(f"{line} {words[0]}", size, bold=bold) <= width:
             line = f"{line} {words.pop(0)}"
-        lines.append(shortened(line, width, size, bold=bold))
+        lines.append(shorten(line, width, size, bold=bold))
     if words:
-        lines.append(shortened(" ".join(words), width, size, bold=bold))
+        lines.append(shorten(" ".join(words), width, size, bold=bold))
     return tuple(lines) or ("",)

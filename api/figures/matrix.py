@@ -13,9 +13,9 @@ from api import columns as table_columns
 from api.figures import wording
 from api.figures.addresses import Addresses
 from api.figures.figure import Entry, Figure, in_words
-from api.figures.matrix_drawing import Cell, Line, draw_matrix
+from api.figures.matrix_svg import Cell, Line, draw_matrix
 from api.pages.addresses import architecture_page, dataset_page
-from registry.evidence import Evidence, PairEvidence, Run, counted
+from registry.evidence import Evidence, PairEvidence, PipelineRun, count
 from registry.flows import LeftOut, Node, Where, allowed_values, flows
 from registry.possibility import RULE, Value
 from registry.studies import Facts
@@ -86,10 +86,10 @@ def matrix_figure(
                 {
                     "row_level": rows,
                     "row": row,
-                    "row_name": wording.named(taxonomy, rows, row),
+                    "row_name": wording.value_name(taxonomy, rows, row),
                     "column_level": columns,
                     "column": column,
-                    "column_name": wording.named(taxonomy, columns, column),
+                    "column_name": wording.value_name(taxonomy, columns, column),
                     "state": known.state,
                     "count": len(keys),
                     "studies": list(keys),
@@ -115,7 +115,7 @@ def matrix_figure(
             lines[rows], lines[columns], cells, heads, _legend(table), width=width
         ),
         options={"rows": rows, "columns": columns},
-        counts=counted(row["state"] for row in table),
+        counts=count(row["state"] for row in table),
     )
 
 
@@ -124,7 +124,7 @@ def _told(pair: tuple[Value, Value], known: PairEvidence) -> dict[str, Any]:
     best = known.best
     command = leads_to = ""
     if best is not None:
-        command = Run(best.dataset, best.extractor, best.model).command
+        command = PipelineRun(best.dataset, best.extractor, best.model).command
         sensor = dict(pair)
         leads_to = dataset_page(best.dataset)
         if sensor.keys() == {"detector", "mask"}:
@@ -151,7 +151,7 @@ def _told(pair: tuple[Value, Value], known: PairEvidence) -> dict[str, Any]:
 
 def _title(pair: tuple[Value, Value], count: int, known: PairEvidence) -> str:
     """Return what is said of a pair's cell where it is pointed at."""
-    said = " × ".join(wording.shown(level, value) for level, value in pair)
+    said = " × ".join(wording.display_name(level, value) for level, value in pair)
     parts = [wording.studies(count) if count else "no study"]
     if known.pipelines:
         parts.append(f"{wording.plural(known.pipelines, 'pipeline', 'pipelines')} measured here")
@@ -166,7 +166,7 @@ def _title(pair: tuple[Value, Value], count: int, known: PairEvidence) -> str:
 
 def _legend(table: Sequence[Mapping[str, Any]]) -> tuple[Entry, ...]:
     """Return the states, each with its sign in the drawing and the number of pairs."""
-    counts = counted(row["state"] for row in table)
+    counts = count(row["state"] for row in table)
     without = sum(row["state"] == "measured" and not row["count"] for row in table)
     words = {
         "measured": f"• measured here ({without} of them without a study)",
@@ -186,16 +186,16 @@ def _values(taxonomy: Taxonomy, level: str, where: Where) -> Sequence[str]:
     allowed = allowed_values(where, taxonomy).get(base)
     if allowed is None:
         return taxonomy.values(level)
-    left = {taxonomy.derived(level, value) for value in allowed}
+    left = {taxonomy.derived_values(level, value) for value in allowed}
     return [value for value in taxonomy.values(level) if value in left]
 
 
 def _line(taxonomy: Taxonomy, level: str, value: str, nodes: Mapping[str, Node]) -> Line:
     node = nodes.get(f"{level}:{value}")
     count = 0 if node is None else len(node.studies)
-    said = wording.spelt(taxonomy, level, value)
+    said = wording.value_label(taxonomy, level, value)
     title = f"{wording.LEVELS[level]} {said}: {wording.studies(count) if count else 'no study'}"
-    return Line(value, wording.shown(level, value), count, title)
+    return Line(value, wording.display_name(level, value), count, title)
 
 
 def _text(
@@ -205,7 +205,7 @@ def _text(
     heads: tuple[str, str],
     left_out: Sequence[LeftOut],
 ) -> tuple[str, ...]:
-    counts = counted(row["state"] for row in table)
+    counts = count(row["state"] for row in table)
     without = sum(row["state"] == "measured" and not row["count"] for row in table)
     fullest = max(table, key=lambda row: row["count"], default=None)
     size = f"{heads[0]} ({len(rows)} values) by {heads[1].lower()} ({len(columns)} values)"
@@ -217,13 +217,14 @@ def _text(
     said = [f"{size}, {len(table)} pairs: {states}."]
     if fullest is not None and fullest["count"]:
         pair = " with ".join(
-            wording.shown(fullest[f"{side}_level"], fullest[side]) for side in ("row", "column")
+            wording.display_name(fullest[f"{side}_level"], fullest[side])
+            for side in ("row", "column")
         )
         said.append(f"Most studied: {pair}, {wording.studies(fullest['count'])}.")
     for head, lines in zip(heads, (rows, columns), strict=True):
         unused = [line.label for line in lines if not line.count]
         if unused:
-            said.append(f"{head} without any study: {wording.listed(unused)}.")
+            said.append(f"{head} without any study: {wording.join_words(unused)}.")
     if counts["impossible"]:
         said.append(RULE)
     missing = in_words(left_out, wording.LEVELS)

@@ -41,7 +41,7 @@ def crossings(columns: Columns, links: Links) -> float:
     return total
 
 
-def ordered(
+def order(
     columns: Columns, links: Links, pinned: Collection[int] = ()
 ) -> tuple[tuple[str, ...], ...]:
     """Return the columns with their nodes in an order of few crossings.
@@ -60,14 +60,14 @@ def ordered(
         into.setdefault(target, []).append((source, value))
     for sweep in range(SWEEPS):
         forth = sweep % 2 == 0
-        current = _swept(current, into if forth else out, pinned, forth=forth)
+        current = _sweep(current, into if forth else out, pinned, forth=forth)
         found = crossings(current, links)
         if found < fewest:
             best, fewest = current, found
     return best
 
 
-def _swept(
+def _sweep(
     columns: tuple[tuple[str, ...], ...],
     linked: Mapping[str, Sequence[tuple[str, float]]],
     pinned: Collection[int],

@@ -10,7 +10,7 @@ from typing import Any
 from api import columns as table_columns
 from api.figures import svg, wording
 from api.figures.addresses import Addresses
-from api.figures.bars import Bar, Part, lying_bars, upright_bars
+from api.figures.bars import Bar, Part, horizontal_bars, upright_bars
 from api.figures.figure import Entry, Figure
 from api.figures.legend import legend
 from api.figures.lettering import line_height
@@ -139,23 +139,21 @@ def _venue_bars(
     unknown = of.pop("", [])
     several = sorted((v for v in of if len(of[v]) > 1), key=lambda v: (-len(of[v]), v))
     single = sorted(v for v in of if len(of[v]) == 1)
-    bars = [
-        _stacked(venue, of[venue], periods, addresses=addresses, rows=rows) for venue in several
-    ]
+    bars = [_stack(venue, of[venue], periods, addresses=addresses, rows=rows) for venue in several]
     others = []
     if single:
         label = wording.plural(len(single), "venue has one study", "venues have one study each")
         others.append(Part(len(single), "", label, f"{addresses.page}#row-{len(rows)}"))
         for venue in single:
-            _stacked(venue, of[venue], periods, addresses=addresses, rows=rows)
+            _stack(venue, of[venue], periods, addresses=addresses, rows=rows)
     if unknown:
         label = f"The venue of {wording.plural(len(unknown), 'study', 'studies')} is not known"
         others.append(Part(len(unknown), "", label, f"{addresses.page}#row-{len(rows)}"))
-        _stacked("", unknown, periods, addresses=addresses, rows=rows)
+        _stack("", unknown, periods, addresses=addresses, rows=rows)
     return bars, others
 
 
-def _stacked(
+def _stack(
     venue: str,
     studies: Sequence[Study],
     periods: Mapping[tuple[int, int], str],
@@ -200,16 +198,16 @@ def _draw(
     shapes = [svg.text(0, 12, "Studies per year", "heading", size=size, bold=True)]
     drawn, y = legend(by_kind, 26, width)
     shapes.append(drawn)
-    drawn, y = upright_bars(years, y + 8, width) or lying_bars(years, y + 8, width)
+    drawn, y = upright_bars(years, y + 8, width) or horizontal_bars(years, y + 8, width)
     shapes.append(drawn)
     y += 34
     shapes.append(svg.text(0, y, "Studies per venue", "heading", size=size, bold=True))
     drawn, y = legend(by_period, y + 14, width)
     shapes.append(drawn)
-    drawn, y = lying_bars(venues, y + 8, width)
+    drawn, y = horizontal_bars(venues, y + 8, width)
     shapes.append(drawn)
     for said in others:
-        lines = svg.fitted(said.title, width, size)
+        lines = svg.fit(said.title, width, size)
         half = len(lines) * line_height(size) / 2
         written = svg.text(0, y + half + 4, lines, "quiet", size=size)
         shapes.append(svg.mark(said.title, said.href, written))
@@ -226,7 +224,7 @@ def _text(
     said = [
         f"{wording.studies(len(studies))}, {years[0].label} to {years[-1].label}.",
         "Most in "
-        + wording.listed([f"{bar.label} ({bar.count})" for bar in most if bar.count])
+        + wording.join_words([f"{bar.label} ({bar.count})" for bar in most if bar.count])
         + ".",
     ]
     venues: dict[str, int] = {}

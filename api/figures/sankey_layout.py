@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from api.figures.lettering import line_height, text_width, wrapped
+from api.figures.lettering import line_height, text_width, wrap
 from api.figures.ordering import Links
 from api.figures.svg import BODY, SMALL
 
@@ -68,7 +68,7 @@ class PlacedLink:
 
 
 @dataclass(frozen=True)
-class Heading:
+class ColumnHeading:
     """Heading of a column."""
 
     x: float
@@ -84,7 +84,7 @@ class Layout:
     height: float
     nodes: tuple[PlacedNode, ...]
     links: tuple[PlacedLink, ...]
-    headings: tuple[Heading, ...]
+    headings: tuple[ColumnHeading, ...]
 
 
 @dataclass(frozen=True)
@@ -125,25 +125,25 @@ def sankey_layout(
     widest = min(190.0, (width - LEAST_FLOW - 2 * (NODE_WIDTH + LABEL_GAP)) / 2)
     written = {node: _label(*labels[node], widest, size) for column in columns for node in column}
     titled = NODE_WIDTH + LABEL_GAP + widest
-    heads = tuple(wrapped(text, titled, size, 1, bold=True)[0] for text in headings)
+    heads = tuple(wrap(text, titled, size, 1, bold=True)[0] for text in headings)
     weights = [_weights(columns, links, at) for at in range(len(columns))]
     fullest = max((sum(column.values()) for column in weights), default=0.0)
     scale = flow_height / fullest if fullest else 0.0
 
     nodes: list[PlacedNode] = []
     bands: list[PlacedLink] = []
-    titles: list[Heading] = []
+    titles: list[ColumnHeading] = []
     top = 0.0
     for first, last in _panels(columns, written, heads, width, size):
         inside = slice(first, last + 1)
         extents = _extents(columns[inside], written, heads[inside], size)
         xs = _spread(extents, width)
-        panel = _stacked(columns[inside], links, written, xs, top=top + HEADING, scale=scale)
+        panel = _stack(columns[inside], links, written, xs, top=top + HEADING, scale=scale)
         nodes += panel
         bands += _bands(columns[inside], links, panel, scale)
         for at, x in enumerate(xs):
             start = x - extents[at].left if at == 0 else x
-            titles.append(Heading(start, top + HEADING / 2, heads[first + at]))
+            titles.append(ColumnHeading(start, top + HEADING / 2, heads[first + at]))
         low = max((_bottom(node) for node in panel), default=top + HEADING)
         top = low + PANEL_GAP
     return Layout(width, top - PANEL_GAP + 4, tuple(nodes), tuple(bands), tuple(titles))
@@ -151,10 +151,10 @@ def sankey_layout(
 
 def _label(name: str, count: str, widest: float, size: float) -> Label:
     """Return a label in at most two lines, the count always whole at its end."""
-    lines = wrapped(f"{name} {count}", widest, size)
+    lines = wrap(f"{name} {count}", widest, size)
     if not lines[-1].endswith(f" {count}") and lines[-1] != count:
         room = widest - text_width(f" {count}", size)
-        lines = wrapped(name, room, size)
+        lines = wrap(name, room, size)
         lines = (*lines[:-1], f"{lines[-1]} {count}")
     width = max(text_width(line, size) for line in lines)
     return Label(lines, count, width, len(lines) * line_height(size))
@@ -230,7 +230,7 @@ def _spread(extents: Sequence[_Extent], width: float) -> list[float]:
     return xs
 
 
-def _stacked(
+def _stack(
     columns: Sequence[Sequence[str]],
     links: Links,
     written: Mapping[str, Label],

@@ -12,7 +12,7 @@ from api import columns as table_columns
 from api.figures import wording
 from api.figures.addresses import Addresses
 from api.figures.figure import Figure
-from api.figures.sunburst_drawing import Sector, draw_sunburst
+from api.figures.sunburst_svg import Sector, draw_sunburst
 from registry.flows import Where, flows
 from registry.studies import Facts
 from registry.taxonomy import NO_IMPLEMENTATION_STATED
@@ -39,8 +39,8 @@ def sunburst_figure(facts: Facts, addresses: Addresses, where: Where) -> Figure:
     leaves = [
         _Leaf(
             (
-                taxonomy.derived("model_category", node.value),
-                taxonomy.derived("calibration", node.value),
+                taxonomy.derived_values("model_category", node.value),
+                taxonomy.derived_values("calibration", node.value),
                 node.value,
             ),
             node.studies,
@@ -57,8 +57,8 @@ def sunburst_figure(facts: Facts, addresses: Addresses, where: Where) -> Figure:
         given = {"model_category": path[0]} if len(path) == 1 else {}
         if len(path) == 3:
             given = {"model": value}
-        said = wording.spelt(taxonomy, level, value)
-        within = f"{wording.shown(LEVELS[0], path[0])}, " if len(path) == 2 else ""
+        said = wording.value_label(taxonomy, level, value)
+        within = f"{wording.display_name(LEVELS[0], path[0])}, " if len(path) == 2 else ""
         memberships = sum(len(leaf.studies) for leaf in inside)
         row = len(rows)
         rows.append(
@@ -66,7 +66,7 @@ def sunburst_figure(facts: Facts, addresses: Addresses, where: Where) -> Figure:
                 "level": level,
                 **dict.fromkeys(LEVELS, ""),
                 **dict(zip(LEVELS, path, strict=False)),
-                "name": wording.named(taxonomy, level, value),
+                "name": wording.value_name(taxonomy, level, value),
                 "count": len(keys),
                 "memberships": memberships,
                 "studies": list(keys),
@@ -77,8 +77,8 @@ def sunburst_figure(facts: Facts, addresses: Addresses, where: Where) -> Figure:
         following = [] if len(path) == 3 else _following(leaves, path)
         inner = [sector(further, colour) for further in following]
         return Sector(
-            label=wording.shown(level, value),
-            name=wording.named(taxonomy, level, value),
+            label=wording.display_name(level, value),
+            name=wording.value_name(taxonomy, level, value),
             count=len(keys),
             size=memberships,
             colour=colour,
@@ -115,7 +115,7 @@ def _following(leaves: list[_Leaf], path: tuple[str, ...]) -> list[tuple[str, ..
 def _text(sectors: tuple[Sector, ...], studies: int) -> tuple[str, ...]:
     parts = [f"{sector.label} {sector.count}" for sector in sectors]
     rings = "in three rings; by category, with the number of different studies"
-    said = [f"Models of {wording.studies(studies)} {rings}: {wording.listed(parts) or 'none'}."]
+    said = [f"Models of {wording.studies(studies)} {rings}: {wording.join_words(parts) or 'none'}."]
     for sector in sectors:
         models = [model for ring in sector.inside for model in ring.inside]
         if models:

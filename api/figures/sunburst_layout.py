@@ -11,7 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from api.figures.lettering import line_height, text_width, wrapped
+from api.figures.lettering import line_height, text_width, wrap
 
 _AIR = 2.0  # px between a label and the edge of its arc
 
@@ -62,8 +62,8 @@ def arc_label(arc: Arc, spellings: Sequence[str], size: float) -> ArcLabel | Non
     """Return the first of the spellings that has room in an arc; None where none has."""
     along = math.degrees(arc.middle) - 90
     for text in spellings:
-        folded = wrapped(text, _widest(text.split(), size), size, most=4)
-        middling = wrapped(text, _widest((text,), size) * 0.6, size)
+        folded = wrap(text, _widest(text.split(), size), size, most=4)
+        middling = wrap(text, _widest((text,), size) * 0.6, size)
         for lines in dict.fromkeys(((text,), middling, folded)):
             if "…" in "".join(lines):
                 continue

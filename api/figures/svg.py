@@ -1,6 +1,6 @@
 """Writing SVG: a canvas of marks that have a title and, mostly, an address behind them.
 
-Colours are classes of `api/page/styles/figures.css`, which stands in the page and in a drawing of
+Colours are classes of `api/static/styles/figures.css`, which stands in the page and in a drawing of
 its own alike; sizes of letters are attributes, so that nothing in a style sheet makes labels meet.
 """
 
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from html import escape
 from typing import Literal
 
-from api.figures.lettering import ASCENT, LINE, line_height, wrapped
+from api.figures.lettering import ASCENT, LINE, line_height, wrap
 
 Anchor = Literal["start", "middle", "end"]
 
@@ -94,9 +94,9 @@ def text(
     return f"<text{shared}>{spans}</text>"
 
 
-def fitted(sentence: str, width: float, size: float = BODY) -> tuple[str, ...]:
+def fit(sentence: str, width: float, size: float = BODY) -> tuple[str, ...]:
     """Return a sentence in the lines that it takes at a width."""
-    return wrapped(sentence, width, size, most=8)
+    return wrap(sentence, width, size, most=8)
 
 
 def _quiet_tail(row: str, tail: str) -> str:

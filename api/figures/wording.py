@@ -20,19 +20,19 @@ LEVELS = {
 """Level -> heading."""
 
 
-def shown(level: str, value: str) -> str:
+def display_name(level: str, value: str) -> str:
     """Return a value as a label writes it."""
     return WITHOUT.get(attribute_of(level), value) if value == NONE else value
 
 
-def named(taxonomy: Taxonomy, level: str, value: str) -> str:
+def value_name(taxonomy: Taxonomy, level: str, value: str) -> str:
     """Return the full name of a value."""
-    return shown(level, value) if value == NONE else taxonomy.name(level, value)
+    return display_name(level, value) if value == NONE else taxonomy.name(level, value)
 
 
-def spelt(taxonomy: Taxonomy, level: str, value: str) -> str:
+def value_label(taxonomy: Taxonomy, level: str, value: str) -> str:
     """Return a value with its name behind it where the name says more: CMOS (…)."""
-    short, full = shown(level, value), named(taxonomy, level, value)
+    short, full = display_name(level, value), value_name(taxonomy, level, value)
     return short if short.casefold() == full.casefold() else f"{short} ({full})"
 
 
@@ -51,7 +51,7 @@ def studies(count: float) -> str:
     return plural(count, "study", "studies")
 
 
-def listed(words: list[str]) -> str:
+def join_words(words: list[str]) -> str:
     """Return words as a sentence lists them: a, b and c."""
     if len(words) < 2:
         return "".join(words)

@@ -58,5 +58,5 @@ def _pages() -> tuple[dict[str, str], dict[str, str]]:
     everywhere = {name: dataset_page(name) for name in datasets.names()}
     everywhere |= {name: claim_page(name) for name in claims()}
     everywhere |= {key: study_page(key) for key in facts("all").studies}
-    in_tables = {one.name: algorithm_page(one.name) for one in catalogue().listing(None)}
+    in_tables = {one.name: algorithm_page(one.name) for one in catalogue().implementations(None)}
     return everywhere, in_tables

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from api.deposit import errors
-from api.deposit.tables import measured_tables
+from api.deposit.deposit_tables import measured_tables
 from api.docs.markdown import table
 from benchmark.results.store import PUBLISHED
 from survey_data.descriptor import descriptor

@@ -33,7 +33,7 @@ def setup(app: Sphinx) -> dict[str, Any]:
     # Requests in the docs have no version line, which the lexer of HTTP asks for.
     app.add_lexer("http", TextLexer)
     app.connect("source-read", _read)
-    app.connect("doctree-read", _named)
+    app.connect("doctree-read", _name_of)
     app.connect("build-finished", _finish)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
 
@@ -101,7 +101,7 @@ def _read(app: Sphinx, page: str, source: list[str]) -> None:  # noqa: ARG001 - 
     source[0] = within(page, source[0]) + (toctrees() if page == ROOT else "")
 
 
-def _named(app: Sphinx, document: nodes.document) -> None:  # noqa: ARG001 - Sphinx's signature
+def _name_of(app: Sphinx, document: nodes.document) -> None:  # noqa: ARG001 - Sphinx's signature
     link_names(document)
 
 

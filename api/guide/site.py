@@ -97,7 +97,7 @@ def digest() -> str:
     return summed.hexdigest()
 
 
-def kept() -> Path | None:
+def cached_site() -> Path | None:
     """Return where the site of these pages is kept, built or not; None where it cannot be built."""
     return None if missing_builders() else working_directory() / "guide" / digest()
 
@@ -190,8 +190,11 @@ def _require_ours(out: Path) -> None:
 
 
 def keep(progress: ProgressCallback = silent) -> list[str]:
-    """Build the site where `kept` says, drop the oldest ones; return the warnings as `build`."""
-    place = kept()
+    """Build the site where `cached_site` says, drop the oldest ones.
+
+    Return the warnings as `build`.
+    """
+    place = cached_site()
     if place is None:
         raise GuideError(f"building the guide needs {', '.join(missing_builders())}: {INSTALL}")
     if place.is_dir():
@@ -235,7 +238,7 @@ def _settings() -> dict[str, Any]:
         "html_theme_options": {"announcement": atlas_links()},
         "html_static_path": [os.fspath(_HERE / "static")],
         "html_css_files": ["guide.css"],
-        "html_favicon": os.fspath(_HERE.parent / "page" / "icon.svg"),
+        "html_favicon": os.fspath(_HERE.parent / "static" / "icon.svg"),
         "html_copy_source": False,
         "html_show_sphinx": False,
         "html_show_copyright": False,

@@ -76,7 +76,7 @@ class Answer(JSONResponse):
         return Representation(bytes(self.body), CONTENT_TYPES[JSON], self.links, digest=self.digest)
 
 
-def listing(
+def list_answer(
     shown: Page[Any],
     items: Sequence[Row],
     columns: Sequence[str],
@@ -187,7 +187,7 @@ class Columns(Response):
         return Representation(bytes(self.body), wanted, headers, compressible=False)
 
 
-class Linked(JSONResponse):
+class LinkDocument(JSONResponse):
     """A document of links, which names addresses whole and so is another at each of a service.
 
     Parameters
@@ -214,7 +214,7 @@ class Linked(JSONResponse):
         return Representation(bytes(self.body), wanted, self.links)
 
 
-class Kept(Protocol):
+class CacheableResponse(Protocol):
     """A response that `AnswerRoute` can keep, and the media types it can be had in."""
 
     offered: ClassVar[tuple[str, ...]]
@@ -244,7 +244,7 @@ def as_asked(made: Representation, wanted: str, request: Request) -> Representat
     if not path.endswith(".csv") and not any(one.startswith("format=") for one in asked):
         asked.append("format=csv")
     asked = [one for one in asked if not one.startswith("safe=")]
-    return made.linked(
+    return made.link(
         f'<{path}?{"&".join([*asked, "safe=true"])}>; rel="alternate"; type="text/csv"; '
         'title="CSV for spreadsheets"'
     )
@@ -271,27 +271,28 @@ class AnswerRoute(StrictRoute):
 
     What is asked by GET is kept by its path, query and media type, and where it names addresses
     whole by that of the service. Facts do not change while the
-    service runs, so nothing that is kept goes stale. The path function returns a `Kept`.
+    service runs, so nothing that is kept goes stale. The path function returns a
+    `CacheableResponse`.
     """
 
     def get_route_handler(self) -> Handler:
         """Return what handles a request."""
         compute = super().get_route_handler()
-        offered = cast("type[Kept]", self.response_class).offered
-        whole = issubclass(cast("type[Kept]", self.response_class), Linked)
+        offered = cast("type[CacheableResponse]", self.response_class).offered
+        whole = issubclass(cast("type[CacheableResponse]", self.response_class), LinkDocument)
 
         async def answer(request: Request) -> Response:
             kept: RepresentationCache = request.app.state.kept
             query: bytes = request.scope["query_string"]
             wanted = wanted_type(query, request.headers.get("accept"), offered)
             if request.method != "GET":
-                posted = cast("Kept", await compute(request))
+                posted = cast("CacheableResponse", await compute(request))
                 told = as_asked(posted.representation(wanted), wanted, request)
                 return told.respond(request, conditional=False)
             asked = (request.scope["path"], query, wanted, str(request.base_url) if whole else "")
             found = kept.get(asked)
             if found is None:
-                made = cast("Kept", await compute(request))
+                made = cast("CacheableResponse", await compute(request))
                 found = as_asked(made.representation(wanted), wanted, request)
                 kept.put(asked, found)
             return found.respond(request)

@@ -8,9 +8,9 @@ from pathlib import Path
 from fastapi import Request, Response
 
 from api.guide import site
-from api.http.page import ALREADY_COMPRESSED, CONTENT_TYPES
 from api.http.problems import Problem, Violation
 from api.http.representations import Representation
+from api.http.static_files import ALREADY_COMPRESSED, CONTENT_TYPES
 
 INDEX = "index.html"
 _UNBUILT = """<!doctype html>
@@ -40,7 +40,7 @@ def respond(request: Request, name: str) -> Response:
     Problem
         404 where the guide has no such file.
     """
-    place = site.kept()
+    place = site.cached_site()
     if place is None:
         return _unavailable(_MISSING.format(install=site.INSTALL))
     if not place.is_dir():

@@ -11,13 +11,13 @@ from functools import cached_property
 import survey_data
 from api.columns import ADVICE
 from api.http.measurements import Measurements
-from api.pictures import Pictures
+from api.previews import Pictures
 from api.search.entries import entries
 from api.search.index import Index
 from files.manifest import manifest_digest
 from registry.catalogue import Catalogue, catalogue
 from registry.evidence import Evidence
-from registry.measured import Measurements as Measured
+from registry.measured_pipelines import Measurements as Measured
 from registry.resolution import Resolution, resolve_all, resolve_later
 from registry.studies import Facts, facts
 from registry.taxonomy import Taxonomy

@@ -13,13 +13,13 @@ from benchmark.datasets.pins import Pin
 from benchmark.leaderboard.board import build
 from benchmark.leaderboard.scope import Studied, studies_of_pipelines
 from benchmark.learning_curves import record as curves
-from benchmark.results import recorded, samples
+from benchmark.results import record_manifest, samples
 from benchmark.results.pipelines import pipelines, standard_benches
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.sweeps.record import swept
 from files import manifest
 from files.reading import read_bytes
-from registry.measured import Measured
+from registry.measured_pipelines import MeasuredPipeline
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -48,7 +48,7 @@ class Measurements:
     @cached_property
     def _store(self) -> Store:
         """The published files, which must be as commands wrote them."""
-        recorded.require_unchanged(self.directory, required=self.directory == PUBLISHED)
+        record_manifest.require_unchanged(self.directory, required=self.directory == PUBLISHED)
         return Store(self.directory)
 
     @cached_property
@@ -96,7 +96,7 @@ class Measurements:
         return times.times_of_code(self.times_directory)
 
     @cached_property
-    def pipelines(self) -> list[Measured]:
+    def pipelines(self) -> list[MeasuredPipeline]:
         """What is measured of every pipeline on every data set, for recommendations."""
         latency = {place: time.latency_us for place, time in self.times.items()}
         return pipelines(self._every_unit, latency, standard_benches(self._store.pins()))
@@ -125,7 +125,7 @@ class Measurements:
     @cached_property
     def curves(self) -> Sequence[Row]:
         """Learning curves of the leaders, by data set and place."""
-        return curves.shown(self._store.directory)
+        return curves.published_curves(self._store.directory)
 
     @cached_property
     def curve_of(self) -> Mapping[tuple[str, ...], Row]:
@@ -257,7 +257,7 @@ class Measurements:
         def read(dataset: str) -> pd.DataFrame:
             directory = self._store.directory
             try:
-                found = samples.read(dataset, directory)
+                found = samples.read_samples(dataset, directory)
             except FileNotFoundError:
                 return pd.DataFrame(columns=list(SAMPLE_ERRORS))
             return found.merge(samples.read_directions(dataset, directory), on="sample", how="left")

@@ -86,7 +86,7 @@ def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> N
             success["content"][CSV] = {"schema": {"type": "string"}}
         else:
             _give_example(success["content"], answer)
-    refused = {str(status): _refused(status, route, example, known) for status in sorted(statuses)}
+    refused = {str(status): _refuse(status, route, example, known) for status in sorted(statuses)}
     same = {"304": NOT_MODIFIED} if "body" not in declared else {}
     operation["responses"] = {"200": success, **same, **refused}
 
@@ -109,7 +109,7 @@ def _give_example(content: dict[str, Any], answer: Answer) -> None:
     """Add what is answered, shortened, and the columns of the table."""
     # Through bytes and back: the example is what travels, NaN as null included.
     whole = json.loads(answer.representation(JSON).body)
-    content[JSON]["example"] = shortened(whole)
+    content[JSON]["example"] = shorten(whole)
     table = answer.representation(CSV).body.decode()
     table = _first_rows(table)
     columns = ", ".join(table.partition("\n")[0].split(","))
@@ -121,15 +121,15 @@ def _give_example(content: dict[str, Any], answer: Answer) -> None:
             content[kind] = {"schema": {"type": "string"}, "example": text}
 
 
-def shortened(value: Any) -> Any:
+def shorten(value: Any) -> Any:
     """Return a document that keeps its shape and loses its length.
 
     Of a list the first item stays, of a text as much as a line holds.
     """
     if isinstance(value, dict):
-        return {name: shortened(member) for name, member in value.items()}
+        return {name: shorten(member) for name, member in value.items()}
     if isinstance(value, list):
-        return [shortened(member) for member in value[:1]]
+        return [shorten(member) for member in value[:1]]
     if isinstance(value, str) and len(value) > LONGEST_TEXT:
         return value[: LONGEST_TEXT - 1] + "…"
     return value
@@ -152,7 +152,7 @@ def _example(route: APIRoute) -> dict[str, Any]:
     return found
 
 
-def _refused(
+def _refuse(
     status: int, route: APIRoute, example: dict[str, Any], known: Knowledge
 ) -> dict[str, Any]:
     """Return a refusal, with an example where a slightly wrong request makes it."""

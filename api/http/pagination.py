@@ -40,7 +40,7 @@ class Page(Generic[Row]):
     link: str | None
 
 
-def narrowed(
+def narrow(
     rows: Iterable[Mapping[str, Any]], query: Question, names: Sequence[str]
 ) -> list[Mapping[str, Any]]:
     """Return the rows that have one of the wanted words of every field that is narrowed."""
@@ -48,7 +48,7 @@ def narrowed(
     return [row for row in rows if all(row[name] in words for name, words in wanted.items())]
 
 
-def ordered(rows: Sequence[Mapping[str, Any]], sort: str | None) -> list[Mapping[str, Any]]:
+def order(rows: Sequence[Mapping[str, Any]], sort: str | None) -> list[Mapping[str, Any]]:
     """Return rows by a column, or from its largest value down with "-" before its name.
 
     Rows without a value (None, NaN, empty text) come last either way; equal ones keep their order.
@@ -79,17 +79,17 @@ def page(rows: Sequence[Row], path: str, query: Paged) -> Page[Row]:
     """
     asked = query.model_dump(exclude_defaults=True)
     filters = {name: value for name, value in asked.items() if name not in SHOWN_BY}
-    bound_to = hashlib.blake2b(f"{path}?{_encoded(filters)}".encode(), digest_size=6).hexdigest()
+    bound_to = hashlib.blake2b(f"{path}?{_encode(filters)}".encode(), digest_size=6).hexdigest()
     start = 0 if query.cursor is None else _offset(query.cursor, bound_to)
     end = start + query.limit
     if end >= len(rows):
         return Page(rows[start:], len(rows), None, None)
     cursor = _cursor(end, bound_to)
-    target = f"{path}?{_encoded({**asked, 'cursor': cursor})}"
+    target = f"{path}?{_encode({**asked, 'cursor': cursor})}"
     return Page(rows[start:end], len(rows), cursor, f'<{target}>; rel="next"')
 
 
-def _encoded(asked: Mapping[str, Any]) -> str:
+def _encode(asked: Mapping[str, Any]) -> str:
     """Return the one query string that means what is asked; lists are sorted already."""
     return urlencode(asked, doseq=True)
 

@@ -86,19 +86,19 @@ def _violation(error: Mapping[str, Any], declared: Mapping[str, Mapping[str, Sch
     place, *where = error["loc"]
     given = error["input"]
     if not where:
-        return Violation(place, _shown(given), "a JSON object")
+        return Violation(place, _show(given), "a JSON object")
     name = where[0]
     schema = declared[place][name]
     if error["type"] == "too_long":
         expected = f"at most {schema['maxItems']} values"
         return Violation(name, f"{len(given)} values", expected)
     if schema["type"] == "array" and len(where) == 1:
-        return Violation(name, _shown(given), f"a list, each item {_expected(schema['items'])}")
+        return Violation(name, _show(given), f"a list, each item {_expected(schema['items'])}")
     if place == "query" and isinstance(given, list):
         return Violation(name, ", ".join(given), "one value, given once")
     valid = schema.get("items", schema)
     near = nearest(given, _words(valid), cutoff=0) if isinstance(given, str) else None
-    return Violation(name, _shown(given), _expected(valid), near)
+    return Violation(name, _show(given), _expected(valid), near)
 
 
 def _words(schema: Schema) -> Sequence[str]:
@@ -123,7 +123,7 @@ def _expected(schema: Schema) -> str:
     return f"text of {schema['minLength']} to {schema['maxLength']} characters"
 
 
-def _shown(value: object) -> str:
+def _show(value: object) -> str:
     """Return a value as the refusal repeats it."""
     match value:
         case str():

@@ -80,7 +80,7 @@ class Representation:
         # A strong validator names bytes, and these are others.
         return {**self._common, "ETag": f'"{self.digest}-gzip"', "Content-Encoding": "gzip"}
 
-    def linked(self, *links: str) -> Representation:
+    def link(self, *links: str) -> Representation:
         """Return the same bytes with further values of the Link header."""
         if not links:
             return self

@@ -89,7 +89,7 @@ class StrictRequest(Request):
             came = f"{length} bytes or more"
             violation = Violation("body", came, f"at most {LARGEST_BODY} bytes")
             raise Problem(413, "content-too-large", errors=[violation])
-        self._read = b"".join(chunks) or self._parsed(b"")  # which FastAPI would take for no body
+        self._read = b"".join(chunks) or self._parse(b"")  # which FastAPI would take for no body
         return self._read
 
     async def json(self) -> Any:
@@ -100,9 +100,9 @@ class StrictRequest(Request):
         Problem
             As `body`, and 400 where it is not JSON.
         """
-        return self._parsed(await self.body())
+        return self._parse(await self.body())
 
-    def _parsed(self, body: bytes) -> Any:
+    def _parse(self, body: bytes) -> Any:
         try:
             return json.loads(
                 body.decode("utf-8"), parse_constant=_refuse_constant, object_pairs_hook=_object

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _DIGITS = {"error_deg": 4, "bound_deg": 5, "sun_x": 7, "sun_y": 7, "sun_z": 7}
 
 
-def chosen(measured: Measurements, dataset: str, query: SampleErrorsQuery) -> pd.DataFrame:
+def choose(measured: Measurements, dataset: str, query: SampleErrorsQuery) -> pd.DataFrame:
     """Return the errors of a data set that a query asks for; no rows where none are published."""
     found = measured.sample_errors(dataset)
     for name in ("extractor", "model"):
@@ -27,13 +27,13 @@ def chosen(measured: Measurements, dataset: str, query: SampleErrorsQuery) -> pd
 def rows_of(errors: pd.DataFrame) -> list[dict[str, Any]]:
     """Return errors as rows of `SAMPLE_ERRORS`, None for NaN."""
     columns = [
-        [_spelt(value, _DIGITS.get(name)) for value in errors[name].tolist()]
+        [_format_value(value, _DIGITS.get(name)) for value in errors[name].tolist()]
         for name in SAMPLE_ERRORS
     ]
     return [dict(zip(SAMPLE_ERRORS, row, strict=True)) for row in zip(*columns, strict=True)]
 
 
-def _spelt(value: Any, digits: int | None) -> Any:
+def _format_value(value: Any, digits: int | None) -> Any:
     if digits is None:
         return value
     return None if value != value else float(f"{value:.{digits}g}")  # noqa: PLR0124 - NaN

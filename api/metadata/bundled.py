@@ -12,7 +12,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from api.deposit.identity import Identity
-from api.metadata.croissant import PARQUET, Described, File, Table, croissant
+from api.metadata.croissant import PARQUET, DatasetDescription, File, Table, croissant
 from api.metadata.served import SUBJECTS, of_dataset, of_record, tables_of_samples
 from benchmark import datasets
 from benchmark.datasets.checksums import contents, sha256
@@ -41,7 +41,7 @@ def documents(bundle: Path, who: Identity, descriptor: Mapping[str, Any]) -> dic
     descriptor : its datapackage.json
     """
     tables = [r for r in descriptor["resources"] if r.get("type") == "table"]
-    facts = Described(
+    facts = DatasetDescription(
         f"{who.title}: facts of the survey",
         "What a survey of sun sensors says of each mapped study, with the evidence of every value.",
         None,
@@ -62,7 +62,7 @@ def _within(resources: Iterable[Mapping[str, Any]], folder: str) -> list[Mapping
 
 
 def _of_tables(
-    bundle: Path, what: Described, who: Identity, resources: Sequence[Mapping[str, Any]]
+    bundle: Path, what: DatasetDescription, who: Identity, resources: Sequence[Mapping[str, Any]]
 ) -> dict[str, Any]:
     files, tables = [], []
     for one in resources:

@@ -158,7 +158,7 @@ class Table:
 
 
 @dataclass(frozen=True)
-class Described:
+class DatasetDescription:
     """What a document says of a data set as a whole.
 
     Attributes
@@ -179,7 +179,7 @@ class Described:
 
 
 def croissant(
-    what: Described, who: Identity, files: Sequence[File], tables: Sequence[Table]
+    what: DatasetDescription, who: Identity, files: Sequence[File], tables: Sequence[Table]
 ) -> dict[str, Any]:
     """Return the metadata of a data set as JSON-LD.
 
@@ -235,7 +235,7 @@ def creator(author: Author) -> dict[str, Any]:
     }
 
 
-def cite_as(what: Described, who: Identity) -> str:
+def cite_as(what: DatasetDescription, who: Identity) -> str:
     """Return a BibTeX entry of a data set of a version of the Atlas."""
     key = "".join(c if c.isalnum() else "-" for c in what.name).strip("-").lower()
     names = " and ".join(f"{{{a.name}}}" if a.name else a.inverted for a in who.authors)

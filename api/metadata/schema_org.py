@@ -11,7 +11,7 @@ from typing import Any
 from api.deposit.citation import Author, persistent
 from api.deposit.identity import Identity
 from api.metadata.served import SUBJECTS
-from api.metadata.signposting import Landing
+from api.metadata.signposting import LandingPage
 from api.metadata.terms import LICENCES, SCHEMA
 from registry.catalogue import Implementation
 
@@ -55,7 +55,7 @@ def atlas(who: Identity, datasets: Iterable[str]) -> Entity:
 
 
 def dataset(
-    card: Mapping[str, Any], who: Identity, landing: Landing, variables: Mapping[str, str]
+    card: Mapping[str, Any], who: Identity, landing: LandingPage, variables: Mapping[str, str]
 ) -> Entity:
     """Return a data set.
 
@@ -88,7 +88,7 @@ def dataset(
     }
 
 
-def record(who: Identity, landing: Landing, digest: str | None) -> Entity:
+def record(who: Identity, landing: LandingPage, digest: str | None) -> Entity:
     """Return the leaderboard; `digest` is the SHA-256 of its manifest."""
     named = {"@type": "PropertyValue", "propertyID": "SHA-256", "value": digest}
     return {
@@ -108,7 +108,7 @@ def record(who: Identity, landing: Landing, digest: str | None) -> Entity:
     }
 
 
-def study(row: Mapping[str, Any], landing: Landing) -> Entity:
+def study(row: Mapping[str, Any], landing: LandingPage) -> Entity:
     """Return a mapped study; what is not known of it is left out.
 
     Parameters
@@ -137,7 +137,7 @@ def study(row: Mapping[str, Any], landing: Landing) -> Entity:
     return {name: value for name, value in given.items() if value not in (None, "", [])}
 
 
-def algorithm(one: Implementation, who: Identity, landing: Landing) -> Entity:
+def algorithm(one: Implementation, who: Identity, landing: LandingPage) -> Entity:
     """Return an implementation."""
     return {
         "@context": CONTEXT,
@@ -167,7 +167,7 @@ def _work(who: Identity) -> Entity:
     }
 
 
-def _terms(who: Identity, landing: Landing) -> Entity:
+def _terms(who: Identity, landing: LandingPage) -> Entity:
     return {
         "url": landing.path,
         **({"license": LICENCES[landing.licence]} if landing.licence else {}),
@@ -191,7 +191,7 @@ def _author(author: Author) -> Entity:
     }
 
 
-def _downloads(landing: Landing) -> Sequence[Entity]:
+def _downloads(landing: LandingPage) -> Sequence[Entity]:
     return [
         {"@type": "DataDownload", "contentUrl": item.target, "encodingFormat": item.media_type}
         for item in landing.items

@@ -9,7 +9,7 @@ from api import columns
 from api.deposit.errors import DIRECTIONS, ERRORS
 from api.deposit.identity import Identity
 from api.dictionary import COLUMNS
-from api.metadata.croissant import PARQUET, Column, Described, File, Table
+from api.metadata.croissant import PARQUET, Column, DatasetDescription, File, Table
 from benchmark.results import samples
 
 CSV = ("text/csv",)
@@ -43,7 +43,7 @@ MEASURED: Mapping[str, str] = {
 }
 
 
-def of_dataset(card: Mapping[str, Any], base: str | None) -> Described:
+def of_dataset(card: Mapping[str, Any], base: str | None) -> DatasetDescription:
     """Return what a data set is.
 
     Parameters
@@ -52,7 +52,7 @@ def of_dataset(card: Mapping[str, Any], base: str | None) -> Described:
     base : address of the service, ending in a slash; None where there is none, as in a bundle
     """
     name = card["name"]
-    return Described(
+    return DatasetDescription(
         f"Sun Sensor Atlas: {name}",
         f"{card['description']} Simulated {card['observation']} of a {card['detector']} detector "
         f"behind a {card['mask']} mask, with the true directions of the Sun and errors of "
@@ -63,9 +63,9 @@ def of_dataset(card: Mapping[str, Any], base: str | None) -> Described:
     )
 
 
-def of_record(who: Identity, base: str | None) -> Described:
+def of_record(who: Identity, base: str | None) -> DatasetDescription:
     """Return what the leaderboard is; parameters as of `of_dataset`."""
-    return Described(
+    return DatasetDescription(
         f"{who.title}: leaderboard",
         "Errors of every pipeline of extractor, compensations and calibration model on simulated "
         "sun sensors, ranked within each data set and condition beside the Cramer-Rao bound.",

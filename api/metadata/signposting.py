@@ -60,7 +60,7 @@ class Link:
 
 
 @dataclass(frozen=True)
-class Landing:
+class LandingPage:
     """A page and what belongs to it.
 
     Attributes
@@ -133,7 +133,7 @@ def headers(links: Sequence[Link]) -> tuple[str, ...]:
     return tuple(link.header for link in links)
 
 
-def landing_of_dataset(name: str, who: Identity, *, sampled: bool) -> Landing:
+def landing_of_dataset(name: str, who: Identity, *, sampled: bool) -> LandingPage:
     """Return the page of a data set.
 
     Parameters
@@ -146,7 +146,7 @@ def landing_of_dataset(name: str, who: Identity, *, sampled: bool) -> Landing:
     at = f"/v1/datasets/{part}"
     parquet = "application/vnd.apache.parquet"
     kinds = ("errors", "directions") if sampled else ()
-    return Landing(
+    return LandingPage(
         f"/datasets/{part}",
         "Dataset",
         "MIT",
@@ -164,10 +164,10 @@ def landing_of_dataset(name: str, who: Identity, *, sampled: bool) -> Landing:
     )
 
 
-def landing_of_record(who: Identity) -> Landing:
+def landing_of_record(who: Identity) -> LandingPage:
     """Return the page of the leaderboard."""
     at = "/v1/leaderboard"
-    return Landing(
+    return LandingPage(
         "/leaderboard",
         "Dataset",
         "MIT",
@@ -182,10 +182,10 @@ def landing_of_record(who: Identity) -> Landing:
     )
 
 
-def landing_of_study(key: str, doi: str | None) -> Landing:
+def landing_of_study(key: str, doi: str | None) -> LandingPage:
     """Return the page of a study; `doi` is its own."""
     part = quote(key, safe="")
-    return Landing(
+    return LandingPage(
         f"/studies/{part}",
         "ScholarlyArticle",
         "CC-BY-4.0",
@@ -200,10 +200,10 @@ def landing_of_study(key: str, doi: str | None) -> Landing:
     )
 
 
-def landing_of_algorithm(name: str, who: Identity) -> Landing:
+def landing_of_algorithm(name: str, who: Identity) -> LandingPage:
     """Return the page of an implementation."""
     part = quote(name, safe="")
-    return Landing(
+    return LandingPage(
         f"/algorithms/{part}",
         "SoftwareSourceCode",
         "MIT",
@@ -213,9 +213,9 @@ def landing_of_algorithm(name: str, who: Identity) -> Landing:
     )
 
 
-def landing_of_atlas(who: Identity) -> Landing:
+def landing_of_atlas(who: Identity) -> LandingPage:
     """Return the home page. Facts and code have licences of their own, so that it names none."""
-    return Landing(
+    return LandingPage(
         "/",
         "DataCatalog",
         None,

@@ -32,7 +32,7 @@ def algorithm_page(name: str) -> str:
 
 def dataset_page(name: str, **asked: str) -> str:
     """Return the address of a data set."""
-    return _asked(f"/datasets/{quote(name, safe='')}", asked)
+    return _ask(f"/datasets/{quote(name, safe='')}", asked)
 
 
 def claim_page(identifier: str) -> str:
@@ -51,7 +51,7 @@ def value_page(attribute: str, value: str) -> str:
         return f"{KINDS[attribute]}/{quote(value, safe='')}"
     if attribute in {"model", "extractor"}:
         return f"/algorithms#{anchor(attribute, value)}"
-    return _asked("/studies", {attribute: value})
+    return _ask("/studies", {attribute: value})
 
 
 def anchor(attribute: str, value: str) -> str:
@@ -70,7 +70,7 @@ def for_spreadsheets(path: str, query: str) -> str:
     return twin(path, "&".join(filter(None, (query, "safe=true"))), ".csv")
 
 
-def _asked(path: str, asked: dict[str, str]) -> str:
+def _ask(path: str, asked: dict[str, str]) -> str:
     return f"{path}?{urlencode(asked)}" if asked else path
 
 

@@ -19,10 +19,10 @@ from api.http.routers import algorithms as service
 from api.metadata import schema_org
 from api.metadata.signposting import landing_of_algorithm
 from api.pages import boards
-from api.pages.charts.lines import Line, LineChart
-from api.pages.methods import told
+from api.pages.methods import docstring_parts
+from api.pages.plots.line_chart import Line, LineChart
 from api.pages.serving import PageRouter, View
-from api.pages.terms import named
+from api.pages.terms import term_name
 from registry.catalogue import Implementation, catalogue
 
 router = PageRouter()
@@ -33,7 +33,7 @@ ROLES = {"extractor": "Feature extractors", "model": "Calibration models"}
 
 
 def _names() -> Sequence[str]:
-    return [implementation.name for implementation in catalogue().listing(None)]
+    return [implementation.name for implementation in catalogue().implementations(None)]
 
 
 Name = Annotated[str, OneOf(_names), Path()]
@@ -43,7 +43,7 @@ Name = Annotated[str, OneOf(_names), Path()]
 async def algorithms(known: Known) -> View:
     """Every implementation by role, family and value of the taxonomy, gaps included."""
     answer = await service.algorithms(known, AlgorithmsQuery.model_validate({"limit": EVERY}))
-    every = known.catalogue.listing(None)
+    every = known.catalogue.implementations(None)
     best = boards.best_of(known)
     groups = [
         {
@@ -63,13 +63,13 @@ async def algorithms(known: Known) -> View:
 
 def _value(role: str, entry: Mapping[str, str], every: Sequence[Implementation]) -> dict[str, Any]:
     found = [i for i in every if i.role == role and i.taxonomy == entry["value"]]
-    return {**entry, "name": named(entry["value"], role), "implementations": found}
+    return {**entry, "name": term_name(entry["value"], role), "implementations": found}
 
 
 @router.page("/algorithms/{name}")
 async def algorithm(known: Known, name: Name) -> View:
     """One implementation: equations, errors on reference features, field, ranks, an example."""
-    about = next(i for i in known.catalogue.listing(None) if i.name == name)
+    about = next(i for i in known.catalogue.implementations(None) if i.name == name)
     places = boards.places_of(known, about.role, name)
     document = {**about.to_dict(), "ranks": places}
     columns = (*Algorithm.model_fields, *boards.COLUMNS)
@@ -85,20 +85,20 @@ async def algorithm(known: Known, name: Name) -> View:
         landing=landing,
         entity=schema_org.algorithm(about, identity(), landing),
         about=about,
-        stages=told(made),
+        stages=docstring_parts(made),
         places=places,
-        swept=_swept(known, name) if about.role == "extractor" else [],
+        swept=_sweep(known, name) if about.role == "extractor" else [],
         field=boards.field_chart(places),
-        assessed=_assessed(known, name),
+        assessed=_assess(known, name),
         relatives=[
             i
-            for i in known.catalogue.listing(None)
+            for i in known.catalogue.implementations(None)
             if i.taxonomy == about.taxonomy and i.role == about.role and i.name != name
         ],
     )
 
 
-def _swept(known: Knowledge, name: str) -> list[tuple[str, LineChart, str]]:
+def _sweep(known: Knowledge, name: str) -> list[tuple[str, LineChart, str]]:
     """Return a chart a sweep and series: the error on reference features with its bound."""
     charts = []
     for sweep, across in SWEPT:
@@ -123,7 +123,7 @@ def _swept(known: Knowledge, name: str) -> list[tuple[str, LineChart, str]]:
     return charts
 
 
-def _assessed(known: Knowledge, name: str) -> list[Mapping[str, Any]]:
+def _assess(known: Knowledge, name: str) -> list[Mapping[str, Any]]:
     """Return what the survey says this method can do, beside what was measured."""
     return [
         {**verdict, "method": method["method"]}

@@ -20,8 +20,8 @@ from api.http.routers import recommendations as service
 from api.metadata import schema_org
 from api.metadata.signposting import landing_of_atlas
 from api.pages.addresses import architecture_page
-from api.pages.charts.scatter import Point, Scatter
 from api.pages.editions import edition_shown
+from api.pages.plots.scatter import Point, Scatter
 from api.pages.serving import PageRouter, View
 from api.pages.study import NAMES
 from registry.requirements import HAZARDS, LIMITS, SETTINGS
@@ -67,7 +67,7 @@ async def answer(known: Known, request: Request) -> View:
     fields = request.query_params.multi_items()
     shown = {name: value for name, value in fields if name in SHOWN}
     try:
-        asked = _asked(fields)
+        asked = _ask(fields)
     except Problem as problem:
         view = View("answer.html", _nothing(), problem=problem.document("/"), **_parts(known))
         view.status_code = problem.status_code
@@ -103,7 +103,7 @@ async def scatter(known: Known, request: Request) -> View:
     """Draw the scatter alone, for the page's script."""
     fields = request.query_params.multi_items()
     across = dict(fields).get("across", "field")
-    told = await service.recommendations(known, _asked(fields))
+    told = await service.recommendations(known, _ask(fields))
     drawn = _scatter(known, told.document, across)
     return View(
         "scatter_alone.html",
@@ -115,7 +115,7 @@ async def scatter(known: Known, request: Request) -> View:
     )
 
 
-def _asked(fields: Sequence[tuple[str, str]]) -> RequirementsQuery:
+def _ask(fields: Sequence[tuple[str, str]]) -> RequirementsQuery:
     """Return the requirements among the fields of a query; Problem where they are none."""
     given: dict[str, Any] = {}
     for name, value in fields:

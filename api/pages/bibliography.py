@@ -26,7 +26,7 @@ FORM = "bibliography.yml"
 """Form of the issue by which a bibliography is sent."""
 
 
-class Missing(Answer):
+class MissingMetadata(Answer):
     """The studies of which something is missing, as BibTeX with blanks to be filled in, too."""
 
     def representation(self, wanted: str) -> Representation:
@@ -57,7 +57,7 @@ async def bibliography(known: Known, _asked: Annotated[None, NO_PARAMETERS] = No
     document = {"items": rows, "total": len(rows), "complete": complete, "missing": counts}
     return View(
         "studies/missing.html",
-        Missing(document, COLUMNS, lambda: rows),
+        MissingMetadata(document, COLUMNS, lambda: rows),
         identities=IDENTITIES,
         form=_form(),
     )

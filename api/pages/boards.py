@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from api.http.knowledge import Knowledge
-from api.pages.charts.lines import Line, LineChart
+from api.pages.plots.line_chart import Line, LineChart
 from benchmark.metrics.rings import RINGS
 
 Row = Mapping[str, Any]

@@ -11,7 +11,7 @@ from api.http.dependencies import Known
 from api.http.models.claims import ClaimsQuery
 from api.http.models.words import ClaimId
 from api.http.routers import claims as service
-from api.pages.charts.lines import Line, LineChart
+from api.pages.plots.line_chart import Line, LineChart
 from api.pages.serving import PageRouter, View
 from benchmark.claims.ledger import tally
 
@@ -53,7 +53,7 @@ async def claim(known: Known, id: Annotated[ClaimId, Path()]) -> View:  # noqa: 
         standings=STANDINGS,
         studies=[key for key in known.facts.studies if key in said],
         datasets=[name for name in known.measurements.presets if _names(text, name)],
-        algorithms=[i.name for i in known.catalogue.listing(None) if _names(text, i.name)],
+        algorithms=[i.name for i in known.catalogue.implementations(None) if _names(text, i.name)],
         before=ids[at - 1] if at else None,
         after=ids[at + 1] if at + 1 < len(ids) else None,
         entry=entries[id],

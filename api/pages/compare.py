@@ -16,8 +16,8 @@ from api.http.models import words
 from api.http.models.parameters import GIVEN, Several, several
 from api.http.models.studies import OfEdition
 from api.http.problems import Problem, Violation
-from api.pages.charts.lines import Line, LineChart
 from api.pages.editions import edition_shown
+from api.pages.plots.line_chart import Line, LineChart
 from api.pages.sensors import best_built
 from api.pages.serving import PageRouter, View
 from benchmark.metrics.score import AVAILABLE
@@ -47,7 +47,7 @@ class CompareQuery(OfEdition):
 @router.page("/compare")
 async def compare(known: Known, query: Annotated[CompareQuery, Query()], request: Request) -> View:
     """Side by side what was asked for; else what can be."""
-    document = _compared(known.of(query.edition), query)
+    document = _compare(known.of(query.edition), query)
     items: list[Mapping[str, Any]] = document["items"]
     pipelines = bool(query.dataset)
     names = [
@@ -74,7 +74,7 @@ async def compare(known: Known, query: Annotated[CompareQuery, Query()], request
     )
 
 
-def _compared(known: Knowledge, query: CompareQuery) -> dict[str, Any]:
+def _compare(known: Knowledge, query: CompareQuery) -> dict[str, Any]:
     """Return the comparison; nothing where fewer than two are named yet."""
     nothing: dict[str, Any] = {"dataset": query.dataset, "condition": None, "items": []}
     try:

@@ -22,8 +22,8 @@ from api.http.routers.metadata import landing_of_dataset
 from api.metadata import schema_org
 from api.metadata.served import MEASURED
 from api.pages import boards
-from api.pages.charts.heat import heat_map
-from api.pages.charts.lines import Line, LineChart
+from api.pages.plots.heat import heat_map
+from api.pages.plots.line_chart import Line, LineChart
 from api.pages.serving import PageRouter, View
 from benchmark.error_budget import sentences
 from benchmark.error_budget.record import RECORD as ERROR_BUDGET
@@ -101,7 +101,7 @@ async def dataset(
         entity=schema_org.dataset(card, identity(), landing, MEASURED),
         condition=condition,
         shown=shown,
-        sampled=samples.is_there(name, known.measurements.directory),
+        sampled=samples.has_samples(name, known.measurements.directory),
         field=_field(board),
         heat=heat_map(every, card["conditions"], condition, WARM),
         curve=_curve(known, name),

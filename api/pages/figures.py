@@ -92,7 +92,9 @@ async def matrix(known: Known, query: Annotated[MatrixQuery, Query()], request: 
     gaps: dict[str, list[dict[str, Any]]] = {}
     for row in found.rows:
         if row["state"] not in ("measured", "studied") or not row["count"]:
-            pair = " × ".join(wording.shown(row[f"{side}_level"], row[side]) for side in _SIDES)
+            pair = " × ".join(
+                wording.display_name(row[f"{side}_level"], row[side]) for side in _SIDES
+            )
             gaps.setdefault(row["state"], []).append({**row, "pair": pair})
     chosen = {"rows": query.rows, "columns": query.columns}
     return _view(known, found, query, request, chosen=chosen, gaps=gaps)
@@ -223,14 +225,14 @@ def _abbreviations(known: Knowledge, found: Figure) -> list[tuple[str, str]]:
         if row.get(level)
     }
     named = {
-        wording.shown(level, value): wording.named(known.taxonomy, level, value)
+        wording.display_name(level, value): wording.value_name(known.taxonomy, level, value)
         for level, value in met
     }
     return sorted((short, name) for short, name in named.items() if short != name)
 
 
 def _document(found: Figure) -> Response:
-    style = (files("api") / "page" / "styles" / "figures.css").read_text(encoding="utf-8")
+    style = (files("api") / "static" / "styles" / "figures.css").read_text(encoding="utf-8")
     # What places a figure in a page says nothing to a drawing of its own.
     drawing = found.drawings["wide"]
     return Response(drawing.document(found.title, found.description, style))
@@ -239,9 +241,9 @@ def _document(found: Figure) -> Response:
 def _flow_cells(row: Row) -> list[Cell]:
     end: Cell = ("To", "–", "")
     if row["next_level"]:
-        shown = wording.shown(row["next_level"], row["next_value"])
+        shown = wording.display_name(row["next_level"], row["next_value"])
         end = ("To", shown, wording.LEVELS[row["next_level"]])
-    start = wording.shown(row["level"], row["value"])
+    start = wording.display_name(row["level"], row["value"])
     return [("Value", start, wording.LEVELS[row["level"]]), end]
 
 
@@ -249,11 +251,11 @@ def _model_cells(row: Row) -> list[Cell]:
     level = row["level"]
     within = row["model_category"] if level != "model_category" else ""
     below = wording.LEVELS[level]
-    shown = wording.shown(level, row[level])
+    shown = wording.display_name(level, row[level])
     return [
         ("Arc", shown, "" if row["name"] == shown else row["name"]),
         ("Ring", below, ""),
-        ("Within", wording.shown("model_category", within) if within else "–", ""),
+        ("Within", wording.display_name("model_category", within) if within else "–", ""),
     ]
 
 
@@ -265,7 +267,11 @@ def _publication_cells(row: Row) -> list[Cell]:
 
 def _sensor_cells(row: Row) -> list[Cell]:
     named = [
-        (wording.LEVELS[level], wording.shown(level, row[level]) if row[level] else NOT_KNOWN, "")
+        (
+            wording.LEVELS[level],
+            wording.display_name(level, row[level]) if row[level] else NOT_KNOWN,
+            "",
+        )
         for level in ("detector", "mask", "accuracy")
     ]
     return [
@@ -284,7 +290,11 @@ def _reported_cell(quantity: str, row: Row) -> Cell:
 
 def _matrix_cells(row: Row) -> list[Cell]:
     pair = [
-        (wording.LEVELS[row[f"{side}_level"]], wording.shown(row[f"{side}_level"], row[side]), "")
+        (
+            wording.LEVELS[row[f"{side}_level"]],
+            wording.display_name(row[f"{side}_level"], row[side]),
+            "",
+        )
         for side in _SIDES
     ]
     measured = wording.plural(row["pipelines"], "pipeline", "pipelines")

@@ -121,11 +121,11 @@ class _Reader:
     def factor(self) -> _Factor:
         token = self.take()
         if token.kind == "number":
-            return self.raised(_Factor(token.text))
+            return self.raise_power(_Factor(token.text))
         if token.text in _DOTS:
             return _Factor(_DOTS[token.text])
         if token.text in _OPEN or token.text == "|":
-            return self.raised(self.group(token.text))
+            return self.raise_power(self.group(token.text))
         if token.kind == "name":
             return self.named(token)
         raise _NoFormulaError
@@ -147,9 +147,9 @@ class _Reader:
             name, token.digits = name + token.digits, ""
         if name == "sqrt" and self.peek() == "(":
             root = self.group(self.take().text)
-            return self.raised(_Factor(rf"\sqrt{{{root.bare}}}"))
-        tex = _spelt(name)
-        below = _spelt(token.digits) if token.digits else ""
+            return self.raise_power(_Factor(rf"\sqrt{{{root.bare}}}"))
+        tex = _format_value(name)
+        below = _format_value(token.digits) if token.digits else ""
         primes = self.primes()
         if self.peek().startswith("_"):
             below = self.below()
@@ -158,22 +158,22 @@ class _Reader:
         up = r"\prime " * primes + above
         tex += (f"_{{{below}}}" if below else "") + (f"^{{{up.strip()}}}" if up else "")
         if name == "sum":
-            return self.summed(tex)
+            return self.add_up(tex)
         # A name and what stands in brackets close to it: a function of that, an entry of a table.
         while self.peek() in {"(", "["} and not self.tokens[self.at].spaced:
             tex = f"{tex} {self.group(self.take().text).tex}"
         return self.factorial(_Factor(tex))
 
-    def summed(self, tex: str) -> _Factor:
+    def add_up(self, tex: str) -> _Factor:
         """Read what a sum is over where that stands in parentheses close to it."""
         if self.peek() != "(" or self.tokens[self.at].spaced:
             return _Factor(tex, sums=True)
         over = self.group(self.take().text)
         last = self.ended() or self.peek() in _BETWEEN or self.peek() == "/"
         plain = over.bare is not None and not re.search(r"(?<!^)[-+=] |\\pm|\\mp", over.bare)
-        return self.raised(_Factor(f"{tex} {over.bare if last and plain else over.tex}"))
+        return self.raise_power(_Factor(f"{tex} {over.bare if last and plain else over.tex}"))
 
-    def raised(self, factor: _Factor) -> _Factor:
+    def raise_power(self, factor: _Factor) -> _Factor:
         above = r"\prime " * self.primes() + self.above()
         if above:
             factor = _Factor(f"{factor.tex}^{{{above.strip()}}}")
@@ -198,7 +198,9 @@ class _Reader:
             sign = re.fullmatch(r"([+-]?)([A-Za-z0-9,]*)([+-]?)", text)
             if sign is None:
                 raise _NoFormulaError
-            names = ", ".join(_spelt(name, below=True) for name in sign[2].split(",") if name)
+            names = ", ".join(
+                _format_value(name, below=True) for name in sign[2].split(",") if name
+            )
             return f"{sign[1]}{names}{sign[3]}"
         if self.peek() not in {"(", "{"}:
             raise _NoFormulaError
@@ -217,7 +219,7 @@ class _Reader:
         token = self.take()
         if token.kind not in {"number", "name"}:
             raise _NoFormulaError
-        tex = _spelt(token.text + token.digits)
+        tex = _format_value(token.text + token.digits)
         if self.peek().startswith("_"):
             tex += f"_{{{self.below()}}}"
         return sign + tex
@@ -306,7 +308,7 @@ def _product(factors: list[_Factor]) -> str:
     return "".join(spaced) + factors[-1].tex
 
 
-def _spelt(name: str, *, below: bool = False) -> str:
+def _format_value(name: str, *, below: bool = False) -> str:
     """Write a name: Greek, a function, letters, or a word."""
     if name in _GREEK:
         return f"\\{name}"

@@ -44,7 +44,7 @@ async def leaderboard(known: Known, query: Annotated[LeaderboardQuery, Query()])
     As CSV: the architectures, with the columns of `/v1/leaderboard/architectures`.
     """
     order = query.order or "error"
-    rows = _ordered(best_built(known), ORDERS[order])
+    rows = _order(best_built(known), ORDERS[order])
     document = {"items": rows, **overview(known.measurements.leaderboard)}
     landing = landing_of_record(identity())
     return View(
@@ -59,7 +59,7 @@ async def leaderboard(known: Known, query: Annotated[LeaderboardQuery, Query()])
     )
 
 
-def _ordered(rows: Sequence[Row], column: str | None) -> list[Row]:
+def _order(rows: Sequence[Row], column: str | None) -> list[Row]:
     """Return rows by a column, those without a number last; as they are where there is none."""
     if column is None:
         return list(rows)

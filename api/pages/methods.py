@@ -13,7 +13,7 @@ from markupsafe import Markup
 from api.mathml import mathml
 from api.pages.addresses import study_page
 from api.pages.formulas import tex
-from api.pages.terms import labelled
+from api.pages.terms import term_label
 from registry.studies import facts
 from survey_data import labels
 
@@ -26,7 +26,7 @@ _LITERAL = re.compile(r"``([^`]+)``([.,;:]?)|`([^`]+)`")
 
 
 @dataclass(frozen=True)
-class Told:
+class DocstringParts:
     """A docstring in parts; each text is paragraphs.
 
     Attributes
@@ -50,13 +50,13 @@ class Told:
 
 
 @cache
-def told(implementation: Any) -> tuple[Told, ...]:
+def docstring_parts(implementation: Any) -> tuple[DocstringParts, ...]:
     """Return what a class, or each stage of a chain, says of itself."""
     stages = getattr(implementation, "stages", (implementation,))
     return tuple(_told(stage) for stage in stages)
 
 
-def _told(cls: Any) -> Told:
+def _told(cls: Any) -> DocstringParts:
     lead, sections = _sections(inspect.getdoc(cls) or "")
     notes = _paragraphs(sections.get("Notes", ""))
     at = next((k for k, text in enumerate(notes) if text.startswith("Implements")), None)
@@ -64,13 +64,13 @@ def _told(cls: Any) -> Told:
     end = next((k for k, text in enumerate(notes) if text.startswith("Shapes")), len(notes))
     equations = notes[at:end] if at is not None else []
     rest = notes[:at] + notes[end:] if at is not None else notes
-    return Told(
+    return DocstringParts(
         name=cls.about.name,
         module=cls.__module__,
         cls=cls.__name__,
-        lead=tuple(map(marked, _paragraphs(lead))),
-        equations=tuple(map(marked, equations)),
-        notes=tuple(map(marked, rest)),
+        lead=tuple(map(mark_up, _paragraphs(lead))),
+        equations=tuple(map(mark_up, equations)),
+        notes=tuple(map(mark_up, rest)),
         parameters=tuple(_parameters(sections.get("Parameters", ""))),
         example=sections.get("Examples", "").strip(),
     )
@@ -85,20 +85,20 @@ def _paragraphs(text: str) -> list[str]:
     return [" ".join(part.split()) for part in re.split(r"\n\s*\n", text.strip()) if part.strip()]
 
 
-def marked(text: str) -> Markup:
+def mark_up(text: str) -> Markup:
     """Return a text of a docstring: formulas typeset, other literals as code, studies linked."""
     parts, at = [], 0
     for found in _LITERAL.finditer(text):
-        parts.append(_linked(text[at : found.start()]))
+        parts.append(_link(text[at : found.start()]))
         literal = found.group(1)
         if literal:
             parts.append(_formula(literal, found[2]))
         elif found[3] in labels.labels():
-            parts.append(labelled(found[3]))
+            parts.append(term_label(found[3]))
         else:
             parts.append(Markup("<code>{}</code>").format(found[3]))
         at = found.end()
-    return Markup("").join([*parts, _linked(text[at:])])
+    return Markup("").join([*parts, _link(text[at:])])
 
 
 def _formula(text: str, stop: str) -> Markup:
@@ -114,15 +114,15 @@ def _formula(text: str, stop: str) -> Markup:
     return Markup('<span class="formula long" tabindex="0">{}{}</span>').format(drawn, stop)
 
 
-def _linked(text: str) -> Markup:
+def _link(text: str) -> Markup:
     """Return a text with links to the studies that it names, and of labels to what they are."""
     studies, parts, at = facts("all").studies, [], 0
     for found in _WORD.finditer(text):
         if found[0] in studies:
             link = Markup('<a href="{}">{}</a>').format(study_page(found[0]), found[0])
-            parts += [labelled(text[at : found.start()]), link]
+            parts += [term_label(text[at : found.start()]), link]
             at = found.end()
-    return Markup("").join([*parts, labelled(text[at:])])
+    return Markup("").join([*parts, term_label(text[at:])])
 
 
 def _parameters(text: str) -> list[tuple[str, str, Markup]]:
@@ -133,4 +133,4 @@ def _parameters(text: str) -> list[tuple[str, str, Markup]]:
             found.append((name, kind, []))
         elif found:
             found[-1][2].append(line.strip())
-    return [(name, kind, marked(" ".join(lines).strip())) for name, kind, lines in found]
+    return [(name, kind, mark_up(" ".join(lines).strip())) for name, kind, lines in found]

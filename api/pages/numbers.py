@@ -46,14 +46,14 @@ def percent(share: float | None) -> str:
     return "100 %" if share == 1 else f"{math.floor(share * 1000) / 10:.1f} %"
 
 
-def counted(count: int, one: str, many: str | None = None) -> str:
+def count_text(count: int, one: str, many: str | None = None) -> str:
     """Return a count with its noun: 1 study, 2 studies."""
     return f"{count} {one if count == 1 else many or one + 's'}"
 
 
-def studied(count: int) -> str:
+def studies_text(count: int) -> str:
     """Return a number of studies in words."""
-    return counted(count, "study", "studies")
+    return count_text(count, "study", "studies")
 
 
 def upfirst(text: str) -> str:
@@ -85,7 +85,18 @@ def kind_said(kind: str) -> str:
 
 
 GIVEN = (
-    *(number, degrees, wide, times, percent, counted, studied, sentence, upfirst, unit_name),
+    *(
+        number,
+        degrees,
+        wide,
+        times,
+        percent,
+        count_text,
+        studies_text,
+        sentence,
+        upfirst,
+        unit_name,
+    ),
     kind_said,
 )
 """What templates are given as filters."""

@@ -9,8 +9,8 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from api.pages import addresses, numbers, terms
-from api.pages.charts.sensors import sensor
-from api.pages.methods import marked
+from api.pages.methods import mark_up
+from api.pages.plots.sensors import sensor
 
 NAVIGATION = (
     ("/", "Answer"),
@@ -41,7 +41,7 @@ def environment() -> Environment:
     made.globals.update(
         navigation=NAVIGATION, sensor=sensor, glossary=terms.glossary(), **vars_of(addresses.GIVEN)
     )
-    made.filters.update(marked=marked, **vars_of(numbers.GIVEN), **vars_of(terms.GIVEN))
+    made.filters.update(marked=mark_up, **vars_of(numbers.GIVEN), **vars_of(terms.GIVEN))
     return made
 
 

@@ -14,7 +14,7 @@ from api.http.negotiation import BIBTEX, CSV, JSON, for_spreadsheets, media_type
 from api.http.problems import Problem
 from api.http.refusals import refusal
 from api.http.representations import Representation, RepresentationCache
-from api.metadata.signposting import Landing, headers
+from api.metadata.signposting import LandingPage, headers
 from api.pages.rendering import render
 
 HTML = "text/html"
@@ -47,7 +47,7 @@ class View(Response):
         told: Answer,
         /,
         *,
-        landing: Landing | None = None,
+        landing: LandingPage | None = None,
         entity: Mapping[str, Any] | None = None,
         **context: Any,
     ) -> None:
@@ -61,10 +61,10 @@ class View(Response):
         """Return the page in a media type; `path` and `query` are what was asked for."""
         if wanted != HTML:
             links = self.landing.links_of_metadata() if self.landing else ()
-            return self.told.representation(wanted).linked(*headers(links))
+            return self.told.representation(wanted).link(*headers(links))
         context = {"told": self.told.document, "path": path, "query": query, **self.context}
         links = self.landing.links() if self.landing else ()
-        return page_bytes(render(self.template, context)).linked(*headers(links))
+        return page_bytes(render(self.template, context)).link(*headers(links))
 
 
 def page_bytes(text: str) -> Representation:
@@ -96,7 +96,7 @@ class PageRoute(StrictRoute):
 
         async def answer(request: Request) -> Response:
             kept: RepresentationCache = request.app.state.kept
-            path, query = request.scope["path"], _filled(request.scope["query_string"])
+            path, query = request.scope["path"], _fill(request.scope["query_string"])
             wanted = twin or media_type(request.headers.get("accept"), OFFERED)
             asked = (path, query, wanted)
             # How a table is written, which is settled here, is no question to a page.
@@ -122,7 +122,7 @@ class PageRoute(StrictRoute):
         return answer
 
 
-def _filled(query: bytes) -> bytes:
+def _fill(query: bytes) -> bytes:
     """Return a query without its empty fields: a form sends those that nobody filled in."""
     return b"&".join(field for field in query.split(b"&") if field.partition(b"=")[2])
 

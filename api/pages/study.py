@@ -98,5 +98,5 @@ async def study(known: Known, key: Annotated[StudyKey, Path()]) -> View:
         claims=claims,
         verdicts={e.claim.id: e.verdict for e in known.measurements.claims.values()},
         datasets=[c for c in known.measurements.cards if key in c["follows"]],
-        algorithms=[i for i in known.catalogue.listing(None) if key in i.studies],
+        algorithms=[i for i in known.catalogue.implementations(None) if key in i.studies],
     )

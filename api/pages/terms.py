@@ -81,7 +81,7 @@ def term(name: str, text: str | None = None) -> Markup:
     return link.format(id=known.id, short=known.short, text=text or name)
 
 
-def coded(text: str, prose: Callable[[str], Markup] = Markup.escape) -> Markup:
+def code_markup(text: str, prose: Callable[[str], Markup] = Markup.escape) -> Markup:
     """Return a text, what stands between backquotes as code and the rest by `prose`."""
     parts, at = [], 0
     for found in _LITERAL.finditer(text):
@@ -91,15 +91,15 @@ def coded(text: str, prose: Callable[[str], Markup] = Markup.escape) -> Markup:
     return Markup("").join([*parts, prose(text[at:])])
 
 
-def explained(text: str) -> Markup:
+def explain_terms(text: str) -> Markup:
     """Return a text, each abbreviation's first place in it with its meaning, literals as code."""
     met: set[str] = set()
-    return coded(text, lambda prose: _explained(prose, met))
+    return code_markup(text, lambda prose: _explain(prose, met))
 
 
-def _explained(text: str, met: set[str]) -> Markup:
+def _explain(text: str, met: set[str]) -> Markup:
     """Return a text with the meanings of abbreviations not `met` before, which it adds there."""
-    text = labels.named(text)
+    text = labels.label_of(text)
     parts: list[Markup] = []
     at = 0
     for found in _abbreviations().finditer(text):
@@ -112,23 +112,26 @@ def _explained(text: str, met: set[str]) -> Markup:
     return Markup("").join([*parts, Markup.escape(text[at:])])
 
 
-def shown(value: str, attribute: str) -> str:
+def display_text(value: str, attribute: str) -> str:
     """Return a value as it is written: the survey's "None" says of what there is none."""
     return WITHOUT.get(attribute, value) if value == NONE else value
 
 
-def named(value: str, attribute: str) -> str:
+def term_name(value: str, attribute: str) -> str:
     """Return the name of a value, which stands for its abbreviation."""
     if value == NONE:
         return WITHOUT.get(attribute, value)
     return facts().taxonomy.name(attribute, value)
 
 
-def named_here(value: str, attribute: str) -> str:
+def local_term_name(value: str, attribute: str) -> str:
     """Return the name of a value where it says more than the value does, else nothing."""
-    if attribute not in ATTRIBUTES or named(value, attribute) in {value, shown(value, attribute)}:
+    if attribute not in ATTRIBUTES or term_name(value, attribute) in {
+        value,
+        display_text(value, attribute),
+    }:
         return ""
-    return named(value, attribute)
+    return term_name(value, attribute)
 
 
 def value(text: str, attribute: str) -> Markup:
@@ -139,10 +142,10 @@ def value(text: str, attribute: str) -> Markup:
         return Markup.escape(text)
     link = Markup('<a class="value" href="{at}" title="{name}">{text}</a>')
     at = value_page(attribute, text)
-    return link.format(at=at, name=named(text, attribute), text=shown(text, attribute))
+    return link.format(at=at, name=term_name(text, attribute), text=display_text(text, attribute))
 
 
-def labelled(text: str) -> Markup:
+def term_label(text: str) -> Markup:
     """Return a text, what each label of the survey's source in it names in the label's place."""
     alone = text in labels.labels()
     parts: list[Markup] = []
@@ -156,7 +159,7 @@ def labelled(text: str) -> Markup:
     return Markup("").join([*parts, Markup.escape(text[at:])])
 
 
-def cited(source: str, key: str = "") -> Markup:
+def cite_study(source: str, key: str = "") -> Markup:
     """Return a source by its name: linked where it has an address, or is a study of ours.
 
     `key` is of the study whose page it stands on, which is not linked to itself.
@@ -169,8 +172,18 @@ def cited(source: str, key: str = "") -> Markup:
         return link.format(found.link, found.name)
     if source in facts().studies:
         return Markup('<a href="{}">{}</a>').format(study_page(source), source)
-    return labelled(source or "–")
+    return term_label(source or "–")
 
 
-GIVEN = (term, coded, explained, shown, named, named_here, value, labelled, cited)
+GIVEN = (
+    term,
+    code_markup,
+    explain_terms,
+    display_text,
+    term_name,
+    local_term_name,
+    value,
+    term_label,
+    cite_study,
+)
 """What templates are given as filters."""

@@ -23,14 +23,14 @@ KINDS = ("study", "algorithm", "dataset", "claim", "attribute", "word")
 """In the order that breaks ties."""
 
 
-class Known(Protocol):
+class EntrySources(Protocol):
     """What entries are made from: `api.http.knowledge.Knowledge`, which imports this module."""
 
     @property
     def facts(self) -> Facts:
         """Studies and taxonomy."""
 
-    def of(self, edition: Choice) -> Known:
+    def of(self, edition: Choice) -> EntrySources:
         """Return the same with the studies of an edition."""
 
     @property
@@ -46,16 +46,16 @@ class Known(Protocol):
         """What is measured."""
 
 
-def entries(known: Known) -> tuple[Entry, ...]:
+def entries(known: EntrySources) -> tuple[Entry, ...]:
     """Return everything that is told, by kind and in the order its lists have."""
     found = (_studies, _algorithms, _datasets, _claims, _attributes, _words)
     return tuple(entry for of_kind in found for entry in of_kind(known))
 
 
-def _studies(known: Known) -> Iterator[Entry]:
+def _studies(known: EntrySources) -> Iterator[Entry]:
     for study in known.of("all").facts.studies.values():
         values = [
-            _named(value, known.taxonomy.name(attribute, value))
+            _name_of(value, known.taxonomy.name(attribute, value))
             for attribute in known.taxonomy.attributes
             for value in study.of(attribute)
         ]
@@ -69,8 +69,8 @@ def _studies(known: Known) -> Iterator[Entry]:
         )
 
 
-def _algorithms(known: Known) -> Iterator[Entry]:
-    for one in known.catalogue.listing():
+def _algorithms(known: EntrySources) -> Iterator[Entry]:
+    for one in known.catalogue.implementations():
         attribute = "extractor" if one.role == "extractor" else "model"
         values = {entry.value: entry.name for entry in known.taxonomy.entries(attribute)}
         yield Entry(
@@ -83,7 +83,7 @@ def _algorithms(known: Known) -> Iterator[Entry]:
         )
 
 
-def _datasets(known: Known) -> Iterator[Entry]:
+def _datasets(known: EntrySources) -> Iterator[Entry]:
     for card in known.measurements.cards:
         detector, mask = str(card["detector"]), str(card["mask"])
         name = known.taxonomy.name
@@ -97,7 +97,7 @@ def _datasets(known: Known) -> Iterator[Entry]:
         )
 
 
-def _claims(known: Known) -> Iterator[Entry]:
+def _claims(known: EntrySources) -> Iterator[Entry]:
     for entry in known.measurements.claims.values():
         said = entry.claim
         yield Entry(
@@ -110,14 +110,14 @@ def _claims(known: Known) -> Iterator[Entry]:
         )
 
 
-def _attributes(_known: Known) -> Iterator[Entry]:
+def _attributes(_known: EntrySources) -> Iterator[Entry]:
     table = survey_data.load().attribute_definitions
     columns = (table[name] for name in ("attribute", "name", "synonyms", "description"))
     for attribute, name, synonyms, description in zip(*columns, strict=True):
         yield Entry("attribute", attribute, name, synonyms, description, "/v1/taxonomy")
 
 
-def _words(known: Known) -> Iterator[Entry]:
+def _words(known: EntrySources) -> Iterator[Entry]:
     meanings = {(one.kind, one.term): one.meaning for one in glossary()}
     for attribute in known.taxonomy.attributes:
         for entry in known.taxonomy.entries(attribute):
@@ -134,5 +134,5 @@ def _words(known: Known) -> Iterator[Entry]:
             yield Entry(kind="word", id=term.term, title=term.name, text=term.meaning)
 
 
-def _named(value: str, name: str) -> str:
+def _name_of(value: str, name: str) -> str:
     return name if value in {name, NO_IMPLEMENTATION_STATED} else f"{name} ({value})"

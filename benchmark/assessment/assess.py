@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Any
 from algorithms.contract import Extractor
 from algorithms.discovery import discover_extractors
 from benchmark.assessment.definitions import DEFINITIONS, Definition
-from benchmark.assessment.measures import SCORED, SWEPT, Quantity, Unmeasured, Values
-from benchmark.metrics.score import stored
+from benchmark.assessment.measures import SCORED, SWEPT, NotMeasuredError, Quantity, Values
+from benchmark.metrics.score import store
+from benchmark.results.csv_tables import Row
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.results.tables import Row
 from benchmark.running.times import Place, Time
 from benchmark.sweeps.record import swept
 from survey_data.tables import load
@@ -82,7 +82,7 @@ class Verdict:
 
 
 @dataclass(frozen=True)
-class Assessed:
+class MethodAssessment:
     """One method with its verdicts, in the order of the survey's table."""
 
     method: str
@@ -102,7 +102,7 @@ def assess(
     directory: Path | str = PUBLISHED,
     extractors: Mapping[str, type[Extractor]] | None = None,
     times: Mapping[Place, Time] | None = None,
-) -> list[Assessed]:
+) -> list[MethodAssessment]:
     """Assess every method of the survey's table from published results.
 
     Parameters
@@ -135,11 +135,11 @@ def assess(
             _verdict(definition, int(scores[name]), names, evidence)
             for name, definition in DEFINITIONS.items()
         )
-        found.append(Assessed(method, taxonomy[method], study, tuple(names), verdicts))
+        found.append(MethodAssessment(method, taxonomy[method], study, tuple(names), verdicts))
     return found
 
 
-def document(assessed: Iterable[Assessed]) -> dict[str, Any]:
+def document(assessed: Iterable[MethodAssessment]) -> dict[str, Any]:
     """Return definitions, methods with their verdicts, and totals, of what JSON knows."""
     listed = list(assessed)
     return {
@@ -161,7 +161,7 @@ def document(assessed: Iterable[Assessed]) -> dict[str, Any]:
                 "case_study": one.case_study,
                 "extractors": list(one.extractors),
                 "counts": dict(one.counts),
-                "properties": [_shown(verdict) for verdict in one.verdicts],
+                "properties": [_show(verdict) for verdict in one.verdicts],
             }
             for one in listed
         ],
@@ -169,7 +169,7 @@ def document(assessed: Iterable[Assessed]) -> dict[str, Any]:
     }
 
 
-def _shown(verdict: Verdict) -> dict[str, Any]:
+def _show(verdict: Verdict) -> dict[str, Any]:
     return {
         "property": verdict.name,
         "survey": verdict.survey,
@@ -183,7 +183,7 @@ def _shown(verdict: Verdict) -> dict[str, Any]:
     }
 
 
-def totals_of(assessed: Iterable[Assessed]) -> dict[str, int]:
+def totals_of(assessed: Iterable[MethodAssessment]) -> dict[str, int]:
     """Return the number of verdicts by agreement."""
     found: Counter[str] = Counter()
     for one in assessed:
@@ -204,12 +204,12 @@ def _verdict(
     """Take the best of a method's implementations, of all series each is measured on."""
     best, name, missing = _best(definition, names, evidence)
     measured = definition.score(best.value) if best else None
-    undecided = definition.undecided(survey, measured)
+    undecided = definition.why_undecided(survey, measured)
     return Verdict(
         definition.name,
         survey,
         None if undecided else measured,
-        stored(best.value) if best else None,
+        store(best.value) if best else None,
         name,
         best.where if best else "",
         undecided or (best.why if best else missing),
@@ -228,7 +228,7 @@ def _best(
     for name in names:
         try:
             found += [(quantity, name) for quantity in _values(definition, name, evidence)]
-        except Unmeasured as reason:
+        except NotMeasuredError as reason:
             reasons.append(str(reason))
     if not found:
         return None, "", "; ".join(dict.fromkeys(reasons))
@@ -260,7 +260,7 @@ def _cost(times: Sequence[Time]) -> Values:
     """Return the median ratio of extraction to the reference over the data sets with a time."""
     ratios = {time.dataset: time.extract_ratio for time in times if time.extract_ratio is not None}
     if not ratios:
-        raise Unmeasured("no times of this machine: `sunatlas leaderboard times`")
+        raise NotMeasuredError("no times of this machine: `sunatlas leaderboard times`")
     return [Quantity(median(ratios.values()), f"{len(ratios)} data sets")]
 
 

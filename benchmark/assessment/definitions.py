@@ -81,7 +81,7 @@ class Definition:
             return FULL
         return PARTLY if sign * value >= sign * self.partly else NOT
 
-    def undecided(self, survey: int, measured: int | None) -> str:
+    def why_undecided(self, survey: int, measured: int | None) -> str:
         """Say why an outcome does not judge the survey's score; empty where it does.
 
         Parameters

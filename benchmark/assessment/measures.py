@@ -2,7 +2,7 @@
 
 Each function takes the rows of one implementation and returns a quantity for every series that has
 the sweep; NaN, with the reason, where the method was run and does not do it, which scores 0. Where
-there is nothing to compute from, `Unmeasured` says why.
+there is nothing to compute from, `NotMeasuredError` says why.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Quantity(NamedTuple):
 Values = list[Quantity]
 
 
-class Unmeasured(ValueError):  # noqa: N818 - a state, not a mistake
+class NotMeasuredError(ValueError):
     """Nothing stored to compute a quantity from; the message says why."""
 
 
@@ -65,7 +65,7 @@ def _series(rows: Sequence[Row], sweep: str) -> Iterator[tuple[str, Points]]:
         refusals = [f"{r['series'] or 'any series'}: {r['reason']}" for r in rows if not r["sweep"]]
         why = f" ({'; '.join(refusals)})" if refusals else ""
         measured = "no reference feature of its kind has" if rows else "nothing is stored of"
-        raise Unmeasured(f"{measured} the sweep `{sweep}`{why}")
+        raise NotMeasuredError(f"{measured} the sweep `{sweep}`{why}")
     yield from found.items()
 
 
@@ -76,10 +76,10 @@ def _each(sweep: str, of: Callable[[str, Points], Quantity], rows: Sequence[Row]
     for series, points in _series(rows, sweep):
         try:
             found.append(of(series, points))
-        except Unmeasured as reason:
+        except NotMeasuredError as reason:
             reasons.append(f"{series}: {reason}")
     if not found:
-        raise Unmeasured("; ".join(reasons))
+        raise NotMeasuredError("; ".join(reasons))
     return found
 
 
@@ -98,7 +98,9 @@ def _quantity(
 ) -> Quantity:
     """Compute from the rows of named points; NaN where one of them has no error to speak of."""
     if absent := [name for name in names if name not in points]:
-        raise Unmeasured(f"its design is refused at {', '.join(f'`{name}`' for name in absent)}")
+        raise NotMeasuredError(
+            f"its design is refused at {', '.join(f'`{name}`' for name in absent)}"
+        )
     rows = [points[name] for name in names]
     if why := next(filter(None, map(_lacking, rows)), ""):
         return Quantity(math.nan, series, why)
@@ -107,7 +109,7 @@ def _quantity(
 
 def _error(row: Row, key: str) -> float:
     if row[key] is None:
-        raise Unmeasured(f"no bound at {row['sweep']} `{row['point']}`")
+        raise NotMeasuredError(f"no bound at {row['sweep']} `{row['point']}`")
     return float(row[key])
 
 
@@ -129,7 +131,7 @@ def _spread(key: str, names: Sequence[str], series: str, points: Points) -> Quan
 def _noise_levels(series: str, points: Points) -> Quantity:
     names = [name for name, r in points.items() if _LEVELS[0] <= r["value"] <= _LEVELS[1]]
     if len(names) < 2:
-        raise Unmeasured("fewer than two noise levels to compare")
+        raise NotMeasuredError("fewer than two noise levels to compare")
     return _spread("rms", names, series, points)
 
 
@@ -154,7 +156,7 @@ def _features(rows: Sequence[Row]) -> Values:
         ideal = math.sqrt(most["value"] / one["value"])
         found.append(Quantity(one["rms"] / most["rms"] / ideal, series))
     if not found:
-        raise Unmeasured("does not read a single feature, so that no gain can be told")
+        raise NotMeasuredError("does not read a single feature, so that no gain can be told")
     return found
 
 
@@ -225,18 +227,20 @@ SWEPT: Mapping[str, Callable[[Sequence[Row]], Values]] = {
 def _applies(wanted: Callable[[str, str, str], bool], rows: Sequence[Row]) -> Values:
     """Return the smallest rms error over datasets; NaN where the method answers too seldom."""
     if not rows:
-        raise Unmeasured("no published score")
+        raise NotMeasuredError("no published score")
     tried = [
         row
         for row in rows
         if row["condition"] == CONDITION and wanted(row["dataset"], row["mask"], row["detector"])
     ]
     if not tried:
-        raise Unmeasured("no data set of this kind is one the method reads")
+        raise NotMeasuredError("no data set of this kind is one the method reads")
     answered = [row for row in tried if row["status"] == "ok" and row["availability"] is not None]
     if not answered:
         row = tried[0]
-        raise Unmeasured(f"{row['dataset']} with {row['model']}: {row['status']}, {row['reason']}")
+        raise NotMeasuredError(
+            f"{row['dataset']} with {row['model']}: {row['status']}, {row['reason']}"
+        )
     good = [row for row in answered if row["rms_deg"] is not None and row["availability"] >= FOUND]
     if good:
         best = min(good, key=lambda row: (row["rms_deg"], row["dataset"], row["model"]))

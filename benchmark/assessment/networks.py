@@ -47,7 +47,7 @@ _ROUNDS = 3
 
 
 @dataclass(frozen=True)
-class Measured:
+class NetworkError:
     """Error of one method on a test split.
 
     Attributes
@@ -98,7 +98,7 @@ class Part:
 Method = Callable[[SensorGeometry, Part, Part], Floats]
 
 
-def networked(seed: int = 0) -> Method:
+def network_directions(seed: int = 0) -> Method:
     """Return the deep network of all signals, started from a seed."""
 
     def directions(geometry: SensorGeometry, known: Part, asked: Part) -> Floats:
@@ -115,7 +115,7 @@ def behind_temperature(geometry: SensorGeometry, known: Part, asked: Part) -> Fl
     return _answered(model, (stage,), known, asked)
 
 
-def uncorrected(geometry: SensorGeometry, known: Part, asked: Part) -> Floats:
+def uncorrected_directions(geometry: SensorGeometry, known: Part, asked: Part) -> Floats:
     """Directions (N, 3) of assembled faces, which know of no Earth."""
     return _answered(AssembledFaces.for_sensor(geometry, FeatureKind.SIGNALS), (), known, asked)
 
@@ -152,56 +152,56 @@ def by_albedo_model(geometry: SensorGeometry, known: Part, asked: Part) -> Float
 
 
 METHODS: dict[str, Method] = {
-    "no correction": uncorrected,
+    "no correction": uncorrected_directions,
     "albedo model": by_albedo_model,
-    "dnn": networked(),
+    "dnn": network_directions(),
     "temperature + dnn": behind_temperature,
 }
 
 
 def orbits(
     name: str = ALBEDO_ORBIT, conditions: Iterable[str] = ("nominal", "stable", "no-albedo")
-) -> Iterator[Measured]:
+) -> Iterator[NetworkError]:
     """Put every method on orbits that it was not calibrated on, condition by condition."""
     preset = datasets.get(name)
     for condition in conditions:
         known, asked = parts(preset, condition)
         for method, directions in METHODS.items():
             found = directions(preset.geometry, known, asked)
-            yield _measured("orbits", condition, method, found, asked)
+            yield _measure("orbits", condition, method, found, asked)
 
 
-def units(name: str = ALBEDO_ORBIT, others: Iterable[int] = UNITS) -> Iterator[Measured]:
+def units(name: str = ALBEDO_ORBIT, others: Iterable[int] = UNITS) -> Iterator[NetworkError]:
     """Give a network of the standard unit on units it never saw, and their own networks there."""
     preset = datasets.get(name)
     known, _ = parts(preset, "nominal")
     model = DeepSignals.for_sensor(preset.geometry, FeatureKind.SIGNALS)
     model.fit(known.features, known.sun)
     for unit in others:
-        other = preset.as_unit(unit)
+        other = preset.for_unit(unit)
         own, asked = parts(other, "nominal")
         case = f"unit {unit}"
         found = model.predict(asked.features)
-        yield _measured("units", case, "dnn of unit 0", found, asked)
+        yield _measure("units", case, "dnn of unit 0", found, asked)
         for method in ("dnn", "no correction"):
             found = METHODS[method](preset.geometry, own, asked)
-            yield _measured("units", case, f"{method} of its own", found, asked)
+            yield _measure("units", case, f"{method} of its own", found, asked)
 
 
-def seeds(name: str = ALBEDO_ORBIT, chosen: Iterable[int] = SEEDS) -> Iterator[Measured]:
+def seeds(name: str = ALBEDO_ORBIT, chosen: Iterable[int] = SEEDS) -> Iterator[NetworkError]:
     """Calibrate on the same samples from the weights of several seeds."""
     preset = datasets.get(name)
     known, asked = parts(preset, "nominal")
     for seed in chosen:
-        found = networked(seed)(preset.geometry, known, asked)
-        yield _measured("seeds", f"seed {seed}", "dnn", found, asked)
+        found = network_directions(seed)(preset.geometry, known, asked)
+        yield _measure("seeds", f"seed {seed}", "dnn", found, asked)
 
 
 def spans(
     name: str = ALBEDO_ORBIT,
     trained_days: Iterable[float] = TRAINED_DAYS,
     tested_days: Iterable[float] = TESTED_DAYS,
-) -> Iterator[Measured]:
+) -> Iterator[NetworkError]:
     """Train longer and shorter, and test a week and a quarter of a year later."""
     preset = cast("FlightPreset", datasets.get(name))
     for tested in tested_days:
@@ -216,12 +216,12 @@ def spans(
             known, asked = parts(replace(preset, directions=flown), "nominal")
             for method in ("no correction", "dnn"):
                 found = METHODS[method](preset.geometry, known, asked)
-                yield _measured(
+                yield _measure(
                     "spans", f"{days:.2g} d, tested day {tested:g}", method, found, asked
                 )
 
 
-def fields(name: str = MANY_SPOTS, reach_deg: float = X_FOV_DEG) -> Iterator[Measured]:
+def fields(name: str = MANY_SPOTS, reach_deg: float = X_FOV_DEG) -> Iterator[NetworkError]:
     """Train on a mask of many spots where all are seen (S-FOV), and wherever some are (X-FOV).
 
     Poses reach as far as the extractor answers, which is less than the data set's field.
@@ -243,7 +243,7 @@ def fields(name: str = MANY_SPOTS, reach_deg: float = X_FOV_DEG) -> Iterator[Mea
         answers = model.predict(asked)
         for where, chosen in (("all spots", tested), ("some spots", ~tested)):
             part = Part(asked[chosen], truth[chosen], {}, np.ones(int(chosen.sum()), dtype=bool))
-            yield _measured("fields", where, f"ann, {mode}", answers[chosen], part)
+            yield _measure("fields", where, f"ann, {mode}", answers[chosen], part)
 
 
 def parts(preset: Preset, condition: str) -> tuple[Part, Part]:
@@ -260,11 +260,11 @@ def _answered(model: Model, stages: tuple[Compensation, ...], known: Part, asked
     return model.fit(features, known.sun, known.context).predict(wanted, asked.context)
 
 
-def _measured(question: str, case: str, method: str, found: Floats, asked: Part) -> Measured:
+def _measure(question: str, case: str, method: str, found: Floats, asked: Part) -> NetworkError:
     off = separation_deg(found, asked.sun)[asked.lit]
     off_answered = off[np.isfinite(off)]
     none = len(off_answered) == 0
-    return Measured(
+    return NetworkError(
         question,
         case,
         method,
@@ -275,7 +275,7 @@ def _measured(question: str, case: str, method: str, found: Floats, asked: Part)
     )
 
 
-def line(row: Measured) -> str:
+def line(row: NetworkError) -> str:
     """Spell a number as it is printed."""
     return (
         f"{row.question:7s} {row.case:24s} {row.method:24s} rms {row.rms_deg:.4f} "

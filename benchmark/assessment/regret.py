@@ -27,7 +27,7 @@ from benchmark.results.store import Store
 from registry.catalogue import catalogue
 from registry.draws import BENCHES
 from registry.fitting import stages
-from registry.measured import Measured, Measurements
+from registry.measured_pipelines import MeasuredPipeline, Measurements
 from registry.ranking import Sort
 from registry.recommendation import Recommendation, recommend
 from registry.requirements import CLASSES_DEG, CONFIDENCE, EXCLUDE, HAZARDS, NEEDS
@@ -52,7 +52,7 @@ SAME = 1e-12
 
 
 @dataclass(frozen=True)
-class Drawn:
+class DrawnRequirement:
     """An answer to drawn requirements, beside the best of the stored pipelines that meet them.
 
     Attributes
@@ -140,7 +140,7 @@ def pipelines_of(rows: Iterable[Row]) -> dict[Place, dict[tuple[str, int], Row]]
 
 def errors(
     table: Mapping[Place, Mapping[tuple[str, int], Row]],
-    drawn: Mapping[Place, Measured],
+    drawn: Mapping[Place, MeasuredPipeline],
     asked: Asked,
     known: Facts,
 ) -> Iterator[tuple[tuple[str, str], float, Row]]:
@@ -187,7 +187,7 @@ def errors(
         about = drawn[place]
         if not set(about.needs).isdisjoint(asked.get("exclude_needs", ())):
             continue
-        error = _judged([by_condition[name] for name in names], units, about, asked)
+        error = _judge([by_condition[name] for name in names], units, about, asked)
         if error is not None:
             yield pair, error, first
 
@@ -222,8 +222,8 @@ def _refuses(asked: Asked, name: str, has: set[str], known: Facts) -> bool:
     )
 
 
-def _judged(
-    rows: Sequence[Row], units: Sequence[Row], about: Measured, asked: Asked
+def _judge(
+    rows: Sequence[Row], units: Sequence[Row], about: MeasuredPipeline, asked: Asked
 ) -> float | None:
     """Return the largest error over conditions, the first first; None if a limit is broken.
 
@@ -275,7 +275,7 @@ def _over(row: Row, field: float | None) -> float:
     return float(row["charged_deg"])
 
 
-def regrets(store: Store, number: int = NUMBER, seed: int = SEED) -> Iterator[Drawn]:
+def regrets(store: Store, number: int = NUMBER, seed: int = SEED) -> Iterator[DrawnRequirement]:
     """Yield the answers to drawn requirements, beside the best by brute force.
 
     Parameters
@@ -301,7 +301,7 @@ def regrets(store: Store, number: int = NUMBER, seed: int = SEED) -> Iterator[Dr
         named = answers["advice"].architectures
         first = (named[0].detector, named[0].mask) if named else None
         evident = [(a.detector, a.mask) for a in named if a.advice or a.studies]
-        yield Drawn(
+        yield DrawnRequirement(
             asked,
             min(by.values(), default=math.inf),
             by.get(first, math.inf) if first else math.inf,

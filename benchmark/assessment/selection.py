@@ -27,7 +27,7 @@ from benchmark.contract import Cell, Preset
 from benchmark.datasets.corrected import correction
 from benchmark.datasets.features import features_of
 from benchmark.plan.combinations import cells
-from benchmark.plan.parts import installed
+from benchmark.plan.parts import installed_parts
 
 WORST = 1.1
 """Error with chosen settings over that of the best fixed ones, which a choice should keep to."""
@@ -80,7 +80,7 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class Known:
+class SelectionData:
     """Features (n, F) of corrected readings and true Suns (n, 3) of both splits."""
 
     features: Floats
@@ -91,17 +91,17 @@ class Known:
 
 def choices(datasets: Sequence[str] | None = None) -> Iterator[Choice]:
     """Give the choice of every model on every data set named (None: all), in sorted order."""
-    parts = installed()
+    parts = installed_parts()
     planned: dict[tuple[str, str], list[Cell]] = {}
     for cell in cells(datasets, NOMINAL, None, list(SETTINGS)):
         planned.setdefault((cell.dataset, cell.model), []).append(cell)
-    seen: dict[tuple[str, str], Known | None] = {}
+    seen: dict[tuple[str, str], SelectionData | None] = {}
     for (dataset, model), suiting in planned.items():
         preset = parts.preset(dataset)
         for cell in suiting:
             place = dataset, cell.extractor
             if place not in seen:
-                seen[place] = known(preset, parts.extractor(cell.extractor))
+                seen[place] = selection_data(preset, parts.extractor(cell.extractor))
             told = seen[place]
             if told is None:
                 continue
@@ -115,7 +115,7 @@ def choices(datasets: Sequence[str] | None = None) -> Iterator[Choice]:
                 break
 
 
-def known(preset: Preset, extractor: type[Extractor]) -> Known | None:
+def selection_data(preset: Preset, extractor: type[Extractor]) -> SelectionData | None:
     """Return what an extractor finds at nominal; None where that is too little to compare."""
     made = extractor.for_sensor(preset.geometry)
     splits = [preset.generate(NOMINAL, split) for split in ("calibration", "test")]
@@ -123,11 +123,11 @@ def known(preset: Preset, extractor: type[Extractor]) -> Known | None:
     told, asked = (features_of(made, split, by) for split in splits)
     if np.isfinite(told).all(axis=1).mean() < _FOUND:
         return None
-    return Known(told, splits[0].truth, asked, splits[1].truth)
+    return SelectionData(told, splits[0].truth, asked, splits[1].truth)
 
 
 def chosen_and_best(
-    model: CalibratedModel, settings: Sequence[Mapping[str, float]], told: Known
+    model: CalibratedModel, settings: Sequence[Mapping[str, float]], told: SelectionData
 ) -> tuple[Mapping[str, Setting], Mapping[str, float], float, float] | None:
     """Chosen settings, the best of `settings`, and their errors; None where the choice is refused.
 

@@ -43,7 +43,7 @@ def _cost(task: str, pair: tuple[str, str], error: float, row: Row) -> float:
         return 180.0 / (row["half_fov_deg"] or 180.0)  # None means the whole sphere
     if task == "Latency":
         return math.inf  # stored pipelines are not timed
-    built = _built()
+    built = _build()
     built = built[(built["detector"] == pair[0]) & (built["mask"] == pair[1])]
     power, mass = built["power_mw"].median(), built["mass_g"].median()
     power = power if math.isnan(power) else max(power, 1.0)
@@ -52,5 +52,5 @@ def _cost(task: str, pair: tuple[str, str], error: float, row: Row) -> float:
 
 
 @cache
-def _built() -> pd.DataFrame:
+def _build() -> pd.DataFrame:
     return pd.read_csv(DATA_DIRECTORY / "hardware.csv")

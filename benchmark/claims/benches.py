@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from algorithms.angles import separation_deg
 from algorithms.chain import Chain, Scored
 from algorithms.contract import Extractor, Floats, Model
-from algorithms.pipeline import Pipeline, extracted
+from algorithms.pipeline import Pipeline, extract_features
 from benchmark.contract import Preset, Samples
 from benchmark.simulator.light.memory import memory
 
@@ -28,7 +28,7 @@ _TAKINGS = 7
 
 
 @dataclass
-class Seen:
+class ConditionView:
     """A data set under one condition as one unit of its sensor sees it, made when first asked for.
 
     Parameters
@@ -51,8 +51,8 @@ class Seen:
         """Return the split ``calibration`` or ``test``."""
         if split not in self._splits:
             # units of a data set look up the same tables of light
-            memory.remember((self.preset.name, self.unit), self.preset.name)
-            unit = self.preset.as_unit(self.unit) if self.unit else self.preset
+            memory.cache_for((self.preset.name, self.unit), self.preset.name)
+            unit = self.preset.for_unit(self.unit) if self.unit else self.preset
             self._splits[split] = unit.generate(self.condition, split)
         return self._splits[split]
 
@@ -61,11 +61,11 @@ class Seen:
         if (extractor, split) not in self._features:
             samples = self.samples(split)
             method = extractor.for_sensor(self.preset.geometry_for(self.condition))
-            found = extracted(method, samples.observations, samples.origin_px)
+            found = extract_features(method, samples.observations, samples.origin_px)
             self._features[extractor, split] = found
         return self._features[extractor, split]
 
-    def calibrated(self, extractor: type[Extractor], model: Scored | Model) -> Pipeline:
+    def calibrate(self, extractor: type[Extractor], model: Scored | Model) -> Pipeline:
         """Return the pipeline fitted to the calibration split.
 
         `model` is a class or a chain, made for the sensor here, or an instance made by the caller.
@@ -82,7 +82,7 @@ class Seen:
 
     def errors(self, extractor: type[Extractor], model: Scored | Model) -> Floats:
         """Separation angles (N,) in degrees on the test split; NaN where there is no answer."""
-        return self.errors_of(self.calibrated(extractor, model), extractor)
+        return self.errors_of(self.calibrate(extractor, model), extractor)
 
     def errors_of(self, pipeline: Pipeline, extractor: type[Extractor]) -> Floats:
         """Separation angles (N,) of a pipeline that was calibrated, here or on other data."""
@@ -160,6 +160,6 @@ def times_s(**calls: Callable[[], Any]) -> Mapping[str, float]:
     return best
 
 
-def drawn(values: NDArray[Any], count: int, rng: np.random.Generator) -> NDArray[Any]:
+def draw(values: NDArray[Any], count: int, rng: np.random.Generator) -> NDArray[Any]:
     """Return `count` rows drawn without putting back, in their order."""
     return np.asarray(values[np.sort(rng.permutation(len(values))[:count])])

@@ -68,7 +68,7 @@ class ExperimentError(ValueError):
 
 
 @cache
-def found() -> Mapping[str, Experiment]:
+def find_experiments() -> Mapping[str, Experiment]:
     """Every experiment by its claim.
 
     Raises

@@ -25,7 +25,7 @@ CONFIDENCE = 0.95
 
 
 @dataclass(frozen=True)
-class Judged:
+class Judgement:
     """A rule's statistic over the trials, and whether it holds.
 
     Attributes
@@ -47,7 +47,7 @@ class Judged:
     standing: Standing
 
 
-def judged(rule: Rule, values: Sequence[float]) -> Judged:
+def judge(rule: Rule, values: Sequence[float]) -> Judgement:
     """Judge a rule by the values (T,) that its statistic took; NaN where a trial gave none.
 
     Raises
@@ -58,7 +58,7 @@ def judged(rule: Rule, values: Sequence[float]) -> Judged:
     given = np.asarray(values, dtype=np.float64)
     given = given[~np.isnan(given)]
     if len(given) < FEWEST_TRIALS:
-        return Judged(rule, math.nan, math.nan, math.nan, len(given), "open")
+        return Judgement(rule, math.nan, math.nan, math.nan, len(given), "open")
     if rule.scale == "linear":
         estimate, low, high = _interval(given)
     elif (given < 0).any():
@@ -67,10 +67,10 @@ def judged(rule: Rule, values: Sequence[float]) -> Judged:
         )
     else:
         estimate, low, high = _of_logarithms(given)
-    return Judged(rule, estimate, low, high, len(given), _standing(rule, low, high))
+    return Judgement(rule, estimate, low, high, len(given), _standing(rule, low, high))
 
 
-def verdict(rules: Iterable[Judged]) -> Verdict:
+def verdict(rules: Iterable[Judgement]) -> Verdict:
     """Return what the rules of a claim say together; ValueError for none."""
     standings = [rule.standing for rule in rules]
     if not standings:

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmark.claims.judgement import Judged, judged, verdict
-from benchmark.claims.outcomes import RECORD, Outcome, read
+from benchmark.claims.judgement import Judgement, judge, verdict
+from benchmark.claims.outcomes import RECORD, Outcome, read_outcomes
 from benchmark.claims.rules import DIRECTORY, VERDICTS, Claim, Verdict, claims, rows_of
 from benchmark.claims.verification import contradictions
 from benchmark.results.store import PUBLISHED
@@ -43,8 +43,8 @@ class Entry:
 
     claim: Claim
     verdict: Verdict | None
-    rules: tuple[Judged, ...]
-    second: tuple[Judged, ...]
+    rules: tuple[Judgement, ...]
+    second: tuple[Judgement, ...]
     explanation: str
     outcome: Outcome | None
 
@@ -88,7 +88,7 @@ def ledger(
         Where an explanation was written for another verdict than the one that is measured, or an
         outcome cannot be of its claim's plan.
     """
-    outcomes, written = read(directory), _explanations(explanations)
+    outcomes, written = read_outcomes(directory), _explanations(explanations)
     if unknown := sorted(set(written) - set(claims())):
         raise LedgerError(f"{explanations.name} explains no claim of the survey: {unknown}")
     return tuple(
@@ -104,7 +104,7 @@ def tally(entries: Iterable[Entry]) -> dict[str, int]:
     return known | ({"not measured": counts["not measured"]} if counts["not measured"] else {})
 
 
-def unexplained(entries: Iterable[Entry]) -> tuple[str, ...]:
+def unexplained_claims(entries: Iterable[Entry]) -> tuple[str, ...]:
     """Name the claims whose verdict needs an explanation and has none."""
     return tuple(
         entry.claim.id
@@ -117,15 +117,15 @@ def _entry(claim: Claim, outcome: Outcome | None, written: tuple[str, str]) -> E
     about, said = written
     if outcome is None:
         untestable = about == "not testable here"
-        rules = tuple(judged(rule, ()) for rule in claim.rules)
+        rules = tuple(judge(rule, ()) for rule in claim.rules)
         return Entry(claim, "not testable here" if untestable else None, rules, (), said, None)
     if wrong := next(contradictions(claim, outcome), ""):
         raise LedgerError(
             f"{RECORD.name}: {claim.id}: {wrong}; measure it again with "
             f"`python -m benchmark.experiments claims {claim.id}`"
         )
-    rules = tuple(judged(rule, outcome.values[rule.name]) for rule in claim.rules)
-    second = tuple(judged(claim.rule(name), values) for name, values in outcome.second.items())
+    rules = tuple(judge(rule, outcome.values[rule.name]) for rule in claim.rules)
+    second = tuple(judge(claim.rule(name), values) for name, values in outcome.second.items())
     found = verdict(rules)
     if about and about != found:
         raise LedgerError(
@@ -144,7 +144,7 @@ def _explanations(path: Path) -> Mapping[str, tuple[str, str]]:
     return found
 
 
-def _rule(one: Judged) -> dict[str, Any]:
+def _rule(one: Judgement) -> dict[str, Any]:
     return {
         "rule": one.rule.name,
         "statistic": one.rule.statistic,

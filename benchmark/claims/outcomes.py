@@ -17,7 +17,7 @@ import numpy as np
 from benchmark.canonical import digest
 from benchmark.claims.experiment import Trial
 from benchmark.claims.rules import FIRST_TRIAL, Claim
-from benchmark.metrics.score import stored
+from benchmark.metrics.score import store
 from benchmark.results.row_file import Row, RowFile
 from benchmark.results.store import PUBLISHED
 from files.strict_json import refuse_unless, require_members, require_type
@@ -136,7 +136,7 @@ def outcome_of_row(row: Row) -> Outcome:
     )
 
 
-def read(directory: Path | str = PUBLISHED) -> dict[str, Outcome]:
+def read_outcomes(directory: Path | str = PUBLISHED) -> dict[str, Outcome]:
     """Return every outcome of a record by its claim; StoreError for a broken file."""
     return {name: outcome_of_row(row) for name, row in RECORD.read(directory).items()}
 
@@ -196,7 +196,7 @@ def _curves(claim: Claim, trials: Sequence[Trial]) -> dict[str, Curve]:
 
 
 def _numbers(values: Any) -> tuple[float, ...]:
-    rounded = (stored(float(value)) for value in values)
+    rounded = (store(float(value)) for value in values)
     return tuple(math.nan if value is None else value for value in rounded)
 
 

@@ -16,7 +16,7 @@ from benchmark.datasets.preset import Preset
 Known = TypeVar("Known", bound=Preset)
 
 
-def told_truly(preset: Known) -> Known:
+def with_true_directions(preset: Known) -> Known:
     """Return the data set with readings as they are and directions (N, 3) without error."""
     setups = {name: replace(one, bench=_true(one.bench)) for name, one in preset.setups.items()}
     return replace(preset, setups=setups)

@@ -20,7 +20,7 @@ from benchmark.metrics.score import aligned_error_deg
 _DRAWN, _DIRECTIONS = 40, 200
 
 
-def reported(preset: Preset, condition: str, sun: Floats, draw: int) -> Floats:
+def report(preset: Preset, condition: str, sun: Floats, draw: int) -> Floats:
     """Return the directions (N, 3) that a drawn bench gives for true ones (N, 3).
 
     Parameters
@@ -38,7 +38,7 @@ def reported(preset: Preset, condition: str, sun: Floats, draw: int) -> Floats:
     bench = _bench(preset, condition)
     if bench is None:
         return sun
-    return np.asarray(bench.reported(sun, "bench", "drawn", preset.unit, draw))
+    return np.asarray(bench.report(sun, "bench", "drawn", preset.unit, draw))
 
 
 def aligned_bench_deg(preset: Preset, condition: str, sun: Floats) -> float:
@@ -52,7 +52,7 @@ def aligned_bench_deg(preset: Preset, condition: str, sun: Floats) -> float:
     sizes = {f.name: 0.0 for f in dataclasses.fields(bench) if f.name.endswith("_random_deg")}
     fixed = dataclasses.replace(bench, **sizes)
     seen = sun[:: max(1, len(sun) // _DIRECTIONS)]
-    told = (fixed.reported(seen, "bench", "aligned", draw) for draw in range(_DRAWN))
+    told = (fixed.report(seen, "bench", "aligned", draw) for draw in range(_DRAWN))
     left = [aligned_error_deg(one, seen) for one in told]
     return math.sqrt(float(np.mean(np.square(left))))
 

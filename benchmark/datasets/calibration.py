@@ -37,7 +37,7 @@ SHOWN_IDEAL = (
 class Reference(Protocol):
     """What tells a method where the Sun was while it was calibrated."""
 
-    def reported(self, sun: Floats, *names: Name) -> Floats:
+    def report(self, sun: Floats, *names: Name) -> Floats:
         """(N, 3) unit vectors that it says, for true ones (N, 3), in the order of the poses."""
         ...
 
@@ -98,7 +98,7 @@ class Bench:
             if not (math.isfinite(value) and value >= 0):
                 raise ValueError(f"{name} of a bench must be finite, not negative; got {value}")
 
-    def reported(self, sun: Floats, *names: Name) -> Floats:
+    def report(self, sun: Floats, *names: Name) -> Floats:
         """(N, 3) unit vectors that the table's encoders give, for true ones (N, 3).
 
         `names` are those of dataset and unit; poses in another number have other random errors,

@@ -30,20 +30,20 @@ def differences(base: Mapping[str, Any], other: Mapping[str, Any]) -> dict[str, 
     return found
 
 
-def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+def merge(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
     """Return `base` with what `differences` found in the place of what it has."""
     whole = dict(base)
     for name, value in changes.items():
         before = base.get(name)
         # a type among the changes says that the object stands whole
         if isinstance(value, dict) and isinstance(before, dict) and "type" not in value:
-            whole[name] = merged(before, value)
+            whole[name] = merge(before, value)
         else:
             whole[name] = value
     return whole
 
 
-def told_once(
+def without_repeats(
     parameters: Mapping[str, Mapping[str, Any]], geometry: Mapping[str, Any]
 ) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
     """Return what conditions share, and by condition what it has of its own.
@@ -96,5 +96,5 @@ def parameters_of(card: Mapping[str, Any], condition: str) -> dict[str, Any]:
         When the card has no such condition.
     """
     about = card["conditions"][condition]
-    whole = merged(card["parameters"], about["parameters"])
+    whole = merge(card["parameters"], about["parameters"])
     return {**whole, "geometry": about.get("geometry", card["geometry"])}

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from benchmark.contract import Bound, Preset
 from benchmark.datasets.benches import aligned_bench_deg
-from benchmark.metrics.score import separation_deg, stored
+from benchmark.metrics.score import separation_deg, store
 from benchmark.seeds import generator
 from benchmark.simulator.light.sun_disc import tangent_axes
 
@@ -51,10 +51,10 @@ def board_facts(
     aligned = aligned_bench_deg(preset, condition, sun)
     return {
         "bound_unit_deg": None if unit is None else _rms(np.asarray(unit)[seen]),
-        "bench_deg": stored(preset.reference_error_deg(condition)),
-        "bench_aligned_deg": stored(aligned if aligned > _ROTATION_ROUNDING_DEG else 0.0),
+        "bench_deg": store(preset.reference_error_deg(condition)),
+        "bench_aligned_deg": store(aligned if aligned > _ROTATION_ROUNDING_DEG else 0.0),
         "boresight_deg": _rms(separation_deg(np.tile(BORESIGHT, (len(sun), 1)), sun)[seen]),
-        "oracle_deg": _rms(_found(separation_deg(oracle(preset, condition, sun, bound), sun))),
+        "oracle_deg": _rms(_find(separation_deg(oracle(preset, condition, sun, bound), sun))),
     }
 
 
@@ -70,9 +70,9 @@ def oracle(preset: Preset, condition: str, sun: Floats, bound: Bound) -> Floats:
     return cast("Floats", moved / np.linalg.norm(moved, axis=1, keepdims=True))
 
 
-def _found(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _find(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return values[np.isfinite(values)]
 
 
 def _rms(values: NDArray[np.float64]) -> float | None:
-    return stored(math.sqrt(float(np.mean(values**2)))) if len(values) else None
+    return store(math.sqrt(float(np.mean(values**2)))) if len(values) else None

@@ -43,11 +43,11 @@ def correction(preset: Preset, condition: str) -> ReferenceCorrection | None:
     return ReferenceCorrection(dark, flat, scale, pixels)
 
 
-def corrected(by: ReferenceCorrection | None, samples: Samples) -> Samples:
+def correct(by: ReferenceCorrection | None, samples: Samples) -> Samples:
     """Return samples with their observations corrected; as they are for None."""
     if by is None:
         return samples
-    observations = by.corrected(
+    observations = by.correct(
         samples.observations, samples.origin_px if by.dark.ndim == 2 else None
     )
     return cast("Samples", replace(cast("Any", samples), observations=observations))

@@ -37,7 +37,7 @@ from benchmark.datasets.pins import Pin, Place
 from benchmark.datasets.preview import preview_png
 from benchmark.datasets.samples import samples_hash
 from benchmark.metrics.bounds import Bound
-from benchmark.metrics.score import stored
+from benchmark.metrics.score import store
 from benchmark.progress import ProgressCallback, silent
 from files.atomic import replace_all, require_replaceable
 from files.reading import FileRefusedError
@@ -70,7 +70,7 @@ class ExportError(ValueError):
 
 
 @dataclass(frozen=True)
-class Exported:
+class ExportResult:
     """What was written.
 
     Attributes
@@ -98,7 +98,7 @@ def export(
     force: bool = False,
     progress: ProgressCallback = silent,
     pins: Mapping[Place, Pin] = MappingProxyType({}),
-) -> Exported:
+) -> ExportResult:
     """Write a dataset to the directory `out`, whole or not at all.
 
     Parameters
@@ -128,8 +128,8 @@ def export(
         For n below 1.
     """
     preset = datasets.get(name)
-    chosen = _chosen("condition", conditions, preset.conditions)
-    wanted = _chosen("split", splits, SPLITS)
+    chosen = _choose("condition", conditions, preset.conditions)
+    wanted = _choose("split", splits, SPLITS)
     if n is not None and n < 1:
         raise ValueError(f"n must be at least 1; got {n}")
     out = Path(os.path.abspath(out))  # noqa: PTH100 - resolve() would follow a symbolic link
@@ -156,7 +156,7 @@ def export(
         (made / CARD).write_text(text, "utf-8", newline="\n")
         write_checksums(made)
     progress(total, total, "")
-    return Exported(out, tuple(contents(out)), card)
+    return ExportResult(out, tuple(contents(out)), card)
 
 
 def _write_split(
@@ -174,11 +174,11 @@ def _write_split(
         "samples": count,
         "data_hash": samples_hash(samples),
         "published_data_hash": pinned.data_hash if pinned and pinned.n == count else None,
-        "bound_rms_deg": None if math.isnan(bound.rms_deg) else stored(bound.rms_deg),
+        "bound_rms_deg": None if math.isnan(bound.rms_deg) else store(bound.rms_deg),
     }
     path = f"{condition}/{split}.npz"
     write_archive(made / path, arrays)
-    shapes = {name: _described(array) for name, array in arrays.items()}
+    shapes = {name: _describe(array) for name, array in arrays.items()}
     files: list[dict[str, Any]] = [{"path": path, "kind": "arrays", **about, "arrays": shapes}]
     if preset.observation is Observation.CURRENTS:
         path = f"{condition}/{split}.csv"
@@ -193,7 +193,7 @@ def _write_references(made: Path, preset: Preset, condition: str) -> list[dict[s
         return []
     path = f"{condition}/references.npz"
     write_archive(made / path, readings)
-    shapes = {name: _described(array) for name, array in readings.items()}
+    shapes = {name: _describe(array) for name, array in readings.items()}
     return [{"path": path, "kind": "references", "condition": condition, "arrays": shapes}]
 
 
@@ -208,7 +208,7 @@ def _bounds(bound: Bound) -> dict[str, NDArray[Any]]:
     }
 
 
-def _described(array: NDArray[Any]) -> dict[str, Any]:
+def _describe(array: NDArray[Any]) -> dict[str, Any]:
     return {"dtype": array.dtype.str, "shape": list(array.shape)}
 
 
@@ -282,7 +282,7 @@ def _studies(keys: Sequence[str]) -> list[dict[str, Any]]:
     return [{name: getattr(study(key), name) for name in named} for key in keys]
 
 
-def _chosen(what: str, wanted: Sequence[str] | None, known: Sequence[str]) -> list[str]:
+def _choose(what: str, wanted: Sequence[str] | None, known: Sequence[str]) -> list[str]:
     for name in wanted or ():
         if name not in known:
             raise UnknownNameError(what, name, known)

@@ -25,7 +25,7 @@ from benchmark.datasets.export import CARD, ExportError, card_of, export, read_c
 from benchmark.datasets.export_arrays import read_archive, table_text
 from benchmark.datasets.pins import BOUND_TOLERANCE, Pin, Place, alike
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
-from benchmark.metrics.score import stored
+from benchmark.metrics.score import store
 from benchmark.progress import ProgressCallback, silent
 from files.temporary import temporary_directory
 
@@ -301,7 +301,7 @@ def _alike(one: Any, other: Any) -> bool:
 def _rms(arrays: Mapping[str, NDArray[Any]]) -> float | None:
     """Return the root mean square of the bounds of observable samples; None for none."""
     seen = arrays["bound_deg"][arrays["observable"]]
-    return stored(float(np.sqrt(np.mean(seen**2)))) if seen.size else None
+    return store(float(np.sqrt(np.mean(seen**2)))) if seen.size else None
 
 
 def _samples(arrays: Mapping[str, NDArray[Any]]) -> Samples:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from algorithms.contract import Extractor, Floats
-from algorithms.pipeline import extracted
+from algorithms.pipeline import extract_features
 from algorithms.references import ReferenceCorrection
 from benchmark.contract import Samples
 
@@ -36,6 +36,6 @@ def features_of(
     for rows in (slice(start, start + step) for start in range(0, count, step)):
         read, first = samples.observations[rows], None if origin is None else origin[rows]
         if by is not None:
-            read = by.corrected(read, first if by.dark.ndim == _FRAME else None)
-        found.append(extracted(extractor, read, first))
+            read = by.correct(read, first if by.dark.ndim == _FRAME else None)
+        found.append(extract_features(extractor, read, first))
     return found[0] if len(found) == 1 else np.concatenate(found)

@@ -24,7 +24,7 @@ _FIRST_GEOMETRY = frozenset(
 )
 
 
-def described(value: object) -> Any:
+def describe(value: object) -> Any:
     """Return dataclasses, mappings and tuples as JSON objects and arrays.
 
     A dataclass names its type.

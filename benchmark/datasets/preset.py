@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.contract import SPLITS
 from benchmark.datasets.calibration import IDEAL, STANDARD_BENCH, Bench, Reference
-from benchmark.datasets.card import stream_names, told_once
+from benchmark.datasets.card import stream_names, without_repeats
 from benchmark.datasets.fields import Field, Split
-from benchmark.datasets.parameters import described
-from benchmark.datasets.realism import standing
+from benchmark.datasets.parameters import describe
+from benchmark.datasets.realism import hardware_match
 from benchmark.datasets.repeats import REPEAT, Repeats, Rows
 from benchmark.datasets.samples import Samples
-from benchmark.datasets.units import assembled, tolerances
+from benchmark.datasets.units import assemble, tolerances
 from benchmark.metrics.bounds import STEP_RAD, Bound, cramer_rao
 from benchmark.seeds import generator
 from benchmark.simulator import SIMULATOR_VERSION
@@ -109,7 +109,7 @@ class Preset:
     offered
         Flat and dark readings that a calibration has beside its poses (`references`).
     repeats, unit
-        Poses and passes of the split ``repeat``; which unit of the sensor is seen (`as_unit`).
+        Poses and passes of the split ``repeat``; which unit of the sensor is seen (`for_unit`).
     batch
         Samples simulated together, `BATCH` for None; large frames are faster a few at a time.
     """
@@ -160,10 +160,8 @@ class Preset:
         """Return the nominal design under this condition."""
         return self.condition(condition).geometry or self.geometry
 
-    def as_unit(self, number: int) -> Self:
-        """Return the dataset seen by another unit of its sensor; 0 is the standard one.
-
-        Errors of assembly, elements and noise are others, within the tolerances; light is the same.
+    def for_unit(self, number: int) -> Self:
+        """Return the dataset of another unit, with its own errors; 0 is the standard one.
 
         Raises
         ------
@@ -179,7 +177,7 @@ class Preset:
         unit = (*self.streams, "unit", number)
         setups = dict(self.setups)
         for name, setup in self.setups.items():
-            setups[name] = dataclasses.replace(setup, sensor=assembled(setup.sensor, *unit))
+            setups[name] = dataclasses.replace(setup, sensor=assemble(setup.sensor, *unit))
         return dataclasses.replace(self, setups=setups, unit=number)
 
     def reference_error_deg(self, condition: str) -> float:
@@ -295,7 +293,7 @@ class Preset:
         bench = self.condition(condition).bench
         if split != "calibration" or bench is None:
             return Samples(observations, scene.sun, scene.origin_px)
-        said = bench.reported(scene.sun, *self._bench_names)
+        said = bench.report(scene.sun, *self._bench_names)
         return Samples(observations, said, scene.origin_px, true_sun=scene.sun)
 
     def bound(self, condition: str, split: str = "test", n: int | None = None) -> Bound:
@@ -352,7 +350,7 @@ class Preset:
             "unit": self.unit,
             "spin": setup.spin,
         }
-        return dict(described(named))
+        return dict(describe(named))
 
     def card(self) -> dict[str, Any]:
         """Everything a reader of the dataset needs, as plain JSON values; renders nothing.
@@ -361,12 +359,14 @@ class Preset:
         differs: members of ``parameters`` (an object that names its type stands whole) and, where
         it is another, the geometry; `benchmark.datasets.parameters_of` puts them together.
         """
-        geometry, splits = described(self.geometry), self.directions.card()
-        shared, own = told_once({name: self.parameters(name) for name in self.setups}, geometry)
+        geometry, splits = describe(self.geometry), self.directions.card()
+        shared, own = without_repeats(
+            {name: self.parameters(name) for name in self.setups}, geometry
+        )
         conditions = {
             name: {
                 "description": setup.description,
-                "tolerances": described(tolerances(setup.sensor)),
+                "tolerances": describe(tolerances(setup.sensor)),
                 "reference_error_deg": self.reference_error_deg(name),
                 **own[name],
             }
@@ -381,12 +381,12 @@ class Preset:
             "units": self.units,
             "description": self.description,
             "follows": list(self.follows),
-            "stands_for": standing(self.name).card(),
+            "stands_for": hardware_match(self.name).card(),
             "geometry": geometry,
             "splits": {**splits, REPEAT: self.repeats.card(splits["test"]["samples"])},
             "parameters": shared,
             "conditions": conditions,
-            "regime": described(self.regime),
+            "regime": describe(self.regime),
             "seeds": stream_names(*self.streams),
         }
 

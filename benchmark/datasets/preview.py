@@ -17,7 +17,7 @@ from algorithms.contract import Floats, Observation
 from benchmark.datasets import Preset, Samples
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preview_sheet import LINES, MUTED, SHADE, Sheet, number, points, span
-from benchmark.drawing import plain_style
+from benchmark.plot_style import plain_style
 
 if TYPE_CHECKING:
     from matplotlib.colors import Normalize
@@ -97,7 +97,7 @@ def _frames(preset: Preset, condition: str) -> Sheet:
         _tile(
             sheet,
             place,
-            _fitted(frame),
+            _fit(frame),
             norm,
             f"{_angle(samples, row)}, peak {number(frame.max())}",
         )
@@ -124,7 +124,7 @@ def _events(preset: Preset, condition: str) -> Sheet:
         found = sequence[np.isfinite(sequence[:, 2])]
         array = np.full((rows, columns), math.nan)
         array[found[:, 1].astype(int), found[:, 0].astype(int)] = found[:, 2]
-        _tile(sheet, place, _fitted(array), norm, f"{_angle(samples, row)}, {len(found)} spikes")
+        _tile(sheet, place, _fit(array), norm, f"{_angle(samples, row)}, {len(found)} spikes")
     height = _DOWN * (_TILE + 34) - 66
     sheet.scale(_WIDTH - 96, _TOP + 16, height, norm, "us")
     return sheet
@@ -143,7 +143,7 @@ def _tile(sheet: Sheet, place: int, picture: Floats, norm: Normalize, label: str
     sheet.text(x, y + _TILE + 16, label, 13)
 
 
-def _fitted(frame: Floats) -> Floats:
+def _fit(frame: Floats) -> Floats:
     """Fit a frame into a tile: pixels repeated, or the brightest of each block of pixels."""
     largest = max(frame.shape)
     if largest <= _TILE:

@@ -16,7 +16,7 @@ import numpy as np
 from algorithms.contract import Extractor, FeatureKind, Floats, Observation
 from benchmark.datasets import Preset, Samples
 from benchmark.datasets.preview_sheet import LINES, MUTED, Sheet, heat
-from benchmark.drawing import plain_style
+from benchmark.plot_style import plain_style
 from benchmark.simulator.sensors.black_sun import BlackSunSensor
 from benchmark.simulator.sensors.blooming import BloomingSensor
 

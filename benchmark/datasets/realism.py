@@ -29,7 +29,7 @@ class RealismError(ValueError):
 
 
 @dataclass(frozen=True)
-class Standing:
+class HardwareMatch:
     """What a data set stands for.
 
     Attributes
@@ -71,13 +71,13 @@ def figures(sensor: Hardware) -> dict[str, Any]:
     }
 
 
-def standing(dataset: str) -> Standing:
+def hardware_match(dataset: str) -> HardwareMatch:
     """Return what a data set stands for; one that the table does not have is an idealisation."""
-    return standings().get(dataset, Standing(dataset, (), UNNAMED, ""))
+    return standings().get(dataset, HardwareMatch(dataset, (), UNNAMED, ""))
 
 
 @cache
-def standings(path: Path = FILE) -> Mapping[str, Standing]:
+def standings(path: Path = FILE) -> Mapping[str, HardwareMatch]:
     """Return what each data set of the table stands for, by name.
 
     Raises
@@ -89,7 +89,7 @@ def standings(path: Path = FILE) -> Mapping[str, Standing]:
     records = read_records(path, list(COLUMNS))
     if records.problems:
         raise RealismError("; ".join(map(str, records.problems)))
-    found: dict[str, Standing] = {}
+    found: dict[str, HardwareMatch] = {}
     for line, (dataset, ids, idealisation, sentence) in records.rows:
         unknown = [name for name in ids.split() if name not in hardware()]
         if unknown:
@@ -102,5 +102,5 @@ def standings(path: Path = FILE) -> Mapping[str, Standing]:
                 "none, and not both"
             )
         sensors = tuple(hardware()[name] for name in ids.split())
-        found[dataset] = Standing(dataset, sensors, idealisation, sentence)
+        found[dataset] = HardwareMatch(dataset, sensors, idealisation, sentence)
     return MappingProxyType(found)

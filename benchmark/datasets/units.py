@@ -34,7 +34,7 @@ def tolerance_of(assembly: Assembly) -> Assembly:
         offset_x_mm=offset,
         offset_y_mm=offset,
     )
-    return _scaled(sizes, [_WIDTH] * len(dataclasses.fields(Assembly)))
+    return _scale(sizes, [_WIDTH] * len(dataclasses.fields(Assembly)))
 
 
 def tolerances(sensor: object) -> dict[str, Assembly]:
@@ -42,26 +42,26 @@ def tolerances(sensor: object) -> dict[str, Assembly]:
     return {place: tolerance_of(assembly) for place, assembly in _assemblies(sensor, "")}
 
 
-def assembled(sensor: Sensor, *names: str | int) -> Sensor:
+def assemble(sensor: Sensor, *names: str | int) -> Sensor:
     """Return the sensor as the unit of this name is assembled.
 
     The same draws serve every condition of a dataset: where two have the same tolerances, they
     see the same unit.
     """
-    return cast("Sensor", _assembled(sensor, "", names))
+    return cast("Sensor", _assemble(sensor, "", names))
 
 
-def _assembled(value: Any, place: str, names: tuple[str | int, ...]) -> Any:
+def _assemble(value: Any, place: str, names: tuple[str | int, ...]) -> Any:
     if isinstance(value, Assembly):
         stream = generator(*names, "assembly", place)
         share = 2.0 * stream.random(len(dataclasses.fields(Assembly))) - 1.0
-        return _scaled(tolerance_of(value), share.tolist())
+        return _scale(tolerance_of(value), share.tolist())
     if isinstance(value, Camera):
-        return value.assembled(_assembled(value.assembly, f"{place}.assembly", names))
+        return value.assemble(_assemble(value.assembly, f"{place}.assembly", names))
     if not dataclasses.is_dataclass(value) or isinstance(value, type):
         return value
     parts = {
-        field.name: (part, _assembled(part, f"{place}.{field.name}", names))
+        field.name: (part, _assemble(part, f"{place}.{field.name}", names))
         for field in dataclasses.fields(value)
         if field.init
         for part in (getattr(value, field.name),)
@@ -78,6 +78,6 @@ def _assemblies(value: object, place: str) -> Iterator[tuple[str, Assembly]]:
             yield from _assemblies(getattr(value, field.name), f"{place}.{field.name}")
 
 
-def _scaled(assembly: Assembly, factors: list[float]) -> Assembly:
+def _scale(assembly: Assembly, factors: list[float]) -> Assembly:
     values = dataclasses.astuple(assembly)
     return Assembly(*(value * factor for value, factor in zip(values, factors, strict=True)))

@@ -13,7 +13,7 @@ from algorithms.chain import Scored
 from algorithms.contract import Extractor, Floats, UnusableDataError
 from algorithms.pipeline import Pipeline
 from algorithms.references import ReferenceCorrection
-from benchmark.datasets.benches import reported
+from benchmark.datasets.benches import report
 from benchmark.datasets.corrected import correction
 from benchmark.datasets.features import features_of
 from benchmark.datasets.preset import Preset
@@ -92,7 +92,7 @@ def held(
       the extractor's features.
     """
     with one_thread():
-        memory.remember((preset.name, 0), preset.name)
+        memory.cache_for((preset.name, 0), preset.name)
         errors = _Chain(preset, condition, extractor, model).errors()
         seen = np.ones(len(errors["as_is"]), dtype=np.bool_)
         if not all_observable:
@@ -109,7 +109,7 @@ def directions(
     variant is left out where the model refuses its calibration.
     """
     with one_thread():
-        memory.remember((preset.name, 0), preset.name)
+        memory.cache_for((preset.name, 0), preset.name)
         chain = _Chain(preset, condition, extractor, model)
         answers = {**chain.as_is(), **chain.perfect()}
         shown = {name: answers[name] for name in ("as_is", "perfect")}
@@ -163,7 +163,7 @@ class _Chain:
     def _on_benches(self) -> list[Floats | None]:
         """Answers of calibrations with the directions that drawn benches give."""
         found, truth, context = self._told
-        drawn = (reported(self._preset, self._condition, truth, draw) for draw in range(BENCHES))
+        drawn = (report(self._preset, self._condition, truth, draw) for draw in range(BENCHES))
         return [self._answers([(found, sun, context)], self._asked) for sun in drawn]
 
     def _readings(self) -> dict[str, Floats | None]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from benchmark.claims.experiment import found
+from benchmark.claims.experiment import find_experiments
 from benchmark.claims.outcomes import RECORD, outcome_of, outcome_of_row, plan_digest, row_of
 from benchmark.claims.rules import FIRST_TRIAL, claims
 from benchmark.claims.verification import contradictions
@@ -28,7 +28,7 @@ class Claims(Recorded[str]):
         """Return the digests of plan and code, apart so that it shows which has changed."""
         return {
             name: f"{plan_digest(claims()[name])} {closure_digest(one.module)}"
-            for name, one in found().items()
+            for name, one in find_experiments().items()
         }
 
     def outdated(self, row: Row, key: str) -> str:
@@ -50,7 +50,7 @@ class Claims(Recorded[str]):
         """Make every trial of a claim, one after the other."""
         with one_thread():
             last = FIRST_TRIAL + claims()[task].trials
-            trials = [found()[task].trial(number) for number in range(FIRST_TRIAL, last)]
+            trials = [find_experiments()[task].trial(number) for number in range(FIRST_TRIAL, last)]
         return [(task, row_of(outcome_of(claims()[task], trials)))]
 
     def comparable(self, row: Row) -> Row:

@@ -15,7 +15,7 @@ from benchmark.datasets.preset import Preset
 from benchmark.error_budget.measure import held
 from benchmark.error_budget.record import RECORD, SCORE
 from benchmark.metrics.ranking import order
-from benchmark.metrics.score import stored
+from benchmark.metrics.score import store
 from benchmark.results.components import current
 from benchmark.results.digests import modules_digest, short_digest
 from benchmark.results.row_file import Row
@@ -150,4 +150,4 @@ def _own_deg(errors: Collection[float | None]) -> float | None:
 def _stored(error: float | None) -> float | None:
     if error is None:
         return None
-    return stored(error) if error > _NOTHING_DEG else 0.0
+    return store(error) if error > _NOTHING_DEG else 0.0

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 
-from benchmark.assessment.networks import Measured, fields, line, orbits, seeds, spans, units
+from benchmark.assessment.networks import NetworkError, fields, line, orbits, seeds, spans, units
 from benchmark.results.row_file import Row
 from benchmark.running.experiment import Report
 
-_QUESTIONS: Mapping[str, Callable[[], Iterator[Measured]]] = {
+_QUESTIONS: Mapping[str, Callable[[], Iterator[NetworkError]]] = {
     "orbits": orbits,
     "units": units,
     "seeds": seeds,
@@ -39,4 +39,4 @@ class Networks(Report[str]):
     def lines(self, rows: Mapping[str, Row]) -> Iterator[str]:
         """Yield a line a case and method."""
         for row in rows.values():
-            yield from (line(Measured(**one)) for one in row["cases"])
+            yield from (line(NetworkError(**one)) for one in row["cases"])

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from statistics import median
 
-from benchmark.assessment.regret import NUMBER, SAME, SEED, Drawn, regrets
+from benchmark.assessment.regret import NUMBER, SAME, SEED, DrawnRequirement, regrets
 from benchmark.contract import UnknownNameError
 from benchmark.results.row_file import Row
 from benchmark.results.store import Store
@@ -53,7 +53,7 @@ class Regret(Report[int]):
         return all(one.kept for row in rows.values() for one in row["drawn"])
 
 
-def _lines(seed: int, found: Sequence[Drawn]) -> Iterator[str]:
+def _lines(seed: int, found: Sequence[DrawnRequirement]) -> Iterator[str]:
     met = [one for one in found if math.isfinite(one.best_deg)]
     first = sum(math.isclose(one.first_deg["measured"], one.best_deg, rel_tol=SAME) for one in met)
     known = [one.told["advice"] for one in met if one.told["advice"] is not None]

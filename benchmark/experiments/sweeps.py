@@ -11,7 +11,7 @@ from benchmark.results.digests import modules_digest, series_digest, short_diges
 from benchmark.results.row_file import Row
 from benchmark.running.experiment import Recorded
 from benchmark.sweeps.measure import Task, measure
-from benchmark.sweeps.plan import SERIES, Planned, planned
+from benchmark.sweeps.plan import SERIES, SweepPlan, plan_points
 from benchmark.sweeps.record import RECORD, Point, point_of
 
 #: Modules between series and methods.
@@ -30,9 +30,9 @@ class Sweeps(Recorded[Point]):
     record = RECORD
 
     @cached_property
-    def plan(self) -> Planned:
+    def plan(self) -> SweepPlan:
         """Settings by point, and reasons of what is not measured."""
-        return planned(self.parts.extractors)
+        return plan_points(self.parts.extractors)
 
     def keys(self) -> Mapping[Point, str]:
         """Digest the code, series and extractor of each."""

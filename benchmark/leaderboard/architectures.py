@@ -12,7 +12,7 @@ from typing import Any
 
 from benchmark.metrics.ranking import Spread
 from benchmark.metrics.score import is_available
-from registry.measured import Partly, finer_for
+from registry.measured_pipelines import Partly, finer_for
 
 Board = Mapping[str, Any]
 Row = Mapping[str, Any]
@@ -51,7 +51,7 @@ def architectures(board: Board) -> list[dict[str, Any]]:
         ``first_group`` (how many it does not); on how many of ``units_compared`` units the best
         errs less, ``units_ahead``; and as ``finer_...`` the pipeline that errs least of those that
         answer half of the samples or more but too seldom to rank first, where the best errs far
-        more (`registry.measured.finer_for`).
+        more (`registry.measured_pipelines.finer_for`).
     """
     by: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
     for dataset in board["datasets"]:
@@ -88,7 +88,7 @@ def _best(datasets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return {
         **{name: best.get(name) for name in _OF_SCORE},
         "studies": list(best.get("studies", ())),
-        "quoted_deg": _quoted(ranked),
+        "quoted_deg": _quote(ranked),
         "others_low_deg": min(others) if known else None,
         "others_high_deg": max(others) if known else None,
         **{f"runner_up_{name}": next_one.get(name) for name in _OF_RUNNER_UP},
@@ -98,7 +98,7 @@ def _best(datasets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     }
 
 
-def _quoted(ranked: Sequence[Sequence[Row]]) -> float | None:
+def _quote(ranked: Sequence[Sequence[Row]]) -> float | None:
     """Return the error on the odd units of what errs least on the even ones; None for one unit."""
     candidates = [
         (even.own_deg, odd.own_deg)

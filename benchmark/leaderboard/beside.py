@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from benchmark.contract import ON_BENCH, Cell
-from benchmark.metrics.score import METRICS, stored
+from benchmark.metrics.score import METRICS, store
 
 Row = Mapping[str, Any]
 
@@ -50,10 +50,10 @@ def expected_on_bench(
     the bench's: what a model that follows its calibration cannot know.
     """
     if measured_deg is not None:
-        return {"on_bench_deg": stored(measured_deg), "on_bench_basis": "measured"}
+        return {"on_bench_deg": store(measured_deg), "on_bench_basis": "measured"}
     if own_deg is None or bench_deg is None:
         return {"on_bench_deg": None, "on_bench_basis": None}
-    return {"on_bench_deg": stored(math.hypot(own_deg, bench_deg)), "on_bench_basis": "estimated"}
+    return {"on_bench_deg": store(math.hypot(own_deg, bench_deg)), "on_bench_basis": "estimated"}
 
 
 def twins_of(rows: Iterable[Row]) -> dict[tuple[str, str, str], str]:

@@ -14,7 +14,7 @@ from typing import Any
 from benchmark.contract import ON_BENCH, Cell
 from benchmark.datasets import get, names
 from benchmark.datasets.pins import Pin, Place
-from benchmark.datasets.realism import standing
+from benchmark.datasets.realism import hardware_match
 from benchmark.leaderboard.beside import expected_on_bench, on_bench, twins_of
 from benchmark.leaderboard.scope import BEHIND, UNITS, Studied, studies_of_pipelines
 from benchmark.metrics.ranking import Judged, judged, order, spreads
@@ -124,7 +124,7 @@ def build(
                 "version": listed[0]["dataset_version"],
                 "detector": listed[0]["detector"],
                 "mask": listed[0]["mask"],
-                "idealisation": standing(name).idealisation or None,
+                "idealisation": hardware_match(name).idealisation or None,
                 "conditions": conditions,
                 **facts,
                 "rows": listed,
@@ -234,7 +234,7 @@ def at_field(rows: Iterable[Row], half_angle_deg: int) -> list[dict[str, Any]]:
         for row in rows
     ]
     judged.sort(key=lambda row: (*_board(row), *_by_field(row)))
-    return _ranked(judged, "field_rms_deg")
+    return _rank(judged, "field_rms_deg")
 
 
 def within_error(rows: Iterable[Row], largest_deg: float) -> list[dict[str, Any]]:
@@ -255,10 +255,10 @@ def within_error(rows: Iterable[Row], largest_deg: float) -> list[dict[str, Any]
         for row in rows
     ]
     judged.sort(key=lambda row: (*_board(row), -(row["widest_field_deg"] or 0), *_by_error(row)))
-    return _ranked(judged, "widest_field_deg")
+    return _rank(judged, "widest_field_deg")
 
 
-def _ranked(judged: Iterable[Row], by: str) -> list[dict[str, Any]]:
+def _rank(judged: Iterable[Row], by: str) -> list[dict[str, Any]]:
     """Rank sorted rows within each board, none without a value of `by`."""
     listed: list[dict[str, Any]] = []
     for _, group in groupby(judged, key=_board):

@@ -16,10 +16,10 @@ from benchmark.leaderboard import scope
 from benchmark.leaderboard.board import Row, build
 from benchmark.metrics.ranking import order
 from benchmark.plan.combinations import cells, incompatible
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback
 from benchmark.results.store import Store
-from benchmark.running.run import run, stale
+from benchmark.running.runner import run, stale
 
 
 class UnfitError(LookupError):
@@ -84,7 +84,7 @@ def ranked(
     workers
         Number of processes.
     progress, parts
-        As `benchmark.running.run.run`.
+        As `benchmark.running.runner.run`.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def ranked(
     UnfitError
         Where no pipeline with the algorithm fits the data set.
     """
-    known = parts or installed()
+    known = parts or installed_parts()
     known = Parts({dataset: known.preset(dataset)}, known.extractors, known.models)
     condition = known.presets[dataset].conditions[0]
     own = _own_cells(name, dataset, condition, known)

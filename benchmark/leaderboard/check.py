@@ -23,21 +23,21 @@ from benchmark.leaderboard.pages import PAGE, page
 from benchmark.leaderboard.update import update
 from benchmark.metrics.rings import RINGS
 from benchmark.metrics.score import METRICS, RING_DIGITS, SIGNIFICANT_DIGITS
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback
-from benchmark.results import recorded
+from benchmark.results import record_manifest
 from benchmark.results.components import current
+from benchmark.results.csv_tables import Row
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.results.tables import Row
 from benchmark.running import pinning
 from benchmark.running.experiment import Recorded, due, experiments
 from benchmark.running.kernels import update_with_older_kernels
-from benchmark.running.run import RunInterruptedError
+from benchmark.running.runner import RunInterruptedError
 from benchmark.sweeps.differences import differences
 from benchmark.sweeps.record import RECORD as SWEEPS
 from benchmark.sweeps.record import swept
 from files.temporary import temporary_directory
-from survey_data import recorded_facts
+from survey_data import facts_manifest
 
 #: On the pinned environment scores are identical. Elsewhere another order of a sum changes last
 #: bits, which a fit may amplify a million times before it is refused.
@@ -96,7 +96,7 @@ def check(
     directory
         Of the record.
     workers, progress
-        As `benchmark.running.run.run`.
+        As `benchmark.running.runner.run`.
     stored_only
         Leave out generating and measuring: only whether the files agree with each other, with the
         versions and sizes of the data sets and with the code as it is, and the page with them.
@@ -115,12 +115,12 @@ def check(
         On Ctrl-C; nothing is kept.
     """
     store = Store(directory)
-    known = parts or installed()
+    known = parts or installed_parts()
     found = [
         *_by_hand(store),
         *(Difference(*told) for told in contradictions(store, known)),
         *_outdated(store, known),
-        *_derived(store),
+        *_derive(store),
     ]
     if stored_only:
         return found
@@ -211,11 +211,11 @@ def _counts(store: Store) -> dict[tuple[str, str], int]:
 def _by_hand(store: Store) -> Iterator[Difference]:
     """Name what no command wrote so, in the record and, for the published one, in the facts."""
     published = store.directory == PUBLISHED
-    problems = recorded.changes(store.directory, required=published)
-    for problem in [*problems, *(recorded_facts.changes() if published else ())]:
+    problems = record_manifest.changes(store.directory, required=published)
+    for problem in [*problems, *(facts_manifest.changes() if published else ())]:
         places = [f"row {problem.row}"] if problem.row is not None else []
         places += [problem.column] if problem.column is not None else []
-        should = f"as `{recorded.COMMAND}` has it" if not places else "as it was written"
+        should = f"as `{record_manifest.COMMAND}` has it" if not places else "as it was written"
         yield Difference(problem.file, ", ".join(places) or "file", problem.message, should)
 
 
@@ -264,7 +264,7 @@ def _outdated(store: Store, parts: Parts) -> Iterator[Difference]:
                 "another: code or parameters have changed" if other else "not installed",
             )
     scores = store.scores()
-    wanted = scope.wanted(scores, parts)
+    wanted = scope.published_scope(scores, parts)
     yield from _unlike("scores", {str(c) for c in scores}, {str(c) for c in wanted}, "planned")
     pinned = {"/".join(place) for place in store.pins()}
     there = {"/".join(place) for place in pinning.places(parts)}
@@ -296,7 +296,7 @@ def _unlike(
         yield Difference(file, f"{name}/row", *told)
 
 
-def _derived(store: Store) -> Iterator[Difference]:
+def _derive(store: Store) -> Iterator[Difference]:
     path = store.directory / PAGE
     text = path.read_bytes().decode("utf-8", errors="replace") if path.is_file() else ""
     expected = page(board_of(store))

@@ -14,8 +14,8 @@ from typing import Any
 from benchmark.contract import Cell, Preset
 from benchmark.datasets.pins import Pin, Place, alike
 from benchmark.plan.parts import Parts
+from benchmark.results.csv_tables import Row
 from benchmark.results.store import Store
-from benchmark.results.tables import Row
 
 #: What two roundings to five digits and that of their quotient can add up to.
 _ROUNDED = 1.6e-4

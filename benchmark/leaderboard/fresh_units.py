@@ -19,11 +19,11 @@ from benchmark.contract import Cell
 from benchmark.leaderboard import scope
 from benchmark.metrics import paired
 from benchmark.metrics.score import is_available
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.processes import call_to_end
+from benchmark.results.csv_tables import Row
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.results.tables import Row
-from benchmark.running.run import run
+from benchmark.running.runner import run
 from files.temporary import temporary_directory
 
 #: Units that no board is made of.
@@ -33,7 +33,7 @@ BEHIND = 5
 
 
 @dataclass(frozen=True)
-class Held:
+class FreshUnitResult:
     """How the first group of one board did on fresh units.
 
     Attributes
@@ -79,9 +79,11 @@ def first_groups(
     return found
 
 
-def held(store: Store, workers: int = 1, *, parts: Parts | None = None) -> list[Held]:
+def score_fresh_units(
+    store: Store, workers: int = 1, *, parts: Parts | None = None
+) -> list[FreshUnitResult]:
     """Score the first of every board on the fresh units; nothing is written to the store."""
-    known = parts or installed()
+    known = parts or installed_parts()
     scores = store.scores()
     groups = first_groups(scores, known)
     boards = {dataset: [*first, *behind] for dataset, (first, behind) in groups.items()}
@@ -94,11 +96,11 @@ def held(store: Store, workers: int = 1, *, parts: Parts | None = None) -> list[
     for dataset, cells in boards.items():
         logs = _logs(cells, measured, FRESH)
         best = paired.best(logs)
-        holds = not paired.separated(logs, best)[0]
+        holds = not paired.separate(logs, best)[0]
         over = float(paired.over(logs, best)[0])
         pipelines = sum(cell.dataset == dataset for cell in scope.first(known))
         first = len(groups[dataset][0])
-        found.append(Held(dataset, pipelines, first, cells[0], holds, over))
+        found.append(FreshUnitResult(dataset, pipelines, first, cells[0], holds, over))
     return found
 
 
@@ -124,7 +126,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     workers = parser.parse_args(arguments).workers
     if workers < 1:
         parser.error(f"--workers: expected a positive number, got {workers}")
-    found = held(Store(PUBLISHED), workers)
+    found = score_fresh_units(Store(PUBLISHED), workers)
     for one in found:
         sys.stdout.write(
             f"{one.dataset}: {one.first} of {one.pipelines} in the first group; "

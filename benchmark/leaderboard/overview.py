@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Literal, get_args
 
 from benchmark.leaderboard.architectures import first_boards
-from benchmark.metrics.score import is_available, stored
+from benchmark.metrics.score import is_available, store
 
 Board = Mapping[str, Any]
 Row = Mapping[str, Any]
@@ -80,7 +80,7 @@ def overview(board: Board) -> dict[str, Any]:
         reachable = nearest is not None and nearest <= max(WITHIN)
         for place, found in best.items():
             ratios.setdefault(place, []).append((found, place in leading, reachable))
-    parts = [_counted(place, taxonomy[place], found) for place, found in ratios.items()]
+    parts = [_count(place, taxonomy[place], found) for place, found in ratios.items()]
     parts.sort(key=_order)
     return {"says": SAYS, "within": list(WITHIN), "boards": count, "parts": parts}
 
@@ -100,7 +100,7 @@ def _parts(row: Row) -> Iterator[tuple[Role, str, str]]:
     yield "model", model, "" if ahead else row["model_taxonomy"]
 
 
-def _counted(
+def _count(
     place: tuple[Role, str], taxonomy: str, found: list[tuple[float | None, bool, bool]]
 ) -> dict[str, Any]:
     role, part = place
@@ -115,7 +115,7 @@ def _counted(
         "answered": len(ratios),
         **{f"within_{suffix(limit)}": number for limit, number in near.items()},
         **{f"share_{suffix(limit)}": number / ran for limit, number in near.items()},
-        "median_over_bound": stored(statistics.median(ratios)) if ratios else None,
+        "median_over_bound": store(statistics.median(ratios)) if ratios else None,
         "leads": sum(leads for _, leads, _ in found),
         "reachable_10": sum(reachable for _, _, reachable in found),
     }

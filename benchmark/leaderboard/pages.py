@@ -14,11 +14,11 @@ from typing import Any
 from benchmark.leaderboard import summaries
 from benchmark.leaderboard.architectures import architectures, first_boards
 from benchmark.leaderboard.scope import BEHIND, CLOSE, UNITS, UNITS_BEHIND
-from benchmark.results.tables import spelt, text_of
-from benchmark.sweeps import tables as sweep_tables
+from benchmark.results.csv_tables import format_cell, text_of
+from benchmark.sweeps import sweep_tables
 from files.atomic import replace_file
 from files.csv_writing import escape_formulas
-from registry.taxonomy import exported_row
+from registry.taxonomy import taxonomy_row
 
 Board = Mapping[str, Any]
 Row = Mapping[str, Any]
@@ -78,7 +78,7 @@ LEGEND = (
 )
 
 
-def shown(column: str, row: Row) -> str:
+def format_number(column: str, row: Row) -> str:
     """Spell a column of a row for people: four significant digits, a dash for none."""
     if column in _SPELT:
         return _SPELT[column](row)
@@ -145,7 +145,7 @@ def page(board: Board) -> str:
         for row in rows:
             listed = row["rank"] is not None and not (row["twin_of"] or row["folded"])
             if listed and (row["best_of_extractor"] or row["rank"] <= _RANKS):
-                texts = (shown(column, row) for column in _BEST)
+                texts = (format_number(column, row) for column in _BEST)
                 pipeline = f"{row['extractor']} + {row['model']}"
                 lines.append(f"| {dataset['name']} | {pipeline} | {' | '.join(texts)} |")
     return "\n".join(lines) + "\n"
@@ -172,14 +172,14 @@ def to_csv(board: Board) -> str:
     every = dict.fromkeys(column for row in rows for column in row)
     columns = [*leading, *(column for column in every if column not in leading)]
     joined = (
-        {**row, "unit_rms_deg": _joined(row), "studies": ";".join(row["studies"])} for row in rows
+        {**row, "unit_rms_deg": _join(row), "studies": ";".join(row["studies"])} for row in rows
     )
-    return text_of(columns, map(exported_row, joined))
+    return text_of(columns, map(taxonomy_row, joined))
 
 
-def _joined(row: Row) -> str | None:
+def _join(row: Row) -> str | None:
     errors = row["unit_rms_deg"]
-    return None if errors is None else ";".join(spelt(error) for error in errors)
+    return None if errors is None else ";".join(format_cell(error) for error in errors)
 
 
 def to_markdown(board: Board) -> str:
@@ -235,7 +235,7 @@ def to_html(board: Board, *, marked: Collection[tuple[str, str]] = (), note: str
         headings=SHOWN,
         legend=LEGEND,
         sweeps=sweep_tables.tables(board["sweeps"]),
-        unmeasured=sweep_tables.unmeasured(board["sweeps"]),
+        unmeasured=sweep_tables.unmeasured_settings(board["sweeps"]),
         sweep_legend=sweep_tables.LEGEND,
     )
 
@@ -257,7 +257,7 @@ def _tables(
                         "reason": row["reason"],
                         "marked": (row["extractor"], row["model"]) in marked,
                         "behind": not row["best_of_extractor"],
-                        "columns": [(column, shown(column, row)) for column in SHOWN],
+                        "columns": [(column, format_number(column, row)) for column in SHOWN],
                     }
                     for row in rows
                 ],

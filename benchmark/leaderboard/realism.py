@@ -13,11 +13,11 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from benchmark.datasets import get, names
-from benchmark.datasets.realism import Standing, figures, standings
+from benchmark.datasets.realism import HardwareMatch, figures, standings
 from benchmark.metrics.ranking import order
 from benchmark.metrics.rings import EDGES_DEG, field_error
 from survey_data.hardware import Hardware
-from survey_data.reported import reported
+from survey_data.reported import reported_accuracies
 from survey_data.sources import source_named
 
 Row = Mapping[str, Any]
@@ -31,7 +31,7 @@ _NARROWER_DEG = 5.0
 def realism(
     rows: Iterable[Row],
     nominal: Mapping[str, str],
-    known: Mapping[str, Standing] | None = None,
+    known: Mapping[str, HardwareMatch] | None = None,
 ) -> list[dict[str, Any]]:
     """Set each data set beside the sensors that it stands for.
 
@@ -50,8 +50,8 @@ def realism(
         One a data set of the table, by name. ``sensors`` have ``accuracy_ratio`` (our error over
         their accuracy) and ``precision_ratio`` beside their figures; the data set's own ratios are
         1 within the range of its sensors' and else those of the nearest. Numbers are None where
-        one of the two is unknown. ``unexplained`` says whether a ratio is beyond `FACTOR` and no
-        sentence says why.
+        one of the two is unknown. ``unexplained_differences`` says whether a ratio is beyond
+        `FACTOR` and no sentence says why.
     """
     best: dict[str, Row] = {}
     for row in rows:
@@ -63,7 +63,7 @@ def realism(
     return [_beside(every[name], best.get(name)) for name in sorted(every)]
 
 
-def unexplained(table: Iterable[Mapping[str, Any]]) -> list[str]:
+def unexplained_differences(table: Iterable[Mapping[str, Any]]) -> list[str]:
     """Say of each data set whose difference no sentence explains by how much it differs."""
     return [
         f"{row['dataset']}: accuracy {_times(row['accuracy_ratio'])}, precision "
@@ -82,8 +82,8 @@ def _before(row: Row, other: Row | None) -> bool:
     return other is None or order(row, place) < order(other, (other["extractor"], other["model"]))
 
 
-def _beside(standing: Standing, row: Row | None) -> dict[str, Any]:
-    sensors = [_compared(sensor, row) for sensor in standing.sensors]
+def _beside(standing: HardwareMatch, row: Row | None) -> dict[str, Any]:
+    sensors = [_compare(sensor, row) for sensor in standing.sensors]
     accuracy = nearest_ratio(sensor["accuracy_ratio"] for sensor in sensors)
     precision = nearest_ratio(sensor["precision_ratio"] for sensor in sensors)
     ours = {name: None if row is None else row[name] for name in _OURS}
@@ -105,7 +105,7 @@ def _beside(standing: Standing, row: Row | None) -> dict[str, Any]:
 _OURS = ("extractor", "model", "rms_deg", "bound_deg", "repeatability_deg", "half_fov_deg")
 
 
-def _compared(sensor: Hardware, row: Row | None) -> dict[str, Any]:
+def _compare(sensor: Hardware, row: Row | None) -> dict[str, Any]:
     ours = None if row is None else _error(sensor, row)
     theirs = _accuracy_rms_deg(sensor)
     repeated = None if row is None else row["repeatability_deg"]
@@ -123,7 +123,7 @@ def _accuracy_rms_deg(sensor: Hardware) -> float | None:
     """Return the published accuracy as a root mean square, by the rule of its kind."""
     if sensor.accuracy_deg is None:
         return None
-    return reported("accuracy", sensor.accuracy_deg, sensor.accuracy_kind).rms_deg
+    return reported_accuracies("accuracy", sensor.accuracy_deg, sensor.accuracy_kind).rms_deg
 
 
 def _error(sensor: Hardware, row: Row) -> float | None:

@@ -29,7 +29,7 @@ from benchmark.contract import ON_BENCH, Cell
 from benchmark.metrics.ranking import order
 from benchmark.metrics.score import is_available
 from benchmark.plan.combinations import cells, scorable
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.plan.shown import data_sets
 from registry.resolution import resolve_all
 
@@ -50,14 +50,14 @@ MOST = 20
 LEADING = 5
 
 
-def compared(parts: Parts) -> dict[str, str]:
+def compare(parts: Parts) -> dict[str, str]:
     """Return the first condition of each data set: the one on which everything is scored."""
     return {name: preset.conditions[0] for name, preset in parts.presets.items()}
 
 
 def first(parts: Parts) -> list[Cell]:
     """List what is scored before anything is known: point 1 of the rule, in order."""
-    condition = compared(parts)
+    condition = compare(parts)
     return [cell for cell in cells(parts=parts) if cell.condition == condition[cell.dataset]]
 
 
@@ -134,7 +134,7 @@ def _units(ranked: list[Cell], scores: Mapping[Cell, Row]) -> Iterator[tuple[Cel
                 yield cell, number
 
 
-def wanted(scores: Mapping[Cell, Row], parts: Parts) -> frozenset[Cell]:
+def published_scope(scores: Mapping[Cell, Row], parts: Parts) -> frozenset[Cell]:
     """Return everything that the published leaderboard holds, given the scores it has."""
     return frozenset((*first(parts), *followers(scores, parts)))
 
@@ -171,7 +171,7 @@ def studies_of_pipelines() -> Studied:
 
     As `studied_pipelines` of what is installed; the keys are sorted.
     """
-    return MappingProxyType(_studies_of(installed()))
+    return MappingProxyType(_studies_of(installed_parts()))
 
 
 def _studies_of(parts: Parts) -> dict[tuple[str, str, str, str], tuple[str, ...]]:

@@ -13,16 +13,16 @@ from benchmark.experiments.sweeps import Sweeps
 from benchmark.leaderboard import scope
 from benchmark.leaderboard.board import board_of
 from benchmark.leaderboard.pages import PAGE, page
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback
-from benchmark.results import recorded
+from benchmark.results import record_manifest
 from benchmark.results.components import Components, current
-from benchmark.results.record import opened
+from benchmark.results.csv_tables import Row
+from benchmark.results.record import open_record
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.results.tables import Row
 from benchmark.running import experiment, pinning
 from benchmark.running.planned import FollowUp
-from benchmark.running.run import Summary, failures, measure_missing
+from benchmark.running.runner import Summary, failures, measure_missing
 
 
 def update(
@@ -46,7 +46,7 @@ def update(
     workers
         Number of processes; the numbers do not depend on it.
     progress, scheduler, parts
-        As `benchmark.running.run.run`.
+        As `benchmark.running.runner.run`.
 
     Raises
     ------
@@ -54,17 +54,17 @@ def update(
         Where data or bounds changed while their dataset's version did not. The first samples are
         looked at before anything is measured; nothing is written.
     StoreLockedError, DaskMissingError, RunInterruptedError
-        As `benchmark.running.run.run`.
+        As `benchmark.running.runner.run`.
     """
     if workers < 1:
         raise ValueError(f"workers must be at least 1; got {workers}")
     started = time.perf_counter()
-    known = parts or installed()
+    known = parts or installed_parts()
     components = current(known)
     first, studied = scope.first(known), scope.studied_pipelines(known)
     choose = partial(scope.followers, studied=studied)
     store = Store(directory)
-    with opened(store) as record:
+    with open_record(store) as record:
         pinned = store.pins()
         _require_heads(store, known, components)
 
@@ -136,4 +136,4 @@ def _require_heads(store: Store, parts: Parts, components: Components) -> None:
 
 def write_page(store: Store) -> bool:
     """Write the page of the best pipelines beside the record; True when it changed."""
-    return recorded.write(store.directory, {PAGE: page(board_of(store))})
+    return record_manifest.write(store.directory, {PAGE: page(board_of(store))})

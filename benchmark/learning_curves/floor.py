@@ -110,7 +110,7 @@ def floor_of(
         < FEWEST_SIZES
     ):
         return plain
-    floors, exponent, misfit = _fitted(sizes, errors, usable)
+    floors, exponent, misfit = _fit(sizes, errors, usable)
     if misfit > WORST_MISFIT:
         return plain
     again = np.array([_again(sizes, errors, usable, generator) for _ in range(_REPLICATES)])
@@ -160,10 +160,10 @@ def _again(
     chosen = generator.integers(draws, size=(units, draws))
     drawn = np.stack([e[c] for e, c in zip(errors, chosen, strict=True)])
     kept = np.stack([u[c] for u, c in zip(usable, chosen, strict=True)])
-    return _fitted(sizes, drawn, kept)[0]
+    return _fit(sizes, drawn, kept)[0]
 
 
-def _fitted(sizes: Sequence[int], errors: Floats, usable: Flags) -> tuple[Floats, float, float]:
+def _fit(sizes: Sequence[int], errors: Floats, usable: Flags) -> tuple[Floats, float, float]:
     """Floors (U,), exponent and misfit of the law that misses the curves least.
 
     Squares are weighed by their own inverse: what counts is the relative error.

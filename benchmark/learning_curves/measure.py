@@ -115,8 +115,8 @@ def measure(task: Task) -> list[Learnt]:
         measured: dict[Leader, list[list[list[_Point]]]] = {leader: [] for leader in task.leaders}
         steps: tuple[int, ...] = ()
         for unit in UNITS:
-            memory.remember((preset.name, unit), preset.name)
-            seen_by = preset.as_unit(unit) if unit else preset
+            memory.cache_for((preset.name, unit), preset.name)
+            seen_by = preset.for_unit(unit) if unit else preset
             known, asked = (_part(seen_by, condition, split, extractors) for split in _SPLITS)
             steps = sizes(len(known.sun))
             for leader in task.leaders:
@@ -139,7 +139,7 @@ def _observable(task: Task, condition: str) -> NDArray[np.bool_] | None:
     """Test samples (N,) whose direction is observable, for every unit; None for all."""
     if task.all_observable:
         return None
-    memory.remember((task.preset.name, 0), task.preset.name)
+    memory.cache_for((task.preset.name, 0), task.preset.name)
     return np.asarray(task.preset.bound(condition, "test").observable, dtype=np.bool_)
 
 

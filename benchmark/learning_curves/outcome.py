@@ -12,7 +12,7 @@ from benchmark import seeds
 from benchmark.learning_curves.floor import NEAR, Flags, Floor, floor_of, reached_from
 from benchmark.learning_curves.measure import Learnt
 from benchmark.learning_curves.reading import Row
-from benchmark.metrics.score import AVAILABLE, stored
+from benchmark.metrics.score import AVAILABLE, store
 
 #: Digits of errors along a curve, and of shares; floors have those of scores.
 _CURVE_DIGITS, _SHARE_DIGITS = 4, 3
@@ -67,7 +67,7 @@ def row_of(learnt: Learnt, bound_deg: float, bench_deg: float | None) -> Row:
         **_said(floor),
         "bound_deg": bound_deg,
         "bench_deg": bench_deg,
-        "all_deg": [stored(error) for error in learnt.rms_deg[:, 0, -1].tolist()],
+        "all_deg": [store(error) for error in learnt.rms_deg[:, 0, -1].tolist()],
         "needed": _from(steps, near & answered),
         "error_from": _from(steps, near),
         "answers_from": _from(steps, answered),
@@ -89,16 +89,16 @@ def _said(floor: Floor | None) -> Row:
         return {"floor": "none", **dict.fromkeys(nothing)}
     return {
         "floor": "fitted" if floor.fitted else "all",
-        "floor_error_deg": _pooled(floor.error_deg),
-        "floor_low_deg": _pooled(floor.low_deg) if floor.fitted else None,
-        "floor_high_deg": _pooled(floor.high_deg) if floor.fitted else None,
+        "floor_error_deg": _pool(floor.error_deg),
+        "floor_low_deg": _pool(floor.low_deg) if floor.fitted else None,
+        "floor_high_deg": _pool(floor.high_deg) if floor.fitted else None,
         "exponent": floor.exponent,
-        "misfit": None if floor.misfit is None else stored(floor.misfit, 2),
+        "misfit": None if floor.misfit is None else store(floor.misfit, 2),
     }
 
 
-def _pooled(errors: Sequence[float]) -> float | None:
-    return stored(math.sqrt(math.fsum(error**2 for error in errors) / len(errors)))
+def _pool(errors: Sequence[float]) -> float | None:
+    return store(math.sqrt(math.fsum(error**2 for error in errors) / len(errors)))
 
 
 def _from(steps: tuple[int, ...], near: Flags) -> list[int | None]:
@@ -113,8 +113,8 @@ def _point(learnt: Learnt, place: int) -> list[float | int | None]:
     point: list[float | int | None] = [learnt.sizes[place]]
     if not len(known):  # every draw was refused
         return [*point, None, None, None, None, refused]
-    middle, low, high = (stored(v, _CURVE_DIGITS) for v in _middle_and_ends(known))
-    return [*point, middle, low, high, stored(float(np.median(answered)), _SHARE_DIGITS), refused]
+    middle, low, high = (store(v, _CURVE_DIGITS) for v in _middle_and_ends(known))
+    return [*point, middle, low, high, store(float(np.median(answered)), _SHARE_DIGITS), refused]
 
 
 def _middle_and_ends(values: Floats) -> tuple[float, float, float]:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from itertools import groupby, pairwise
 from typing import TYPE_CHECKING, Any
 
-from benchmark.drawing import svg
+from benchmark.plot_style import svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +39,7 @@ def picture(rows: Sequence[Row]) -> str:
     Parameters
     ----------
     rows
-        As `benchmark.learning_curves.record.shown` gives them.
+        As `benchmark.learning_curves.record.published_curves` gives them.
     """
     return svg(lambda: figure(rows), _ABOUT)
 

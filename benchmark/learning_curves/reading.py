@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from benchmark.metrics.score import stored
+from benchmark.metrics.score import store
 from files.strict_json import refuse_unless, require_members, require_type
 
 #: A row of the record: plain JSON values.
@@ -77,7 +77,7 @@ def summary(row: Row) -> Row:
     known = [value for value in needed if value is not None]
     over = None
     if row["floor_error_deg"] is not None and row["bound_deg"]:
-        over = stored(row["floor_error_deg"] / row["bound_deg"])
+        over = store(row["floor_error_deg"] / row["bound_deg"])
     return {
         **row,
         "over_bound": over,

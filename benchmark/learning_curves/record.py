@@ -20,7 +20,7 @@ def leader_of(row: Row) -> Leader:
 RECORD = RowFile("curves.json", "curves", 2, leader_of, require_row)
 
 
-def shown(directory: Path | str = PUBLISHED) -> list[dict[str, Any]]:
+def published_curves(directory: Path | str = PUBLISHED) -> list[dict[str, Any]]:
     """Return stored rows as they are shown (`reading.summary`), without digests, in order."""
     return [
         {name: value for name, value in summary(row).items() if name != "key"}

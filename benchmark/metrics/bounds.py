@@ -72,7 +72,7 @@ class Bound:
         return float(np.sqrt(np.mean(seen**2))) if seen.size else math.nan
 
     @classmethod
-    def joined(cls, parts: Sequence[Bound]) -> Bound:
+    def join(cls, parts: Sequence[Bound]) -> Bound:
         """Put bounds of consecutive samples together."""
         units = [part.unit_angle_deg for part in parts]
         known = [unit for unit in units if unit is not None]
@@ -150,10 +150,10 @@ def cramer_rao(  # noqa: PLR0917 - memory and time come last
         _batch(sensor, scene.part(start, start + size), pattern, irradiance, step_rad, references)
         for start in range(0, len(scene), size)
     ]
-    return Bound.joined(parts)
+    return Bound.join(parts)
 
 
-def _turned(sun: Floats, first: Floats, second: Floats, x: Floats, y: Floats) -> Floats:
+def _turn(sun: Floats, first: Floats, second: Floats, x: Floats, y: Floats) -> Floats:
     """`sun` moved by the tangent vector x first + y second (radians) along great circles."""
     size = np.sqrt(x**2 + y**2)[:, None]
     step = np.where(size > 0, np.sin(size) / np.where(size > 0, size, 1.0), 1.0)
@@ -182,7 +182,7 @@ def _batch(  # noqa: PLR0917 - as `cramer_rao`
         unit = sensor.unit_variance(whole, scene, references)
 
     def moved(x: Floats, y: Floats) -> Scene:
-        return scene.seen_from(_turned(scene.sun, first, second, x, y))
+        return scene.seen_from(_turn(scene.sun, first, second, x, y))
 
     sides = [(step, zero), (-step, zero), (zero, step), (zero, -step)]
     seen = [
@@ -230,7 +230,7 @@ def _batch(  # noqa: PLR0917 - as `cramer_rao`
             signals[3] = sensor.expected(moved(x, y), pattern).reshape(count, -1)
             products = noise_products(mean, signals[3:], own, common)
             local &= ~far | as_promised(products[:, 0, 0], products[:, 0, 1:], np.ones(count))
-    alpha, beta = _projected(scene.sun, covariance)
+    alpha, beta = _project(scene.sun, covariance)
     return Bound(
         angle_deg=_angle_deg(inverse, local),
         alpha_deg=np.where(local | np.isnan(alpha), alpha, np.inf),
@@ -289,7 +289,7 @@ def _angle_deg(variances: Floats, observable: NDArray[np.bool_]) -> Floats:
     return np.degrees(np.sqrt(np.where(observable, variances.sum(axis=1), np.inf)))
 
 
-def _projected(sun: Floats, covariance: Floats) -> tuple[Floats, Floats]:
+def _project(sun: Floats, covariance: Floats) -> tuple[Floats, Floats]:
     """Return standard deviations of alpha and beta in degrees, NaN where s_z <= 0."""
     first, second = tangent_axes(sun)
     out = []

@@ -49,7 +49,7 @@ def _add_to_columns(sums: Floats, weighted: Floats, weight: Floats) -> None:
 
 
 @compiled
-def _shared(sums: Floats, i: int, j: int, deviation: float) -> float:
+def _share(sums: Floats, i: int, j: int, deviation: float) -> float:
     """Return what common noise takes from a product, of sums (G, K + 1)."""
     square, total, last = deviation * deviation, 0.0, sums.shape[1] - 1
     for group in range(sums.shape[0]):
@@ -113,5 +113,5 @@ def products(
             sums[:] = by_column.T
         for i in range(kinds):
             for j in range(i + 1):
-                total = parts[i * (i + 1) // 2 + j].sum() - _shared(sums, i, j, deviation)
+                total = parts[i * (i + 1) // 2 + j].sum() - _share(sums, i, j, deviation)
                 out[n, i, j] = out[n, j, i] = total

@@ -80,7 +80,7 @@ def over(logs: Floats, leader: int) -> Floats:
 
     NaN where there are none.
     """
-    mean, _, _ = _compared(logs, leader)
+    mean, _, _ = _compare(logs, leader)
     return np.exp(mean)
 
 
@@ -99,21 +99,21 @@ def groups(logs: Floats, leader: int) -> list[int | None]:
         Place of the best method.
     """
     found: list[int | None] = [None] * len(logs)
-    _, _, common = _compared(logs, leader)
+    _, _, common = _compare(logs, leader)
     left = np.flatnonzero(common >= FEWEST_UNITS)
     group = 0
     while len(left):
         group += 1
         some = logs[left]
         first = int(np.flatnonzero(left == leader)[0]) if group == 1 else best(some)
-        apart = separated(some, first)
+        apart = separate(some, first)
         for place in left[~apart]:
             found[place] = group
         left = left[apart]
     return found
 
 
-def separated(logs: Floats, leader: int) -> NDArray[np.bool_]:
+def separate(logs: Floats, leader: int) -> NDArray[np.bool_]:
     """Say which methods (M,) are told apart from the leader.
 
     Those with fewer than `FEWEST_UNITS` units in common with it are not.
@@ -125,7 +125,7 @@ def separated(logs: Floats, leader: int) -> NDArray[np.bool_]:
     leader
         Place of the best method.
     """
-    mean, spread, common = _compared(logs, leader)
+    mean, spread, common = _compare(logs, leader)
     tested = np.flatnonzero((common >= FEWEST_UNITS) & (np.arange(len(logs)) != leader))
     apart = np.zeros(len(logs), np.bool_)
     if not len(tested):
@@ -159,11 +159,11 @@ def smallest_ratio(logs: Floats, leader: int) -> float | None:
     float or None
         None where nothing can be compared with the leader.
     """
-    _, spread, common = _compared(logs, leader)
+    _, spread, common = _compare(logs, leader)
     tested = (common >= FEWEST_UNITS) & (np.arange(len(logs)) != leader)
     if not tested.any():
         return None
-    apart = separated(logs, leader)
+    apart = separate(logs, leader)
     sd, freedom = _moderated(spread[tested], common[tested] - 1)
     n, df = int(common[leader]), float(np.median(freedom))
     beside = 1 + max(1, int((tested & ~apart).sum()))
@@ -176,7 +176,7 @@ def _level(methods: int) -> float:
     return LEVEL / (methods * (methods - 1))
 
 
-def _compared(logs: Floats, leader: int) -> tuple[Floats, Floats, NDArray[np.int64]]:
+def _compare(logs: Floats, leader: int) -> tuple[Floats, Floats, NDArray[np.int64]]:
     """Mean and standard deviation (M,) of the log ratios to a method, and the units in common."""
     ratio = logs - logs[leader]
     known = np.isfinite(ratio)

@@ -153,12 +153,12 @@ def recursive_bound(sun: Floats, information: Floats, motion: Motion) -> Floats:
             covariance = forward @ covariance @ forward.T
             covariance[:3, :3] += white[n - 1] * drive[n - 1] @ drive[n - 1].T
         if values[n, 2] > 0:
-            covariance = _updated(covariance, told)
+            covariance = _update(covariance, told)
         attitude[n] = covariance[:3, :3]
     return _angles_deg(_levers(sun) @ motion.turn, attitude)
 
 
-def _updated(covariance: Floats, rows: Floats) -> Floats:
+def _update(covariance: Floats, rows: Floats) -> Floats:
     """Covariance (6, 6) after readings of unit noise that rows (3, 3) of the attitude give."""
     common = covariance[:, :3] @ rows.T
     gain = np.linalg.solve(np.eye(3) + rows @ common[:3], common.T).T

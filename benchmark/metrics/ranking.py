@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from benchmark.contract import Cell
-from benchmark.metrics.score import is_available, stored
+from benchmark.metrics.score import is_available, store
 
 Row = Mapping[str, Any]
 
@@ -50,13 +50,13 @@ class Spread:
     def own_deg(self) -> float | None:
         """Geometric mean over units; None where none gives an error."""
         logs = [math.log(max(error, _LEAST_DEG)) for error in self.known_deg]
-        return stored(math.exp(math.fsum(logs) / len(logs))) if logs else None
+        return store(math.exp(math.fsum(logs) / len(logs))) if logs else None
 
     @property
     def own_se(self) -> float | None:
         """Relative standard error of that mean; None for fewer than two units."""
         logs = np.log(np.maximum(self.known_deg, _LEAST_DEG))
-        return stored(float(np.std(logs, ddof=1)) / math.sqrt(len(logs))) if len(logs) > 1 else None
+        return store(float(np.std(logs, ddof=1)) / math.sqrt(len(logs))) if len(logs) > 1 else None
 
     @property
     def low_deg(self) -> float | None:
@@ -184,6 +184,6 @@ def judged(rows: Sequence[Row], spread: Sequence[Spread]) -> Judged:
             Place(places[at].rank, places[at].group, tied=places[at].group in shared)
             for at in range(len(rows))
         ),
-        None if smallest is None else stored(smallest),
-        None if quoted is None else stored(quoted),
+        None if smallest is None else store(smallest),
+        None if quoted is None else store(quoted),
     )

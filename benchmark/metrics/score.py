@@ -74,11 +74,11 @@ class Score:
 
     def row(self) -> dict[str, float | None]:
         """Return the numbers as stored, a column each: rounded, None where undefined."""
-        plain = {name: stored(getattr(self, name)) for name in _PLAIN}
+        plain = {name: store(getattr(self, name)) for name in _PLAIN}
         for bias, rms in _BIASES.items():
             plain[bias] = stored_beside(getattr(self, bias), getattr(self, rms))
         rings = zip(RINGS, self.rings_deg, strict=True)
-        return plain | {ring.column: stored(value, RING_DIGITS) for ring, value in rings}
+        return plain | {ring.column: store(value, RING_DIGITS) for ring, value in rings}
 
 
 _PLAIN = tuple(field.name for field in fields(Score) if field.name != "rings_deg")
@@ -88,7 +88,7 @@ _BIASES = {"bias_alpha_deg": "rms_alpha_deg", "bias_beta_deg": "rms_beta_deg"}
 METRICS = (*_PLAIN, *(ring.column for ring in RINGS))
 
 
-def stored(value: float, digits: int = SIGNIFICANT_DIGITS) -> float | None:
+def store(value: float, digits: int = SIGNIFICANT_DIGITS) -> float | None:
     """Round a number as results keep it, to significant digits; None where it is not finite."""
     return float(f"{value:.{digits}g}") if math.isfinite(value) else None
 
@@ -106,7 +106,7 @@ def stored_beside(value: float, size: float) -> float | None:
     if not (math.isfinite(value) and math.isfinite(size)):
         return None
     if size == 0.0:
-        return stored(value)
+        return store(value)
     return round(value, SIGNIFICANT_DIGITS - 1 - math.floor(math.log10(size))) + 0.0
 
 

@@ -9,7 +9,7 @@ from itertools import product
 from algorithms.chain import Scored
 from algorithms.contract import Extractor, FeatureKind, UnsuitableDesignError
 from benchmark.contract import Cell, Preset, UnknownNameError
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from registry.taxonomy import Plan
 
 Names = str | Iterable[str] | None
@@ -45,7 +45,7 @@ def cells(
     UnknownNameError
         For a name that is not installed, naming the nearest.
     """
-    chosen = _Choice.of(parts or installed(), datasets, conditions, extractors, models)
+    chosen = _Choice.of(parts or installed_parts(), datasets, conditions, extractors, models)
     return sorted(
         Cell(preset.name, condition, extractor.about.name, model.about.name)
         for preset in chosen.presets
@@ -76,7 +76,7 @@ def incompatible(
     parts: Parts | None = None,
 ) -> list[Incompatible]:
     """List the combinations `cells` leaves out, each with its reason, in sorted order."""
-    chosen = _Choice.of(parts or installed(), datasets, None, extractors, models)
+    chosen = _Choice.of(parts or installed_parts(), datasets, None, extractors, models)
     found = []
     for preset, extractor in product(chosen.presets, chosen.extractors):
         if reason := _why_not_extractor(preset, extractor):
@@ -98,7 +98,7 @@ def scorable(*, parts: Parts | None = None) -> Plan:
     mapping of (detector, mask) to mapping of (extractor, model) to tuple of str
         Every pipeline that `cells` plans, with the names of its data sets, sorted.
     """
-    chosen = _Choice.of(parts or installed(), None, None, None, None)
+    chosen = _Choice.of(parts or installed_parts(), None, None, None, None)
     found: dict[tuple[str, str], dict[tuple[str, str], tuple[str, ...]]] = {}
     for preset in chosen.presets:
         pairs = found.setdefault((preset.detector, preset.mask), {})
@@ -119,8 +119,8 @@ class _Choice:
     def of(
         cls, parts: Parts, datasets: Names, conditions: Names, extractors: Names, models: Names
     ) -> _Choice:
-        presets = [parts.preset(name) for name in _listed(datasets, parts.presets)]
-        wanted = None if conditions is None else frozenset(_listed(conditions, ()))
+        presets = [parts.preset(name) for name in _list_items(datasets, parts.presets)]
+        wanted = None if conditions is None else frozenset(_list_items(conditions, ()))
         known = {condition for preset in presets for condition in preset.conditions}
         for name in sorted(wanted or ()):
             if name not in known:
@@ -128,12 +128,12 @@ class _Choice:
         return cls(
             presets,
             wanted,
-            [parts.extractor(name) for name in _listed(extractors, parts.extractors)],
-            [parts.model(name) for name in _listed(models, parts.models)],
+            [parts.extractor(name) for name in _list_items(extractors, parts.extractors)],
+            [parts.model(name) for name in _list_items(models, parts.models)],
         )
 
 
-def _listed(names: Names, everything: Iterable[str]) -> list[str]:
+def _list_items(names: Names, everything: Iterable[str]) -> list[str]:
     if names is None:
         return sorted(everything)
     return sorted({names} if isinstance(names, str) else set(names))

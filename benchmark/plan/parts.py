@@ -52,7 +52,7 @@ class Parts:
 
 
 @cache
-def installed() -> Parts:
+def installed_parts() -> Parts:
     """Everything found by discovery in `benchmark.datasets` and `algorithms`."""
     from algorithms.discovery import discover_chains, discover_extractors  # noqa: PLC0415 - slow
     from benchmark import datasets  # noqa: PLC0415 - loads the simulator

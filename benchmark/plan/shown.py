@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from registry.fidelity.purposes import DataSet
 
 
@@ -17,5 +17,5 @@ def data_sets(*, parts: Parts | None = None) -> Mapping[str, DataSet]:
             frozenset(preset.context_columns),
             tuple(getattr(preset, "follows", ())),  # a card's field, and no part of the protocol
         )
-        for name, preset in (parts or installed()).presets.items()
+        for name, preset in (parts or installed_parts()).presets.items()
     }

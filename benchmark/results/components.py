@@ -81,7 +81,7 @@ class Components:
             raise ComponentsError(f"a result names {name!r}, which is not among the {kind}")
         return str(found[name]["digest"])
 
-    def updated(self, other: Components) -> Components:
+    def update(self, other: Components) -> Components:
         """Return these with what `other` has in their place."""
         kinds = {kind: {**getattr(self, kind), **getattr(other, kind)} for kind in _KINDS}
         return Components(other.harness, **kinds, metric=other.metric)
@@ -91,9 +91,9 @@ class Components:
         wanted = list(cells)
         return Components(
             self.harness,
-            datasets=_named(self.datasets, (cell.dataset for cell in wanted)),
-            extractors=_named(self.extractors, (cell.extractor for cell in wanted)),
-            models=_named(self.models, (cell.model for cell in wanted)),
+            datasets=_name_of(self.datasets, (cell.dataset for cell in wanted)),
+            extractors=_name_of(self.extractors, (cell.extractor for cell in wanted)),
+            models=_name_of(self.models, (cell.model for cell in wanted)),
             metric=self.metric,
         )
 
@@ -118,7 +118,7 @@ class Components:
         ]
         for kind in _KINDS:
             facts = sorted(getattr(self, kind).items())
-            listed = ",\n".join(f"{json.dumps(name)}: {_spelt(one)}" for name, one in facts)
+            listed = ",\n".join(f"{json.dumps(name)}: {_format_value(one)}" for name, one in facts)
             lines.append(f'"{kind}": {{\n{listed}\n}}' if listed else f'"{kind}": {{}}')
         return "{\n" + ",\n".join(lines) + "\n}\n"
 
@@ -220,10 +220,10 @@ def _of_method(method: Any) -> Facts:
     }
 
 
-def _named(facts: Mapping[str, Facts], names: Iterable[str]) -> dict[str, Facts]:
+def _name_of(facts: Mapping[str, Facts], names: Iterable[str]) -> dict[str, Facts]:
     wanted = set(names)
     return {name: known for name, known in facts.items() if name in wanted}
 
 
-def _spelt(facts: Facts) -> str:
+def _format_value(facts: Facts) -> str:
     return json.dumps(facts, sort_keys=False, ensure_ascii=False, allow_nan=False)

@@ -25,7 +25,7 @@ _HARNESS = (
     "benchmark.datasets.method_bound",
     "benchmark.metrics.rings",
     "benchmark.metrics.score",
-    "benchmark.running.generated",
+    "benchmark.running.condition_data",
     "benchmark.running.task",
 )
 

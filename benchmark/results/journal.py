@@ -15,7 +15,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from benchmark.results.tables import StoreError
+from benchmark.results.csv_tables import StoreError
 from files.atomic import name_file_in_errors
 from files.reading import FileRefusedError, read_bytes
 from files.strict_json import parse_json
@@ -55,7 +55,7 @@ class Journal:
         """Add records, after what was read or appended last; on return they survive a power cut."""
         text, last = "", self._last
         for record in records:
-            line, last = chained(json.dumps(record, allow_nan=False), last)
+            line, last = chain_rows(json.dumps(record, allow_nan=False), last)
             text += f"{line}\n"
         self.path.parent.mkdir(parents=True, exist_ok=True)
         with name_file_in_errors(self.path), self.path.open("ab") as file:
@@ -88,7 +88,7 @@ class Journal:
                 f"{where}: not a record of the journal, it has no digest at its end; remove the "
                 "file if an earlier version wrote it: what it holds is measured again"
             )
-        _, chain = chained(f"{found[1].decode()}}}", self._last)
+        _, chain = chain_rows(f"{found[1].decode()}}}", self._last)
         if chain != found[2].decode():
             raise StoreError(
                 f"{where}: not as a runner wrote it, or not after the line before it; remove the "
@@ -108,7 +108,7 @@ class Journal:
         return content[: content.rfind(b"\n") + 1]
 
 
-def chained(text: str, before: str) -> tuple[str, str]:
+def chain_rows(text: str, before: str) -> tuple[str, str]:
     """Return a line of JSON with its digest, and the digest.
 
     Parameters

@@ -10,7 +10,7 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from benchmark.results.tables import StoreError
+from benchmark.results.csv_tables import StoreError
 from files.reading import FileRefusedError, read_bytes
 
 if TYPE_CHECKING:
@@ -22,7 +22,9 @@ MOST_ROWS = 10_000_000
 _ENCODINGS = {"float": "BYTE_STREAM_SPLIT", "int16": "DELTA_BINARY_PACKED", "int8": "PLAIN"}
 
 
-def read(path: Path, columns: Mapping[str, str], names: Collection[str] = ()) -> pd.DataFrame:
+def read_parquet(
+    path: Path, columns: Mapping[str, str], names: Collection[str] = ()
+) -> pd.DataFrame:
     """Return a table that has these columns, of these types, and at least one row.
 
     Parameters
@@ -56,7 +58,7 @@ def read(path: Path, columns: Mapping[str, str], names: Collection[str] = ()) ->
     return found
 
 
-def spelt(columns: Mapping[str, Any], types: Mapping[str, str]) -> bytes:
+def parquet_bytes(columns: Mapping[str, Any], types: Mapping[str, str]) -> bytes:
     """Spell columns as a Parquet file: the same bytes each time, by one version of pyarrow."""
     import pyarrow as pa  # noqa: PLC0415 - as above
     from pyarrow import parquet  # noqa: PLC0415 - as above
@@ -93,7 +95,7 @@ def _read(
     held = [(field.name, _type(field.type)) for field in file.schema_arrow]
     rows = file.metadata.num_rows
     if held != list(columns.items()):
-        return f"the columns {_listed(columns.items())}; got {_listed(held)}", None
+        return f"the columns {_list_items(columns.items())}; got {_list_items(held)}", None
     if not 0 < rows <= MOST_ROWS:
         return f"1 to {MOST_ROWS} rows, got {rows}", None
     table = parquet.ParquetFile(
@@ -108,5 +110,5 @@ def _type(kind: Any) -> str:
     return str(getattr(kind, "value_type", kind))
 
 
-def _listed(columns: Collection[tuple[str, str]]) -> str:
+def _list_items(columns: Collection[tuple[str, str]]) -> str:
     return ", ".join(f"{name} ({kind})" for name, kind in columns) or "none"

@@ -8,7 +8,15 @@ from pathlib import Path
 
 from benchmark.contract import SPLITS
 from benchmark.datasets.pins import BOARD_FACTS, Pin, Place
-from benchmark.results.tables import StoreError, above_zero, count, read, size, text_of, word
+from benchmark.results.csv_tables import (
+    StoreError,
+    above_zero,
+    count,
+    read_csv,
+    size,
+    text_of,
+    word,
+)
 
 _COLUMNS = {
     "dataset": word,
@@ -34,7 +42,7 @@ def pins_text(pins: Iterable[Pin]) -> str:
 def read_pins(path: Path) -> dict[Place, Pin]:
     """Read pins by place; StoreError naming the line that is none, or that is there twice."""
     found: dict[Place, Pin] = {}
-    for line, row in read(path, _COLUMNS):
+    for line, row in read_csv(path, _COLUMNS):
         missing = [name for name in ("version", "n") if row[name] is None]
         if missing:
             raise StoreError(f"{path}, line {line}: expected a number in {', '.join(missing)}")

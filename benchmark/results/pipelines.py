@@ -16,7 +16,7 @@ from benchmark.metrics.score import is_available
 from registry.catalogue import catalogue
 from registry.draws import FEWEST_UNITS, unit_ratios
 from registry.fitting import stages
-from registry.measured import Measured, Score
+from registry.measured_pipelines import MeasuredPipeline, Score
 from registry.requirements import NEEDS
 
 _PLAIN = tuple(
@@ -33,7 +33,7 @@ def pipelines(
     rows: Iterable[Row],
     latency_us: Mapping[Place, float | None] | None = None,
     bench_deg: Mapping[str, float | None] | None = None,
-) -> list[Measured]:
+) -> list[MeasuredPipeline]:
     """Return what is measured of every pipeline on every standard data set.
 
     Errors are own errors over all answers, of the standard unit under each condition, times what
@@ -69,7 +69,7 @@ def pipelines(
         standard = first["charged_deg"]
         share = _middle(units) / standard if len(units) > 1 and standard else 1.0
         found.append(
-            Measured(
+            MeasuredPipeline(
                 dataset=dataset,
                 detector=first["detector"],
                 mask=first["mask"],

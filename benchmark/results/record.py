@@ -17,12 +17,12 @@ from typing import Any
 
 from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin, Place
-from benchmark.results import recorded
+from benchmark.results import record_manifest
 from benchmark.results.components import Components
+from benchmark.results.csv_tables import Row, StoreError
 from benchmark.results.journal import Journal
 from benchmark.results.samples import CellErrors, Directions, SampleErrors
 from benchmark.results.store import Store
-from benchmark.results.tables import Row, StoreError
 from files.locks import LockedError, lock_or_refuse
 from files.temporary import remove_stale_files
 
@@ -124,10 +124,12 @@ class Record:
             for cell, row in (scores or {}).items()
         ]
         records += [
-            {"errors_of": asdict(cell), **found.spelt()} for cell, found in (errors or {}).items()
+            {"errors_of": asdict(cell), **found.to_texts()}
+            for cell, found in (errors or {}).items()
         ]
         records += [
-            {"directions_of": name, **known.spelt()} for name, known in (directions or {}).items()
+            {"directions_of": name, **known.to_texts()}
+            for name, known in (directions or {}).items()
         ]
         if not records:
             return
@@ -158,7 +160,7 @@ class Record:
         components
             Of what was measured now; the others stay as they were.
         """
-        known = self._components.updated(components)
+        known = self._components.update(components)
         scores = {
             cell: row
             for cell, row in self.scores.items()
@@ -221,7 +223,7 @@ class Record:
 
 
 @contextmanager
-def opened(store: Store) -> Iterator[Record]:
+def open_record(store: Store) -> Iterator[Record]:
     """Hold a store for writing; released by the system when the process ends, however it ends.
 
     What killed runners left half written is removed.
@@ -242,7 +244,7 @@ def opened(store: Store) -> Iterator[Record]:
             raise StoreLockedError(error.holder, store.directory) from error
         for place in (store.directory, store.scores_directory, store.samples_directory, directory):
             remove_stale_files(place)
-        recorded.require_unchanged(store.directory)
+        record_manifest.require_unchanged(store.directory)
         record = Record(store)
         record.cut_torn()
         yield record

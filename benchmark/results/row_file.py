@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from benchmark.results import recorded
+from benchmark.results import record_manifest
+from benchmark.results.csv_tables import Reader, StoreError, read_csv, text_of
 from benchmark.results.store import PUBLISHED
-from benchmark.results.tables import Reader, StoreError, read, text_of
 from files.reading import FileRefusedError
 from files.strict_json import read_json, require_members, require_type
 
@@ -81,7 +81,7 @@ class RowFile(Generic[C]):
             for cell in sorted(rows)  # type: ignore[type-var]
         )
         text = f'{{"schema":{self.schema},"{self.listed}":[\n{lines}\n]}}\n'
-        return recorded.write(Path(directory), {self.name: text})
+        return record_manifest.write(Path(directory), {self.name: text})
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ class TableFile(Generic[C]):
         """As `RowFile.read`."""
         path, groups = Path(directory) / self.name, self._groups(Path(directory))
         found: dict[C, Row] = {}
-        for line, row in read(path, self.columns):
+        for line, row in read_csv(path, self.columns):
             cell, group = self.cell_of(row), self.group_of(row)
             if cell in found:
                 raise StoreError(f"{path}, line {line}: {cell} is there twice")
@@ -148,7 +148,7 @@ class TableFile(Generic[C]):
             self.name: text_of(list(self.columns), self._sorted(kept)),
             self.shared_name: f"{{\n{lines}\n}}\n",
         }
-        return recorded.write(Path(directory), contents)
+        return record_manifest.write(Path(directory), contents)
 
     def _sorted(self, rows: list[Row]) -> list[Row]:
         return sorted(rows, key=self.place_of)

@@ -22,9 +22,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from benchmark.contract import Cell
-from benchmark.results import parquet_tables, recorded
+from benchmark.results import parquet_tables, record_manifest
+from benchmark.results.csv_tables import StoreError
 from benchmark.results.store import PUBLISHED
-from benchmark.results.tables import StoreError
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -105,15 +105,15 @@ class CellErrors:
         if not ((error >= 0.0) & (error <= 180.0) | missing).all():
             raise ValueError("error_deg must be from 0 to 180 degrees, or NaN for no answer")
         doubt = np.where(missing, np.where(seen, REFUSED, NOT_FOUND), ANSWERED)
-        return cls(_rounded(error), doubt.astype(np.int8))
+        return cls(_round_to(error), doubt.astype(np.int8))
 
-    def spelt(self) -> dict[str, str]:
+    def to_texts(self) -> dict[str, str]:
         """Spell the arrays for a journal, each in base 64."""
-        return {"error_deg": _spelt(self.error_deg), "doubt": _spelt(self.doubt)}
+        return {"error_deg": _format_value(self.error_deg), "doubt": _format_value(self.doubt)}
 
     @classmethod
     def read(cls, fields: Mapping[str, str]) -> CellErrors:
-        """Read what `spelt` wrote; ValueError or KeyError for anything else."""
+        """Read what `parquet_bytes` wrote; ValueError or KeyError for anything else."""
         return cls(_unspelt(fields["error_deg"], np.float32), _unspelt(fields["doubt"], np.int8))
 
 
@@ -144,17 +144,17 @@ class Directions:
                 f"got {', '.join(map(str, shapes))}"
             )
 
-    def spelt(self) -> dict[str, str]:
+    def to_texts(self) -> dict[str, str]:
         """Spell the arrays for a journal, each in base 64."""
         return {
-            "sun": _spelt(np.asarray(self.sun, dtype=np.float64)),
-            "observable": _spelt(np.asarray(self.observable, dtype=np.bool_)),
-            "bound_deg": _spelt(np.asarray(self.bound_deg, dtype=np.float64)),
+            "sun": _format_value(np.asarray(self.sun, dtype=np.float64)),
+            "observable": _format_value(np.asarray(self.observable, dtype=np.bool_)),
+            "bound_deg": _format_value(np.asarray(self.bound_deg, dtype=np.float64)),
         }
 
     @classmethod
     def read(cls, fields: Mapping[str, str]) -> Directions:
-        """Read what `spelt` wrote; ValueError or KeyError for anything else."""
+        """Read what `parquet_bytes` wrote; ValueError or KeyError for anything else."""
         return cls(
             _unspelt(fields["sun"], np.float64).reshape(-1, 3),
             _unspelt(fields["observable"], np.bool_),
@@ -210,7 +210,7 @@ class SampleErrors:
         """
         contents: dict[str, str | bytes | None] = {}
         measured = {cell.dataset for cell in self.cells}
-        for name in sorted({*_stored(directory), *measured, *self.directions}):
+        for name in sorted({*_store(directory), *measured, *self.directions}):
             before = _cells_on_disk(directory, name)
             now = {cell: self.cells[cell] for cell in self.cells if cell.dataset == name}
             wanted = {cell: found for cell, found in (before | now).items() if keep(cell)}
@@ -223,10 +223,10 @@ class SampleErrors:
                 known = _of_directions(self.directions[name])
             first = next(iter(wanted.values()))
             _require_samples(wanted, len(first.doubt) if known is None else len(known["sample"]))
-            contents |= _changed(directory / errors, errors, _of_cells(wanted), COLUMNS)
+            contents |= _change(directory / errors, errors, _of_cells(wanted), COLUMNS)
             if known is not None:
-                contents |= _changed(directory / directions, directions, known, DIRECTION_COLUMNS)
-        return recorded.write(directory, contents) if contents else False
+                contents |= _change(directory / directions, directions, known, DIRECTION_COLUMNS)
+        return record_manifest.write(directory, contents) if contents else False
 
 
 def path_of(dataset: str, *, directions: bool = False) -> str:
@@ -236,15 +236,15 @@ def path_of(dataset: str, *, directions: bool = False) -> str:
 
 def datasets(directory: Path = PUBLISHED) -> tuple[str, ...]:
     """Return the names of the data sets whose errors a record has, sorted."""
-    return tuple(sorted(n for n in _stored(directory) if is_there(n, directory)))
+    return tuple(sorted(n for n in _store(directory) if has_samples(n, directory)))
 
 
-def is_there(dataset: str, directory: Path = PUBLISHED) -> bool:
+def has_samples(dataset: str, directory: Path = PUBLISHED) -> bool:
     """Say whether a record has the errors of a data set, and what they are errors of."""
     return all((directory / path_of(dataset, directions=d)).is_file() for d in (False, True))
 
 
-def read(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:
+def read_samples(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:
     """Return the errors of a data set, sorted by extractor, model, unit and sample.
 
     Returns
@@ -260,7 +260,7 @@ def read(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:
         For a file that is damaged, holds other columns or types, or values that no run writes.
     """
     path = directory / path_of(dataset)
-    table = parquet_tables.read(path, COLUMNS, names=_NAMES)
+    table = parquet_tables.read_parquet(path, COLUMNS, names=_NAMES)
     error, doubt = table["error_deg"].to_numpy(), table["doubt"].to_numpy()
     _require(path, bool((np.isnan(error) | ((error >= 0) & (error <= 180))).all()), "error_deg")
     _require(path, bool(((doubt == ANSWERED) == ~np.isnan(error)).all()), "doubt")
@@ -279,9 +279,9 @@ def read(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:
 
 
 def read_directions(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:
-    """Return the samples of a data set, by number: `DIRECTION_COLUMNS`. Errors as `read`."""
+    """Return the samples of a data set by number, `DIRECTION_COLUMNS`; raises as `read_parquet`."""
     path = directory / path_of(dataset, directions=True)
-    table = parquet_tables.read(path, DIRECTION_COLUMNS)
+    table = parquet_tables.read_parquet(path, DIRECTION_COLUMNS)
     _require(path, table["sample"].tolist() == list(range(len(table))), "sample")
     length = np.linalg.norm(table[["sun_x", "sun_y", "sun_z"]].to_numpy(), axis=1)
     _require(path, bool((np.abs(length - 1.0) < 1e-5).all()), "sun_x, sun_y and sun_z")
@@ -290,7 +290,7 @@ def read_directions(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:
     return table
 
 
-def _spelt(array: NDArray[Any]) -> str:
+def _format_value(array: NDArray[Any]) -> str:
     return b64encode(array.tobytes()).decode()
 
 
@@ -303,7 +303,7 @@ def _require(path: Path, holds: bool, what: str) -> None:
         raise StoreError(f"{path}: values of {what} that no run writes")
 
 
-def _rounded(values: NDArray[np.float64]) -> NDArray[np.float32]:
+def _round_to(values: NDArray[np.float64]) -> NDArray[np.float32]:
     """Round to `_MANTISSA_BITS` bits behind the point of the mantissa, ties up; NaN stays NaN."""
     spare = 23 - _MANTISSA_BITS
     bits = np.asarray(values, dtype=np.float32).view(np.uint32)
@@ -311,14 +311,14 @@ def _rounded(values: NDArray[np.float64]) -> NDArray[np.float32]:
     return np.where(np.isnan(values), np.float32(np.nan), rounded).astype(np.float32)
 
 
-def _stored(directory: Path) -> set[str]:
+def _store(directory: Path) -> set[str]:
     """Return the data sets that a record has files of."""
     return {path.name.partition(".")[0] for path in (directory / FOLDER).glob("*.parquet")}
 
 
 def _cells_on_disk(directory: Path, dataset: str) -> dict[Cell, CellErrors]:
     try:
-        table = read(dataset, directory)
+        table = read_samples(dataset, directory)
     except FileNotFoundError:
         return {}
     names = [table[name].astype(str).to_numpy() for name in _NAMES]
@@ -369,7 +369,7 @@ def _require_samples(cells: Mapping[Cell, CellErrors], count: int) -> None:
             raise ValueError(f"{cell} has {errors.error_deg.size} samples; expected {count}")
 
 
-def _changed(
+def _change(
     path: Path, name: str, columns: Mapping[str, Any], types: Mapping[str, str]
 ) -> dict[str, bytes]:
     """Return a file's new bytes by its name; nothing where it holds these numbers already.
@@ -377,11 +377,11 @@ def _changed(
     So that another version of pyarrow does not change a record.
     """
     try:
-        held = parquet_tables.read(path, types)
+        held = parquet_tables.read_parquet(path, types)
     except FileNotFoundError:
-        return {name: parquet_tables.spelt(columns, types)}
+        return {name: parquet_tables.parquet_bytes(columns, types)}
     same = len(held) == len(columns["sample"]) and all(
         np.array_equal(held[key].to_numpy(), columns[key], equal_nan=kind == "float")
         for key, kind in types.items()
     )
-    return {} if same else {name: parquet_tables.spelt(columns, types)}
+    return {} if same else {name: parquet_tables.parquet_bytes(columns, types)}

@@ -25,22 +25,22 @@ from typing import TYPE_CHECKING
 from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin, Place
 from benchmark.metrics.score import METRICS
-from benchmark.results import recorded
+from benchmark.results import record_manifest
 from benchmark.results.components import Components, ComponentsError, Facts
-from benchmark.results.pins import pins_text, read_pins
-from benchmark.results.tables import (
+from benchmark.results.csv_tables import (
     Reader,
     Row,
     StoreError,
     count,
     number,
     one_of,
-    read,
+    read_csv,
     share,
     size,
     text_of,
     word,
 )
+from benchmark.results.pins import pins_text, read_pins
 from files.reading import path_exists
 from survey_data.nearest import nearest
 
@@ -127,7 +127,7 @@ class Store:
             raise StoreError(f"{folder}: expected a directory of tables")
         found: dict[Cell, Row] = {}
         for path in sorted(self.scores_directory.glob("*.csv")):
-            for line, row in read(path, _SCORE_COLUMNS):
+            for line, row in read_csv(path, _SCORE_COLUMNS):
                 if row["unit"] is None:
                     raise StoreError(f"{path}, line {line}: expected a number in unit")
                 names = (row.pop(name) for name in ("condition", "extractor", "model", "unit"))
@@ -150,7 +150,7 @@ class Store:
         StoreError, ComponentsError
             For a file that cannot be read, or names what the others lack.
         """
-        return described(self.scores(), self.components(), self.pins(), unit)
+        return describe(self.scores(), self.components(), self.pins(), unit)
 
     def pins(self) -> dict[Place, Pin]:
         """Pinned data by (dataset, condition, split); StoreError for a line that is no pin."""
@@ -226,10 +226,10 @@ class Store:
             contents.setdefault(f"{folder}/{path.name}", None)
         contents[self.pins_path.name] = pins_text(pins)
         contents[self.components_path.name] = components.text()
-        recorded.write(self.directory, contents, start=True)
+        record_manifest.write(self.directory, contents, start=True)
 
 
-def described(
+def describe(
     scores: Mapping[Cell, Row],
     components: Components,
     pins: Mapping[Place, Pin],

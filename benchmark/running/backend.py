@@ -9,7 +9,7 @@ from functools import partial
 from types import MappingProxyType
 
 from algorithms.extractors.frames.multi_spot.pattern_memory import shared_patterns
-from benchmark.running.cluster import connected
+from benchmark.running.cluster import connect
 from benchmark.running.durations import Took
 from benchmark.running.planned import FollowUp
 from benchmark.running.task import Task, TaskResult, measure
@@ -52,19 +52,19 @@ def outcomes(
     WorkerLostError
         When worker processes were killed; of a cluster, one after another over the same tasks.
     """
-    for task, result, seconds in _timed(tasks, workers, scheduler, follow_ups):
+    for task, result, seconds in _time(tasks, workers, scheduler, follow_ups):
         took(task, seconds)
         yield result
 
 
-def _timed(
+def _time(
     tasks: Sequence[Task],
     workers: int,
     scheduler: str | None,
     follow_ups: Mapping[str, FollowUp],
 ) -> Iterator[_Timed]:
     if scheduler is not None:
-        with connected(scheduler) as cluster:
+        with connect(scheduler) as cluster:
             yield from cluster.outcomes(
                 [
                     (bundle, partial(_all_measured, bundle, follow_ups.get(bundle[0].preset.name)))
@@ -76,7 +76,7 @@ def _timed(
     following = [follow_ups.get(bundle[0].preset.name) for bundle in bundled]
     if workers == 1 or len(tasks) == 1:
         for bundle, follow_up in zip(bundled, following, strict=True):
-            yield from _measured(bundle, follow_up)
+            yield from _measure(bundle, follow_up)
         return
     pairs = zip(bundled, following, strict=True)
     with closing(as_completed(_pair_measured, pairs, workers)) as measured:
@@ -111,7 +111,7 @@ def _place(task: Task) -> tuple[int, str]:
     return task.unit, task.condition
 
 
-def _measured(bundle: Sequence[Task], follow_up: FollowUp | None) -> Iterator[_Timed]:
+def _measure(bundle: Sequence[Task], follow_up: FollowUp | None) -> Iterator[_Timed]:
     """Measure a bundle, then what follows from it."""
     first, places = [], set()
 
@@ -137,4 +137,4 @@ def _pair_measured(pair: tuple[Sequence[Task], FollowUp | None]) -> list[_Timed]
 
 
 def _all_measured(bundle: Sequence[Task], follow_up: FollowUp | None) -> list[_Timed]:
-    return list(_measured(bundle, follow_up))
+    return list(_measure(bundle, follow_up))

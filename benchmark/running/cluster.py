@@ -86,7 +86,7 @@ class Cluster:
         """
         distributed = import_module("distributed")
         futures = [
-            self.client.submit(partial(_measured, code_of(tasks), tasks, measure), pure=False)
+            self.client.submit(partial(_measure, code_of(tasks), tasks, measure), pure=False)
             for tasks, measure in bundles
         ]
         for future in distributed.as_completed(futures, loop=self.client.loop):
@@ -125,7 +125,7 @@ def _garbage_left_alone() -> Iterator[None]:
 
 
 @contextmanager
-def connected(scheduler: str) -> Iterator[Cluster]:
+def connect(scheduler: str) -> Iterator[Cluster]:
     """Hold a connection to a cluster; what is under way there is given up at the end.
 
     Parameters
@@ -179,7 +179,7 @@ def code_of(tasks: Sequence[Task]) -> str:
     return closure_digest(*sorted(modules))
 
 
-def _measured(code: str, tasks: Sequence[Task], measure: Callable[[], list[T]]) -> list[T]:
+def _measure(code: str, tasks: Sequence[Task], measure: Callable[[], list[T]]) -> list[T]:
     """Measure on a worker, one bundle at a time however many threads it has."""
     if code_of(tasks) != code:
         raise OtherCodeError(

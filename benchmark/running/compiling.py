@@ -16,10 +16,10 @@ import numpy as np
 
 from algorithms.chain import Chain, Scored
 from algorithms.contract import Extractor, Observation, UnusableDataError
-from algorithms.pipeline import Pipeline, extracted
+from algorithms.pipeline import Pipeline, extract_features
 from benchmark.contract import Preset
 from benchmark.plan.combinations import cells
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback, silent
 from benchmark.running.threads import one_thread
 from benchmark.running.workers import as_completed
@@ -94,7 +94,7 @@ class _Solving:
     def __call__(self) -> None:
         samples = self.preset.generate(self.preset.conditions[0], "calibration")
         method = self.extractor.for_sensor(self.preset.geometry)
-        features = extracted(method, samples.observations, samples.origin_px)
+        features = extract_features(method, samples.observations, samples.origin_px)
         model = self.model.for_sensor(self.preset.geometry, method.about.kind)
         pipeline = Pipeline(method, model)
         # a refusal is a result of data and method: what it called until then is compiled
@@ -127,7 +127,7 @@ def compile_kernels(
     """
     if workers < 1:
         raise ValueError(f"workers must be at least 1; got {workers}")
-    known = parts or installed()
+    known = parts or installed_parts()
     # sensors first: extractors read what they make
     makers = [_Data(preset) for preset in known.presets.values()]
     readers = list(_readers(known))

@@ -13,8 +13,8 @@ from statistics import fmean, median
 from typing import NamedTuple
 
 from benchmark.contract import Cell
+from benchmark.results.csv_tables import number, read_csv, text_of, whole, word
 from benchmark.results.store import Store
-from benchmark.results.tables import number, read, text_of, whole, word
 from benchmark.running.task import Task
 from files.atomic import replace_file
 
@@ -32,7 +32,7 @@ _COLUMNS = {
 }
 
 
-class Extracted(NamedTuple):
+class ExtractionTask(NamedTuple):
     """What a task is of."""
 
     dataset: str
@@ -81,22 +81,22 @@ class Estimate:
 class Durations:
     """What is known of how long tasks take, by task."""
 
-    known: dict[Extracted, Took] = field(default_factory=dict)
+    known: dict[ExtractionTask, Took] = field(default_factory=dict)
 
     @classmethod
     def read(cls, stores: Iterable[Store]) -> Durations:
         """Return what stores have kept; of a task in several the last; StoreError for no table."""
-        found: dict[Extracted, Took] = {}
+        found: dict[ExtractionTask, Took] = {}
         for store in stores:
-            for _, row in read(store.work_directory / DURATIONS, _COLUMNS):
-                task = Extracted(*(row.pop(name) for name in Extracted._fields))
+            for _, row in read_csv(store.work_directory / DURATIONS, _COLUMNS):
+                task = ExtractionTask(*(row.pop(name) for name in ExtractionTask._fields))
                 found[task] = Took(**row)
         return cls(found)
 
     def add(self, task: Task, took: Took) -> None:
         """Take in how long a task took."""
         name = task.extractor.about.name
-        self.known[Extracted(task.preset.name, task.condition, task.unit, name)] = took
+        self.known[ExtractionTask(task.preset.name, task.condition, task.unit, name)] = took
 
     def keep(self, store: Store) -> None:
         """Write all to a store's working directory."""
@@ -105,9 +105,9 @@ class Durations:
 
     def estimate(self, cells: Iterable[Cell]) -> Estimate:
         """Say how long cells take: by the same task, else by its like on the same data set."""
-        tasks: dict[Extracted, int] = {}
+        tasks: dict[ExtractionTask, int] = {}
         for cell in cells:
-            task = Extracted(cell.dataset, cell.condition, cell.unit, cell.extractor)
+            task = ExtractionTask(cell.dataset, cell.condition, cell.unit, cell.extractor)
             tasks[task] = tasks.get(task, 0) + 1
         seconds, unknown = 0.0, 0
         for dataset, group in groupby(sorted(tasks), key=lambda task: task.dataset):
@@ -120,7 +120,9 @@ class Durations:
 
 
 def _of_dataset(
-    wanted: list[Extracted], models: Mapping[Extracted, int], like: Mapping[Extracted, Took]
+    wanted: list[ExtractionTask],
+    models: Mapping[ExtractionTask, int],
+    like: Mapping[ExtractionTask, Took],
 ) -> float:
     """Return seconds of tasks on one data set, by what is known of it."""
     alone = [took.seconds for took in like.values() if not took.made_data]

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any, ClassVar, Generic
 
 from benchmark.contract import UnknownNameError
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.row_file import C, Row, RowFile, TableFile
 from benchmark.results.store import PUBLISHED
@@ -58,7 +58,7 @@ class Experiment(ABC, Generic[C]):
     @cached_property
     def parts(self) -> Parts:
         """Data sets and implementations."""
-        return self._parts or installed()
+        return self._parts or installed_parts()
 
     @abstractmethod
     def cells(self) -> Sequence[C]:

@@ -16,12 +16,12 @@ from pathlib import Path
 from benchmark.contract import SPLITS, Preset, UnknownNameError
 from benchmark.datasets.pins import Pin, Place, alike
 from benchmark.datasets.samples import HEAD, head_hash
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.components import Components, current
-from benchmark.results.record import Record, opened
+from benchmark.results.record import Record, open_record
 from benchmark.results.store import Store
-from benchmark.running.generated import generated_pins, rms_bound
+from benchmark.running.condition_data import generated_pins, rms_bound
 from benchmark.running.task import reason_of
 from benchmark.running.threads import one_thread
 from benchmark.running.workers import as_completed
@@ -48,7 +48,7 @@ class UnversionedChangeError(ValueError):
 
 
 @dataclass(frozen=True)
-class Pinned:
+class PinResult:
     """What was pinned.
 
     Attributes
@@ -74,13 +74,13 @@ def places(parts: Parts | None = None) -> set[Place]:
     """Return everything there is to pin: (dataset, condition, split)."""
     return {
         (preset.name, condition, split)
-        for preset in (parts or installed()).presets.values()
+        for preset in (parts or installed_parts()).presets.values()
         for condition in preset.conditions
         for split in SPLITS
     }
 
 
-def unversioned(pinned: Mapping[Place, Pin], made: Iterable[Pin]) -> dict[str, list[str]]:
+def unversioned_changes(pinned: Mapping[Place, Pin], made: Iterable[Pin]) -> dict[str, list[str]]:
     """Return what differs from its pin though the dataset's version is the pin's, by dataset."""
     found: dict[str, list[str]] = {}
     for pin in made:
@@ -92,7 +92,7 @@ def unversioned(pinned: Mapping[Place, Pin], made: Iterable[Pin]) -> dict[str, l
 
 def require_versions(pinned: Mapping[Place, Pin], made: Iterable[Pin]) -> None:
     """Raise UnversionedChangeError where data differ from their pin under the same version."""
-    changes = unversioned(pinned, made)
+    changes = unversioned_changes(pinned, made)
     if changes:
         raise UnversionedChangeError(changes)
 
@@ -146,7 +146,7 @@ def pin_missing(
     workers: int,
     progress: ProgressCallback | None = None,
     datasets: Collection[str] | None = None,
-) -> Pinned:
+) -> PinResult:
     """Generate and pin what is not pinned for the code as it is.
 
     What is generated is on disk before the next is awaited. Data that changed without a new
@@ -164,7 +164,7 @@ def pin_missing(
     workers
         Number of processes; the hashes do not depend on it.
     progress
-        As `benchmark.running.run.run`.
+        As `benchmark.running.runner.run`.
     datasets
         Names; all by default.
 
@@ -187,14 +187,14 @@ def pin_missing(
     with terminal_progress() if progress is None else nullcontext(progress) as report:
         report(0, len(missing), "")
         for done, (preset, condition, pins, reason) in enumerate(
-            generated(missing, workers), start=1
+            generate(missing, workers), start=1
         ):
             record.keep(components, pins=pins)
             renewed += bool(pins)
             if reason:
                 warnings.append(f"{preset.name} {condition}: cannot be generated: {reason}")
             report(done, len(missing), f"{preset.name} {condition}")
-    return Pinned(
+    return PinResult(
         record.store.directory,
         len(every) - len(missing),
         renewed,
@@ -210,7 +210,7 @@ def update(
     *,
     datasets: Collection[str] | None = None,
     parts: Parts | None = None,
-) -> Pinned:
+) -> PinResult:
     """Pin what is not pinned for the code as it is, and write the store.
 
     Scores of datasets whose code has changed are dropped: they are of other data, or may be.
@@ -228,9 +228,9 @@ def update(
     """
     if workers < 1:
         raise ValueError(f"workers must be at least 1; got {workers}")
-    known = parts or installed()
+    known = parts or installed_parts()
     components = current(known)
-    with opened(store) as record:
+    with open_record(store) as record:
         pinned = store.pins()
         done = pin_missing(
             record, components, known, workers=workers, progress=progress, datasets=datasets
@@ -255,12 +255,10 @@ def differences(
     Parameters and errors as `update`.
     """
     pinned = store.pins()
-    every = conditions_of(parts or installed(), datasets)
+    every = conditions_of(parts or installed_parts(), datasets)
     wrong: list[str] = []
     with terminal_progress() if progress is None else nullcontext(progress) as report:
-        for done, (preset, condition, pins, reason) in enumerate(
-            generated(every, workers), start=1
-        ):
+        for done, (preset, condition, pins, reason) in enumerate(generate(every, workers), start=1):
             where = f"{preset.name} {condition}"
             wrong += [f"{where}: cannot be generated: {reason}"] if reason else []
             wrong += [
@@ -301,7 +299,7 @@ def conditions_of(
     ]
 
 
-def generated(
+def generate(
     wanted: list[tuple[Preset, str]], workers: int
 ) -> Iterator[tuple[Preset, str, tuple[Pin, ...], str]]:
     """Generate datasets under conditions: each with its pins, or why there are none."""

@@ -15,8 +15,8 @@ from benchmark.contract import ON_BENCH, Cell
 from benchmark.datasets.pins import Pin, Place
 from benchmark.metrics.score import METRICS
 from benchmark.plan.parts import Parts
+from benchmark.results.csv_tables import Row
 from benchmark.results.samples import CONDITION, Directions, SampleErrors
-from benchmark.results.tables import Row
 from benchmark.running.task import Task, TaskResult, data_condition
 
 

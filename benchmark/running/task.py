@@ -16,11 +16,11 @@ from algorithms.chain import Scored
 from algorithms.contract import Extractor, Floats, UnusableDataError
 from algorithms.pipeline import Pipeline
 from benchmark.contract import ON_BENCH, Preset
-from benchmark.datasets.benches import reported
+from benchmark.datasets.benches import report
 from benchmark.datasets.method_bound import method_bound_deg
 from benchmark.datasets.pins import Pin
 from benchmark.metrics.score import Score, score, separation_deg
-from benchmark.running.generated import Generated, found_features, generated
+from benchmark.running.condition_data import ConditionData, found_features, generate
 from benchmark.running.threads import one_thread
 
 #: Benches that each unit of a leading pipeline is calibrated on beside a perfect one.
@@ -96,7 +96,7 @@ def measure(task: Task) -> TaskResult:
     condition = data_condition(task.preset, task.condition)
     with one_thread():
         try:
-            data = generated(task.preset, condition, task.unit, all_observable=task.all_observable)
+            data = generate(task.preset, condition, task.unit, all_observable=task.all_observable)
         except Exception as error:  # noqa: BLE001 - any error of a dataset is a row with its reason
             return _failed(task, error, "generating data")
         try:
@@ -123,7 +123,7 @@ def measured_on(
     extractor: Extractor,
     model: Scored,
     features: dict[str, Floats],
-    data: Generated,
+    data: ConditionData,
 ) -> Outcome:
     """Calibrate and score one pipeline on the features (N, F) its extractor found, by split."""
     scored = _on_benches if task.condition == ON_BENCH else _own
@@ -141,7 +141,7 @@ def _own(
     extractor: Extractor,
     model: Scored,
     features: dict[str, Floats],
-    data: Generated,
+    data: ConditionData,
 ) -> Outcome:
     """Score a pipeline that was told the true directions of its calibration."""
     pipeline = _pipeline(task, extractor, model)
@@ -149,7 +149,7 @@ def _own(
     repeated = None
     if "repeat" in features:
         again = data.splits["repeat"].context
-        repeated = _repeated(pipeline.predict_features(features["repeat"], again), data)
+        repeated = _repeat(pipeline.predict_features(features["repeat"], again), data)
     test = data.splits["test"]
     answers = pipeline.predict_features(features["test"], test.context)
     posterior = _posterior_deg(task, model, data)
@@ -172,7 +172,7 @@ def _own(
     )
 
 
-def _posterior_deg(task: Task, model: Scored, data: Generated) -> Floats | None:
+def _posterior_deg(task: Task, model: Scored, data: ConditionData) -> Floats | None:
     """Bound (N,) of a method that knows the samples before or other instruments; None else."""
     if data.bound is None or not model.about.context:
         return None
@@ -185,14 +185,14 @@ def _on_benches(
     extractor: Extractor,
     model: Scored,
     features: dict[str, Floats],
-    data: Generated,
+    data: ConditionData,
 ) -> Outcome:
     """Score a pipeline calibrated with the directions of drawn benches; errors are pooled."""
-    on_bench = task.preset.as_unit(task.unit)
+    on_bench = task.preset.for_unit(task.unit)
     known, test = data.splits["calibration"].truth, data.splits["test"]
     answers = []
     for draw in range(BENCHES):
-        told = reported(on_bench, task.preset.conditions[0], np.asarray(known), draw)
+        told = report(on_bench, task.preset.conditions[0], np.asarray(known), draw)
         pipeline = _pipeline(task, extractor, model)
         _fit(pipeline, features, data, told)
         answers.append(pipeline.predict_features(features["test"], test.context))
@@ -212,7 +212,7 @@ def _pipeline(task: Task, extractor: Extractor, model: Scored) -> Pipeline:
     return Pipeline(extractor, model.for_sensor(geometry, extractor.about.kind))
 
 
-def _fit(pipeline: Pipeline, features: dict[str, Floats], data: Generated, sun: Floats) -> None:
+def _fit(pipeline: Pipeline, features: dict[str, Floats], data: ConditionData, sun: Floats) -> None:
     """Fit to the calibration's features; RefusedError where the model refuses them."""
     try:
         pipeline.fit_features(features["calibration"], sun, data.splits["calibration"].context)
@@ -220,7 +220,7 @@ def _fit(pipeline: Pipeline, features: dict[str, Floats], data: Generated, sun: 
         raise RefusedError(error) from error
 
 
-def _repeated(predicted: Floats, data: Generated) -> Floats:
+def _repeat(predicted: Floats, data: ConditionData) -> Floats:
     """Answers (R, P, 3) to the observable poses of the split ``repeat``."""
     chosen = data.preset.repeats.chosen(len(data.observable))
     passes = np.asarray(predicted).reshape(data.preset.repeats.passes, len(chosen), 3)

@@ -20,13 +20,13 @@ from numpy.typing import NDArray
 
 from algorithms.chain import Scored
 from algorithms.contract import Extractor, Floats, SensorGeometry
-from algorithms.pipeline import Pipeline, extracted
+from algorithms.pipeline import Pipeline, extract_features
 from benchmark.contract import Cell, Preset, Samples
 from benchmark.plan.combinations import cells
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.components import Components, current
-from benchmark.results.tables import StoreError, above_zero, read, text_of, word
+from benchmark.results.csv_tables import StoreError, above_zero, read_csv, text_of, word
 from benchmark.running.threads import one_thread
 from benchmark.running.timing import best_of, best_time
 from files.atomic import replace_file
@@ -98,7 +98,7 @@ def read_times(directory: Path) -> dict[Place, Time]:
         For a line that is no time.
     """
     found: dict[Place, Time] = {}
-    for line, row in read(directory / TIMES, _COLUMNS):
+    for line, row in read_csv(directory / TIMES, _COLUMNS):
         time = Time(**row)
         if time.pipeline in found:
             raise StoreError(f"{directory / TIMES}, line {line}: {time.pipeline} is there twice")
@@ -119,7 +119,7 @@ def times_of_code(
     there = read_times(directory)
     if not there:
         return {}
-    known = parts or installed()
+    known = parts or installed_parts()
     now = components or current(known)
     return {
         pipeline: time
@@ -144,7 +144,7 @@ def update(
     directory
         Where the times are kept.
     progress
-        As `benchmark.running.run.run`.
+        As `benchmark.running.runner.run`.
     parts
         Datasets and implementations; what is installed by default.
 
@@ -153,7 +153,7 @@ def update(
     StoreError
         Where the file cannot be read.
     """
-    known = parts or installed()
+    known = parts or installed_parts()
     components = current(known)
     first = {name: preset.conditions[0] for name, preset in known.presets.items()}
     planned = [cell for cell in cells(parts=known) if cell.condition == first[cell.dataset]]
@@ -167,7 +167,7 @@ def update(
         for dataset, group in groupby(missing, key=lambda cell: cell.dataset):
             timed = {
                 time.pipeline: replace(time, digest=_digest(time.pipeline, components))
-                for time in _timed(known, list(group))
+                for time in _time(known, list(group))
             }
             done += len(timed)
             with _held(directory):  # meanwhile another process may have written
@@ -211,7 +211,7 @@ def reference(observations: NDArray[Any]) -> object:
     return [samples[start : start + rows].astype(np.float64) @ weights for start in parts]
 
 
-def _timed(parts: Parts, group: list[Cell]) -> Iterator[Time]:
+def _time(parts: Parts, group: list[Cell]) -> Iterator[Time]:
     """Time the pipelines of one dataset."""
     preset, condition = parts.preset(group[0].dataset), group[0].condition
     with one_thread():
@@ -264,9 +264,9 @@ def _numbers(
         yield (
             model_class,
             (
-                _rounded(1e6 * whole_s / len(data.test.sun)),
-                _rounded(whole_s / timing.reference_s),
-                _rounded(timing.seconds / timing.reference_s),
+                _round_to(1e6 * whole_s / len(data.test.sun)),
+                _round_to(whole_s / timing.reference_s),
+                _round_to(timing.seconds / timing.reference_s),
             ),
         )
 
@@ -278,10 +278,10 @@ def _batch(preset: Preset, condition: str) -> int:
 
 
 def _features(extractor: Extractor, samples: Samples) -> Floats:
-    return extracted(extractor, samples.observations, samples.origin_px)
+    return extract_features(extractor, samples.observations, samples.origin_px)
 
 
-def _rounded(value: float) -> float:
+def _round_to(value: float) -> float:
     return float(f"{value:.3g}")
 
 

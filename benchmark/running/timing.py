@@ -14,14 +14,14 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Timing:
+class TimingResult:
     """Best wall time of a call and of the reference measured between the same repeats."""
 
     seconds: float
     reference_s: float
 
 
-def best_of(call: Callable[[], T], reference: Callable[[], object]) -> tuple[T, Timing]:
+def best_of(call: Callable[[], T], reference: Callable[[], object]) -> tuple[T, TimingResult]:
     """Return the result of `call` and its best time of up to 3 runs.
 
     The reference runs before each. Slow calls run once: repeating stops when 0.03 s are spent.
@@ -29,14 +29,14 @@ def best_of(call: Callable[[], T], reference: Callable[[], object]) -> tuple[T, 
     best = best_reference = float("inf")
     spent = 0.0
     for _ in range(_REPEATS):
-        reference_s, _ignored = _timed(reference)
-        seconds, result = _timed(call)
+        reference_s, _ignored = _time(reference)
+        seconds, result = _time(call)
         best = min(best, seconds)
         best_reference = min(best_reference, reference_s)
         spent += seconds + reference_s
         if spent > _ENOUGH_S:
             break
-    return result, Timing(best, best_reference)
+    return result, TimingResult(best, best_reference)
 
 
 def best_time(call: Callable[[], T]) -> tuple[T, float]:
@@ -49,7 +49,7 @@ def _nothing() -> None:
     """Take no time: for what is timed beside a reference measured already."""
 
 
-def _timed(call: Callable[[], T]) -> tuple[float, T]:
+def _time(call: Callable[[], T]) -> tuple[float, T]:
     started = time.perf_counter()
     result = call()
     return time.perf_counter() - started, result

@@ -23,9 +23,9 @@ from numpy.typing import ArrayLike
 from algorithms.contract import Extractor, Floats
 from benchmark.contract import Cell, Samples, UnknownNameError
 from benchmark.plan.combinations import cells as planned
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.store import Store
-from benchmark.running.generated import Generated, found_features, generated
+from benchmark.running.condition_data import ConditionData, found_features, generate
 from benchmark.running.task import Outcome, Task, data_condition, measured_on
 from benchmark.running.threads import one_thread
 from benchmark.seeds import generator
@@ -82,7 +82,7 @@ def _neighbours(before: Any, after: Any) -> bool:
 
 
 @dataclass(frozen=True)
-class Searched:
+class PerturbationResult:
     """What a search looked at, and what it found: what differs, and what of it moved."""
 
     cells: int
@@ -101,7 +101,7 @@ def search(
     *,
     observations: bool = True,
     draw: int = 0,
-) -> Searched:
+) -> PerturbationResult:
     """Measure cells as they are and perturbed; name those that differ in a stored digit.
 
     Parameters
@@ -126,10 +126,10 @@ def search(
             for finding in _of_one_extraction(board, parts, observations, draw):
                 told(finding)
                 found.append(finding)
-    return Searched(count, tuple(found))
+    return PerturbationResult(count, tuple(found))
 
 
-def perturbed(values: ArrayLike, *names: str | int) -> Floats:
+def perturb(values: ArrayLike, *names: str | int) -> Floats:
     """Return values with relative noise of `SIZE`; whole numbers, zeros and NaN stay as they are.
 
     A whole number is a count or a sum of counts, exact in any order. Equal values move alike: the
@@ -144,7 +144,7 @@ def perturbed(values: ArrayLike, *names: str | int) -> Floats:
 
     Examples
     --------
-    >>> perturbed([2.0, 0.5, np.nan], "test") == [2.0, 0.5, np.nan]
+    >>> perturb([2.0, 0.5, np.nan], "test") == [2.0, 0.5, np.nan]
     array([ True, False, False])
     """
     given = np.ascontiguousarray(values, dtype=np.float64)
@@ -172,7 +172,7 @@ class _Perturbing:
         given = np.asarray(observations)
         if given.dtype.kind != "f":
             return self._extractor.extract(given)
-        moved = perturbed(given, *self._names).astype(given.dtype)
+        moved = perturb(given, *self._names).astype(given.dtype)
         return self._extractor.extract(moved)
 
 
@@ -189,7 +189,7 @@ def _of_one_extraction(
     models = tuple(parts.model(one.model) for one in board)
     task = Task(preset, cell.condition, made, models, cell.unit)
     condition = data_condition(preset, cell.condition)
-    data = generated(preset, condition, cell.unit)
+    data = generate(preset, condition, cell.unit)
     extractor = made.for_sensor(preset.geometry_for(condition))
     names = (cell.dataset, cell.condition, cell.unit, cell.extractor, draw)
     features = {split: found_features(data, extractor, split) for split in data.splits}
@@ -201,9 +201,9 @@ def _of_one_extraction(
         if any(not np.array_equal(again[s], features[s], equal_nan=True) for s in features):
             variants["observations"] = (data, again)
     for one, model in zip(board, models, strict=True):
-        before = _stored(measured_on(task, extractor, model, features, data))
+        before = _store(measured_on(task, extractor, model, features, data))
         for inputs, (given, moved_features) in variants.items():
-            after = _stored(measured_on(task, extractor, model, moved_features, given))
+            after = _store(measured_on(task, extractor, model, moved_features, given))
             differ = {
                 name: (before.get(name), after.get(name))
                 for name in before | after
@@ -214,14 +214,14 @@ def _of_one_extraction(
 
 
 def _moved_features(
-    data: Generated, features: dict[str, Floats], *names: str | int
-) -> tuple[Generated, dict[str, Floats]]:
+    data: ConditionData, features: dict[str, Floats], *names: str | int
+) -> tuple[ConditionData, dict[str, Floats]]:
     """Perturb features of every split, and the directions that the calibration is given."""
     known = cast("Any", data.splits["calibration"])
-    truth = perturbed(known.truth, *names, "directions")
+    truth = perturb(known.truth, *names, "directions")
     truth /= np.linalg.norm(truth, axis=1, keepdims=True)
     told = cast("Samples", _Told(known, truth))
-    moved = {split: perturbed(found, *names) for split, found in features.items()}
+    moved = {split: perturb(found, *names) for split, found in features.items()}
     return replace(data, splits={**data.splits, "calibration": told}), moved
 
 
@@ -237,7 +237,7 @@ class _Told:
         return self.samples.context
 
 
-def _stored(outcome: Outcome) -> dict[str, Any]:
+def _store(outcome: Outcome) -> dict[str, Any]:
     return {"reason": outcome.reason} if outcome.score is None else outcome.score.row()
 
 
@@ -253,7 +253,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--all", action="store_true", help="compatible cells, not only those of the record"
     )
     asked = parser.parse_args(arguments)
-    parts = installed()
+    parts = installed_parts()
     try:
         wanted = planned(
             asked.datasets or None, asked.condition, asked.extractor, asked.model, parts=parts

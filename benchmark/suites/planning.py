@@ -6,20 +6,20 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from benchmark.contract import Cell
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.components import current
+from benchmark.results.csv_tables import Row
 from benchmark.results.record import Record
 from benchmark.results.store import Store
-from benchmark.results.tables import Row
 from benchmark.running.durations import Durations, Estimate
-from benchmark.running.run import known_cells
+from benchmark.running.runner import known_cells
 from benchmark.suites.selection import Suite
 
 NEW, FAILED = "new", "failed"
 
 
 @dataclass(frozen=True)
-class Planned:
+class CellPlan:
     """Cells, and what is to be done about them.
 
     Attributes
@@ -39,7 +39,7 @@ class Planned:
     estimate: Estimate
 
 
-def plan(cells: Iterable[Cell], stores: Sequence[Store], *, parts: Parts | None = None) -> Planned:
+def plan(cells: Iterable[Cell], stores: Sequence[Store], *, parts: Parts | None = None) -> CellPlan:
     """Say which cells would be measured, and why.
 
     Parameters
@@ -58,7 +58,7 @@ def plan(cells: Iterable[Cell], stores: Sequence[Store], *, parts: Parts | None 
     StoreError, ComponentsError
         For a file that cannot be read.
     """
-    known = parts or installed()
+    known = parts or installed_parts()
     wanted = known_cells(cells, known)
     components = current(known)
     records = [Record(store) for store in stores]
@@ -68,15 +68,15 @@ def plan(cells: Iterable[Cell], stores: Sequence[Store], *, parts: Parts | None 
         if all(reasons):
             missing[cell] = next((r for r in reasons if r != (NEW,)), (NEW,))
     durations = Durations.read(stores)
-    return Planned(tuple(wanted), missing, durations.estimate(missing))
+    return CellPlan(tuple(wanted), missing, durations.estimate(missing))
 
 
 def cells_of(suite: Suite, stores: Sequence[Store], *, parts: Parts | None = None) -> list[Cell]:
     """Return a suite's cells by the scores that stores hold, of older code or not."""
-    return suite.select(held(stores), parts or installed())
+    return suite.select(stored_scores(stores), parts or installed_parts())
 
 
-def held(stores: Sequence[Store]) -> dict[Cell, Row]:
+def stored_scores(stores: Sequence[Store]) -> dict[Cell, Row]:
     """Return the scores of stores, of the first that holds a cell."""
     found: dict[Cell, Row] = {}
     for store in reversed(stores):

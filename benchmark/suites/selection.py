@@ -71,7 +71,7 @@ def _quick(_scores: Scores, parts: Parts) -> list[Cell]:
 
 def _standard(scores: Scores, parts: Parts) -> list[Cell]:
     """Select all that is published, by the rule of `benchmark.leaderboard.scope`."""
-    return sorted(scope.wanted(scores, parts))
+    return sorted(scope.published_scope(scores, parts))
 
 
 SUITES: Mapping[str, Suite] = {
@@ -90,6 +90,6 @@ def suite(name: str) -> Suite:
     return SUITES[name]
 
 
-def met(cells: Collection[Cell]) -> tuple[frozenset[str], frozenset[str]]:
+def parts_of_cells(cells: Collection[Cell]) -> tuple[frozenset[str], frozenset[str]]:
     """Return the extractors and the models that cells are of."""
     return frozenset(cell.extractor for cell in cells), frozenset(cell.model for cell in cells)

@@ -9,9 +9,9 @@ from pathlib import Path
 from benchmark.contract import Cell
 from benchmark.datasets.pins import Place
 from benchmark.plan.combinations import cells
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.components import current
-from benchmark.results.record import opened
+from benchmark.results.record import open_record
 from benchmark.results.store import Store
 from benchmark.running import durations, pinning, times
 from benchmark.running.task import data_condition
@@ -19,7 +19,7 @@ from files.temporary import temporary_directory
 
 
 @dataclass(frozen=True)
-class Tidied:
+class TidyResult:
     """What was dropped.
 
     Attributes
@@ -39,7 +39,7 @@ class Tidied:
     freed: int
 
 
-def tidy(store: Store, *, parts: Parts | None = None) -> Tidied:
+def tidy(store: Store, *, parts: Parts | None = None) -> TidyResult:
     """Drop scores, pins and times of code or data that have changed or are gone.
 
     Raises
@@ -50,12 +50,12 @@ def tidy(store: Store, *, parts: Parts | None = None) -> Tidied:
         For a file that cannot be read.
     """
     if not store.directory.is_dir():
-        return Tidied(0, 0, 0, 0, 0)
-    known = parts or installed()
+        return TidyResult(0, 0, 0, 0, 0)
+    known = parts or installed_parts()
     components = current(known)
     before = _size(store)
     planned, places = frozenset(cells(parts=known)), frozenset(pinning.places(known))
-    with opened(store) as record:
+    with open_record(store) as record:
         there = len(record.scores), len(record.pins)
 
         def is_current(cell: Cell) -> bool:
@@ -71,7 +71,7 @@ def tidy(store: Store, *, parts: Parts | None = None) -> Tidied:
         record.write(components)
         dropped = times.drop_outdated(store.directory, known, components)
         dropped += durations.drop_unplanned(store, planned)
-    return Tidied(
+    return TidyResult(
         scores=there[0] - len(record.scores),
         pins=there[1] - len(record.pins),
         times=dropped,
@@ -80,10 +80,10 @@ def tidy(store: Store, *, parts: Parts | None = None) -> Tidied:
     )
 
 
-def would_tidy(store: Store, *, parts: Parts | None = None) -> Tidied:
+def would_tidy(store: Store, *, parts: Parts | None = None) -> TidyResult:
     """Say what `tidy` would drop: it is done to a copy."""
     if not store.directory.is_dir():
-        return Tidied(0, 0, 0, 0, 0)
+        return TidyResult(0, 0, 0, 0, 0)
     with temporary_directory() as temporary:
         copy = Store(temporary)
         for path in _files(store):

@@ -11,12 +11,12 @@ from benchmark.leaderboard.check import Difference, compare_scores
 from benchmark.plan.parts import Parts
 from benchmark.progress import ProgressCallback
 from benchmark.results.store import Store
-from benchmark.running.run import RunInterruptedError, run
+from benchmark.running.runner import RunInterruptedError, run
 from files.temporary import temporary_directory
 
 
 @dataclass(frozen=True)
-class Verified:
+class VerificationResult:
     """What came of measuring cells again.
 
     Attributes
@@ -35,7 +35,7 @@ class Verified:
     differences: tuple[Difference, ...]
 
 
-def drawn(cells: Iterable[Cell], sample: int, seed: int) -> list[Cell]:
+def draw_cells(cells: Iterable[Cell], sample: int, seed: int) -> list[Cell]:
     """Draw `sample` of the cells, or all where there are fewer, in order.
 
     Each cell's lot is a digest of the seed and its name: what else is in the record moves none.
@@ -57,7 +57,7 @@ def verify(
     *,
     scheduler: str | None = None,
     parts: Parts | None = None,
-) -> Verified:
+) -> VerificationResult:
     """Measure cells from nothing and compare them with the record.
 
     Parameters
@@ -67,7 +67,7 @@ def verify(
     record
         That is verified; nothing is written to it.
     workers, progress, scheduler, parts
-        As `benchmark.running.run.run`, as are the errors.
+        As `benchmark.running.runner.run`, as are the errors.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def verify(
     samples = {
         place[:2]: pin.n for place, pin in {**pins, **record.pins()}.items() if place[2] == "test"
     }
-    return Verified(
+    return VerificationResult(
         tuple(wanted),
         sum(committed.get(cell) == measured[cell] for cell in wanted),
         tuple(compare_scores(committed, measured, samples)),

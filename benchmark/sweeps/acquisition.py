@@ -10,11 +10,11 @@ import numpy as np
 from algorithms.calibration.coded.mask import CodedMask
 from algorithms.calibration.coded.reading import CodeReading
 from algorithms.contract import Floats
-from algorithms.pipeline import extracted
+from algorithms.pipeline import extract_features
 from benchmark import seeds
 from benchmark.datasets import get
 from benchmark.datasets.fields import Split
-from benchmark.plan.parts import installed
+from benchmark.plan.parts import installed_parts
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
 
 
@@ -114,20 +114,20 @@ def acquisition(
         preset,
         setups={condition: setup},
         directions=_Directions(field, names),
-    ).as_unit(unit)
-    parts, geometry = installed(), preset.geometry_for(condition)
+    ).for_unit(unit)
+    parts, geometry = installed_parts(), preset.geometry_for(condition)
     extractor = parts.extractor("spot-list").for_sensor(geometry)
     reader = cast("Any", parts.model(model)).for_sensor(geometry, extractor.about.kind)
     if not isinstance(reader, CodedMask):
         raise TypeError(f"{model} must be a model of coded masks; got {type(reader).__name__}")
     samples = seen.generate(condition, "test")
     reading = replace(reader, **(settings or {})).read(
-        extracted(extractor, samples.observations, samples.origin_px)
+        extract_features(extractor, samples.observations, samples.origin_px)
     )
-    return _counted(reading, samples.sun, reader)
+    return _count(reading, samples.sun, reader)
 
 
-def _counted(reading: CodeReading, sun: Floats, reader: CodedMask) -> Acquisition:
+def _count(reading: CodeReading, sun: Floats, reader: CodedMask) -> Acquisition:
     slope, centre = reader.drawing()
     cast_px = np.asarray(centre) + sun[:, :2] / sun[:, 2:] / slope
     away = np.hypot(*(reading.displacement - cast_px).T)

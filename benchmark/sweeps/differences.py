@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from benchmark.results.tables import Row
+from benchmark.results.csv_tables import Row
 from benchmark.sweeps.record import NUMBERS, point_of
 
 #: As `benchmark.leaderboard.check.RELATIVE_TOLERANCE`, and of samples at the edge of being found.

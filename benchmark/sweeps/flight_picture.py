@@ -15,9 +15,9 @@ import numpy as np
 from algorithms.contract import Floats
 from benchmark.datasets.corrected import correction
 from benchmark.datasets.features import features_of
-from benchmark.drawing import plain_style
 from benchmark.metrics.score import separation_deg
-from benchmark.plan.parts import installed
+from benchmark.plan.parts import installed_parts
+from benchmark.plot_style import plain_style
 from files.atomic import replace_file
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def along(dataset: str, extractor: str, single: str, filtered: str) -> dict[str,
         ``filtered`` direction, dead reckoning too, and the filter's own ``deviation``, 1-sigma of
         both axes together.
     """
-    parts = installed()
+    parts = installed_parts()
     preset = parts.presets[dataset]
     reader = parts.extractor(extractor).for_sensor(preset.geometry)
     known, test = (preset.generate("nominal", split) for split in ("calibration", "test"))

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from algorithms.contract import Extractor, Floats, UnusableDataError
-from algorithms.pipeline import checked
-from benchmark.metrics.score import stored
+from algorithms.pipeline import check_features
+from benchmark.metrics.score import store
 from benchmark.results.row_file import Row
 from benchmark.running.threads import one_thread
 from benchmark.sweeps.plan import SERIES
 from benchmark.sweeps.record import NUMBERS, Point
-from benchmark.synthetic_features.series import KEPT_PX, WRONG_PX, Drawn, Series, Setting
+from benchmark.synthetic_features.series import KEPT_PX, WRONG_PX, Sample, Series, SeriesPoint
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Task:
     """
 
     extractors: Mapping[Point, type[Extractor]]
-    setting: Setting | None
+    setting: SeriesPoint | None
     refused: Mapping[Point, str]
 
 
@@ -49,13 +49,13 @@ def measure(task: Task) -> list[tuple[Point, Row]]:
     with one_thread():
         drawn = series.draw(task.setting)
         for point in asked:
-            row = _measured(series, drawn, point, task.setting, task.extractors[point])
+            row = _measure(series, drawn, point, task.setting, task.extractors[point])
             rows.append((point, row))
     return rows
 
 
-def _measured(
-    series: Series, drawn: Drawn, point: Point, setting: Setting, extractor: type[Extractor]
+def _measure(
+    series: Series, drawn: Sample, point: Point, setting: SeriesPoint, extractor: type[Extractor]
 ) -> Row:
     row = _row(point, setting, extractor)
     try:
@@ -65,7 +65,7 @@ def _measured(
         if setting.tracking:
             extract = getattr(method, "track", extract)
         observations = drawn.observations.copy()
-        features = checked(method, extract(observations), len(observations))
+        features = check_features(method, extract(observations), len(observations))
         estimates = series.estimates(features)
     except UnusableDataError as error:
         return row | {"status": "refused", "reason": _reason(error)}
@@ -74,7 +74,7 @@ def _measured(
     return row | {"status": "ok"} | _numbers(estimates, drawn, series.unit)
 
 
-def _numbers(estimates: Floats, drawn: Drawn, unit: str) -> Row:
+def _numbers(estimates: Floats, drawn: Sample, unit: str) -> Row:
     """Return the metrics of estimates (N, K); those of an axis are over two, whatever K.
 
     Every answer where there is no truth is wrong.
@@ -89,10 +89,10 @@ def _numbers(estimates: Floats, drawn: Drawn, unit: str) -> Row:
     bias = float(np.sqrt(np.sum(good.mean(axis=0) ** 2) / 2.0)) if len(good) else np.nan
     kept = float((squared <= KEPT_PX**2).sum() / len(errors)) if unit == "px" else np.nan
     values = (found.mean(), kept, wrong, rms, bias, bound, rms / bound)
-    return {name: stored(float(v)) for name, v in zip(NUMBERS, values, strict=True)}
+    return {name: store(float(v)) for name, v in zip(NUMBERS, values, strict=True)}
 
 
-def _row(point: Point, setting: Setting | None, extractor: type[Extractor]) -> Row:
+def _row(point: Point, setting: SeriesPoint | None, extractor: type[Extractor]) -> Row:
     series = SERIES.get(point.series)
     return {
         "series": point.series,

@@ -17,7 +17,7 @@ from benchmark.synthetic_features.events import EVENTS
 from benchmark.synthetic_features.frame_series import FramesSeries
 from benchmark.synthetic_features.lines import SLIT, SLITS
 from benchmark.synthetic_features.readings import FacesSeries, QuadrantSeries
-from benchmark.synthetic_features.series import Series, Setting
+from benchmark.synthetic_features.series import Series, SeriesPoint
 from benchmark.synthetic_features.spots import DiscSeries, GridSeries
 
 
@@ -78,19 +78,19 @@ _UNMEASURED = frozenset({FeatureKind.SPOTS, FeatureKind.SIGNALS})
 
 
 @dataclass(frozen=True)
-class Planned:
+class SweepPlan:
     """What is measured: settings by point, and why there is none; on a whole series in one line."""
 
-    settings: Mapping[Point, Setting]
+    settings: Mapping[Point, SeriesPoint]
     refused: Mapping[Point, str]
 
 
-def planned(extractors: Mapping[str, type[Extractor]]) -> Planned:
+def plan_points(extractors: Mapping[str, type[Extractor]]) -> SweepPlan:
     """Return every point of every extractor, and what is refused with the reason.
 
     Where a method refuses a whole series, sweep and point of the refusal are empty.
     """
-    settings: dict[Point, Setting] = {}
+    settings: dict[Point, SeriesPoint] = {}
     refused: dict[Point, str] = {}
     for extractor in extractors.values():
         names = _series_names(extractor)
@@ -106,16 +106,16 @@ def planned(extractors: Mapping[str, type[Extractor]]) -> Planned:
             else:  # one line instead of one a point
                 reason = next(iter(left_out.values()))
                 refused[Point(series.name, "", "", extractor.about.name)] = reason
-    return Planned(dict(sorted(settings.items())), dict(sorted(refused.items())))
+    return SweepPlan(dict(sorted(settings.items())), dict(sorted(refused.items())))
 
 
 def _sorted_out(
     series: Series, extractor: type[Extractor]
-) -> tuple[dict[Point, Setting], dict[Point, str]]:
+) -> tuple[dict[Point, SeriesPoint], dict[Point, str]]:
     """Return the points whose design a method accepts, and reasons for the others."""
     # a method for one spot meets the grid only to say what several features do for it
     visiting = series.name == "grid" and "grid" not in _FRAMES_OF.get(extractor.about.taxonomy, ())
-    accepted: dict[Point, Setting] = {}
+    accepted: dict[Point, SeriesPoint] = {}
     left_out: dict[Point, str] = {}
     for setting in series.settings():
         if visiting and setting.sweep != "features":
@@ -138,7 +138,7 @@ def _series_names(extractor: type[Extractor]) -> tuple[str, ...]:
     return _SERIES_OF[extractor.about.observation]
 
 
-def _refusal(series: Series, setting: Setting, extractor: type[Extractor]) -> str:
+def _refusal(series: Series, setting: SeriesPoint, extractor: type[Extractor]) -> str:
     """Why a method does not fit the design of a point, or empty."""
     geometry = series.geometry(setting)
     missing = [name for name in extractor.about.needs if getattr(geometry, name) is None]

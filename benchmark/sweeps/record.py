@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from benchmark.results.csv_tables import Reader, count, number, one_of, share, size, word
 from benchmark.results.row_file import Row, TableFile
 from benchmark.results.store import PUBLISHED, STATUSES
-from benchmark.results.tables import Reader, count, number, one_of, share, size, word
 
 
 @dataclass(frozen=True, order=True)

@@ -17,10 +17,10 @@ from benchmark.simulator.sensors.lens_camera import LensCamera
 from benchmark.synthetic_features.light import position_bound
 from benchmark.synthetic_features.series import (
     SNRS,
-    Drawn,
-    Setting,
+    Sample,
+    SeriesPoint,
     locations,
-    missing,
+    missing_features,
     number,
     phases,
 )
@@ -51,16 +51,16 @@ class CameraSeries:
     unit: str = "px"
     frames: int = 24
 
-    def settings(self) -> tuple[Setting, ...]:
+    def settings(self) -> tuple[SeriesPoint, ...]:
         """Return every point; the noise sweep ends where the light's own noise is all there is."""
-        base = Setting("reference", self.name, None, self.frames, range_px=40.0)
+        base = SeriesPoint("reference", self.name, None, self.frames, range_px=40.0)
         snrs = (snr for snr in SNRS if snr <= self._highest_snr())
         return (
             base,
             *(number("noise", snr, base, snr=snr) for snr in snrs),
             *phases(base)[::2],
             *locations(base, anywhere_px=100.0),
-            *missing(base),
+            *missing_features(base),
         )
 
     def _sensor(self) -> Camera:
@@ -71,11 +71,11 @@ class CameraSeries:
     def _highest_snr(self) -> float:
         return float(self._sensor().camera.detector.full_well_e ** 0.5)
 
-    def geometry(self, setting: Setting) -> SensorGeometry:  # noqa: ARG002 - the protocol's
+    def geometry(self, setting: SeriesPoint) -> SensorGeometry:  # noqa: ARG002 - the protocol's
         """Return the design of the camera, without distortion."""
         return replace(self.design, lens_distortion=(0.0, 0.0))
 
-    def draw(self, setting: Setting) -> Drawn:
+    def draw(self, setting: SeriesPoint) -> Sample:
         """Return pictures, where the Sun's centre falls (N, 2) and its bound."""
         sensor = self._sensor()
         camera: LensCamera = sensor.camera
@@ -117,7 +117,7 @@ class CameraSeries:
             setting.noise(self.name),
             generator("sweep", self.name, setting.sweep, setting.point, "counts"),
         )
-        return Drawn(sensor.observe(scene(places), pattern, stream), places, bound)
+        return Sample(sensor.observe(scene(places), pattern, stream), places, bound)
 
     def estimates(self, features: Floats) -> Floats:
         """Return the positions themselves."""

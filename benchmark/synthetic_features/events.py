@@ -10,8 +10,8 @@ import numpy as np
 from algorithms.contract import Floats, Observation, SensorGeometry
 from benchmark.synthetic_features.light import bars, position_bound
 from benchmark.synthetic_features.series import (
-    Drawn,
-    Setting,
+    Sample,
+    SeriesPoint,
     locations,
     noise,
     number,
@@ -41,9 +41,9 @@ class EventSeries:
     )
     frames: int = 100
 
-    def settings(self) -> tuple[Setting, ...]:
+    def settings(self) -> tuple[SeriesPoint, ...]:
         """Return every point."""
-        base = Setting("reference", self.name, None, self.frames, size_px=1.5, range_px=6.0)
+        base = SeriesPoint("reference", self.name, None, self.frames, size_px=1.5, range_px=6.0)
         return (
             base,
             *noise(base),
@@ -52,7 +52,7 @@ class EventSeries:
             *locations(base, anywhere_px=14.0),
         )
 
-    def geometry(self, setting: Setting) -> SensorGeometry:
+    def geometry(self, setting: SeriesPoint) -> SensorGeometry:
         """Return the design: the slits' centre lines cross over the middle of the array."""
         middle = (_PIXELS - 1) / 2.0
         return SensorGeometry(
@@ -64,7 +64,7 @@ class EventSeries:
             slits=((0.0, 0.0, 2.0 * setting.size_px * _PITCH_MM),),
         )
 
-    def draw(self, setting: Setting) -> Drawn:
+    def draw(self, setting: SeriesPoint) -> Sample:
         """Return events, where the lines cross (N, 2) and its bound."""
         half = setting.size_px
         places = setting.places(self.name) + (_PIXELS - 1) / 2.0
@@ -84,7 +84,7 @@ class EventSeries:
         )
         times = mean(places)
         times *= 1.0 + setting.noise(self.name).standard_normal(times.shape) / setting.snr
-        return Drawn(_events(times.reshape(setting.frames, -1)), places, bound)
+        return Sample(_events(times.reshape(setting.frames, -1)), places, bound)
 
     def estimates(self, features: Floats) -> Floats:
         """Return the positions themselves."""

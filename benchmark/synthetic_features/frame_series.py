@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 from algorithms.contract import Floats, Observation, SensorGeometry
 from benchmark.synthetic_features.frame_sets import FRAME_SETS, FrameSet
-from benchmark.synthetic_features.series import Drawn, Setting, word
+from benchmark.synthetic_features.series import Sample, SeriesPoint, word
 
 #: Names the frames that are published; whoever draws others takes a number.
 _SEED = "published"
@@ -45,19 +45,19 @@ class FramesSeries:
         "Sun, and without a Sun every answer is wrong"
     )
 
-    def settings(self) -> tuple[Setting, ...]:
+    def settings(self) -> tuple[SeriesPoint, ...]:
         """Return a point for each set, in their order."""
         return tuple(
             word(
                 _SWEEPS[chosen.group],
                 chosen.name,
-                Setting("", "", None, _FEWER.get(chosen.size_px, _FRAMES)),
+                SeriesPoint("", "", None, _FEWER.get(chosen.size_px, _FRAMES)),
                 size_px=chosen.shape.half_px,
             )
             for chosen in FRAME_SETS
         )
 
-    def geometry(self, setting: Setting) -> SensorGeometry:
+    def geometry(self, setting: SeriesPoint) -> SensorGeometry:
         """Return a sensor whose one round aperture is as wide as the spot at half its light."""
         middle = (_SETS[setting.point].size_px - 1) / 2.0
         return SensorGeometry(
@@ -69,10 +69,10 @@ class FramesSeries:
             half_fov_deg=math.degrees(math.atan(middle * _PITCH_MM)),
         )
 
-    def draw(self, setting: Setting) -> Drawn:
+    def draw(self, setting: SeriesPoint) -> Sample:
         """Return frames (N, H, W), centres (N, 2), NaN where there is no Sun, and their bound."""
         scenes = _SETS[setting.point].draw(_SEED, setting.frames)
-        return Drawn(scenes.frames, scenes.centres, scenes.bound_px)
+        return Sample(scenes.frames, scenes.centres, scenes.bound_px)
 
     def estimates(self, features: Floats) -> Floats:
         """Return the features: they are centres."""

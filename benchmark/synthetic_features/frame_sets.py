@@ -26,9 +26,9 @@ from benchmark.synthetic_features.shapes import (
     gaussian,
     limb_darkened,
     read_out,
-    rendered,
+    render,
     square,
-    stretched,
+    stretch,
     variance_e,
 )
 
@@ -127,7 +127,7 @@ class FrameSet:
             if self.sun:
                 if first == 0:
                     bound = self._bound_px(places, turns, mean)
-                mean += self.peak_e * rendered(self.shape, places, turns, self.size_px)
+                mean += self.peak_e * render(self.shape, places, turns, self.size_px)
             read = read_out(mean, self.bits, rng)
             if self.breaks is not None:
                 self.breaks(rng, read, places)
@@ -140,7 +140,7 @@ class FrameSet:
         few = min(max(_BOUND_PIXELS // self.size_px**2, 2), len(places))
 
         def mean(at: Floats) -> Floats:
-            return other[:few] + self.peak_e * rendered(self.shape, at, turns[:few], self.size_px)
+            return other[:few] + self.peak_e * render(self.shape, at, turns[:few], self.size_px)
 
         return position_bound(
             mean,
@@ -182,7 +182,7 @@ def _second(share: float, least: float, most: float) -> Scenery:
     def scenery(rng: np.random.Generator, count: int, chosen: FrameSet) -> tuple[Floats, Floats]:
         middle = (chosen.size_px - 1) / 2.0 + rng.uniform(-5.0, 5.0, (count, 2))
         half = rng.uniform(least, most, (count, 1)) / 2.0 * _directions(rng, count)
-        other = rendered(chosen.shape, middle - half, np.zeros(count), chosen.size_px)
+        other = render(chosen.shape, middle - half, np.zeros(count), chosen.size_px)
         return middle + half, share * chosen.peak_e * other
 
     return scenery
@@ -230,7 +230,7 @@ FRAME_SETS: tuple[FrameSet, ...] = (
     FrameSet("airy", _SHAPES, "symmetric", airy(_RADIUS)),
     *(
         FrameSet(
-            f"ellipse {incidence}", _SHAPES, "symmetric", stretched(_RADIUS, incidence), turned=True
+            f"ellipse {incidence}", _SHAPES, "symmetric", stretch(_RADIUS, incidence), turned=True
         )
         for incidence in (30, 45, 60)
     ),

@@ -27,7 +27,7 @@ _QUADRATURE = 4
 
 
 @dataclass(frozen=True)
-class ReferenceSet:
+class SyntheticSet:
     """One spot a frame on a flat background, with Poisson and read noise.
 
     Attributes
@@ -122,13 +122,13 @@ class ReferenceSet:
 
 
 #: Peak electrons, noise and shapes are those of the issue that asked for these sets.
-REFERENCE_SETS: Mapping[str, ReferenceSet] = MappingProxyType(
+REFERENCE_SETS: Mapping[str, SyntheticSet] = MappingProxyType(
     {
         found.name: found
         for found in (
-            ReferenceSet("disc", "disc", 64, 8.0, margin_px=16.0, peak_e=2000.0),
-            ReferenceSet("disc-512", "disc", 512, 8.0, margin_px=16.0, peak_e=2000.0),
-            ReferenceSet("gaussian", "gaussian", 64, 3.0, margin_px=16.0, peak_e=200.0),
+            SyntheticSet("disc", "disc", 64, 8.0, margin_px=16.0, peak_e=2000.0),
+            SyntheticSet("disc-512", "disc", 512, 8.0, margin_px=16.0, peak_e=2000.0),
+            SyntheticSet("gaussian", "gaussian", 64, 3.0, margin_px=16.0, peak_e=200.0),
         )
     }
 )

@@ -104,7 +104,7 @@ def bars(
     return np.asarray(light.sum(axis=1))
 
 
-def detected(
+def detect(
     mean_e: Floats, peak: float, pedestal: float, rng: np.random.Generator
 ) -> NDArray[np.uint16]:
     """Digital numbers of mean electrons: Poisson and read noise, gain, pedestal, 16 bits.
@@ -118,7 +118,7 @@ def detected(
 
 
 def variance_e(mean_e: Floats, peak: float) -> Floats:
-    """Variance of `detected` in electrons: light, read-out and rounding; clipping is left out."""
+    """Variance of `detect` in electrons: light, read-out and rounding; clipping is left out."""
     return np.asarray(mean_e + READ_NOISE_E**2 + gain_e_per_dn(peak) ** 2 / 12.0)
 
 

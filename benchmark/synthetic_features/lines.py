@@ -12,17 +12,17 @@ from benchmark.seeds import generator
 from benchmark.synthetic_features.light import (
     BACKGROUND_E,
     bars,
-    detected,
+    detect,
     peak_e,
     position_bound,
     variance_e,
 )
 from benchmark.synthetic_features.series import (
     GLINT,
-    Drawn,
-    Setting,
+    Sample,
+    SeriesPoint,
     locations,
-    missing,
+    missing_features,
     noise,
     number,
     pedestals,
@@ -53,10 +53,10 @@ class SlitSeries:
     pixels: int = 128
     frames: int = 300
 
-    def settings(self) -> tuple[Setting, ...]:
+    def settings(self) -> tuple[SeriesPoint, ...]:
         """Return every point."""
         several = self.slits > 1
-        base = Setting("reference", self.name, None, self.frames, size_px=self.half_px)
+        base = SeriesPoint("reference", self.name, None, self.frames, size_px=self.half_px)
         base = replace(base, range_px=4.0 if several else 20.0, features=self.slits)
         sizes = (2.0, 3.0, 4.0, 6.0) if several else (2.0, 3.0, 4.0, 6.0, 8.0, 12.0)
         counts = tuple(number("features", n, base, features=n) for n in (1, 2, 3, 5))
@@ -69,12 +69,12 @@ class SlitSeries:
             word("profile", "flat", base),
             word("profile", "gaussian", base, profile="gaussian", size_px=self.half_px / 2.0),
             *locations(base, anywhere_px=6.0 if several else 45.0),
-            *missing(base),
+            *missing_features(base),
             *(counts if several else ()),
             word("tracking", "glint", base, range_px=4.0 if several else 10.0, tracking=True),
         )
 
-    def geometry(self, setting: Setting) -> SensorGeometry:
+    def geometry(self, setting: SeriesPoint) -> SensorGeometry:
         """Return a sensor whose slits cast these bars (their light at half)."""
         half = setting.size_px * (
             math.sqrt(2.0 * math.log(2.0)) if setting.profile == "gaussian" else 1.0
@@ -94,11 +94,11 @@ class SlitSeries:
             mask_thickness_mm=0.0,
         )
 
-    def _places(self, setting: Setting) -> tuple[float, ...]:
+    def _places(self, setting: SeriesPoint) -> tuple[float, ...]:
         first = (len(_PLACES_PX) - setting.features) // 2
         return _PLACES_PX[first : first + setting.features]
 
-    def draw(self, setting: Setting) -> Drawn:
+    def draw(self, setting: SeriesPoint) -> Sample:
         """Return profiles (N, 2 W), where the mask's middle falls (N, 2) and its bound."""
         peak, places = peak_e(setting.snr), np.array(self._places(setting))
         middle = setting.places(self.name) + (self.pixels - 1) / 2.0
@@ -135,10 +135,10 @@ class SlitSeries:
             ],
             lambda here: variance_e(here, peak),
         )
-        profiles = detected(light, peak, setting.pedestal, setting.noise(self.name))
+        profiles = detect(light, peak, setting.pedestal, setting.noise(self.name))
         if setting.missing and len(places) == 1:
             profiles[rng.random(profiles.shape) < setting.missing] = 0
-        return Drawn(profiles, middle, bound)
+        return Sample(profiles, middle, bound)
 
     def estimates(self, features: Floats) -> Floats:
         """Return the positions themselves."""

@@ -9,7 +9,7 @@ import numpy as np
 from algorithms.contract import Floats, Observation, SensorGeometry
 from benchmark.seeds import generator
 from benchmark.synthetic_features.light import READ_NOISE_E, peak_e, position_bound
-from benchmark.synthetic_features.series import Drawn, Setting, noise, pedestals, word
+from benchmark.synthetic_features.series import Sample, SeriesPoint, noise, pedestals, word
 
 _FACES = (
     *((1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
@@ -36,9 +36,9 @@ class QuadrantSeries:
         "SNR is that of a quadrant of the spot in the middle, read noise 10 e-"
     )
 
-    def settings(self) -> tuple[Setting, ...]:
+    def settings(self) -> tuple[SeriesPoint, ...]:
         """Return every point; `range_px` is in units of the spot's half width."""
-        base = Setting("reference", self.name, None, _FRAMES, range_px=0.6)
+        base = SeriesPoint("reference", self.name, None, _FRAMES, range_px=0.6)
         return (
             base,
             *noise(base),
@@ -47,7 +47,7 @@ class QuadrantSeries:
             word("location", "anywhere", base, range_px=0.95),
         )
 
-    def geometry(self, setting: Setting) -> SensorGeometry:  # noqa: ARG002 - the protocol's
+    def geometry(self, setting: SeriesPoint) -> SensorGeometry:  # noqa: ARG002 - the protocol's
         """Return a sensor with one square aperture."""
         return SensorGeometry(
             focal_length_mm=1.0,
@@ -56,7 +56,7 @@ class QuadrantSeries:
             half_fov_deg=40.0,
         )
 
-    def draw(self, setting: Setting) -> Drawn:
+    def draw(self, setting: SeriesPoint) -> Sample:
         """Return readings (N, 4), balances (N, 2) and their bound."""
         peak = peak_e(setting.snr)
         balances = setting.places(self.name)
@@ -70,7 +70,7 @@ class QuadrantSeries:
             mean, balances, lambda here: [here], lambda here: here + READ_NOISE_E**2, 1e-4
         )
         rng = setting.noise(self.name)
-        return Drawn(_read(mean(balances), peak, setting.pedestal, rng), balances, bound)
+        return Sample(_read(mean(balances), peak, setting.pedestal, rng), balances, bound)
 
     def estimates(self, features: Floats) -> Floats:
         """Return the balances themselves."""
@@ -90,16 +90,16 @@ class FacesSeries:
         "opposite faces"
     )
 
-    def settings(self) -> tuple[Setting, ...]:
+    def settings(self) -> tuple[SeriesPoint, ...]:
         """Return every point."""
-        base = Setting("reference", self.name, None, _FRAMES)
+        base = SeriesPoint("reference", self.name, None, _FRAMES)
         return (base, *noise(base), *pedestals(base))
 
-    def geometry(self, setting: Setting) -> SensorGeometry:  # noqa: ARG002 - the protocol's
+    def geometry(self, setting: SeriesPoint) -> SensorGeometry:  # noqa: ARG002 - the protocol's
         """Return the cube."""
         return SensorGeometry(face_normals=_FACES)
 
-    def draw(self, setting: Setting) -> Drawn:
+    def draw(self, setting: SeriesPoint) -> Sample:
         """Return readings (N, 6), directions (N, 3) and the bound of a tangent axis."""
         peak = peak_e(setting.snr)
         rng = generator("sweep", self.name, setting.sweep, setting.point, "places")
@@ -125,7 +125,7 @@ class FacesSeries:
         )
         light = mean(np.zeros((setting.frames, 2)))
         readings = _read(light, peak, setting.pedestal, setting.noise(self.name))
-        return Drawn(readings, sun, bound)
+        return Sample(readings, sun, bound)
 
     def estimates(self, features: Floats) -> Floats:
         """Return unit vectors (N, 3): differences of opposite faces, at length one."""

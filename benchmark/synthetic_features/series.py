@@ -32,7 +32,7 @@ GLINT = 1.5
 
 
 @dataclass(frozen=True)
-class Setting:
+class SeriesPoint:
     """One point of a series; a field that a series does not have stays as it is.
 
     Attributes
@@ -95,7 +95,7 @@ class Setting:
 
 
 @dataclass(frozen=True)
-class Drawn:
+class Sample:
     """Observations (N, ...) with their truth (N, K), NaN where there is none, and its bound.
 
     `bound` is the root mean square of one coordinate's Cramer-Rao bound; NaN where the setting
@@ -130,15 +130,15 @@ class Series(Protocol):
         """What it is, in one sentence."""
         ...
 
-    def settings(self) -> tuple[Setting, ...]:
+    def settings(self) -> tuple[SeriesPoint, ...]:
         """Return every point of every sweep."""
         ...
 
-    def geometry(self, setting: Setting) -> SensorGeometry:
+    def geometry(self, setting: SeriesPoint) -> SensorGeometry:
         """Return the design a method is built for."""
         ...
 
-    def draw(self, setting: Setting) -> Drawn:
+    def draw(self, setting: SeriesPoint) -> Sample:
         """Return the observations of a point, always the same."""
         ...
 
@@ -168,37 +168,39 @@ SWEEPS: Mapping[str, str] = {
 }
 
 
-def number(sweep: str, value: float, base: Setting, **changes: Any) -> Setting:
+def number(sweep: str, value: float, base: SeriesPoint, **changes: Any) -> SeriesPoint:
     """Return a point of a sweep whose axis is a number."""
     return replace(base, sweep=sweep, point=f"{value:g}", value=float(value), **changes)
 
 
-def word(sweep: str, point: str, base: Setting, **changes: Any) -> Setting:
+def word(sweep: str, point: str, base: SeriesPoint, **changes: Any) -> SeriesPoint:
     """Return a point of a sweep whose axis is a word."""
     return replace(base, sweep=sweep, point=point, value=None, **changes)
 
 
-def noise(base: Setting) -> tuple[Setting, ...]:
+def noise(base: SeriesPoint) -> tuple[SeriesPoint, ...]:
     """Return the noise sweep."""
     return tuple(number("noise", snr, base, snr=snr) for snr in SNRS)
 
 
-def phases(base: Setting) -> tuple[Setting, ...]:
+def phases(base: SeriesPoint) -> tuple[SeriesPoint, ...]:
     """Return the sub-pixel phase sweep."""
     return tuple(number("phase", phase, base, phase_px=phase) for phase in PHASES)
 
 
-def pedestals(base: Setting) -> tuple[Setting, ...]:
+def pedestals(base: SeriesPoint) -> tuple[SeriesPoint, ...]:
     """Return the readings with and without a pedestal."""
     return tuple(number("pedestal", share, base, pedestal=share) for share in PEDESTALS)
 
 
-def missing(base: Setting) -> tuple[Setting, ...]:
+def missing_features(base: SeriesPoint) -> tuple[SeriesPoint, ...]:
     """Return all features, and four of five."""
     return tuple(number("missing", share, base, missing=share) for share in MISSING)
 
 
-def locations(base: Setting, anywhere_px: float, middle_px: float = 2.0) -> tuple[Setting, ...]:
+def locations(
+    base: SeriesPoint, anywhere_px: float, middle_px: float = 2.0
+) -> tuple[SeriesPoint, ...]:
     """Return the feature near the middle, and anywhere."""
     return (
         word("location", "middle", base, range_px=middle_px),

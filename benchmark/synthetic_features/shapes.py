@@ -90,12 +90,12 @@ def airy(ring: float) -> Shape:
     return Shape(light, scale * _HALF_LIGHT, ring, 5.0 * ring)
 
 
-def stretched(radius: float, incidence_deg: float) -> Shape:
+def stretch(radius: float, incidence_deg: float) -> Shape:
     """Return a disc drawn out along one axis as by light of this incidence; its rim is not."""
     k = 1.0 / math.cos(math.radians(incidence_deg))
 
     def light(x: Floats, y: Floats, turn: float) -> Floats:
-        u, v = _turned(x, y, turn)
+        u, v = _turn(x, y, turn)
         rho = np.maximum(np.hypot(u / k, v), 1e-9)
         slope = np.maximum(np.hypot(u / k**2, v), 1e-9) / rho
         return np.asarray(_up_to((radius - rho) / slope / EDGE_PX))
@@ -107,7 +107,7 @@ def square(half: float) -> Shape:
     """Return a uniform square."""
 
     def light(x: Floats, y: Floats, turn: float) -> Floats:
-        u, v = _turned(x, y, turn)
+        u, v = _turn(x, y, turn)
         return np.asarray(
             _up_to((half - np.abs(u)) / EDGE_PX) * _up_to((half - np.abs(v)) / EDGE_PX)
         )
@@ -126,12 +126,12 @@ def limb_darkened(radius: float) -> Shape:
     return Shape(light, radius, radius, radius + _TAIL_PX)
 
 
-def _turned(x: Floats, y: Floats, turn: float) -> tuple[Floats, Floats]:
+def _turn(x: Floats, y: Floats, turn: float) -> tuple[Floats, Floats]:
     c, s = math.cos(turn), math.sin(turn)
     return x * c + y * s, y * c - x * s
 
 
-def rendered(shape: Shape, centres: Floats, turns: Floats, size_px: int) -> Floats:
+def render(shape: Shape, centres: Floats, turns: Floats, size_px: int) -> Floats:
     """Mean over each pixel of spots at (N, 2), turned by (N,): frames (N, size, size)."""
     frames = np.zeros((len(centres), size_px, size_px))
     nodes, weights = np.polynomial.legendre.leggauss(_QUADRATURE)

@@ -12,7 +12,7 @@ from benchmark.seeds import generator
 from benchmark.synthetic_features.frames import REFERENCE_SETS
 from benchmark.synthetic_features.light import (
     BACKGROUND_E,
-    detected,
+    detect,
     peak_e,
     position_bound,
     spots,
@@ -20,10 +20,10 @@ from benchmark.synthetic_features.light import (
 )
 from benchmark.synthetic_features.series import (
     GLINT,
-    Drawn,
-    Setting,
+    Sample,
+    SeriesPoint,
     locations,
-    missing,
+    missing_features,
     noise,
     number,
     pedestals,
@@ -50,11 +50,11 @@ class DiscSeries:
     size_px: int = 64
     frames: int = 300
 
-    def settings(self) -> tuple[Setting, ...]:
+    def settings(self) -> tuple[SeriesPoint, ...]:
         """Return every point: the reference sets themselves, and one change at a time."""
         # signal over noise of the reference set: 2000 e- on 20 e-, read noise 10 e-
         snr = 2000.0 / math.sqrt(2120.0)
-        base = Setting("reference", "disc", None, self.frames, snr, size_px=8.0, range_px=16.0)
+        base = SeriesPoint("reference", "disc", None, self.frames, snr, size_px=8.0, range_px=16.0)
         gaussian = replace(base, size_px=3.0, profile="gaussian", snr=200.0 / math.sqrt(320.0))
         return (
             base,
@@ -66,11 +66,11 @@ class DiscSeries:
             word("profile", "flat", base),
             word("profile", "gaussian", replace(gaussian, snr=snr)),
             *locations(base, anywhere_px=20.0),
-            *missing(base),
+            *missing_features(base),
             word("tracking", "glint", base, range_px=10.0, tracking=True),
         )
 
-    def geometry(self, setting: Setting) -> SensorGeometry:
+    def geometry(self, setting: SeriesPoint) -> SensorGeometry:
         """Return a sensor whose one round aperture casts this disc (its light at half)."""
         half = setting.size_px * (
             math.sqrt(2.0 * math.log(2.0)) if setting.profile == "gaussian" else 1.0
@@ -85,10 +85,10 @@ class DiscSeries:
             half_fov_deg=math.degrees(math.atan(middle * _PITCH_MM / _FOCAL_MM)),
         )
 
-    def _side(self, setting: Setting) -> int:
+    def _side(self, setting: SeriesPoint) -> int:
         return 2 * self.size_px if setting.tracking else self.size_px
 
-    def draw(self, setting: Setting) -> Drawn:
+    def draw(self, setting: SeriesPoint) -> Sample:
         """Return frames (N, H, W), centres (N, 2) and their bound."""
         if setting.sweep == "reference":
             return self._reference(setting)
@@ -111,16 +111,16 @@ class DiscSeries:
             lambda here: [here - BACKGROUND_E, np.ones_like(here)],
             lambda here: variance_e(here, peak),
         )
-        frames = detected(light, peak, setting.pedestal, setting.noise(self.name))
+        frames = detect(light, peak, setting.pedestal, setting.noise(self.name))
         if setting.missing:
             dead = generator("sweep", self.name, setting.point, "dead").random(frames.shape)
             frames[dead < setting.missing] = 0
-        return Drawn(frames, places, bound)
+        return Sample(frames, places, bound)
 
-    def _reference(self, setting: Setting) -> Drawn:
+    def _reference(self, setting: SeriesPoint) -> Sample:
         chosen = REFERENCE_SETS[setting.point]
         frames, centres = chosen.frames(setting.frames)
-        return Drawn(frames, centres, chosen.bound_px(centres[:_BOUND_SAMPLES]))
+        return Sample(frames, centres, chosen.bound_px(centres[:_BOUND_SAMPLES]))
 
     def estimates(self, features: Floats) -> Floats:
         """Return the positions themselves."""
@@ -142,9 +142,9 @@ class GridSeries:
     spacing_px: float = 16.37
     frames: int = 40
 
-    def settings(self) -> tuple[Setting, ...]:
+    def settings(self) -> tuple[SeriesPoint, ...]:
         """Return every point."""
-        base = Setting("reference", "grid", None, self.frames, size_px=4.0, range_px=4.0)
+        base = SeriesPoint("reference", "grid", None, self.frames, size_px=4.0, range_px=4.0)
         base = replace(base, features=5)
         return (
             base,
@@ -153,12 +153,12 @@ class GridSeries:
             *phases(base)[::2],
             *pedestals(base),
             *locations(base, anywhere_px=7.5),
-            *missing(base),
+            *missing_features(base),
             *(number("features", n * n, base, features=n) for n in (1, 2, 3, 5)),
             word("tracking", "glint", base, range_px=5.0, tracking=True),
         )
 
-    def geometry(self, setting: Setting) -> SensorGeometry:
+    def geometry(self, setting: SeriesPoint) -> SensorGeometry:
         """Return a sensor whose round apertures cast these discs."""
         middle = (self.size_px - 1) / 2.0
         width = 2.0 * setting.size_px * _PITCH_MM
@@ -175,13 +175,13 @@ class GridSeries:
             ),
         )
 
-    def _grid(self, setting: Setting) -> Floats:
+    def _grid(self, setting: SeriesPoint) -> Floats:
         """(S, 2) offsets of the spots from the grid's middle, px, in rows."""
         steps = (np.arange(setting.features) - (setting.features - 1) / 2.0) * self.spacing_px
         x, y = np.meshgrid(steps, steps)
         return np.column_stack([x.ravel(), y.ravel()])
 
-    def draw(self, setting: Setting) -> Drawn:
+    def draw(self, setting: SeriesPoint) -> Sample:
         """Return frames (N, H, W), the grid's middle (N, 2) and its bound.
 
         The bound is of one common displacement, of the spots that are there.
@@ -212,8 +212,8 @@ class GridSeries:
             lambda here: [here - BACKGROUND_E, np.ones_like(here)],
             lambda here: variance_e(here, peak),
         )
-        return Drawn(
-            detected(light, peak, setting.pedestal, setting.noise(self.name)), places, bound
+        return Sample(
+            detect(light, peak, setting.pedestal, setting.noise(self.name)), places, bound
         )
 
     def estimates(self, features: Floats) -> Floats:

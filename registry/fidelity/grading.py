@@ -26,7 +26,7 @@ from typing import Literal
 from registry.fidelity.particulars import Purpose
 from registry.fidelity.purposes import PURPOSES
 from registry.fidelity.runnable import RunnablePipeline, strongest
-from registry.fitting import COMPENSATIONS, Chosen, Fitted
+from registry.fitting import COMPENSATIONS, ChosenMethod, FittedPipeline
 from registry.sensors import BASES, SENSOR
 from registry.studies import METHODS, Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED
@@ -109,7 +109,7 @@ def fidelity(
     study: Study,
     facts: Facts,
     pipelines: Sequence[RunnablePipeline],
-    ran: Sequence[Fitted],
+    ran: Sequence[FittedPipeline],
     wanted: Mapping[Purpose, str],
 ) -> Fidelity:
     """Grade what runs of a study.
@@ -155,7 +155,7 @@ def _sensor(study: Study, pipelines: Sequence[RunnablePipeline]) -> list[Departu
                 f"{best.detector} + {best.mask}",
                 f"its {what} {'are' if len(weak) > 1 else 'is'} {said} ({reasons})",
                 f"what the study itself says of its {' and '.join(weak)}"
-                + (f", and a data set of {_sensor_of(study)}" if _moved(study, best) else ""),
+                + (f", and a data set of {_sensor_of(study)}" if _move(study, best) else ""),
             )
         ]
     return [
@@ -172,7 +172,7 @@ def _sensor(study: Study, pipelines: Sequence[RunnablePipeline]) -> list[Departu
     ]
 
 
-def _moved(study: Study, pipeline: RunnablePipeline) -> bool:
+def _move(study: Study, pipeline: RunnablePipeline) -> bool:
     """Say whether a pipeline stands on another sensor than one that the study has."""
     return bool(study.architectures) and (
         (pipeline.detector, pipeline.mask) not in study.architectures
@@ -200,7 +200,7 @@ def _condition(
     ]
 
 
-def _methods(study: Study, facts: Facts, ran: Sequence[Fitted]) -> list[Departure]:
+def _methods(study: Study, facts: Facts, ran: Sequence[FittedPipeline]) -> list[Departure]:
     found: list[Departure] = []
     for attribute in METHODS:
         chosen = [getattr(one, attribute) for one in ran]
@@ -220,7 +220,9 @@ def _methods(study: Study, facts: Facts, ran: Sequence[Fitted]) -> list[Departur
 _BEHIND = "behind its compensation"
 
 
-def _not_stated(study: Study, attribute: str, chosen: Sequence[Chosen]) -> Iterable[Departure]:
+def _not_stated(
+    study: Study, attribute: str, chosen: Sequence[ChosenMethod]
+) -> Iterable[Departure]:
     """Give the departure of a method that is not mapped for a study."""
     if not all(one.runs and not one.stands_for for one in chosen):
         who = "the survey" if study.edition == SURVEY else "its row"
@@ -229,7 +231,7 @@ def _not_stated(study: Study, attribute: str, chosen: Sequence[Chosen]) -> Itera
         yield Departure(part, "None", text, f"the study itself, if it has any {attribute}")
 
 
-def _nearest(attribute: str, value: str, name: str, chosen: Sequence[Chosen]) -> Departure:
+def _nearest(attribute: str, value: str, name: str, chosen: Sequence[ChosenMethod]) -> Departure:
     """Return the departure of a method that the taxonomy has only the nearest value for."""
     running = _names([one for one in chosen if value in one.runs])
     text = f"{name} is not built here" + (f", {running} in its place" if running else "")
@@ -238,7 +240,7 @@ def _nearest(attribute: str, value: str, name: str, chosen: Sequence[Chosen]) ->
 
 
 def _stated(
-    facts: Facts, attribute: str, value: str, chosen: Sequence[Chosen]
+    facts: Facts, attribute: str, value: str, chosen: Sequence[ChosenMethod]
 ) -> Iterable[Departure]:
     """Give the departure of a method that a study states."""
     name = _small(facts.taxonomy.name(attribute, value))
@@ -264,7 +266,7 @@ def _stated(
         yield Departure("model", _BEHIND, text, "the model that the study corrects so")
 
 
-def _names(chosen: Sequence[Chosen]) -> str:
+def _names(chosen: Sequence[ChosenMethod]) -> str:
     return " or ".join(dict.fromkeys(one.name for one in chosen))
 
 
@@ -283,7 +285,7 @@ def _sentence(
         for value in study.of(attribute)
         if value in running and not study.has_nearest(attribute, value)
     ]
-    methods = f"Its {_listed(stated)} run{'s' * (len(stated) == 1)}" if stated else "It runs"
+    methods = f"Its {_list_items(stated)} run{'s' * (len(stated) == 1)}" if stated else "It runs"
     at = best.settings[0]
     more = len(pipelines) - 1
     lead = f"{methods} as {best.extractor} → {best.model} on {at.dataset} ({at.condition})"
@@ -293,7 +295,7 @@ def _sentence(
         return f"{lead}; {'; '.join(departure.text for departure in departures)}."
     inferred = [a for a in SENSOR if best.basis[a] in ("inferred", "implied")]
     verb = "are" if len(inferred) > 1 else "is"
-    return lead + (f"; its {_listed(inferred)} {verb} inferred." if inferred else ".")
+    return lead + (f"; its {_list_items(inferred)} {verb} inferred." if inferred else ".")
 
 
 def _small(name: str) -> str:
@@ -304,5 +306,5 @@ def _small(name: str) -> str:
     return f"{small} ({kind})" if kind else small
 
 
-def _listed(words: Sequence[str]) -> str:
+def _list_items(words: Sequence[str]) -> str:
     return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))

@@ -44,7 +44,7 @@ class DataSet:
         """Whether its samples are a sequence in orbit."""
         return "time_s" in self.context
 
-    def showing(self, purpose: Purpose) -> tuple[str, ...]:
+    def conditions_for(self, purpose: Purpose) -> tuple[str, ...]:
         """Return its conditions that show a purpose, the most telling first."""
         if self.flies:
             return self.conditions[:1] if _COLUMNS[purpose] in self.context else ()
@@ -52,7 +52,7 @@ class DataSet:
 
 
 @dataclass(frozen=True)
-class Setting:
+class DatasetCondition:
     """A data set under a condition, and the purposes of the study that it shows."""
 
     dataset: str
@@ -82,7 +82,7 @@ def settings(
     wanted: Collection[Purpose],
     names: Iterable[str],
     data_sets: Mapping[str, DataSet],
-) -> tuple[Setting, ...]:
+) -> tuple[DatasetCondition, ...]:
     """Return where a pipeline stands for a study: data sets under conditions, the first one first.
 
     Those that show most of its purposes; among these data sets made after the study, then flights
@@ -100,7 +100,7 @@ def settings(
     shown: dict[tuple[str, str], list[Purpose]] = {}
     for purpose in wanted:
         for one in known:
-            for condition in one.showing(purpose):
+            for condition in one.conditions_for(purpose):
                 shown.setdefault((one.name, condition), []).append(purpose)
     if not shown:
         shown = {(one.name, one.conditions[0]): [] for one in known}
@@ -120,7 +120,7 @@ def settings(
         )
 
     ordered = sorted(shown.items(), key=place)
-    return tuple(Setting(*at, tuple(served)) for at, served in ordered)
+    return tuple(DatasetCondition(*at, tuple(served)) for at, served in ordered)
 
 
 def _meets(study: Study, conditions: Conditions) -> bool:

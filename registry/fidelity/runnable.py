@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from registry.fidelity.purposes import Setting
+from registry.fidelity.purposes import DatasetCondition
 from registry.sensors import BASES, SENSOR, Basis
 
 ESSENTIAL = (*SENSOR, "extractor", "model")
@@ -31,7 +31,7 @@ class RunnablePipeline:
     model_taxonomy: str
     stages: tuple[str, ...]
     datasets: tuple[str, ...]
-    settings: tuple[Setting, ...]
+    settings: tuple[DatasetCondition, ...]
     basis: Mapping[str, Basis] = field(hash=False)
     assumed: Mapping[str, str] = field(hash=False)
 

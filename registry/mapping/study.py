@@ -9,7 +9,7 @@ from functools import cached_property
 
 from registry.taxonomy import NUMERIC_ATTRIBUTES, unknown_name
 from survey_data.editions import SURVEY
-from survey_data.reported import KIND_OF, Quantity, Reported, reported
+from survey_data.reported import KIND_OF, Quantity, ReportedAccuracy, reported_accuracies
 from survey_data.sources import source_named
 
 METHODS = ("model", "extractor")
@@ -96,7 +96,7 @@ class Study:
         known = self.roles.get((attribute, value))
         return "unknown" if known is None else known.role
 
-    def supported(self, attribute: str) -> tuple[str, ...]:
+    def has_value(self, attribute: str) -> tuple[str, ...]:
         """Return the stated values that the study stands for: those it only compared are not."""
         return tuple(v for v in self.of(attribute) if self.role(attribute, v) != "compared")
 
@@ -133,13 +133,13 @@ class Study:
             return None
         return max(numbers) if attribute == "fov_deg" else min(numbers)
 
-    def reported(self, quantity: Quantity) -> Reported | None:
+    def report(self, quantity: Quantity) -> ReportedAccuracy | None:
         """Return the accuracy or precision that the study reports, with its kind; None if none."""
         attribute = f"{quantity}_deg"
         number = self.number(attribute)
         if number is None:
             return None
-        return reported(quantity, number, next(iter(self.of(KIND_OF[attribute])), None))
+        return reported_accuracies(quantity, number, next(iter(self.of(KIND_OF[attribute])), None))
 
     def summary(self) -> dict[str, object]:
         """Identity and values, as in a list of studies."""

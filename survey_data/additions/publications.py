@@ -64,10 +64,10 @@ def read_publications(path: Path) -> tuple[Publication, ...]:
         found = list(_bibtex(path))
     if not found:
         raise FaultsError(path.name, [Fault(None, "holds no publication")])
-    return tuple(_completed(each) for each in found)
+    return tuple(_complete(each) for each in found)
 
 
-def chosen(publications: Sequence[Publication], key: str | None, file: str) -> Publication:
+def choose(publications: Sequence[Publication], key: str | None, file: str) -> Publication:
     """Return the publication of a key, or the only one; FaultsError where that is not clear."""
     keys = [each["key"] for each in publications]
     if len(publications) == 1 and not key:
@@ -185,7 +185,7 @@ def _natural(name: str) -> str:
     return f"{first.strip(' ,')} {last.strip()}".strip() if comma else name.strip()
 
 
-def _completed(found: Publication) -> Publication:
+def _complete(found: Publication) -> Publication:
     """Return a publication with a plain year and DOI, and with a key of ours."""
     found = {name: " ".join(value.split()) for name, value in found.items()}
     year = re.search(r"[0-9]{4}", found["year"])

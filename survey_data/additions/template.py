@@ -6,7 +6,7 @@ import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
-from survey_data.additions.reading import Addition, Row
+from survey_data.additions.addition_reader import Addition, Row
 from survey_data.additions.vocabulary import Definition, Vocabulary
 from survey_data.descriptor import column_types
 
@@ -63,9 +63,12 @@ def empty_template(vocabulary: Vocabulary, publication: Row | None = None) -> st
         said = ", ".join(words) if words else _PUBLICATION.get(column, "")
         if column == "identity":
             said += f" ({_IDENTITIES})"
-        lines += [f"# {column}: {said}", f"{column} = {_spelt(column, known.get(column, ''))}"]
+        lines += [
+            f"# {column}: {said}",
+            f"{column} = {_format_value(column, known.get(column, ''))}",
+        ]
     bases = "; ".join(f"{name} ({_first(said)})" for name, said in vocabulary.bases.items())
-    told = {"bases": "\n#             ".join(_wrapped(bases)), "roles": ", ".join(vocabulary.roles)}
+    told = {"bases": "\n#             ".join(_wrap(bases)), "roles": ", ".join(vocabulary.roles)}
     lines += ["", _EVIDENCE.format(**told)]
     for definition in vocabulary.definitions.values():
         lines += [*_of_attribute(definition), ""]
@@ -75,7 +78,9 @@ def empty_template(vocabulary: Vocabulary, publication: Row | None = None) -> st
 def filled_template(addition: Addition) -> str:
     """Return a template that is read into exactly these rows."""
     study = addition.study
-    lines = [f"{column} = {_spelt(column, study[column])}" for column in study if study[column]]
+    lines = [
+        f"{column} = {_format_value(column, study[column])}" for column in study if study[column]
+    ]
     roles, names = (_by_value(addition.rows[table]) for table in ("roles", "names"))
     for row in addition.rows["attributes"]:
         attribute, at = row["attribute"], (row["attribute"], row["value"])
@@ -116,7 +121,7 @@ def _of_attribute(definition: Definition) -> Iterator[str]:
     yield from ('# basis = ""', '# source = ""', '# note = ""')
 
 
-def _spelt(column: str, value: str) -> str:
+def _format_value(column: str, value: str) -> str:
     """Return a column of the study as TOML."""
     if column == "year":
         return value if re.fullmatch(r"[0-9]{1,4}", value) and value[0] != "0" else _text(value)
@@ -136,7 +141,7 @@ def _first(text: str) -> str:
     return said[:1].lower() + said[1:]
 
 
-def _wrapped(text: str, width: int = 82) -> list[str]:
+def _wrap(text: str, width: int = 82) -> list[str]:
     lines = [""]
     for word in text.split():
         if len(lines[-1]) + len(word) >= width:

@@ -7,9 +7,9 @@ from pathlib import Path
 
 from files.csv_writing import csv_text
 from files.strict_csv import read_records
+from survey_data.additions.addition_reader import Addition, Row, read_addition
 from survey_data.additions.faults import Fault, FaultsError, one_of
-from survey_data.additions.publications import chosen, read_publications
-from survey_data.additions.reading import Addition, Row, read_addition
+from survey_data.additions.publications import choose, read_publications
 from survey_data.additions.toml_lines import TomlDocument, read_toml
 from survey_data.additions.vocabulary import vocabulary
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
@@ -66,7 +66,7 @@ def read_study(
         document = read_toml(beside)
     told = document.values.get("key")
     wanted = key or (told if isinstance(told, str) else None)
-    publication = chosen(read_publications(path), wanted, path.name)
+    publication = choose(read_publications(path), wanted, path.name)
     stated = {"identity": "confirmed", "type": "unknown"}
     publication = {**stated, **{name: value for name, value in publication.items() if value}}
     return read_addition(document, known, publication)

@@ -285,7 +285,7 @@ def evaluate(row: Mapping[str, Any], values: Values, vocabulary: Vocabulary) -> 
     )
     return ClauseVerdict(
         clause=int(row["clause"]),
-        verdict=_judged(tally),
+        verdict=_judge(tally),
         statement=str(row["statement"]),
         given="" if pd.isna(row["given"]) else str(row["given"]),
         expects=str(row["expects"]),
@@ -324,7 +324,7 @@ def _counts(
     return counts
 
 
-def _judged(tally: Tally) -> Verdict:
+def _judge(tally: Tally) -> Verdict:
     """Judge the counts that the clause hangs on."""
     if not tally.decided:
         return "undecidable"

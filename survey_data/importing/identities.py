@@ -130,7 +130,7 @@ def import_bibliography(
         plan = plan_identities(load(folder), entries, Path(path).name, frozenset(replace_studies))
         if not apply or not (plan.edits or plan.settled):
             return plan
-        write_valid(folder, {_TABLE: _edited(folder, plan)})
+        write_valid(folder, {_TABLE: _edit(folder, plan)})
         return replace(plan, written=len(plan.edits))
 
 
@@ -241,7 +241,7 @@ def _text(cell: object) -> str:
     return "" if pd.isna(cell) else str(cell)  # type: ignore[call-overload]
 
 
-def _edited(folder: Path, plan: BibliographyPlan) -> str:
+def _edit(folder: Path, plan: BibliographyPlan) -> str:
     """Return the text of studies.csv with the plan's cells in it."""
     header = list(column_types(_TABLE))
     rows = [list(c) for _, c in read_records(folder / file_name(_TABLE), header).rows]

@@ -294,7 +294,7 @@ def _compare(
 ) -> list[Difference]:
     rank = dict(zip(tables.bases["basis"], tables.bases["rank"].astype(int), strict=True))
     ours = current_cells(tables)
-    printed = _printed(tables)
+    printed = _print_text(tables)
     found = []
     for (study, attribute), values in stated.items():
         cell = ours.get((study, attribute), _Cell((), "unknown"))
@@ -333,7 +333,7 @@ def _kind_of_another(
     return [replace(number, attribute=kind, ours=cell.values, theirs=(UNSPECIFIED,))]
 
 
-def _printed(tables: SurveyTables) -> dict[tuple[str, str], list[set[str]]]:
+def _print_text(tables: SurveyTables) -> dict[tuple[str, str], list[set[str]]]:
     """Return of each cell (study, attribute) what each of the survey's printed labels may mean."""
     meant: dict[tuple[str, str], set[str]] = {}
     for alias in tables.aliases.to_dict("records"):

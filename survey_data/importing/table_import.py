@@ -17,7 +17,7 @@ from survey_data.importing.plan import (
     plan_import,
     require_readable,
 )
-from survey_data.importing.reading import read_table
+from survey_data.importing.table_reader import read_table
 from survey_data.importing.writing import held_tables, write_valid
 from survey_data.problems import SurveyImportError
 from survey_data.tables import RESTING, SurveyTables, load
@@ -73,7 +73,7 @@ def import_table(
         return compared()
     folder = DATA_DIRECTORY if directory is None else Path(directory)
     with held_tables(folder):
-        return _applied(folder, compared())
+        return _apply(folder, compared())
 
 
 def apply_import(directory: str | Path | None, plan: ImportPlan) -> ImportPlan:
@@ -104,24 +104,24 @@ def apply_import(directory: str | Path | None, plan: ImportPlan) -> ImportPlan:
     """
     folder = DATA_DIRECTORY if directory is None else Path(directory)
     with held_tables(folder):
-        return _applied(folder, plan)
+        return _apply(folder, plan)
 
 
-def _applied(folder: Path, plan: ImportPlan) -> ImportPlan:
+def _apply(folder: Path, plan: ImportPlan) -> ImportPlan:
     """Write a plan's edits into tables that this process holds."""
     require_readable(plan)
     tables = load(folder)
     _require_fresh(tables, plan)
     if not plan.edits:
         return plan
-    texts = {_TABLE: _edited(folder, plan, _authors_doi(tables))}
+    texts = {_TABLE: _edit(folder, plan, _authors_doi(tables))}
     counts: dict[str, int] = {}
     for table in sorted(RESTING):
         gone = {(entry.study, entry.value) for entry in plan.withdrawn if entry.table == table}
         if gone:
             texts[table], counts[table] = _without(folder, table, gone)
     if counts:
-        texts["counts"] = _counted(folder, counts)
+        texts["counts"] = _count(folder, counts)
     write_valid(folder, texts)
     return plan.after_writing()
 
@@ -152,7 +152,7 @@ def _without(folder: Path, table: str, gone: set[tuple[str, str]]) -> tuple[str,
     return csv_text(header, kept), len(kept)
 
 
-def _counted(folder: Path, counts: Mapping[str, int]) -> str:
+def _count(folder: Path, counts: Mapping[str, int]) -> str:
     """Return the text of counts.csv with the rows that tables have now."""
     header = list(column_types("counts"))
     named, column, held = map(header.index, ("table", "column", "held"))
@@ -163,7 +163,7 @@ def _counted(folder: Path, counts: Mapping[str, int]) -> str:
     return csv_text(header, rows)
 
 
-def _edited(folder: Path, plan: ImportPlan, doi: str) -> str:
+def _edit(folder: Path, plan: ImportPlan, doi: str) -> str:
     """Return the text of attributes.csv with the plan's cells replaced where they stand."""
     header = list(column_types(_TABLE))
     rows = [cells for _, cells in read_records(folder / file_name(_TABLE), header).rows]

@@ -210,7 +210,7 @@ def _unit_name(unit: str | None) -> str | None:
 def _split(text: str, mark: str) -> list[str]:
     """Split at a mark that stands outside parentheses, in one pass over the text."""
     pieces = [""]
-    for inside, part in _parenthesised(text):
+    for inside, part in _parenthesise(text):
         if inside:
             pieces[-1] += part
             continue
@@ -220,7 +220,7 @@ def _split(text: str, mark: str) -> list[str]:
     return [piece.strip() for piece in pieces if piece.strip()]
 
 
-def _parenthesised(text: str) -> Iterator[tuple[bool, str]]:
+def _parenthesise(text: str) -> Iterator[tuple[bool, str]]:
     """Yield (whether in parentheses, part); a parenthesis that is never closed encloses nothing."""
     at = 0
     for found in re.finditer(r"\([^()]*\)", text):

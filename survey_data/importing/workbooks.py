@@ -199,7 +199,7 @@ class _Workbook:
 
     def _text(self, sheet: str, cell: Cell) -> str:
         """Spell a cell; one without a value is empty."""
-        text = _spelt(cell.value)
+        text = _format_value(cell.value)
         wrong = ""
         if cell.kind == ERROR:
             wrong = f"an error ({text}) is no value of a table"
@@ -222,7 +222,7 @@ def _place(cell: Cell) -> str:
     return f"{letters}{cell.row}"
 
 
-def _spelt(value: object) -> str:
+def _format_value(value: object) -> str:
     if value is None:
         return ""
     if isinstance(value, float) and value.is_integer():

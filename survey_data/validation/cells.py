@@ -28,7 +28,7 @@ def texts(frame: pd.DataFrame, *columns: str) -> Iterator[tuple[int, tuple[str, 
     yield from enumerate(zip(*parts, strict=True))
 
 
-def stated(frames: Frames) -> dict[tuple[str, str], set[str]]:
+def known_values(frames: Frames) -> dict[tuple[str, str], set[str]]:
     """Return the known values of each study and attribute."""
     found: dict[tuple[str, str], set[str]] = {}
     for _, (study, attribute, value) in texts(frames["attributes"], "study", "attribute", "value"):

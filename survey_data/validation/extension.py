@@ -9,7 +9,7 @@ from datetime import date
 from files.problems import Problem
 from survey_data.descriptor import file_name
 from survey_data.editions import BY_STUDY
-from survey_data.validation.cells import Frames, Rule, problem, stated, texts
+from survey_data.validation.cells import Frames, Rule, known_values, problem, texts
 
 #: Tables that a rule of studies may look at beside those of the edition.
 _SHARED = frozenset(
@@ -79,7 +79,7 @@ def _rests_on_its_own(frames: Frames) -> Iterator[Problem]:
 
 def _names_are_of_values(frames: Frames) -> Iterator[Problem]:
     """Check that a name is of one of the study's values."""
-    known = stated({"attributes": frames["extension_attributes"]})
+    known = known_values({"attributes": frames["extension_attributes"]})
     columns = ("study", "attribute", "value")
     for index, (study, attribute, value) in texts(frames["extension_names"], *columns):
         if value not in known.get((study, attribute), ()):

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from files.problems import Problem
 from survey_data.findings.checks import Vocabulary
 from survey_data.tables import RESTING
-from survey_data.validation.cells import Frames, Rule, problem, stated, texts
+from survey_data.validation.cells import Frames, Rule, known_values, problem, texts
 
 #: By basis, the column that must say where a value comes from, or why it stands there.
 TOLD = {
@@ -33,7 +33,7 @@ def _evidence_is_told(frames: Frames) -> Iterator[Problem]:
 
 def _roles_are_of_methods(frames: Frames) -> Iterator[Problem]:
     """Check that a role is of one of the study's values, and that it proposed or kept one."""
-    known = stated(frames)
+    known = known_values(frames)
     compared: dict[tuple[str, str], set[str]] = {}
     columns = ("study", "attribute", "value", "role")
     for index, (study, attribute, value, role) in texts(frames["roles"], *columns):
@@ -48,7 +48,7 @@ def _roles_are_of_methods(frames: Frames) -> Iterator[Problem]:
 
 def _sensors_use_every_value(frames: Frames) -> Iterator[Problem]:
     """Check that sensors listed for a study are of its detectors and masks, each of them used."""
-    known = stated(frames)
+    known = known_values(frames)
     used: dict[tuple[str, str], set[str]] = {}
     last: dict[str, int] = {}
     for index, (study, *pair) in texts(frames["architectures"], "study", "detector", "mask"):
@@ -66,7 +66,7 @@ def _sensors_use_every_value(frames: Frames) -> Iterator[Problem]:
 
 def _models_are_of_the_study(frames: Frames) -> Iterator[Problem]:
     """Check that compensations and variants are of models that the study has."""
-    known = stated(frames)
+    known = known_values(frames)
     models = Vocabulary(frames["taxonomy"]).values.get("model", set())
     columns = {"compensated_models": ("compensation", "model"), "method_variants": ("model",)}
     for table, names in columns.items():

@@ -19,7 +19,7 @@ from survey_data.findings.checks import FindingSyntaxError, Vocabulary, parse_cl
 from survey_data.reported import KIND_OF
 from survey_data.tables import FIRST_ROW
 from survey_data.validation import citations, provenance
-from survey_data.validation.cells import Frames, Rule, problem, stated, texts
+from survey_data.validation.cells import Frames, Rule, known_values, problem, texts
 from survey_data.validation.extension import check_extension
 
 
@@ -295,7 +295,7 @@ def _classes_keep_their_limits(frames: Frames) -> Iterator[Problem]:
 
 def _kinds_have_a_number(frames: Frames) -> Iterator[Problem]:
     """Check that a kind of accuracy or precision stands beside a number of the study."""
-    known = stated(frames)
+    known = known_values(frames)
     number_of = {kind: number for number, kind in KIND_OF.items()}
     for index, (study, attribute, value) in texts(
         frames["attributes"], "study", "attribute", "value"

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 import pytest
 
-from algorithms.measurement import Doubt
+from algorithms.measurement import QualityFlag
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "algorithms.md"
 
@@ -37,10 +37,10 @@ def test_an_image_of_ones_own_takes_three_lines(
     found = names["found"]
     assert found.features == pytest.approx(np.array([[41.3, 25.8]]), abs=0.1)  # type: ignore[attr-defined]
     assert (found.deviations < 0.05).all()  # type: ignore[attr-defined]
-    assert Doubt(found.doubts[0]) == Doubt(0)  # type: ignore[attr-defined]
+    assert QualityFlag(found.doubts[0]) == QualityFlag(0)  # type: ignore[attr-defined]
     assert cv2.imwrite("sun.png", np.full((60, 80), 20, dtype=dtype))
     exec("\n".join(lines), names)
-    assert Doubt(names["found"].doubts[0]) == Doubt.NO_SPOT  # type: ignore[attr-defined]
+    assert QualityFlag(names["found"].doubts[0]) == QualityFlag.NO_SPOT  # type: ignore[attr-defined]
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ import pytest
 from algorithms.contract import Observation
 from algorithms.discovery import discover_extractors
 from algorithms.extractors.frames.centroid import BasicCentroid
-from algorithms.measurement import Doubt, Measurement, without_bad
+from algorithms.measurement import Measurement, QualityFlag, without_bad
 
 EXTRACTORS = discover_extractors()
 
@@ -99,7 +99,7 @@ def test_a_nan_under_the_mask_is_no_reason_to_find_nothing():
     bad = np.isnan(frame)
     found = BasicCentroid().measure(frame, bad)
     np.testing.assert_array_equal(found.features, [[3.0, 2.0]])
-    assert Doubt(BasicCentroid().measure(frame).doubts[0]) == Doubt.NO_SPOT
+    assert QualityFlag(BasicCentroid().measure(frame).doubts[0]) == QualityFlag.NO_SPOT
 
 
 def test_shapes_that_do_not_agree_are_refused():

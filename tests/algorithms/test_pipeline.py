@@ -21,7 +21,7 @@ from algorithms.extractors.currents.photodiode import DirectSignals
 from algorithms.extractors.frames.centroid import BasicCentroid
 from algorithms.models.geometric.least_squares import LeastSquaresGeometry
 from algorithms.models.geometric.standard_projection import StandardProjection
-from algorithms.pipeline import Pipeline, checked, extracted
+from algorithms.pipeline import Pipeline, check_features, extract_features
 
 DESIGN = SensorGeometry(focal_length_mm=0.3, pixel_pitch_mm=0.01, centre_px=(20.0, 16.0))
 
@@ -68,7 +68,7 @@ def test_it_finds_the_sun_in_windows_of_the_detector(seen):
 def test_features_extracted_once_serve_every_model(seen):
     frames, sun, origins = seen
     whole = Pipeline.for_sensor(BasicCentroid, LeastSquaresGeometry, DESIGN).fit(*seen)
-    features = extracted(BasicCentroid(), frames, origins)
+    features = extract_features(BasicCentroid(), frames, origins)
     np.testing.assert_array_equal(features, whole.features(frames, origins))
     apart = Pipeline(
         BasicCentroid(), LeastSquaresGeometry.for_sensor(DESIGN, FeatureKind.SPOT)
@@ -88,11 +88,11 @@ def test_a_model_that_cannot_read_the_features_is_refused():
 
 def test_a_row_is_found_or_not():
     given = np.array([[1.0, 2.0], [np.nan, 2.0], [3.0, np.inf], [np.nan, np.nan]])
-    found = extracted(Given(given), np.zeros(4))
+    found = extract_features(Given(given), np.zeros(4))
     np.testing.assert_array_equal(found[0], [1.0, 2.0])
     assert np.isnan(found[1:]).all()
     assert given[1, 1] == 2.0, "what the extractor keeps is left alone"
-    assert checked(Given(), given[:1], 1) is not None
+    assert check_features(Given(), given[:1], 1) is not None
 
 
 @pytest.mark.parametrize(
@@ -101,18 +101,20 @@ def test_a_row_is_found_or_not():
 )
 def test_an_extractor_that_breaks_its_contract_is_named(given):
     with pytest.raises(ValueError, match=r"given must give float64 features of shape \(4, 2\)"):
-        extracted(Given(given), np.zeros(4))
+        extract_features(Given(given), np.zeros(4))
 
 
 def test_origins_belong_to_spots_and_to_every_sample():
     given = np.arange(8.0).reshape(4, 2)
     origins = np.tile([10.0, 20.0], (4, 1))
-    np.testing.assert_array_equal(extracted(Given(given), np.zeros(4), origins), given + origins)
+    np.testing.assert_array_equal(
+        extract_features(Given(given), np.zeros(4), origins), given + origins
+    )
     with pytest.raises(ValueError, match=r"origin_px must have shape \(4, 2\); got \(3, 2\)"):
-        extracted(Given(given), np.zeros(4), origins[:3])
+        extract_features(Given(given), np.zeros(4), origins[:3])
 
     @dataclass(frozen=True)
     class Balance(Given):
         about: ClassVar = replace(Given.about, kind=FeatureKind.BALANCE)
 
-    np.testing.assert_array_equal(extracted(Balance(given), np.zeros(4), origins), given)
+    np.testing.assert_array_equal(extract_features(Balance(given), np.zeros(4), origins), given)

@@ -19,7 +19,7 @@ def unit(shape, seed=0):
 def test_light_is_recovered_whatever_gains_and_darks_but_for_one_factor(seed, shape):
     gain, dark = unit(shape, seed)
     light = np.random.default_rng(seed + 1).uniform(0.0, 900.0, (5, *shape))
-    found = ReferenceCorrection(dark, gain * 500.0 + dark).corrected(gain * light + dark)
+    found = ReferenceCorrection(dark, gain * 500.0 + dark).correct(gain * light + dark)
     np.testing.assert_allclose(found, light * gain.mean(), rtol=1e-9, atol=1e-9)
 
 
@@ -27,13 +27,13 @@ def test_windows_are_corrected_as_the_part_of_the_detector_that_they_show():
     gain, dark = unit((40, 50))
     frames = np.random.default_rng(2).uniform(0, 1000, (3, 40, 50)).astype(np.uint16)
     correction = ReferenceCorrection(dark, 500 * gain + dark, 1023.0, pixels=True)
-    whole = correction.corrected(frames)
+    whole = correction.correct(frames)
     origin = np.array([[0, 0], [38, 25], [11, 3]])
     windows = np.stack(
         [f[y : y + 15, x : x + 12] for f, (x, y) in zip(frames, origin, strict=True)]
     )
     expected = [f[y : y + 15, x : x + 12] for f, (x, y) in zip(whole, origin, strict=True)]
-    np.testing.assert_array_equal(correction.corrected(windows, origin), expected)
+    np.testing.assert_array_equal(correction.correct(windows, origin), expected)
 
 
 def test_dead_and_hot_pixels_take_the_mean_of_the_good_ones_beside_them():
@@ -46,7 +46,7 @@ def test_dead_and_hot_pixels_take_the_mean_of_the_good_ones_beside_them():
     y, x = np.mgrid[:5, :6]
     frame = 10.0 + 3.0 * x + 7.0 * y
     frame[2, 2:4] = 12345.0
-    found = correction.corrected(frame[None])[0]
+    found = correction.correct(frame[None])[0]
     around = [(1, 1), (1, 2), (1, 3), (2, 1), (3, 1), (3, 2), (3, 3)]
     assert found[2, 2] == pytest.approx(np.mean([3.0 * c + 7.0 * r for r, c in around]))
     good = ~correction.bad
@@ -57,7 +57,7 @@ def test_a_bad_pixel_of_a_profile_on_a_straight_slope_is_on_it():
     dark, flat = np.zeros(50), np.full(50, 100.0)
     flat[20] = 1.0
     profile = 2.0 * np.arange(50.0)
-    found = ReferenceCorrection(dark, flat, pixels=True).corrected(profile[None])[0]
+    found = ReferenceCorrection(dark, flat, pixels=True).correct(profile[None])[0]
     np.testing.assert_allclose(found, profile)
 
 
@@ -66,7 +66,7 @@ def test_saturated_readings_stay_one_plateau_above_all_others():
     correction = ReferenceCorrection(dark, 300 * gain + dark, 1023.0, pixels=True)
     frame = np.full((1, 8, 8), 400, dtype=np.uint16)
     frame[0, 3, 2:6] = 1023
-    found = correction.corrected(frame)[0]
+    found = correction.correct(frame)[0]
     assert len(set(found[3, 2:6])) == 1
     assert found[3, 2] > np.delete(found.ravel(), np.arange(26, 30)).max()
 
@@ -74,7 +74,7 @@ def test_saturated_readings_stay_one_plateau_above_all_others():
 def test_no_reading_is_changed_in_place_and_missing_ones_stay_missing():
     correction = ReferenceCorrection(np.ones(4), np.full(4, 11.0))
     readings = np.array([[1.0, np.nan, 3.0, 4.0]])
-    found = correction.corrected(readings)
+    found = correction.correct(readings)
     np.testing.assert_allclose(found, [[0.0, np.nan, 2.0, 3.0]])
     np.testing.assert_array_equal(readings, [[1.0, np.nan, 3.0, 4.0]])
 
@@ -106,4 +106,4 @@ def test_references_that_are_none_are_refused(dark, flat, message):
 def test_observations_of_another_detector_are_refused(shape, origin, message):
     correction = ReferenceCorrection(np.zeros((8, 10)), np.ones((8, 10)))
     with pytest.raises(ValueError, match=message):
-        correction.corrected(np.zeros(shape), origin)
+        correction.correct(np.zeros(shape), origin)

@@ -20,7 +20,7 @@ from api.http.reference import target
 from api.http.representations import RepresentationCache
 from benchmark.leaderboard import pages
 from files.csv_writing import escape_formulas, unescape_formulas
-from registry.taxonomy import NONE_STATED, exported
+from registry.taxonomy import NONE_STATED, taxonomy_rows
 from tests.api.conftest import Client
 
 WORDS = frozenset({"none", "nan", "null", "n/a", "na", "<na>", "nat", "inf", "-inf", "undefined"})
@@ -97,9 +97,9 @@ def test_a_method_without_a_name_in_the_survey_has_an_empty_cell(atlas: Client) 
     rows = {row["name"]: row for row in atlas.table("/v1/algorithms?limit=500")}
     assert ours
     assert all(rows[name]["taxonomy"] == rows[name]["category"] == "" for name in ours)
-    assert exported("model", "None") == NONE_STATED
-    assert exported("model_taxonomy", "None") is None
-    assert exported("model_taxonomy", "SPM") == "SPM"
+    assert taxonomy_rows("model", "None") == NONE_STATED
+    assert taxonomy_rows("model_taxonomy", "None") is None
+    assert taxonomy_rows("model_taxonomy", "SPM") == "SPM"
 
 
 ROWS = [{"name": '=HYPERLINK("http://x")', "value": -1.5}, {"name": "-", "value": 2}]
@@ -188,7 +188,7 @@ def test_safe_is_of_the_table_and_of_one_call(monkeypatch: pytest.MonkeyPatch) -
     from api.cli.commands import dataset
 
     monkeypatch.setattr(dataset, "csv_of", lambda *_: "name\n=1\n")
-    monkeypatch.setattr("api.cli.tables.csv_of", lambda *_: "name\n=1\n-2\n")
+    monkeypatch.setattr("api.cli.table_output.csv_of", lambda *_: "name\n=1\n-2\n")
     plain = run("dataset", "list", "--format", "csv")
     assert plain == (0, b"name\n=1\n-2\n", "")
     assert run("dataset", "list", "--format", "csv", "--safe") == (0, b"name\n'=1\n-2\n", "")

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from api import pictures
-from api.pictures import Pictures, place
+from api import previews
+from api.previews import Pictures, place
 from benchmark import datasets
 from benchmark.datasets.preview import preview_png
 from benchmark.results import digests
@@ -27,24 +27,24 @@ def drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(name.encode())
 
-    monkeypatch.setattr(pictures, "_drawn_beside", draw)
-    monkeypatch.setattr(pictures, "published", lambda _: tmp_path / "of other code")
+    monkeypatch.setattr(previews, "_drawn_beside", draw)
+    monkeypatch.setattr(previews, "published_preview", lambda _: tmp_path / "of other code")
     return names
 
 
 def test_every_data_set_s_picture_is_published_as_the_code_is_now() -> None:
-    wanted = {pictures.published(name).name for name in datasets.names()}
-    found = {path.name for path in pictures.PUBLISHED.iterdir()}
-    assert found == wanted, "renew them: python -m api.pictures --publish"
+    wanted = {previews.published_preview(name).name for name in datasets.names()}
+    found = {path.name for path in previews.PUBLISHED.iterdir()}
+    assert found == wanted, "renew them: python -m api.previews --publish"
 
 
 def test_what_is_published_is_drawn_by_nobody(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(pictures, "_drawn_beside", lambda *_: pytest.fail("was drawn"))
-    monkeypatch.setattr(pictures, "draw", lambda *_: pytest.fail("was drawn"))
+    monkeypatch.setattr(previews, "_drawn_beside", lambda *_: pytest.fail("was drawn"))
+    monkeypatch.setattr(previews, "draw", lambda *_: pytest.fail("was drawn"))
     name = datasets.names()[0]
-    assert Pictures(tmp_path).png(name) == pictures.published(name).read_bytes()
+    assert Pictures(tmp_path).png(name) == previews.published_preview(name).read_bytes()
     assert not list(tmp_path.iterdir())
 
 
@@ -53,29 +53,29 @@ def test_of_other_code_nothing_published_is_shown(
 ) -> None:
     """Neither of another data set's code or parameters, nor drawn by other code."""
     name = datasets.names()[-1]
-    now = pictures.published(name)
+    now = previews.published_preview(name)
     for changed in ("dataset_digest", "modules_digest"):
         with monkeypatch.context() as patched:
             patched.setattr(digests, changed, lambda *_: "another")
-            pictures._shown.cache_clear()
-            other = pictures.published(name)
+            previews._show.cache_clear()
+            other = previews.published_preview(name)
         assert other != now
         assert not other.is_file()
-    pictures._shown.cache_clear()
-    assert pictures.published(name) == now
+    previews._show.cache_clear()
+    assert previews.published_preview(name) == now
 
 
 def test_publishing_draws_what_lacks_and_removes_what_is_of_other_code(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder = tmp_path / "published"
-    monkeypatch.setattr(pictures, "PUBLISHED", folder)
+    monkeypatch.setattr(previews, "PUBLISHED", folder)
     monkeypatch.setattr(datasets, "names", lambda: ("psd-single-aperture", "qpd-single-aperture"))
     folder.mkdir()
-    kept, lacking = map(pictures.published, datasets.names())
+    kept, lacking = map(previews.published_preview, datasets.names())
     kept.write_bytes(b"drawn before")
     (folder / "psd-single-aperture.0123456789abcdef.png").write_bytes(b"of other code")
-    assert pictures.main(["--publish"]) == 0
+    assert previews.main(["--publish"]) == 0
     assert set(folder.iterdir()) == {kept, lacking}
     assert kept.read_bytes() == b"drawn before"
     assert lacking.read_bytes() == preview_png(datasets.get("qpd-single-aperture"))
@@ -84,7 +84,7 @@ def test_publishing_draws_what_lacks_and_removes_what_is_of_other_code(
 def test_another_process_draws_what_the_data_set_draws(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(pictures, "PUBLISHED", tmp_path / "nothing is published")
+    monkeypatch.setattr(previews, "PUBLISHED", tmp_path / "nothing is published")
     name = datasets.names()[-1]
     assert Pictures(tmp_path).png(name) == preview_png(datasets.get(name))
     assert place(tmp_path, name).is_file()
@@ -113,8 +113,8 @@ def test_a_store_that_takes_nothing_is_done_without(tmp_path: Path, drawn: list[
 
 
 def test_what_is_not_drawn_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pictures, "_drawn_beside", lambda *_: None)
-    monkeypatch.setattr(pictures, "published", lambda _: tmp_path / "of other code")
+    monkeypatch.setattr(previews, "_drawn_beside", lambda *_: None)
+    monkeypatch.setattr(previews, "published_preview", lambda _: tmp_path / "of other code")
     with pytest.raises(RuntimeError, match="the picture of a was not drawn"):
         Pictures(tmp_path).png("a")
 
@@ -122,18 +122,18 @@ def test_what_is_not_drawn_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 def test_pictures_of_older_code_are_removed_but_the_newest(tmp_path: Path) -> None:
 
     for number in range(6):
-        folder = tmp_path / pictures.FOLDER / f"older{number}"
+        folder = tmp_path / previews.FOLDER / f"older{number}"
         folder.mkdir(parents=True)
         os.utime(folder, (number, number))
     place(tmp_path, "a").parent.mkdir()
-    pictures.forget_others(tmp_path)
-    left = {found.name for found in (tmp_path / pictures.FOLDER).iterdir()}
-    assert left == {"older3", "older4", "older5", pictures.digest()}
+    previews.forget_others(tmp_path)
+    left = {found.name for found in (tmp_path / previews.FOLDER).iterdir()}
+    assert left == {"older3", "older4", "older5", previews.digest()}
 
 
 @pytest.mark.parametrize("arguments", [[], ["store"], ["--publsh"], ["--publish", "store", "a"]])
 def test_what_is_to_be_drawn_has_to_be_said(arguments, capsys):
     with pytest.raises(SystemExit) as ended:
-        pictures.main(arguments)
+        previews.main(arguments)
     assert ended.value.code == 2
-    assert "python -m api.pictures: error: " in capsys.readouterr().err
+    assert "python -m api.previews: error: " in capsys.readouterr().err

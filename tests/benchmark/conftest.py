@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from algorithms.contract import Observation
-from benchmark.running import generated
+from benchmark.running import condition_data
 from benchmark.sweeps import plan as sweep_plan
 
 FAKES = Path(__file__).parent / "fakes"
@@ -29,5 +29,5 @@ def log(tmp_path, monkeypatch):
     """Lines of what implementations really did, whichever process did it."""
     path = tmp_path / "log.txt"
     monkeypatch.setenv("FAKE_ATLAS_LOG", str(path))
-    generated.forget()
+    condition_data.forget()
     return lambda: path.read_text().splitlines() if path.exists() else []

@@ -8,7 +8,7 @@ import pytest
 import survey_data
 from files import manifest
 from files.manifest import FILE, NEXT, differences, write_recorded
-from survey_data import recorded_facts
+from survey_data import facts_manifest
 from survey_data.descriptor import DATA_DIRECTORY
 
 TABLE = "name,size,colour\none,1,red\ntwo,2,green\nthree,3,blue\n"
@@ -156,12 +156,12 @@ def test_settling_finishes_or_drops_what_a_kill_left(folder):
 
 
 def test_our_own_facts_are_as_their_commands_wrote_them():
-    assert recorded_facts.changes() == []
+    assert facts_manifest.changes() == []
 
 
 @pytest.fixture
 def facts(tmp_path):
-    for name in (*recorded_facts.names(), FILE):
+    for name in (*facts_manifest.names(), FILE):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         shutil.copyfile(DATA_DIRECTORY / name, tmp_path / name)
     return tmp_path
@@ -179,18 +179,18 @@ def test_a_changed_letter_a_lost_row_and_a_cut_in_the_facts_are_refused(facts):
         with pytest.raises(
             survey_data.SurveyDataError, match=r"studies\.csv, row \d+.*; restore it"
         ):
-            recorded_facts.require_unchanged(facts)
+            facts_manifest.require_unchanged(facts)
     path.write_bytes(right)
-    recorded_facts.require_unchanged(facts)
+    facts_manifest.require_unchanged(facts)
 
 
 def test_facts_are_taken_over_only_when_they_are_valid(facts):
     path = facts / "studies.csv"
     right = path.read_text()
     path.write_text(right.replace("sensor", "sensos", 1))
-    assert recorded_facts.renew(facts) == ["studies.csv"]
-    recorded_facts.require_unchanged(facts)
+    assert facts_manifest.renew(facts) == ["studies.csv"]
+    facts_manifest.require_unchanged(facts)
     path.write_text(right + right.splitlines()[1] + "\n")
     with pytest.raises(survey_data.SurveyDataError, match="duplicate"):
-        recorded_facts.renew(facts)
-    assert recorded_facts.changes(facts) != []
+        facts_manifest.renew(facts)
+    assert facts_manifest.changes(facts) != []

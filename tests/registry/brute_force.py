@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from hypothesis import strategies as st
 
-from registry.measured import Measured, Score
+from registry.measured_pipelines import MeasuredPipeline, Score
 from registry.recommendation import Calibration
 from registry.studies import Facts, Study
 
@@ -58,7 +58,7 @@ def scores(condition: str) -> st.SearchStrategy[Score]:
 
 pipelines = st.lists(
     st.builds(
-        Measured,
+        MeasuredPipeline,
         dataset=st.sampled_from(["d1", "d2"]),
         detector=st.sampled_from(VALUES["detector"]),
         mask=st.sampled_from(VALUES["mask"]),
@@ -94,7 +94,7 @@ asked = st.lists(st.sampled_from(list(to_ask)), max_size=5, unique=True).flatmap
 )
 Ask = dict[str, object]
 Pair = tuple[str, str]
-Designed = dict[tuple[str, tuple[str, ...]], list[Measured]]
+Designed = dict[tuple[str, tuple[str, ...]], list[MeasuredPipeline]]
 
 
 def kinds(values: Iterable[str]) -> set[str]:
@@ -148,7 +148,7 @@ def states(study: Study, ask: Ask) -> bool:
     )
 
 
-def error_over(row: Measured, score: Score, full_field: float | None) -> float:
+def error_over(row: MeasuredPipeline, score: Score, full_field: float | None) -> float:
     if full_field is not None:
         for half, error in score.cones:
             if 2 * half >= full_field and error is not None:
@@ -158,7 +158,7 @@ def error_over(row: Measured, score: Score, full_field: float | None) -> float:
     return math.inf if score.rms_deg is None or not score.available else score.rms_deg
 
 
-def error_of(row: Measured, ask: Ask) -> float | None:
+def error_of(row: MeasuredPipeline, ask: Ask) -> float | None:
     """The error that a pipeline is judged by; None if it breaks a limit."""
     hazards = wanted(ask, "survive")
     tried = [row.nominal, *(s for name in hazards for s in row.hazards.get(name, ()))]
@@ -182,7 +182,7 @@ def error_of(row: Measured, ask: Ask) -> float | None:
     return None if largest is not None and max(errors) > largest else max(errors)
 
 
-def partly(row: Measured, ask: Ask) -> tuple[float, float] | None:
+def partly(row: MeasuredPipeline, ask: Ask) -> tuple[float, float] | None:
     """Error where it answers, and the answered share, of what answers half but too seldom."""
     hazards = wanted(ask, "survive")
     full, least, latency = (
@@ -208,7 +208,9 @@ def partly(row: Measured, ask: Ask) -> tuple[float, float] | None:
     return max(known), share
 
 
-def finer(pair: Pair, error: float, ask: Ask, table: list[Measured]) -> list[tuple[object, ...]]:
+def finer(
+    pair: Pair, error: float, ask: Ask, table: list[MeasuredPipeline]
+) -> list[tuple[object, ...]]:
     """What may be named beside an error: all that err least, if less than a third of it."""
     parts: list[tuple[object, ...]] = []
     least = math.inf
@@ -252,7 +254,7 @@ def refused(ask: Ask, level: str, has: set[str]) -> bool:
     )
 
 
-def on(pair: Pair, table: list[Measured]) -> Designed:
+def on(pair: Pair, table: list[MeasuredPipeline]) -> Designed:
     found: Designed = defaultdict(list)
     for row in table:
         if (row.detector, row.mask) == pair and row.nominal.rms_deg is not None:
@@ -273,7 +275,7 @@ def designs_of(there: Iterable[Study], measured: Designed) -> set[tuple[str, tup
     return designs
 
 
-def brute_force(facts: Facts, ask: Ask, table: list[Measured]) -> Expected:
+def brute_force(facts: Facts, ask: Ask, table: list[MeasuredPipeline]) -> Expected:
     """Every architecture, every design on it, every study and pipeline, in turn."""
     expected = Expected()
     of_studies = [n for n in ask if n.removeprefix("exclude_") in ("task", "error", "accuracy")]
@@ -312,9 +314,9 @@ def measured_pipeline(
     *,
     repeatability_deg: float | None = None,
     latency_us: float | None = None,
-) -> Measured:
+) -> MeasuredPipeline:
     """A pipeline that errs so much, of a detector and mask."""
-    return Measured(
+    return MeasuredPipeline(
         dataset=f"{detector}-{mask}".lower(),
         detector=detector,
         mask=mask,

@@ -11,7 +11,7 @@ from registry.taxonomy import InvalidValueError
 
 def test_the_catalogue_lists_what_is_declared_and_what_lacks(survey: Facts) -> None:
     known = stand_ins(survey, EXTRACTORS, MODELS)
-    listed = [entry.to_dict() for entry in known.listing("extractor")]
+    listed = [entry.to_dict() for entry in known.implementations("extractor")]
     assert [entry["taxonomy"] for entry in listed] == ["Direct", "Voltage balance", "BCM", "BCTM"]
     assert listed[-1] == {
         "name": "bctm",
@@ -28,7 +28,7 @@ def test_the_catalogue_lists_what_is_declared_and_what_lacks(survey: Facts) -> N
         "version": 1,
         "summary": "Says what it is.",
     }
-    assert known.listing("model")[0].accepts == ("balance", "spot")
+    assert known.implementations("model")[0].accepts == ("balance", "spot")
     lacking = known.gaps()
     assert ("model", "ECM") not in lacking  # its kinds are there
     assert ("model", "ICM") in lacking
@@ -58,4 +58,4 @@ def test_the_catalogue_holds_what_discovery_finds() -> None:
     for name, model in known.models.items():
         assert model.about.name == name
         assert model in known.models_for(model.about.taxonomy)
-    assert all(entry.summary for entry in known.listing())
+    assert all(entry.summary for entry in known.implementations())

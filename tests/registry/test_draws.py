@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from registry.draws import BENCHES, bench_for, one_at_confidence, unit_ratios
-from registry.measured import Measured, Score
+from registry.measured_pipelines import MeasuredPipeline, Score
 from registry.recommendation import recommend
 
 ALIKE = (1.0,) * 10
@@ -74,7 +74,7 @@ def test_of_what_is_said_to_meet_a_limit_fresh_units_and_benches_do():
 
 
 def pipeline(name, own, **more):
-    return Measured(
+    return MeasuredPipeline(
         dataset=name,
         detector="CMOS",
         mask="Single-Ap.",

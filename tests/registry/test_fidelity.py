@@ -22,11 +22,11 @@ from stand_ins import (
 )
 
 from benchmark.plan.combinations import scorable
-from benchmark.plan.parts import installed
+from benchmark.plan.parts import installed_parts
 from benchmark.plan.shown import data_sets
 from registry.fidelity.grading import GRADES, Grade, tally, tally_text
 from registry.fidelity.particulars import CompensatedModel, MethodVariant, PurposeRule
-from registry.fidelity.purposes import DataSet, Setting
+from registry.fidelity.purposes import DataSet, DatasetCondition
 from registry.resolution import Resolution, resolve, resolve_all
 from registry.studies import AttributeValue, Default, Facts
 
@@ -168,14 +168,14 @@ def test_a_study_stands_where_its_purpose_is_shown(facts_of: Build) -> None:
     lit = DataSet("CMOS-Slit", ("nominal", "albedo"))
     found = resolved(facts, lit)
     assert found.fidelity.grade == "faithful"
-    assert found.pipelines[0].settings == (Setting("CMOS-Slit", "albedo", ("albedo",)),)
+    assert found.pipelines[0].settings == (DatasetCondition("CMOS-Slit", "albedo", ("albedo",)),)
     dark = resolved(facts, DataSet("CMOS-Slit"))
     assert parts(dark) == ["condition"]
-    assert dark.pipelines[0].settings == (Setting("CMOS-Slit", "nominal"),)
+    assert dark.pipelines[0].settings == (DatasetCondition("CMOS-Slit", "nominal"),)
     # a study that the rule leaves out is shown as any other
     facts = facts_of([row(error=["Interference"], task=["Cost"])])
     facts = dataclasses.replace(facts, purposes=(ALBEDO,))
-    assert resolved(facts, lit).pipelines[0].settings == (Setting("CMOS-Slit", "nominal"),)
+    assert resolved(facts, lit).pipelines[0].settings == (DatasetCondition("CMOS-Slit", "nominal"),)
 
 
 def test_where_its_own_sensor_does_not_fly_the_nearest_that_does_stands_in(facts_of: Build) -> None:
@@ -187,13 +187,13 @@ def test_where_its_own_sensor_does_not_fly_the_nearest_that_does_stands_in(facts
     found = resolved(facts, aloft, on=on, models=[drift])
     # a condition for a sensor is no gain: as many parts depart, and the sensor is its own
     assert parts(found) == ["condition"]
-    assert found.pipelines[0].settings == (Setting("PD-Slit", "nominal"),)
+    assert found.pipelines[0].settings == (DatasetCondition("PD-Slit", "nominal"),)
     # where the sensor is not known at all it is
     facts = facts_of([row(detector=[], mask=[], extractor=["Direct"], model=["ACM"])])
     facts = dataclasses.replace(facts, purposes=(FLIGHT,))
     found = resolved(facts, aloft, on=on, models=[drift])
     assert parts(found) == ["sensor"]
-    assert found.pipelines[0].settings == (Setting("PD-Lens", "nominal", ("flight",)),)
+    assert found.pipelines[0].settings == (DatasetCondition("PD-Lens", "nominal", ("flight",)),)
 
 
 def test_nothing_runs_of_a_study_without_a_simulated_sensor(facts_of: Build) -> None:
@@ -235,7 +235,7 @@ def test_grades_of_the_survey_follow_from_their_departures(
 def test_settings_of_the_survey_are_conditions_that_data_sets_have(
     everything: dict[str, Resolution],
 ) -> None:
-    presets = installed().presets
+    presets = installed_parts().presets
     for found in everything.values():
         for pipeline in found.pipelines:
             assert pipeline.settings

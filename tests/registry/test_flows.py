@@ -58,7 +58,7 @@ def recount(facts: Facts, levels: Sequence[str]) -> pd.DataFrame:
         frame = frame[~pd.Series(crossed, index=frame.index, dtype=bool)]
     for level in levels:
         frame[level] = [
-            None if pd.isna(v) else facts.taxonomy.derived(level, v)
+            None if pd.isna(v) else facts.taxonomy.derived_values(level, v)
             for v in frame[f"of {attribute_of(level)}"]
         ]
     return frame[["study", *levels]].drop_duplicates()
@@ -164,7 +164,10 @@ def test_no_link_joins_values_that_no_study_has_together(
         for key in link.studies:
             study = facts.studies[key]
             has = {
-                level: {v: facts.taxonomy.derived(level, v) for v in study.of(attribute_of(level))}
+                level: {
+                    v: facts.taxonomy.derived_values(level, v)
+                    for v in study.of(attribute_of(level))
+                }
                 for level in (a, b)
             }
             assert va in has[a].values()

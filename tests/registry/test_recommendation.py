@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from registry.measured import Measured, Measurements
+from registry.measured_pipelines import MeasuredPipeline, Measurements
 from registry.recommendation import recommend
 from registry.studies import Facts
 from tests.registry.brute_force import (
@@ -27,7 +27,7 @@ from tests.registry.brute_force import (
 @settings(deadline=None, derandomize=True, max_examples=250)
 @given(table=rows, ask=asked, measured=pipelines)
 def test_designs_errors_and_studies_are_those_brute_force_finds(
-    facts_of: Callable[[Rows], Facts], table: Rows, ask: Ask, measured: list[Measured]
+    facts_of: Callable[[Rows], Facts], table: Rows, ask: Ask, measured: list[MeasuredPipeline]
 ) -> None:
     facts = facts_of(table)
     answer = recommend(ask, measured, facts=facts)
@@ -58,7 +58,7 @@ def test_designs_errors_and_studies_are_those_brute_force_finds(
     ask=asked.filter(lambda ask: not {"max_error_deg", "accuracy"} & set(ask)), measured=pipelines
 )
 def test_what_is_far_finer_where_it_answers_is_named_beside_each_measured_error(
-    facts_of: Callable[[Rows], Facts], ask: Ask, measured: list[Measured]
+    facts_of: Callable[[Rows], Facts], ask: Ask, measured: list[MeasuredPipeline]
 ) -> None:
     facts = facts_of([])
     for place in recommend(ask, measured, facts=facts).architectures:
@@ -79,7 +79,7 @@ def test_architectures_and_calibrations_stand_in_the_order_asked_for(
     facts_of: Callable[[Rows], Facts],
     table: Rows,
     ask: Ask,
-    measured: list[Measured],
+    measured: list[MeasuredPipeline],
     sort: str,
 ) -> None:
     facts = facts_of(table)
@@ -119,7 +119,7 @@ def test_regret_is_the_first_calibrations_error_over_the_least_of_all(
     facts_of: Callable[[Rows], Facts],
     table: Rows,
     ask: Ask,
-    measured: list[Measured],
+    measured: list[MeasuredPipeline],
     sort: str,
 ) -> None:
     facts = facts_of(table)
@@ -143,7 +143,7 @@ def test_regret_is_the_first_calibrations_error_over_the_least_of_all(
 @settings(deadline=None, derandomize=True, max_examples=120)
 @given(table=rows, ask=asked, measured=pipelines)
 def test_relaxations_give_what_they_promise_and_nothing_smaller_does(
-    facts_of: Callable[[Rows], Facts], table: Rows, ask: Ask, measured: list[Measured]
+    facts_of: Callable[[Rows], Facts], table: Rows, ask: Ask, measured: list[MeasuredPipeline]
 ) -> None:
     facts = facts_of(table)
     answer = recommend(ask, measured, facts=facts)
@@ -179,7 +179,7 @@ def test_relaxations_give_what_they_promise_and_nothing_smaller_does(
 def test_the_changed_limit_is_the_strictest_that_something_keeps(
     facts_of: Callable[[Rows], Facts],
     table: Rows,
-    measured: list[Measured],
+    measured: list[MeasuredPipeline],
     limit: tuple[str, float],
 ) -> None:
     facts = facts_of(table)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 import pytest
 from scores import pipeline
 
-from registry.measured import Measurements, Score
+from registry.measured_pipelines import Measurements, Score
 from registry.recommendation import Architecture, Recommendation, recommend
 from registry.studies import Facts
 

@@ -7,7 +7,7 @@ from scores import pipeline
 
 from benchmark.assessment.regret import drawn_requirements
 from registry.answer_json import answer_digest, answer_json
-from registry.measured import Measured, Measurements, Score
+from registry.measured_pipelines import MeasuredPipeline, Measurements, Score
 from registry.recommendation import answer, recommend
 from registry.studies import Facts
 
@@ -26,7 +26,7 @@ def test_what_was_judged_for_one_question_does_not_tell_for_another(
 ) -> None:
     """Answers are the same whatever was asked before, and however little is kept."""
     facts = facts_of([STUDY, {**STUDY, "detector": ["CCD"]}, {**STUDY, "error": ["Electrical"]}])
-    rows: list[Measured] = [
+    rows: list[MeasuredPipeline] = [
         pipeline(hazards={"albedo": (Score("bad", 0.9),)}),
         pipeline(extractor="b"),
     ]

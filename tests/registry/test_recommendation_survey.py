@@ -35,9 +35,9 @@ def test_support_is_the_geometric_mean_of_distinct_studies_at_three_depths(surve
             with_model = [
                 s
                 for s in there
-                if any(one.model in kinds("model", m) for m in s.supported("model"))
+                if any(one.model in kinds("model", m) for m in s.has_value("model"))
             ]
-            taken = [s for s in with_model if one.extractor in s.supported("extractor")]
+            taken = [s for s in with_model if one.extractor in s.has_value("extractor")]
             assert set(one.studies) == {s.key for s in taken}
             depths = [len(there), len(with_model), len(taken)]
             assert one.with_model == depths[1]
@@ -123,7 +123,7 @@ def without_what_was_only_compared(facts: Facts) -> Facts:
 def test_what_a_study_only_compared_is_none_of_its_support(survey: Facts) -> None:
     # Chang2007a and Chang2008 took basic centroids to show that a template is better.
     for key in ("Chang2007a", "Chang2008"):
-        assert survey.studies[key].supported("extractor") == ("TM",)
+        assert survey.studies[key].has_value("extractor") == ("TM",)
     ask = {"detector": ["CMOS"], "mask": ["Single-Ap."], "model": ["SPM"], "task": ["Accuracy"]}
     (place,) = recommend(ask, facts=survey).architectures
     backing = {one.extractor: set(one.studies) for one in place.calibrations}
@@ -163,7 +163,7 @@ def test_paths_are_the_values_that_studies_have_together(survey: Facts) -> None:
         taken = {
             s.key
             for s in survey.studies.values()
-            if all(path[level] in s.supported(level) for level in LEVELS)
+            if all(path[level] in s.has_value(level) for level in LEVELS)
             and (path["detector"], path["mask"]) in s.architectures
         }
         assert set(path["studies"]) == taken

@@ -69,8 +69,8 @@ def test_every_model_has_one_category_and_one_kind_of_calibration(survey: Facts)
     taxonomy = survey.taxonomy
     online = {"ACM", "ECM", "ECM/Noise"}  # by the sections of the survey that describe them
     for value in taxonomy.values("model"):
-        assert taxonomy.derived("model_category", value) == taxonomy.category("model", value)
-        kind = taxonomy.derived("calibration", value)
+        assert taxonomy.derived_values("model_category", value) == taxonomy.category("model", value)
+        kind = taxonomy.derived_values("calibration", value)
         assert kind == ("None" if value == "None" else "online" if value in online else "offline")
     assert set(taxonomy.values("calibration")) == {"offline", "online", "None"}
 

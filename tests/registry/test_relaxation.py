@@ -5,9 +5,9 @@ from collections.abc import Callable, Mapping
 import pytest
 from scores import pipeline
 
-from registry.measured import Score
+from registry.measured_pipelines import Score
 from registry.recommendation import Recommendation, recommend
-from registry.relaxation import MOST_CHANGES, Blocked
+from registry.relaxation import MOST_CHANGES, BlockingConstraint
 from registry.studies import Facts
 
 Rows = list[Mapping[str, list[str]]]
@@ -61,13 +61,13 @@ def test_no_studies_is_no_one_constraints_fault(facts_of: Callable[[Rows], Facts
 MEASURED: Mapping[str, object] = {"rms_deg": 0.2, "half_fov_deg": 30.0, "latency_us": 8.0}
 
 
-def blocked_of(answer: Recommendation) -> Blocked:
+def blocked_of(answer: Recommendation) -> BlockingConstraint:
     assert answer.blocked is not None
     assert answer.count == 0
     return answer.blocked
 
 
-def changes(blocked: Blocked) -> list[tuple[dict[str, object], int]]:
+def changes(blocked: BlockingConstraint) -> list[tuple[dict[str, object], int]]:
     return [(dict(one.change), one.architectures) for one in blocked.relaxations if one.change]
 
 

@@ -8,7 +8,7 @@ import pytest
 from stand_ins import EXTRACTORS, MODELS, planned, stand_ins
 
 from benchmark.plan.combinations import cells, scorable
-from benchmark.plan.parts import installed
+from benchmark.plan.parts import installed_parts
 from benchmark.plan.shown import data_sets
 from registry.catalogue import catalogue
 from registry.fidelity.runnable import ESSENTIAL
@@ -139,7 +139,7 @@ def everything() -> dict[str, Resolution]:
 
 
 def test_the_plan_by_architecture_is_the_plan() -> None:
-    presets = installed().presets
+    presets = installed_parts().presets
     announced = {
         (dataset, *pair, *architecture)
         for architecture, pairs in scorable().items()

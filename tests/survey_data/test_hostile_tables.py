@@ -8,7 +8,7 @@ import pytest
 from openpyxl import Workbook
 
 import survey_data
-from survey_data.importing.reading import read_table
+from survey_data.importing.table_reader import read_table
 from survey_data.importing.values import UnreadableValueError, ValueReader
 from survey_data.problems import SurveyImportError
 

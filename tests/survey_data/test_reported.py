@@ -9,7 +9,7 @@ import pytest
 import survey_data
 from registry.requirements import CLASSES_DEG
 from registry.studies import facts
-from survey_data.reported import KIND_OF, reported, statistics
+from survey_data.reported import KIND_OF, reported_accuracies, statistics
 
 
 @pytest.mark.parametrize(
@@ -26,22 +26,22 @@ from survey_data.reported import KIND_OF, reported, statistics
     ],
 )
 def test_a_figure_is_compared_as_the_rms_of_its_kind(kind: str, value: float, rms: float) -> None:
-    assert reported("accuracy", value, kind).rms_deg == pytest.approx(rms, rel=1e-3)
+    assert reported_accuracies("accuracy", value, kind).rms_deg == pytest.approx(rms, rel=1e-3)
 
 
 def test_a_figure_says_what_it_is() -> None:
-    assert reported("precision", 0.002, "1sigma").label == "1-sigma precision"
-    assert reported("accuracy", 0.002).label == "accuracy of unspecified kind"
+    assert reported_accuracies("precision", 0.002, "1sigma").label == "1-sigma precision"
+    assert reported_accuracies("accuracy", 0.002).label == "accuracy of unspecified kind"
     with pytest.raises(KeyError):
-        reported("accuracy", 0.002, "best")
+        reported_accuracies("accuracy", 0.002, "best")
 
 
 def test_a_one_sigma_precision_is_no_accuracy() -> None:
     """Wei2013 prints 1.1 arcsec, Wang2015 1.32 arcsec, both as precision and 1 sigma."""
     for key, arcsec in (("Wei2013", 1.1), ("Wang2015", 1.32)):
         study = facts().studies[key]
-        assert study.reported("accuracy") is None
-        found = study.reported("precision")
+        assert study.report("accuracy") is None
+        found = study.report("precision")
         assert found is not None
         assert found.label == "1-sigma precision"
         assert found.value_deg == pytest.approx(arcsec / 3600, rel=1e-3)
@@ -58,7 +58,7 @@ def test_every_number_of_the_mapping_has_a_kind() -> None:
 
 def test_a_heading_of_a_rover_is_no_accuracy_of_a_sun_sensor() -> None:
     study = facts().studies["TrebiOllennu2001"]
-    assert study.reported("accuracy") is None
+    assert study.report("accuracy") is None
     assert "accuracy" in study.unknown
 
 

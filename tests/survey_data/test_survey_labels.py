@@ -65,14 +65,14 @@ def test_rows_of_equations_are_counted_as_latex_does(source: str, kind: str, num
 
 
 def test_a_label_alone_is_named_in_full_and_within_a_sentence_by_its_number() -> None:
-    assert labels.named("sec:attribanalysis") == "Section 4 “Sensor attribute analysis”"
-    assert labels.named("absent from tab:mrlit") == "absent from Table 2"
-    assert labels.named("eq:lsq of model:lsq") == (
+    assert labels.label_of("sec:attribanalysis") == "Section 4 “Sensor attribute analysis”"
+    assert labels.label_of("absent from tab:mrlit") == "absent from Table 2"
+    assert labels.label_of("eq:lsq of model:lsq") == (
         "Equation 3 of Section 5.3 “Least Squares (LSQ) geometric model”"
     )
-    assert labels.named("sec:appendixa") == "Appendix A “Data availability”"
+    assert labels.label_of("sec:appendixa") == "Appendix A “Data availability”"
 
 
 def test_what_only_looks_like_a_label_stays_as_it_is() -> None:
     for text in ("without a model: a foil", "model:unheardof", "tab:", ""):
-        assert labels.named(text) == text
+        assert labels.label_of(text) == text

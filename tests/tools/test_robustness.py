@@ -16,9 +16,9 @@ from benchmark.synthetic_features.shapes import (
     disc,
     gaussian,
     limb_darkened,
-    rendered,
+    render,
     square,
-    stretched,
+    stretch,
 )
 from tools.bench import robustness
 from tools.bench.extractor_peers import scipy_ellipse
@@ -35,14 +35,14 @@ SMALL = [chosen for chosen in FRAME_SETS if chosen.size_px == 64]
     [
         (disc(8.0), math.pi * (8.0**2 + EDGE_PX**2)),
         (gaussian(3.0), 2.0 * math.pi * 3.0**2),
-        (stretched(8.0, 60.0), 2.0 * math.pi * 8.0**2),
+        (stretch(8.0, 60.0), 2.0 * math.pi * 8.0**2),
         (square(8.0), 16.0**2),
         # a wide one: its law is steep where the rim is
         (limb_darkened(24.0), (1.0 - 0.6 / 3.0) * math.pi * 24.0**2),
     ],
 )
 def test_shapes_hold_the_light_of_their_area(shape, light):
-    found = rendered(shape, np.array([[31.3, 30.8]]), np.array([0.4]), 64)
+    found = render(shape, np.array([[31.3, 30.8]]), np.array([0.4]), 64)
     assert found.sum() == pytest.approx(light, rel=0.01)
 
 
@@ -51,7 +51,7 @@ def test_shapes_hold_the_light_of_their_area(shape, light):
 )
 def test_symmetric_spots_have_their_centroid_at_the_centre(chosen):
     centres = np.array([[31.37, 30.82], [32.0, 31.5]])
-    frames = rendered(chosen.shape, centres, np.array([0.3, 1.1]) * chosen.turned, 64)
+    frames = render(chosen.shape, centres, np.array([0.3, 1.1]) * chosen.turned, 64)
     total = frames.sum(axis=(1, 2))
     x = (frames.sum(axis=1) @ np.arange(64)) / total
     y = (frames.sum(axis=2) @ np.arange(64)) / total
@@ -237,7 +237,7 @@ def test_every_kind_of_frame_and_every_extractor_of_one_spot_is_there():
 
 def test_scipys_elliptical_profile_follows_an_ellipse():
     centres, turns = np.array([[31.3, 30.8], [29.9, 32.4]]), np.array([0.4, 2.0])
-    frames = 20.0 + 2000.0 * rendered(stretched(8.0, 60.0), centres, turns, 64)
+    frames = 20.0 + 2000.0 * render(stretch(8.0, 60.0), centres, turns, 64)
     np.testing.assert_allclose(scipy_ellipse(frames), centres, atol=0.02)
 
 

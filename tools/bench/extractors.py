@@ -25,7 +25,7 @@ from algorithms.extractors.frames.template import TemplateMatch
 from algorithms.extractors.frames.threshold_average import MultipleThresholdCentroid
 from benchmark import datasets
 from benchmark.running.threads import one_thread
-from benchmark.synthetic_features.frames import REFERENCE_SETS, ReferenceSet
+from benchmark.synthetic_features.frames import REFERENCE_SETS, SyntheticSet
 from tools.bench.extractor_limits import (
     NOISE_RANGE_E,
     OPENCV,
@@ -82,7 +82,7 @@ class Measured:
     frames: int
 
 
-def methods(chosen: ReferenceSet) -> dict[str, Method]:
+def methods(chosen: SyntheticSet) -> dict[str, Method]:
     """Return the extractors of single spots, by name, and their options of interest.
 
     Each is made for a sensor whose round aperture is as wide as the spot at half its light.
@@ -125,7 +125,7 @@ def single_spot(half_px: float, size_px: int) -> dict[str, Extractor]:
 
 
 def measure(
-    chosen: ReferenceSet, count: int, repeats: int, only: Sequence[str] | None = None
+    chosen: SyntheticSet, count: int, repeats: int, only: Sequence[str] | None = None
 ) -> list[Measured]:
     """Measure every method and peer (or those named) on the first `count` frames of a set.
 
@@ -209,7 +209,7 @@ def measure_many_spots(count: int, repeats: int) -> list[Measured]:
 
 
 def noise_range(
-    chosen: ReferenceSet, method: Method, factors: Sequence[float], count: int
+    chosen: SyntheticSet, method: Method, factors: Sequence[float], count: int
 ) -> dict[float, float]:
     """Return a method's error, px, with the set's read noise times each factor."""
     found = {}

@@ -8,24 +8,24 @@ from pathlib import Path
 from typing import Any
 
 import survey_data
-from benchmark.results import recorded
+from benchmark.results import record_manifest
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import times
 from benchmark.running.experiment import Recorded, experiments
-from survey_data import recorded_facts
+from survey_data import facts_manifest
 from survey_data.descriptor import DATA_DIRECTORY
 from tools.faults.kind import OFFERED, OTHERS, OWN, Kind, RefusedError
 
 
 def _facts(folder: Path) -> list[Path]:
-    names = (*recorded_facts.names(), "manifest.json")
+    names = (*facts_manifest.names(), "manifest.json")
     for name in names:
         (folder / name).parent.mkdir(exist_ok=True)
     return [Path(shutil.copyfile(DATA_DIRECTORY / name, folder / name)) for name in names]
 
 
 def _read_facts(folder: Path) -> Any:
-    problems = recorded_facts.changes(folder)
+    problems = facts_manifest.changes(folder)
     if not (folder / "manifest.json").is_file():  # as for our own, which must have one
         raise RefusedError("manifest.json: the file is missing")
     if problems:
@@ -51,7 +51,7 @@ def _record(folder: Path) -> list[Path]:
 
 
 def _read_record(folder: Path) -> Any:
-    recorded.require_unchanged(folder, required=True)
+    record_manifest.require_unchanged(folder, required=True)
     return _read_files(folder)
 
 

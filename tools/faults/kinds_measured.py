@@ -23,7 +23,7 @@ from benchmark.datasets import export, export_verification
 from benchmark.datasets.pins import Pin
 from benchmark.experiments.claims import Claims
 from benchmark.metrics.score import METRICS
-from benchmark.results import recorded
+from benchmark.results import record_manifest
 from benchmark.results.components import Components
 from benchmark.results.journal import Journal
 from benchmark.results.record import Record
@@ -155,12 +155,12 @@ def _forged_bundle(rng: random.Random, folder: Path) -> str:
 
 def _outcome(folder: Path) -> list[Path]:
     CLAIMS.write({_CLAIM: CLAIMS.read()[_CLAIM]}, folder)
-    manifest.rewrite_manifest(folder, recorded.names(folder))
+    manifest.rewrite_manifest(folder, record_manifest.names(folder))
     return [folder / CLAIMS.name]
 
 
 def _read_outcome(folder: Path) -> Any:
-    recorded.require_unchanged(folder, required=True)
+    record_manifest.require_unchanged(folder, required=True)
     experiment = Claims(folder)
     if reason := dict(due(experiment)).get(_CLAIM):
         raise RefusedError(f"{CLAIMS.name}: {_CLAIM}: {reason}")
@@ -192,7 +192,7 @@ def _forged_outcome(rng: random.Random, folder: Path) -> str:
         at = rng.choice([k for k, value in enumerate(part) if value])
         part[at] *= rng.choice([1.001, 2.0])
     CLAIMS.write(rows, folder)
-    manifest.rewrite_manifest(folder, recorded.names(folder))
+    manifest.rewrite_manifest(folder, record_manifest.names(folder))
     return f"forged: {what}"
 
 

@@ -92,7 +92,7 @@ GROUPS: Mapping[str, Group] = {
             "benchmark/running/pinning.py": _in(_RUNNING, "pinning_rules", "pinning"),
             "benchmark/running/tim*.py": _in(_RUNNING, "timing", "times"),
             "benchmark/running/threads.py": _in(_RUNNING, "threads"),
-            "benchmark/running/generated.py": _in(_RUNNING, "pinning_rules", "runner"),
+            "benchmark/running/condition_data.py": _in(_RUNNING, "pinning_rules", "runner"),
             "benchmark/plan/*": _in(_RUNNING, "plan"),
             "benchmark/running/*": _in(_RUNNING, "backend", "runner"),
         },

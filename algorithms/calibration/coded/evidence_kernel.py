@@ -21,7 +21,7 @@ from algorithms.calibration.coded.identity_kernel import (
     Room,
     dark,
     leave,
-    named,
+    name_of,
     near,
     of_one,
     partners_of,
@@ -51,7 +51,7 @@ READ, NOTHING, SEVERAL = 0, 1, 2
 
 
 @compiled
-def _paired(spots: Floats, count: int, most: int, code: Code) -> Indices:
+def _pair(spots: Floats, count: int, most: int, code: Code) -> Indices:
     """Partner of each spot in sets that share none, more than `most` sets; itself alone.
 
     A neighbour, of those that are left the one whose spacing is on the mask least often. -1 for a
@@ -99,7 +99,7 @@ def _agreement(dimensions: int, squares: float, noise: Noise) -> float:
 
 
 @compiled
-def _closed(dark_ones: int, noise: Noise) -> float:
+def _close(dark_ones: int, noise: Noise) -> float:
     """Logarithm of the odds of apertures being dark: on whole masks hardly any is."""
     whole, broken = -dark_ones * noise[_WHOLE], -dark_ones * noise[_DARK]
     return math.log((1.0 - noise[_BROKEN]) * math.exp(whole) + noise[_BROKEN] * math.exp(broken))
@@ -177,12 +177,12 @@ def _evidence(  # noqa: PLR0917 - Numba takes no keyword-only ones
     if found < least:
         return -math.inf
     closed = dark(count, at, int(min((found - least) / noise[_DARK], 1e6)), code, view, partners)
-    found += _closed(closed, noise)
+    found += _close(closed, noise)
     return found if found >= least else -math.inf
 
 
 @compiled
-def _compared(  # noqa: C901, PLR0912, PLR0917 - one pass over places; positional for Numba
+def _compare(  # noqa: C901, PLR0912, PLR0917 - one pass over places; positional for Numba
     spots: Floats,
     count: int,
     code: Code,
@@ -207,7 +207,7 @@ def _compared(  # noqa: C901, PLR0912, PLR0917 - one pass over places; positiona
     most = 0
     while most < count and _at_most(count, most + 1, noise) >= best - noise[_ODDS]:
         most += 1
-    mates = _paired(spots, count, most, code)
+    mates = _pair(spots, count, most, code)
     sets = 0
     for i in range(count):
         if sets > most:
@@ -218,7 +218,7 @@ def _compared(  # noqa: C901, PLR0912, PLR0917 - one pass over places; positiona
         if mates[i] == i:
             number = of_one(spots, i, -1, code, trials)
         else:
-            number = named(spots, i, mates[i], -1, code, trials)
+            number = name_of(spots, i, mates[i], -1, code, trials)
         leave(spots, count, room, number, most, most, code)
         for h in range(number):
             if left[h] > most:
@@ -268,7 +268,7 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
         verdicts[k] = NOTHING
         if count < agreeing:
             continue
-        best, second = _compared(spots, count, code, view, noise, room, found[k])
+        best, second = _compare(spots, count, code, view, noise, room, found[k])
         if math.isnan(found[k, 0]) or best < noise[_MASK] - count * noise[_VIEW] + noise[_ODDS]:
             continue
         explained = count - partners_of(spots, count, found[k], code, own)

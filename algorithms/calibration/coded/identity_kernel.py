@@ -152,7 +152,7 @@ def spacings(spots: Floats, i: int, j: int, code: Code) -> int:
 
 
 @compiled
-def named(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def name_of(  # noqa: PLR0917 - Numba takes no keyword-only ones
     spots: Floats, i: int, j: int, own: int, code: Code, trials: Floats
 ) -> int:
     """Write the hypotheses that the spacing of two spots names, but `own` aperture's; how many."""
@@ -221,7 +221,7 @@ def room_for(lists: Floats, code: Code) -> Room:
 
 
 @compiled
-def _improved(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _improve(  # noqa: PLR0917 - Numba takes no keyword-only ones
     spots: Floats,
     count: int,
     room: Room,
@@ -272,8 +272,8 @@ def search_spacings(  # noqa: PLR0917 - Numba takes no keyword-only ones
         for pair in range(_rarest(spots, count, code, rare)):
             if best == 0:
                 break
-            number = named(spots, rare[pair, 1], rare[pair, 2], -1, code, room[0])
-            best = _improved(spots, count, room, number, most, code, view, best, found[k])
+            number = name_of(spots, rare[pair, 1], rare[pair, 2], -1, code, room[0])
+            best = _improve(spots, count, room, number, most, code, view, best, found[k])
         faults[k] = best
 
 
@@ -304,5 +304,5 @@ def search_correlation(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 if best <= s:
                     break
                 number = of_one(spots, s, -1, code, room[0])
-                best = _improved(spots, count, room, number, most, code, view, best, found[k])
+                best = _improve(spots, count, room, number, most, code, view, best, found[k])
         faults[k] = best

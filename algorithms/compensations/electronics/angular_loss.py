@@ -18,7 +18,7 @@ from algorithms.contract import (
 )
 from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import Normals, require_normals
-from algorithms.models.physics_informed.assembled_faces import inverted
+from algorithms.models.physics_informed.assembled_faces import invert
 
 Response = Literal["kelly", "fitted"]
 
@@ -144,7 +144,7 @@ class AngularLoss(CalibratedCompensation):
         """Cosines of incidence (N, K) of signals (N, K)."""
         del context
         relative = features / self.gains_
-        return np.column_stack([inverted(column, self.response_) for column in relative.T])
+        return np.column_stack([invert(column, self.response_) for column in relative.T])
 
     def _gains(
         self, features: Floats, cosines: Floats, lit: NDArray[np.bool_], response: Floats

@@ -13,7 +13,7 @@ from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.cube_currents import CubeCurrents
 from algorithms.contract import AboutCompensation, FeatureKind, Floats
 from algorithms.documented import documented
-from algorithms.row_arithmetic import normalised
+from algorithms.row_arithmetic import normalise
 
 #: Ways to give each of three pairs' plus face to the Sun (+1) or to the Earth (-1).
 _SIDES = tuple(product((1.0, -1.0), repeat=3))
@@ -88,8 +88,8 @@ class SunAndAlbedoInputs(CubeCurrents):
     def apply(self, features: Floats, context: Columns) -> Floats:
         """Signals (N, 6) of the Sun alone."""
         plus, minus = self.pairs(features)
-        field = normalised(context["magnetic_field_nT"])
-        along = (context["sun_inertial"] * normalised(context["magnetic_field_inertial_nT"])).sum(
+        field = normalise(context["magnetic_field_nT"])
+        along = (context["sun_inertial"] * normalise(context["magnetic_field_inertial_nT"])).sum(
             axis=1
         )
         candidates = [
@@ -97,7 +97,7 @@ class SunAndAlbedoInputs(CubeCurrents):
             for sides in _SIDES
             for candidate in self._of_sides(plus, minus, np.array(sides), field, along)
         ]
-        return self.lit_by(self._agreed(np.stack(candidates)))
+        return self.lit_by(self._agree(np.stack(candidates)))
 
     def _of_sides(
         self, plus: Floats, minus: Floats, sides: Floats, field: Floats, along: Floats
@@ -155,7 +155,7 @@ class SunAndAlbedoInputs(CubeCurrents):
                 solutions.append(found)
         return solutions[0], solutions[1]
 
-    def _agreed(self, candidates: Floats) -> Floats:
+    def _agree(self, candidates: Floats) -> Floats:
         """Mean (N, 3) of the possible vectors (C, N, 3) where they agree, else NaN."""
         known = np.asarray(np.isfinite(candidates).all(axis=2))
         count = known.sum(axis=0)

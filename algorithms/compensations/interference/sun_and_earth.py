@@ -11,7 +11,7 @@ from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.cube_currents import CubeCurrents
 from algorithms.contract import AboutCompensation, FeatureKind, Floats
 from algorithms.documented import documented
-from algorithms.row_arithmetic import normalised
+from algorithms.row_arithmetic import normalise
 
 ITERATIONS = 8
 """Steps from the sum's direction to the Sun's; each leaves a fraction of the albedo's share."""
@@ -93,9 +93,9 @@ class SunAndEarth(CubeCurrents):
         nadir = context["nadir"]
         plus, minus = self.pairs(features)
         both = plus - minus
-        sun = normalised(both)
+        sun = normalise(both)
         for _ in range(ITERATIONS):
-            sun = normalised(both - (self.albedo_ * _share(sun, nadir))[:, None] * nadir)
+            sun = normalise(both - (self.albedo_ * _share(sun, nadir))[:, None] * nadir)
         left = both - (self.albedo_ * _share(sun, nadir))[:, None] * nadir
         return self.lit_by(left)
 

@@ -110,7 +110,7 @@ class DirectSignals(Extractor):
     def extract(self, observations: ArrayLike) -> Floats:
         """Signals (N, K) of readings (N, K); ValueError on wrong input."""
         readings = as_currents(observations, self.elements, self.about.name)
-        signals = _calibrated(readings, self.dark, self.gain, self.saturation)
+        signals = _calibrate(readings, self.dark, self.gain, self.saturation)
         found = (signals > 0).any(axis=1)
         if self.normalisation == "sum":
             divisor = signals.sum(axis=1)
@@ -210,14 +210,14 @@ class VoltageBalance(Extractor):
     def extract(self, observations: ArrayLike) -> Floats:
         """Balances (N, 2) of readings (N, 4); ValueError on wrong input."""
         readings = as_currents(observations, 4, self.about.name)
-        light = _calibrated(readings, self.dark, self.gain, self.saturation)
+        light = _calibrate(readings, self.dark, self.gain, self.saturation)
         q1, q2, q3, q4 = light[:, list(self.order)].T
         total = q1 + q2 + q3 + q4
         differences = np.column_stack([(q2 + q3) - (q1 + q4), (q1 + q2) - (q3 + q4)])
         return quotient_rows(differences, total, total > 0)
 
 
-def _calibrated(
+def _calibrate(
     readings: Floats,
     dark: float | tuple[float, ...],
     gain: float | tuple[float, ...],

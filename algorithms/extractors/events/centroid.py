@@ -126,7 +126,7 @@ class EventCentroid(Extractor):
         found = np.empty((len(events), 2))
         means(
             events,
-            first_spikes_kernel.counted(events),
+            first_spikes_kernel.count(events),
             self.width_px,
             self.width_px / 2.0 + self.margin_px,
             self.hot,
@@ -212,7 +212,7 @@ class EventWinner(Extractor):
         events = first_spikes_kernel.as_events(_events(observations, self.about.name))
         found = np.empty((len(events), 2))
         first_spikes_kernel.first_addresses(
-            events, first_spikes_kernel.counted(events), self.winners, found
+            events, first_spikes_kernel.count(events), self.winners, found
         )
         found[np.isnan(found).any(axis=1)] = np.nan
         return found - self.offset_px

@@ -30,7 +30,7 @@ _LIT = 0.75
 
 
 @compiled
-def counted(events: Floats) -> NDArray[np.int64]:
+def count(events: Floats) -> NDArray[np.int64]:
     """Count each sample's events (N,); -1 where they are not as the array tells them.
 
     Not so are numbers that are not finite before the last event, and addresses below 0 or beyond

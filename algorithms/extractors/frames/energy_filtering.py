@@ -18,9 +18,9 @@ from algorithms.contract import (
     SensorGeometry,
 )
 from algorithms.documented import documented
-from algorithms.extractors.frames.one_light import (
+from algorithms.extractors.frames.single_light import (
     Light,
-    agreed,
+    check_agreement,
     light_of,
     longest_px_of,
     require_light,
@@ -126,16 +126,18 @@ class AdaptiveEnergyFilter(Extractor):
     def extract(self, observations: ArrayLike) -> Floats:
         """Centroids (N, 2) of frames (N, H, W), each by itself; ValueError on wrong input."""
         frames = as_frames(observations)
-        return agreed(frames, self._filtered(frames, 1)[0], self.light, self.longest_px)
+        return check_agreement(frames, self._filter_rows(frames, 1)[0], self.light, self.longest_px)
 
     def extract_sequence(self, observations: ArrayLike) -> tuple[Floats, NDArray[np.int64]]:
         """Centroids (N, 2) of frames (N, H, W) in the order of time, and of how many frames each.
 
         A row depends on the frames before it and on none after it. ValueError on wrong input.
         """
-        return self._filtered(observations, self.memory)
+        return self._filter_rows(observations, self.memory)
 
-    def _filtered(self, observations: ArrayLike, memory: int) -> tuple[Floats, NDArray[np.int64]]:
+    def _filter_rows(
+        self, observations: ArrayLike, memory: int
+    ) -> tuple[Floats, NDArray[np.int64]]:
         from algorithms.extractors.frames import energy_filter_kernel  # noqa: PLC0415 - Numba, at first use
         from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
 

@@ -16,16 +16,16 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
-from algorithms.extractors.frames.one_light import (
-    Judged,
+from algorithms.extractors.frames.single_light import (
     Light,
+    LightCheck,
+    consistent_covariances,
     frames_to_measure,
     judge,
     light_of,
     longest_px_of,
-    refused,
+    refused_flags,
     require_light,
-    stated,
 )
 from algorithms.extractors.profiles.single_spot import require_one_spot
 from algorithms.inputs import Frames, as_frames, require_positive
@@ -140,23 +140,25 @@ class GaussianFit(Extractor):
         nothing = np.isnan(centres[:, :1])
         noise = np.where(nothing, np.nan, judged.noise)
         gaussian_kernel.covariances(frames, fitted, noise, _MISFIT, covariance)
-        return Measurement(centres, stated(covariance, centres, judged), judged.doubts)
+        return Measurement(
+            centres, consistent_covariances(covariance, centres, judged), judged.doubts
+        )
 
     def _answers(
         self, frames: Frames, bad: ArrayLike | None = None
-    ) -> tuple[Floats, Floats, Judged]:
+    ) -> tuple[Floats, Floats, LightCheck]:
         """Centres (N, 2), NaN for none, the fits (N, 6), and what is to be said of them."""
-        fitted = self._fitted(frames)
+        fitted = self._fit(frames)
         _, height, width = frames.shape
         light, x, y, s_x, s_y, _ = fitted.T
         found = (light > 0) & (s_x < width) & (s_y < height)
         found &= (x > -0.5) & (x < width - 0.5) & (y > -0.5) & (y < height - 0.5)
         centres = np.where(found[:, None], fitted[:, 1:3], np.nan)
         judged = judge(frames, centres, self.light, self.longest_px, bad)
-        centres[refused(judged.doubts)] = np.nan
+        centres[refused_flags(judged.doubts)] = np.nan
         return centres, fitted, judged
 
-    def _fitted(self, frames: Frames) -> Floats:
+    def _fit(self, frames: Frames) -> Floats:
         """Parameters (N, 6) of the Gaussians; NaN rows where there is none."""
         from algorithms.extractors.frames import gaussian_kernel  # noqa: PLC0415 - Numba, at first use
         from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use

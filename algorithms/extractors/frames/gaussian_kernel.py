@@ -136,7 +136,7 @@ def _dot(a: Floats, b: Floats, count: int) -> float:
 
 
 @compiled
-def _solved(matrix: Floats, right: Floats, damping: float, step: Floats) -> bool:
+def _solve(matrix: Floats, right: Floats, damping: float, step: Floats) -> bool:
     """Solve (matrix + damping diagonal) step = right by Cholesky; False where not definite."""
     size = len(right)
     lower = np.zeros((size, size))
@@ -186,7 +186,7 @@ def fit_gaussians(  # noqa: C901 - one loop, its kernel's steps in order
         _normal_matrix(p, x, y, matrix)
         damping = 1e-3
         for _ in range(limit):
-            if not _solved(matrix, right, damping, step):
+            if not _solve(matrix, right, damping, step):
                 damping = max(10 * damping, 1e-6)
                 continue
             for m in range(_PARAMETERS):
@@ -277,7 +277,7 @@ def covariances(
         for axis in range(2):
             right[:] = 0.0
             right[1 + axis] = 1.0
-            good = good and _solved(matrix, right, 0.0, moves[axis])
+            good = good and _solve(matrix, right, 0.0, moves[axis])
         if not good:
             continue
         a, b = moves[0], moves[1]

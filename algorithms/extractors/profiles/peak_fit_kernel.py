@@ -344,6 +344,6 @@ def fit_images(  # noqa: PLR0917 - Numba takes no keyword-only ones
             out[r] = np.nan
 
 
-def numbered(image: str) -> Any:
+def number_items(image: str) -> Any:
     """Return an image's number by its name."""
     return {"rational": RATIONAL, "gaussian": GAUSSIAN, "diffraction": DIFFRACTION}[image]

@@ -128,7 +128,7 @@ class PeakPositionEstimate(SlitLines):
         floors = dark_level(lines)
         # a pixel sees no image narrower than itself
         halves = np.tile([max(slit[2], 1.0) / 2.0 for slit in self.slits], (len(lines), 1))
-        return _fitted(
+        return _fit(
             lines,
             floors,
             self._starts(lines, floors),
@@ -285,7 +285,7 @@ class FramePeakPositionEstimate(Extractor):
             np.divide(light.sum(axis=1), 2.0 * largest, out=halves, where=largest > 0)
             halves = np.maximum(halves, 0.5)
         none = np.zeros(1)
-        shifts, _ = _fitted(
+        shifts, _ = _fit(
             profiles,
             floors,
             starts[:, None],
@@ -301,7 +301,7 @@ class FramePeakPositionEstimate(Extractor):
         return shifts[:, 0]
 
 
-def _fitted(
+def _fit(
     lines: Floats,
     floors: Floats,
     starts: Floats,
@@ -327,7 +327,7 @@ def _fitted(
         places,
         groups,
         halves,
-        peak_fit_kernel.numbered(image),
+        peak_fit_kernel.number_items(image),
         np.array(coefficients),
         overlap,
         tolerance,

@@ -143,7 +143,7 @@ def _terms(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _solved(matrix: Floats, vector: Floats) -> bool:
+def _solve(matrix: Floats, vector: Floats) -> bool:
     """Solve four symmetric equations in place; False where they do not settle all unknowns."""
     n = len(vector)
     for k in range(n):
@@ -244,7 +244,7 @@ def _shift(  # noqa: C901, PLR0917 - one fit; Numba takes no keyword-only ones
             matrix[2, 2] += _HELD * matrix[0, 0] if held else firm
             vector[2] += firm * bright * (1.0 - width)
         explained = vector.copy()
-        if not _solved(matrix, vector) or not abs(shift) < reach:
+        if not _solve(matrix, vector) or not abs(shift) < reach:
             return math.nan
         if turn == 0:
             bright, held = vector[0], False

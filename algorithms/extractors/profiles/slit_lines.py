@@ -23,7 +23,7 @@ from algorithms.contract import (
     UnsuitableDesignError,
 )
 from algorithms.inputs import as_currents, require_positive
-from algorithms.measurement import Measurement, measured
+from algorithms.measurement import Measurement, measurement_of
 from algorithms.row_arithmetic import medians
 
 LineAxis = Literal["x", "y"]
@@ -113,7 +113,7 @@ class SlitLines:
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
         """Features as `extract`, their covariance and doubts; see `algorithms.measurement`."""
         extract = cast("Extractor", self).extract
-        return measured(extract, self.about.observation, self.about.name, observations, bad)
+        return measurement_of(extract, self.about.observation, self.about.name, observations, bad)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:

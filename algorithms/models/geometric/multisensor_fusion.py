@@ -16,7 +16,7 @@ from algorithms.contract import (
 )
 from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import axis_faces
-from algorithms.row_arithmetic import normalised
+from algorithms.row_arithmetic import normalise
 
 
 @documented
@@ -84,4 +84,4 @@ class SixFaces(DrawnModel):
         plus, minus = axis_faces(self.face_normals, self.about.name)
         positive, negative = features[:, plus], features[:, minus]
         brighter = np.maximum(np.maximum(positive, negative), 0.0)
-        return normalised(np.where(positive >= negative, brighter, -brighter))
+        return normalise(np.where(positive >= negative, brighter, -brighter))

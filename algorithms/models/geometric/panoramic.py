@@ -20,7 +20,7 @@ from algorithms.contract import (
 from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.geometric.detector_faces import Normals, directions, require_normals
-from algorithms.row_arithmetic import normalised
+from algorithms.row_arithmetic import normalise
 
 Weighting = Literal["signal", "equal"]
 
@@ -177,7 +177,7 @@ class WeightedCells(FacesModel):
         trace = elements[0] + elements[3] + elements[5]
         # fewer than three lit, or three in a plane: rounding is all there is of a determinant
         vectors[~(determinant > FLATTEST * trace**3)] = np.nan
-        return normalised(vectors)
+        return normalise(vectors)
 
     @property
     def _smallest_cosine(self) -> float:

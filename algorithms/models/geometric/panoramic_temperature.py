@@ -113,7 +113,7 @@ class WarmCells(WeightedCells):
         cosines[cosines < self._smallest_cosine] = 0.0
         lit = (cosines**2).sum(axis=0) > 0
         require_samples(int(lit.sum()), 1, self.about.name, "that light a cell")
-        self.coefficient_, self.coefficient_deviation_, currents = _fitted(
+        self.coefficient_, self.coefficient_deviation_, currents = _fit(
             features[:, lit], cosines[:, lit], warmth, self.about.name
         )
         reference = np.full(len(lit), currents.mean())
@@ -144,9 +144,7 @@ class WarmCells(WeightedCells):
         return super().answer(cold, {})
 
 
-def _fitted(
-    signals: Floats, cosines: Floats, warmth: Floats, by: str
-) -> tuple[float, float, Floats]:
+def _fit(signals: Floats, cosines: Floats, warmth: Floats, by: str) -> tuple[float, float, Floats]:
     """Coefficient, its standard error and the currents (K,) that explain signals (n, K) best.
 
     ``signal = current cosine (1 - coefficient warmth)``: for a coefficient the currents follow one

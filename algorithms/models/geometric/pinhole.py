@@ -18,7 +18,7 @@ from algorithms.inputs import require_samples
 from algorithms.models.nominal_projection import (
     POSITIONS,
 )
-from algorithms.row_arithmetic import normalised
+from algorithms.row_arithmetic import normalise
 
 
 @documented
@@ -121,4 +121,4 @@ class BuiltPinhole(ProjectionModel, ParametricModel):
         x, z = cy * x + sy, cy - sy * x
         y, z = cx * y - sx * z, sx * y + cx * z
         z[~(z > 0)] = np.nan  # behind the detector
-        return normalised(np.stack([x, y, z], axis=1))
+        return normalise(np.stack([x, y, z], axis=1))

@@ -12,7 +12,7 @@ _BLOCK = 128
 
 
 @compiled
-def projected(x: Floats, y: Floats, centre: tuple[float, float], scale: float, sun: Floats) -> None:
+def project(x: Floats, y: Floats, centre: tuple[float, float], scale: float, sun: Floats) -> None:
     """Sun vectors (N, 3) of spots, into `sun`: what `sun_from_tangents` makes of their tangents.
 
     Parameters

@@ -25,7 +25,7 @@ from algorithms.models.geometric.detector_faces import (
     require_normals,
     row_sums,
 )
-from algorithms.row_arithmetic import normalised
+from algorithms.row_arithmetic import normalise
 
 Coefficient = Literal["common", "each"]
 
@@ -143,7 +143,7 @@ class RegularPyramid(FacesModel):
         del context
         signals = np.where(self._all_lit(features)[:, None], features, np.nan)
         rows = [b / (b @ b) * self.coefficients_ for b in self._normals().T]
-        return normalised(np.column_stack([row_sums(signals, row) for row in rows]))
+        return normalise(np.column_stack([row_sums(signals, row) for row in rows]))
 
     def _all_lit(self, signals: Floats) -> NDArray[np.bool_]:
         least = np.maximum(self.dark_fraction * signals.max(axis=1), 0.0)

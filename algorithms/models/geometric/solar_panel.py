@@ -12,7 +12,7 @@ from algorithms.calibration.drawn import DrawnModel
 from algorithms.contract import AboutModel, FeatureKind, Floats
 from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import Normals, require_square_pairs, row_sums
-from algorithms.row_arithmetic import normalised
+from algorithms.row_arithmetic import normalise
 
 
 @documented
@@ -80,7 +80,7 @@ class SolarPanels(DrawnModel):
         """Directions (N, 3) of signals (N, 6)."""
         del context
         lit = np.maximum(features, 0.0)
-        return normalised(np.column_stack([row_sums(lit, n) for n in self._normals().T]))
+        return normalise(np.column_stack([row_sums(lit, n) for n in self._normals().T]))
 
     def _normals(self) -> Floats:
         """(6, 3) normals, or UnsuitableDesignError unless they are three square pairs."""

@@ -63,11 +63,11 @@ class StandardProjection(ProjectionModel, DrawnModel):
 
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of features (N, 2)."""
-        from algorithms.models.geometric.projection_kernel import projected  # noqa: PLC0415 - Numba
+        from algorithms.models.geometric.projection_kernel import project  # noqa: PLC0415 - Numba
 
         del context
         sun = np.empty((len(features), 3))
         centre = (float(self.centre[0]), float(self.centre[1]))
         scale = float(self.unit_mm) / float(self.focal_length_mm)
-        projected(features[:, 0], features[:, 1], centre, scale, sun)
+        project(features[:, 0], features[:, 1], centre, scale, sun)
         return sun

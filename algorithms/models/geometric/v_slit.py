@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from algorithms.calibration.calibrated import Columns
-from algorithms.calibration.slit_sensor import NEEDS, SlitModel, shadow, shortening
+from algorithms.calibration.slit_sensor import NEEDS, SlitModel, refraction_height_mm, shadow
 from algorithms.contract import AboutModel, FeatureKind, Floats, UnsuitableDesignError
 from algorithms.documented import documented
 
@@ -123,7 +123,7 @@ class VSlit(SlitModel):
         """(N, 2) shifts, mm, of tangents (N, 2) by slant, in the order of the slits."""
         height = np.full(len(tangents), vector[0])
         if self.cover_glass:
-            height -= shortening(tangents, vector[8], vector[9])
+            height -= refraction_height_mm(tangents, vector[8], vector[9])
         along_line = tangents if self.line_axes[0] == "x" else tangents[:, ::-1]
         line = (vector[1], vector[2], vector[3], vector[4])
         slits = [(position, np.tan(np.radians(slant))) for position, slant, _ in self.slits]

@@ -13,7 +13,7 @@ from algorithms.angles import angles_from_sun
 from algorithms.calibration.blocks import best, folds, splits
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.conditioning import WORST_CONDITION
-from algorithms.calibration.hull import spacing
+from algorithms.calibration.hull import median_spacing
 from algorithms.calibration.projection import ProjectionModel
 from algorithms.calibration.quality import Setting
 from algorithms.contract import (
@@ -178,7 +178,7 @@ class BlendedPolynomials(ProjectionModel):
         """
         degrees = DEGREES if self.degree is None else (self.degree,)
         smoothings = SMOOTHINGS if self.smoothing is None else (self.smoothing,)
-        step = spacing(np.unique(np.round(nominal, 9), axis=0))
+        step = median_spacing(np.unique(np.round(nominal, 9), axis=0))
         coarse = max(self.interval_deg, step)
         while (nodes := _rows(nominal, coarse).nodes * (max(degrees) + 1)) > MAX_NODES:
             coarse *= 2.0
@@ -214,7 +214,7 @@ class BlendedPolynomials(ProjectionModel):
         roughness = row_roughness(alpha.nodes, terms)
         solution = solve_table(design, roughness, smoothing, errors, by)
         self.alpha_axis_ = alpha
-        self.beta_middle_deg_, self.beta_half_range_deg_ = _scaling(nominal)
+        self.beta_middle_deg_, self.beta_half_range_deg_ = _scale(nominal)
         self.coefficients_deg_ = solution.reshape(alpha.nodes, terms, 2)
 
     def _nominal_deg(self, features: Floats) -> Floats:
@@ -223,10 +223,10 @@ class BlendedPolynomials(ProjectionModel):
 
 
 def _rows(nominal: Floats, interval: float) -> GridAxis:
-    return GridAxis.covering(nominal[:, 0], interval)
+    return GridAxis.enclosing(nominal[:, 0], interval)
 
 
-def _scaling(nominal: Floats) -> tuple[float, float]:
+def _scale(nominal: Floats) -> tuple[float, float]:
     """Middle and half range of beta."""
     low, high = float(nominal[:, 1].min()), float(nominal[:, 1].max())
     return (low + high) / 2, (high - low) / 2
@@ -237,7 +237,7 @@ def _equations(nominal: Floats, interval: float, degree: int) -> tuple[GridAxis,
     from scipy.sparse import csr_array  # noqa: PLC0415 - SciPy, at the first fit only
 
     alpha = _rows(nominal, interval)
-    middle, half = _scaling(nominal)
+    middle, half = _scale(nominal)
     scaled = (nominal[:, 1] - middle) / half
     basis = np.asarray(chebyshev.chebvander(scaled, degree), dtype=np.float64)
     across = interpolation_matrix(alpha, nominal[:, 0])

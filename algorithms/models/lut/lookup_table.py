@@ -11,7 +11,7 @@ import numpy as np
 from algorithms.angles import angles_from_sun
 from algorithms.calibration.blocks import best, folds, splits
 from algorithms.calibration.calibrated import Columns
-from algorithms.calibration.hull import spacing
+from algorithms.calibration.hull import median_spacing
 from algorithms.calibration.projection import ProjectionModel
 from algorithms.calibration.quality import Setting
 from algorithms.contract import AboutModel, Floats
@@ -134,14 +134,14 @@ class ErrorTable(ProjectionModel):
 
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of features (N, 2)."""
-        from algorithms.models.lut.table_kernel import corrected  # noqa: PLC0415 - Numba
+        from algorithms.models.lut.table_kernel import correct  # noqa: PLC0415 - Numba
 
         del context
         angles = np.empty((len(features), 2), order="F")
         alpha, beta = self.alpha_axis_, self.beta_axis_
         starts = (float(alpha.start), float(beta.start))
         nominal = self._nominal_deg(features)
-        corrected(nominal, self.table_deg_, starts, float(alpha.interval), angles)
+        correct(nominal, self.table_deg_, starts, float(alpha.interval), angles)
         return sun_from_target(angles, "angle")
 
     def _chosen(self, nominal: Floats, errors: Floats, sun: Floats) -> tuple[float, float]:
@@ -150,7 +150,7 @@ class ErrorTable(ProjectionModel):
         Tried on a coarser table, where it takes hundredths of the time: second differences grow
         with the interval squared, and their squares' sum with the interval squared.
         """
-        step = spacing(np.unique(np.round(nominal, 9), axis=0))
+        step = median_spacing(np.unique(np.round(nominal, 9), axis=0))
         coarse = max(self.interval_deg, step)
         while (nodes := _nodes(nominal, coarse)) * np.sqrt(nodes) > MAX_BAND:
             coarse *= 2.0
@@ -177,7 +177,7 @@ class ErrorTable(ProjectionModel):
 
 
 def _axes(nominal: Floats, interval: float) -> tuple[GridAxis, GridAxis]:
-    return GridAxis.covering(nominal[:, 0], interval), GridAxis.covering(nominal[:, 1], interval)
+    return GridAxis.enclosing(nominal[:, 0], interval), GridAxis.enclosing(nominal[:, 1], interval)
 
 
 def _nodes(nominal: Floats, interval: float) -> int:

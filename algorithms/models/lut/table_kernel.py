@@ -9,7 +9,7 @@ from algorithms.contract import Floats
 
 
 @compiled
-def corrected(
+def correct(
     nominal: Floats,
     table: Floats,
     starts: tuple[float, float],

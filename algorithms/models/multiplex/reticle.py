@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from algorithms.calibration.rulers.lines import Raster
-from algorithms.calibration.rulers.model import RulerModel
+from algorithms.calibration.periodic_slits.model import RulerModel
+from algorithms.calibration.periodic_slits.pattern_fit import Raster
 from algorithms.calibration.slit_sensor import NEEDS
 from algorithms.contract import (
     AboutModel,
@@ -90,7 +90,7 @@ class ReticlePhase(RulerModel):
 
     def read(self, lines: Floats, found: Raster, middle: float, shifts: Floats) -> None:
         """Write into `shifts` (M,) the pattern's, px, on lines (M, L) whose middle is told."""
-        from algorithms.calibration.rulers import phase_kernel  # noqa: PLC0415 - Numba, at first use
+        from algorithms.calibration.periodic_slits import phase_kernel  # noqa: PLC0415 - Numba, at first use
 
         waves = phase_kernel.waves(self.line_pixels, found.period)
         slits, contrast = found.slits + middle, self.smallest_contrast

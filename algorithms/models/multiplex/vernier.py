@@ -7,8 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from algorithms.calibration.rulers.lines import Raster
-from algorithms.calibration.rulers.model import RulerModel
+from algorithms.calibration.periodic_slits.model import RulerModel
+from algorithms.calibration.periodic_slits.pattern_fit import Raster
 from algorithms.calibration.slit_sensor import NEEDS
 from algorithms.contract import (
     AboutModel,
@@ -92,7 +92,7 @@ class OpticalVernier(RulerModel):
 
     def read(self, lines: Floats, found: Raster, middle: float, shifts: Floats) -> None:
         """Write into `shifts` (M,) the pattern's, px, on lines (M, L) whose middle is told."""
-        from algorithms.calibration.rulers import phase_kernel  # noqa: PLC0415 - Numba, at first use
+        from algorithms.calibration.periodic_slits import phase_kernel  # noqa: PLC0415 - Numba, at first use
 
         ends = np.array([found.slits[0] - found.period, found.slits[-1] + found.period])
         mark = int(found.period)

@@ -15,10 +15,10 @@ from algorithms.documented import documented
 from algorithms.models.neural_network.training import (
     Network,
     Training,
-    held_out,
+    hold_out,
     on_grid,
     require_training,
-    trained,
+    train_network,
 )
 from algorithms.models.nominal_projection import POSITIONS
 from algorithms.models.non_physical.regression_axes import feature_scaling, sun_from_target
@@ -112,7 +112,7 @@ class AxisNetworks(CalibratedModel):
         by = self.about.name
         features, sun = on_grid(features, sun)
         self.middle_, self.half_range_ = feature_scaling(features, by)
-        inputs, held = self._scaled(features), held_out(sun)
+        inputs, held = self._scaled(features), hold_out(sun)
         self.reach_deg_ = np.empty(2)
         networks, steps, square = [], [], 0.0
         for axis, component in enumerate((1, 0)):  # alpha goes with y, beta with x
@@ -121,7 +121,7 @@ class AxisNetworks(CalibratedModel):
             reach = max(float(np.abs(angle).max()), 1e-9)
             widths = 2, self.hidden, 1
             training = Training(widths, _LAYERS, self.restarts, self.seed, steps=_STEPS)
-            found = trained(inputs, (angle / reach)[:, None], held, training, by)
+            found = train_network(inputs, (angle / reach)[:, None], held, training, by)
             self.reach_deg_[axis] = reach
             networks.append(found.network)
             steps.append(found.steps)

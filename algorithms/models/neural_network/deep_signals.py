@@ -21,12 +21,12 @@ from algorithms.documented import documented
 from algorithms.models.neural_network.direction_errors import (
     Corrected,
     Correction,
-    combined,
+    combine,
     learn_correction,
     least_squares,
 )
 from algorithms.models.neural_network.training import on_grid, require_training
-from algorithms.row_arithmetic import normalised
+from algorithms.row_arithmetic import normalise
 
 MAX_SIGNALS = 8
 """Every signal has a unit of the first layer that sees all others."""
@@ -157,4 +157,4 @@ class DeepSignals(Corrected, FacesModel):
     def _base(self, inputs: Floats) -> Floats:
         """Directions (N, 3) before they are corrected."""
         columns = [np.ones(len(inputs)), *inputs.T]
-        return normalised(combined(columns, self.coefficients_))
+        return normalise(combine(columns, self.coefficients_))

@@ -13,14 +13,14 @@ from algorithms.documented import documented
 from algorithms.models.neural_network.direction_errors import (
     Corrected,
     Correction,
-    combined,
+    combine,
     learn_correction,
     least_squares,
 )
 from algorithms.models.neural_network.training import on_grid, require_training
 from algorithms.models.nominal_projection import POSITIONS
 from algorithms.models.non_physical.regression_axes import feature_scaling
-from algorithms.row_arithmetic import normalised
+from algorithms.row_arithmetic import normalise
 
 #: Powers of the features in each term, by degree.
 _CUBIC = tuple((total - j, j) for total in range(4) for j in range(total + 1))
@@ -113,8 +113,8 @@ class DeepSurface(Corrected, CalibratedModel):
 
     def _base(self, inputs: Floats) -> Floats:
         """Directions (N, 3) of the surfaces."""
-        tangents = combined(_terms(inputs), self.coefficients_)
-        return normalised(np.column_stack([tangents, np.ones(len(inputs))]))
+        tangents = combine(_terms(inputs), self.coefficients_)
+        return normalise(np.column_stack([tangents, np.ones(len(inputs))]))
 
 
 def _terms(inputs: Floats) -> list[Floats]:

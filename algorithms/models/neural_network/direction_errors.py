@@ -11,8 +11,14 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.quality import Setting
 from algorithms.contract import Floats, UnusableDataError
-from algorithms.models.neural_network.training import Network, Trained, Training, held_out, trained
-from algorithms.row_arithmetic import normalised
+from algorithms.models.neural_network.training import (
+    Network,
+    Trained,
+    Training,
+    hold_out,
+    train_network,
+)
+from algorithms.row_arithmetic import normalise
 
 #: Added to the diagonal of normal equations, as a share of its mean: an element that no sample
 #: lights has no part.
@@ -44,13 +50,13 @@ class Correction:
     held_deg: float
     steps: int
 
-    def corrected(self, base: Floats, inputs: Floats) -> Floats:
+    def correct(self, base: Floats, inputs: Floats) -> Floats:
         """Give unit vectors (N, 3) of directions (N, 3) and the network's inputs (N, F)."""
         errors = self.network.values(inputs) * self.scale
         if errors.shape[1] == base.shape[1]:
-            return normalised(base + errors)
+            return normalise(base + errors)
         first, second = across_from_boresight(base)
-        return normalised(base + errors[:, :1] * first + errors[:, 1:] * second)
+        return normalise(base + errors[:, :1] * first + errors[:, 1:] * second)
 
 
 class Corrected:
@@ -84,7 +90,7 @@ class Corrected:
         """Directions (N, 3) of features (N, F)."""
         del context
         inputs = self._scaled(features)
-        return self.correction_.corrected(self._base(inputs), inputs)
+        return self.correction_.correct(self._base(inputs), inputs)
 
     @abstractmethod
     def _base(self, inputs: Floats) -> Floats:
@@ -182,7 +188,7 @@ def learn_correction(
     wanted = wanted[usable]
     scale = float(np.abs(wanted).max())
     count, outputs = inputs.shape[1], wanted.shape[1]
-    held = held_out(sun)
+    held = hold_out(sun)
     training = Training(
         (count, count, hidden, hidden, outputs), (1, 2, 2, 0), restarts, seed, goal=_GOAL
     )
@@ -191,7 +197,7 @@ def learn_correction(
             np.zeros(training.count), np.array(training.widths), np.array(training.kinds)
         )
         return Correction(silent, 1.0, float(np.degrees(scale)), 0)
-    found: Trained = trained(inputs[usable], wanted / scale, held[usable], training, by)
+    found: Trained = train_network(inputs[usable], wanted / scale, held[usable], training, by)
     held_deg = float(np.degrees(scale * found.held))
     return Correction(found.network, scale, held_deg, found.steps)
 
@@ -204,7 +210,7 @@ def least_squares(design: Floats, wanted: Floats, by: str) -> Floats:
     UnusableDataError
         If the samples do not settle them.
     """
-    from algorithms.models.neural_network.network_kernel import solved  # noqa: PLC0415 - Numba
+    from algorithms.models.neural_network.network_kernel import solve  # noqa: PLC0415 - Numba
     from algorithms.models.neural_network.portable_kernel import products  # noqa: PLC0415 - Numba
 
     terms = design.shape[1]
@@ -215,13 +221,13 @@ def least_squares(design: Floats, wanted: Floats, by: str) -> Floats:
         products(contiguous, np.ascontiguousarray(wanted[:, number]), normal, right)
         added = _RIDGE * float(np.diag(normal).mean())
         column = np.empty(terms)
-        if not solved(normal, added, right, factor, column):
+        if not solve(normal, added, right, factor, column):
             raise UnusableDataError(f"{by}: the calibration samples do not settle {terms} terms")
         found[:, number] = column
     return found
 
 
-def combined(columns: list[Floats], coefficients: Floats) -> Floats:
+def combine(columns: list[Floats], coefficients: Floats) -> Floats:
     """Add up columns (N,) times their coefficients (P, T) to (N, T), one by one.
 
     A matrix product rounds a sample differently in batches of another size.

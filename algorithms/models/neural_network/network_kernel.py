@@ -261,7 +261,7 @@ def _normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def solved(normal: Floats, added: float, wanted: Floats, factor: Floats, out: Floats) -> bool:
+def solve(normal: Floats, added: float, wanted: Floats, factor: Floats, out: Floats) -> bool:
     """Solve ``(normal + added I) out = wanted`` by Cholesky's factor; whether it could be.
 
     Parameters
@@ -330,7 +330,7 @@ def _lower(  # noqa: PLR0917 - Numba takes no keyword-only ones
         mean += normal[p, p]
     mean /= count
     while damping <= _MOST:
-        if solved(normal, damping * mean, gradient, factor, trial):
+        if solve(normal, damping * mean, gradient, factor, trial):
             for p in range(count):
                 trial[p] = here[p] - trial[p]
             found = _mean_square(inputs, wanted, trial, widths, kinds, units)

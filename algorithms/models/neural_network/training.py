@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from algorithms.calibration.blocks import folds
 from algorithms.contract import Floats, UnusableDataError
 from algorithms.inputs import require_samples
-from algorithms.row_arithmetic import normalised
+from algorithms.row_arithmetic import normalise
 
 TRIAL_STEPS = 30
 """Steps of every start, after which only the best goes on."""
@@ -168,10 +168,10 @@ def on_grid(features: Floats, sun: Floats) -> tuple[Floats, Floats]:
     # half way between powers of two for a spread that is one: counts often are
     power = np.floor(np.log2(np.where(spread > 0, spread, 1.0) * np.sqrt(2.0)))
     step = np.ldexp(1.0 / _GRID, power.astype(np.int64))
-    return np.round(features / step) * step, normalised(np.round(sun * _GRID) / _GRID)
+    return np.round(features / step) * step, normalise(np.round(sun * _GRID) / _GRID)
 
 
-def held_out(sun: Floats) -> NDArray[np.bool_]:
+def hold_out(sun: Floats) -> NDArray[np.bool_]:
     """Which calibration samples (n,) tell a training when to stop: every fifth block of poses.
 
     None on the rim, which all fits keep, and repeats of a pose together.
@@ -179,7 +179,7 @@ def held_out(sun: Floats) -> NDArray[np.bool_]:
     return np.asarray(folds(sun) == _HELD)
 
 
-def trained(
+def train_network(
     inputs: Floats, wanted: Floats, held: NDArray[np.bool_], training: Training, by: str
 ) -> Trained:
     """Train a network on what is not held out; of all starts the best on what is.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from algorithms.calibration.blocks import between_poses, folds_along
-from algorithms.calibration.orders import chosen, errors_of_orders
+from algorithms.calibration.orders import choose_order, errors_of_orders
 from algorithms.contract import Floats
 from algorithms.models.non_physical.regression_axes import (
     Target,
@@ -93,7 +93,7 @@ def fit_axes(
             )
             for axis, column in AXES
         ]
-        choice = chosen(errors[0] + errors[1], by)
+        choice = choose_order(errors[0] + errors[1], by)
         size, validated = sizes[choice.order], in_degrees(choice.rms, target)
     coefficients, whitening = np.empty((2, size)), np.empty((2, size, size))
     for axis, column in AXES:

@@ -107,7 +107,7 @@ class FourierPhase(DialModel):
 
         def tangents(parameters: NDArray[np.complex128]) -> NDArray[np.complex128]:
             conversion, series = self._split(parameters)
-            numerators, denominators = _projected(conversion, _corrected(places, waves, series))
+            numerators, denominators = _project(conversion, _correct(places, waves, series))
             return np.asarray(numerators / denominators)
 
         start = np.zeros(8 + 4 * self.harmonics)
@@ -120,8 +120,8 @@ class FourierPhase(DialModel):
         """Directions (N, 3) of signals (N, 2 (bits + 4))."""
         del context
         places, phases = self.code.read(features)
-        corrected = _corrected(places, self._waves(phases), self.series_)
-        return sun_from_fractions(*_projected(self.conversion_, corrected))
+        corrected = _correct(places, self._waves(phases), self.series_)
+        return sun_from_fractions(*_project(self.conversion_, corrected))
 
     def _waves(self, phases: Floats) -> Floats:
         """(harmonics, 2, N, 2) sines and cosines of the phases (N, 2) times 1, 2, ..."""
@@ -133,7 +133,7 @@ class FourierPhase(DialModel):
         return conversion, parameters[8:].reshape(2, self.harmonics, 2)
 
 
-def _corrected(places: Floats, waves: Floats, series: NDArray[Any]) -> NDArray[Any]:
+def _correct(places: Floats, waves: Floats, series: NDArray[Any]) -> NDArray[Any]:
     """Tangents T (N, 2): places and the series' terms, added one by one."""
     total: NDArray[Any] = places
     for n, (sine, cosine) in enumerate(waves):
@@ -141,7 +141,7 @@ def _corrected(places: Floats, waves: Floats, series: NDArray[Any]) -> NDArray[A
     return total
 
 
-def _projected(conversion: NDArray[Any], tangents: NDArray[Any]) -> tuple[Any, Any]:
+def _project(conversion: NDArray[Any], tangents: NDArray[Any]) -> tuple[Any, Any]:
     """Numerators (N, 2) and their common denominator (N, 1) of the projection of T (N, 2)."""
     x, y = tangents[:, 0], tangents[:, 1]
     rows = [h[0] * x + h[1] * y + h[2] for h in conversion]

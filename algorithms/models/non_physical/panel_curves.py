@@ -24,7 +24,7 @@ from algorithms.models.geometric.detector_faces import (
 )
 from algorithms.models.non_physical.regression_axes import solve_regression
 from algorithms.models.non_physical.trigonometric import FEWEST_LIT, SMALLEST_COSINE
-from algorithms.row_arithmetic import normalised
+from algorithms.row_arithmetic import normalise
 
 
 @documented
@@ -174,4 +174,4 @@ class AveragedPanelCurves(FacesModel):
             for axis in range(3):
                 vectors[:, axis] += normals[one, axis] * component
         vectors[~(brightest > 0)] = np.nan
-        return normalised(vectors)
+        return normalise(vectors)

@@ -11,7 +11,7 @@ from numpy.polynomial import chebyshev
 
 from algorithms.calibration.blocks import between_poses, folds
 from algorithms.calibration.calibrated import CalibratedModel, Columns
-from algorithms.calibration.orders import chosen, errors_of_orders
+from algorithms.calibration.orders import choose_order, errors_of_orders
 from algorithms.calibration.quality import Setting
 from algorithms.contract import AboutModel, Floats
 from algorithms.documented import documented
@@ -246,7 +246,7 @@ class SurfacePolynomial(CalibratedModel):
             sizes = [_terms(n) for n in range(1, MAX_DEGREE + 1) if _terms(n) < len(features)]
             between = _surface_terms((between_poses(sun, features) - middle) / half, MAX_DEGREE)
             errors = errors_of_orders(design, sizes, wanted, folds(sun), between)
-            choice = chosen(errors, by)
+            choice = choose_order(errors, by)
             degree, validated = choice.order + 1, in_degrees(choice.rms, self.target)
         require_samples(len(features), _terms(degree), by, f"total degree {degree}")
         design = _surface_terms(scaled, degree)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from algorithms.calibration.blocks import folds
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.faces_model import FacesModel
-from algorithms.calibration.orders import chosen, errors_of_orders
+from algorithms.calibration.orders import choose_order, errors_of_orders
 from algorithms.calibration.quality import Setting
 from algorithms.contract import (
     AboutModel,
@@ -26,7 +26,7 @@ from algorithms.contract import (
 from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.non_physical.regression_axes import solve_regression
-from algorithms.row_arithmetic import normalised
+from algorithms.row_arithmetic import normalise
 
 MAX_SIGNALS = 8
 """More have too many products: a hundred and sixty-five of ten signals are of the third degree."""
@@ -154,7 +154,7 @@ class SignalPolynomial(FacesModel):
         middle, half = (low + high) / 2.0, (high - low) / 2.0
         if not (half > 0).any():
             raise UnusableDataError(f"{by} needs samples in which a signal changes; got none")
-        scaled = _scaled(features, middle, half)
+        scaled = _scale(features, middle, half)
         most = self.degree or self._largest_degree(len(features))
         powers = _powers(self.signals, most)
         design = _terms(scaled, powers)
@@ -166,7 +166,7 @@ class SignalPolynomial(FacesModel):
         if self.degree is None:
             # faces go dark between poses, where the middle of two readings is no reading at all
             between = design[:0]
-            choice = chosen(errors_of_orders(design, sizes, sun, folds(sun), between), by)
+            choice = choose_order(errors_of_orders(design, sizes, sun, folds(sun), between), by)
             degree, validated = choice.order + 1, float(np.degrees(choice.rms))
         size = sizes[degree - 1]
         require_samples(len(features), size + 1, by, f"{size} terms of degree {degree}")
@@ -191,7 +191,7 @@ class SignalPolynomial(FacesModel):
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of signals (N, K)."""
         del context
-        scaled = _scaled(features, self.middle_, self.half_range_)
+        scaled = _scale(features, self.middle_, self.half_range_)
         columns = _power_columns(scaled, int(self.powers_.max()))
         vectors = np.zeros((len(features), 3), order="F")
         # Term by term: a matrix product rounds a sample differently in batches of another size.
@@ -206,7 +206,7 @@ class SignalPolynomial(FacesModel):
         for column in scaled.T:
             inside &= np.abs(column) <= reach
         vectors[~inside] = np.nan
-        return normalised(vectors)
+        return normalise(vectors)
 
     def _largest_degree(self, samples: int) -> int:
         """Largest degree whose terms are no more than allowed, and than half the samples."""
@@ -222,7 +222,7 @@ class SignalPolynomial(FacesModel):
 _BEYOND = 0.1
 
 
-def _scaled(features: Floats, middle: Floats, half: Floats) -> Floats:
+def _scale(features: Floats, middle: Floats, half: Floats) -> Floats:
     """Signals (N, K) on [-1, 1]; those that never changed as they are off their one value."""
     return np.asarray((features - middle) / np.where(half > 0, half, 1.0))
 

@@ -24,7 +24,7 @@ from algorithms.models.geometric.detector_faces import (
     require_square_pairs,
 )
 from algorithms.models.non_physical.regression_axes import solve_regression
-from algorithms.row_arithmetic import normalised
+from algorithms.row_arithmetic import normalise
 
 SMALLEST_COSINE = 0.02
 """Of the angle of incidence from which on a panel counts as lit in the calibration."""
@@ -184,7 +184,7 @@ class TrigonometricPanels(FacesModel):
             for bit in range(3):
                 vectors[:, axis] += inverses[octant, axis, bit] * seen[bit]
         vectors[~(brightest > 0)] = np.nan
-        return normalised(vectors)
+        return normalise(vectors)
 
     def _pairs(self) -> tuple[tuple[int, int], ...]:
         return opposite_pairs(require_square_pairs(self.face_normals, self.about.name))

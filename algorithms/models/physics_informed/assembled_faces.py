@@ -15,7 +15,7 @@ from algorithms.documented import documented
 from algorithms.inputs import require_positive
 from algorithms.models.geometric.detector_faces import Normals, require_normals
 from algorithms.models.physics_informed.faces_fit import FEWEST_LIT, FacesFit
-from algorithms.row_arithmetic import normalised
+from algorithms.row_arithmetic import normalise
 
 Sharing = Literal["common", "each"]
 
@@ -145,7 +145,7 @@ class AssembledFaces(FacesModel):
         del context
         fit = FacesFit(
             np.asarray(self.face_normals, dtype=np.float64), features, sun, self.about.name
-        ).solved(each=self.response == "each")
+        ).solve(each=self.response == "each")
         self.normals_, self.responses_, self.dark_ = fit.normals, fit.responses, fit.dark
         # a noiseless calibration leaves rounding, which must not decide between faces
         least = 1e-9 * float(self.responses_.sum(axis=1).max())
@@ -163,14 +163,14 @@ class AssembledFaces(FacesModel):
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of signals (N, K)."""
         del context
-        return self._solved(features)[0]
+        return self._solve(features)[0]
 
     def variance(self, features: Floats, context: Columns) -> Floats:
         """(N,) variance of a tangent axis that the residuals' size makes, rad^2."""
         del context
-        return self._solved(features)[1]
+        return self._solve(features)[1]
 
-    def _solved(self, signals: Floats) -> tuple[Floats, Floats]:
+    def _solve(self, signals: Floats) -> tuple[Floats, Floats]:
         """Directions (N, 3), and the mean variance (N,) of their two components across.
 
         Levenberg-Marquardt, every sample with a damping of its own.
@@ -194,7 +194,7 @@ class AssembledFaces(FacesModel):
             resting |= small
             if resting.all():
                 break
-        sun = normalised(vector)
+        sun = normalise(vector)
         inverse = _inverse3(normal)
         along = np.zeros(len(sun))
         for i in range(3):
@@ -214,7 +214,7 @@ class AssembledFaces(FacesModel):
         normal, right = np.zeros((len(light), 3, 3)), np.zeros((len(light), 3))
         lit = np.zeros(len(light), dtype=np.bool_)
         for face, axis in enumerate(self.normals_):
-            cosine = inverted(light[:, face], self.responses_[face])
+            cosine = invert(light[:, face], self.responses_[face])
             seen = light[:, face] > 3.0 * self.noise_[face]
             lit |= seen
             weight = seen.astype(np.float64)
@@ -235,7 +235,7 @@ class AssembledFaces(FacesModel):
         cost = np.zeros(len(light))
         for face, axis in enumerate(self.normals_):
             cosine = sun[:, 0] * axis[0] + sun[:, 1] * axis[1] + sun[:, 2] * axis[2]
-            value, slope = bent_and_slope(cosine, self.responses_[face], _BEND * self.noise_[face])
+            value, slope = bend_and_slope(cosine, self.responses_[face], _BEND * self.noise_[face])
             residual = (light[:, face] - level * value) / self.noise_[face]
             # of level * f(n . v / level): f s + f' (n - c s)
             rows = [
@@ -250,7 +250,7 @@ class AssembledFaces(FacesModel):
         return normal, right, cost + residual * residual
 
 
-def bent_and_slope(cosine: Floats, coefficients: Floats, width: float) -> tuple[Floats, Floats]:
+def bend_and_slope(cosine: Floats, coefficients: Floats, width: float) -> tuple[Floats, Floats]:
     """Response at cosines of incidence (N,), bent softly to nothing in the dark; its derivative.
 
     Behind the face the cubic goes on as a straight line, so that there is no jump; a value v
@@ -268,7 +268,7 @@ def bent_and_slope(cosine: Floats, coefficients: Floats, width: float) -> tuple[
     return width * (np.maximum(ratio, 0.0) + np.log1p(decay)), slope * share
 
 
-def inverted(signal: Floats, coefficients: Floats) -> Floats:
+def invert(signal: Floats, coefficients: Floats) -> Floats:
     """Cosines (N,) in [0, 1.2] at which a response gives signals (N,), by Newton's steps."""
     b0, b1, b2, b3 = coefficients
     cosine = np.clip(signal / coefficients.sum(), 0.0, 1.2)

@@ -50,7 +50,7 @@ class FacesFit:
     by : str
         Whose fit it is, for messages.
     normals, responses, dark, noise, parameters, condition
-        As `AssembledFaces` has them; set by `solved`.
+        As `AssembledFaces` has them; set by `solve`.
     """
 
     nominal: Floats
@@ -89,7 +89,7 @@ class FacesFit:
         self._first = np.array([first for first, _ in axes])
         self._second = np.array([second for _, second in axes])
 
-    def solved(self, *, each: bool) -> FacesFit:
+    def solve(self, *, each: bool) -> FacesFit:
         """Fit, with a response for each face or one for all; returns self.
 
         Raises
@@ -113,11 +113,11 @@ class FacesFit:
         for number in range(rounds):
 
             def residuals(vector: Floats, weighing: Weighing = weighing) -> Floats:
-                off = self._modelled(*self._split(vector, shapes)) - self._light
-                return weighing.weighed(off)[self._used]
+                off = self._model(*self._split(vector, shapes)) - self._light
+                return weighing.weigh(off)[self._used]
 
             def jacobian(vector: Floats, weighing: Weighing = weighing) -> Floats:
-                return weighing.weighed(self._derivatives(vector, shapes))[self._used]
+                return weighing.weigh(self._derivatives(vector, shapes))[self._used]
 
             tolerance = _PRECISION if number + 1 == rounds else _ON_THE_WAY
             solution = least_squares(
@@ -131,7 +131,7 @@ class FacesFit:
                 max_nfev=_MAX_EVALUATIONS,
             )
             start = solution.x
-            modelled = self._modelled(*self._split(start, shapes))
+            modelled = self._model(*self._split(start, shapes))
             if number + 1 < rounds:
                 weighing = Weighing.of(modelled, self._light - modelled, self._used, len(start))
         derivatives = jacobian(solution.x)
@@ -146,13 +146,13 @@ class FacesFit:
         covariance = np.linalg.inv(derivatives.T @ derivatives) * (2.0 * solution.cost / freedom)
         deviations = np.sqrt(np.diag(covariance))
         gains, tilts, shape, _ = self._split(solution.x, shapes)
-        self.normals = self._tilted(tilts)
+        self.normals = self._tilt(tilts)
         self.responses = (self._size * gains)[:, None] * coefficients(shape)
         self.noise = (
             self._size * Weighing.of(modelled, self._light - modelled, self._used, len(start)).noise
         )
         self.condition = float(values[0] / values[-1])
-        self.parameters = self._named(solution.x, deviations, shapes)
+        self.parameters = self._name_of(solution.x, deviations, shapes)
         return self
 
     def _split(self, vector: Floats, shapes: int) -> tuple[Floats, Floats, Floats, Floats]:
@@ -178,7 +178,7 @@ class FacesFit:
         for group in groups:
             step = np.zeros(count)
             step[group] = _STEP
-            rise = self._modelled(*self._split(vector + step, shapes)) - self._modelled(
+            rise = self._model(*self._split(vector + step, shapes)) - self._model(
                 *self._split(vector - step, shapes)
             )
             rise /= 2.0 * _STEP
@@ -188,19 +188,19 @@ class FacesFit:
                 found[:, :, group[0]] = rise
         return found
 
-    def _tilted(self, tilts: Floats) -> Floats:
+    def _tilt(self, tilts: Floats) -> Floats:
         normals = self.nominal + tilts[:, :1] * self._first + tilts[:, 1:] * self._second
         return np.asarray(normals / np.sqrt((normals**2).sum(axis=1, keepdims=True)))
 
-    def _modelled(self, gains: Floats, tilts: Floats, shape: Floats, slopes: Floats) -> Floats:
+    def _model(self, gains: Floats, tilts: Floats, shape: Floats, slopes: Floats) -> Floats:
         """Signals (n, K) over each face's largest."""
-        cosines = self.sun @ self._tilted(tilts).T
+        cosines = self.sun @ self._tilt(tilts).T
         b = coefficients(shape)
         value = ((b[:, 3] * cosines + b[:, 2]) * cosines + b[:, 1]) * cosines + b[:, 0]
         value = np.where((cosines > 0) & (value > 0), value, 0.0)
         return np.asarray(gains * value * (1.0 + self.sun @ slopes)[:, None])
 
-    def _named(self, vector: Floats, deviations: Floats, shapes: int) -> tuple[Parameter, ...]:
+    def _name_of(self, vector: Floats, deviations: Floats, shapes: int) -> tuple[Parameter, ...]:
         """Every number with its standard error, in the signals' unit and in degrees."""
         faces = len(self.nominal)
         degrees = float(np.degrees(1.0))

@@ -86,7 +86,7 @@ class Weighing:
                 break
         return cls(used, noise, modelled / noise, spread)
 
-    def weighed(self, off: Floats) -> Floats:
+    def weigh(self, off: Floats) -> Floats:
         """Residuals (n, K), or derivatives (n, K, P), as independent ones of one size."""
         scale = self.noise / self.noise.min()
         shape = (1, -1) + (1,) * (off.ndim - 2)

@@ -9,7 +9,7 @@ import typer
 
 from api.cli import completion
 from api.cli.asking import ask
-from api.cli.tables import Format, FormatOption, emit, say
+from api.cli.table_output import Format, FormatOption, emit, say
 from api.columns import ASSESSMENT
 from api.http.routers.assessment import assessment
 from benchmark.assessment.definitions import DEFINITIONS

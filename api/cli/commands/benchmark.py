@@ -13,9 +13,9 @@ from api.cli.measuring import (
     ManyWorkersOption,
     SchedulerOption,
     StoreOption,
-    scored,
+    score_cells,
 )
-from api.cli.tables import Format, FormatOption, emit
+from api.cli.table_output import Format, FormatOption, emit
 from api.columns import RESULTS
 from benchmark.plan.combinations import Incompatible, cells, incompatible
 
@@ -79,7 +79,7 @@ def benchmark(
         refused = incompatible(dataset or None, extractor or None, model or None)
         typer.echo(f"sunatlas: no compatible combination of these names{_why(refused)}", err=True)
         raise typer.Exit(1)
-    result = scored(planned, workers, store, scheduler)
+    result = score_cells(planned, workers, store, scheduler)
     columns = RESULTS if form is Format.CSV else COLUMNS
     document = {"scores": result.rows, "sources": result.sources()}
     emit(result.rows, columns, form, document=document, title=f"{len(result.rows)} scores")

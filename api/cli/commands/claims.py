@@ -8,7 +8,7 @@ import typer
 
 from api.cli import completion
 from api.cli.asking import ask
-from api.cli.tables import Format, FormatOption, emit, say
+from api.cli.table_output import Format, FormatOption, emit, say
 from api.cli.wrong_call import WrongCallError
 from api.columns import CLAIM, CLAIMS
 from api.http.answers import Answer

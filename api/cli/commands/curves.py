@@ -8,7 +8,7 @@ import typer
 
 from api.cli import completion
 from api.cli.asking import ask
-from api.cli.tables import Format, FormatOption, emit
+from api.cli.table_output import Format, FormatOption, emit
 from api.columns import CURVES
 from api.http.models.parameters import LARGEST_PAGE
 from api.http.routers.curves import curves as endpoint

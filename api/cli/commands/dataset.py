@@ -10,19 +10,19 @@ import typer
 from api.cli import completion, spreadsheets
 from api.cli.asking import ask, knowledge
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
-from api.cli.tables import Format, FormatOption, emit, say
+from api.cli.table_output import Format, FormatOption, emit, say
 from api.cli.wrong_call import WrongCallError
 from api.columns import DATASET, DATASETS, REALISM, SAMPLE_ERRORS, csv_of
 from api.http.models.samples import SampleErrorsQuery
 from api.http.routers.datasets import errors as dataset_errors
 from api.http.routers.realism import realism as besides_built
-from api.http.sample_errors import chosen, rows_of
+from api.http.sample_errors import choose, rows_of
 from benchmark import datasets
 from benchmark.contract import UnknownNameError
 from benchmark.datasets import coverage as covered
 from benchmark.datasets import export as dataset_export
 from benchmark.datasets import export_verification
-from benchmark.plan.parts import installed
+from benchmark.plan.parts import installed_parts
 from benchmark.progress import terminal_progress, told_progress
 from benchmark.results import samples
 from benchmark.results.store import PUBLISHED, Store
@@ -184,7 +184,7 @@ def errors(
         except FileNotFoundError:
             raise WrongCallError(f"no errors of {name} are published") from None
     given = {key: value for key, value in query.items() if value is not None}
-    rows = rows_of(chosen(measured, name, SampleErrorsQuery.model_validate(given)))
+    rows = rows_of(choose(measured, name, SampleErrorsQuery.model_validate(given)))
     if out is None:
         emit(rows, SAMPLE_ERRORS, form, title=f"{len(rows)} errors")
         return
@@ -302,7 +302,7 @@ def preview(
     else:
         from benchmark.datasets.preview_overlay import overlay_png  # noqa: PLC0415 - as above
 
-        picture = overlay_png(preset, installed().extractor(overlay), [chosen])
+        picture = overlay_png(preset, installed_parts().extractor(overlay), [chosen])
     replace_file(out, picture)
     typer.echo(f"wrote {out}", err=True)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from api.cli.tables import Format, FormatOption, emit
+from api.cli.table_output import Format, FormatOption, emit
 from api.cli.wrong_call import WrongCallError
 from api.deposit import against_record
 from api.deposit import bundle as deposit

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from api.cli.measuring import StoreOption, stores_of
-from api.cli.tables import Format, FormatOption, emit
+from api.cli.table_output import Format, FormatOption, emit
 from api.cli.wrong_call import WrongCallError
 from benchmark.suites.tidying import tidy, would_tidy
 

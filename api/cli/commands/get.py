@@ -14,7 +14,7 @@ from urllib.parse import unquote
 import typer
 from starlette.types import ASGIApp
 
-from api.cli.tables import Format, FormatOption, emit, emit_csv
+from api.cli.table_output import Format, FormatOption, emit, emit_csv
 from api.cli.wrong_call import WrongCallError
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -42,7 +42,7 @@ def get(
     path, _, query = address.partition("?")
     if not path.startswith("/"):
         path = f"/{path}"
-    status, body = asyncio.run(answered(create_app(knowledge()), path, query, _ACCEPT[form]))
+    status, body = asyncio.run(fetch_answer(create_app(knowledge()), path, query, _ACCEPT[form]))
     if status != 200:
         raise WrongCallError(f"{path}: {_why(body)}")
     if form is Format.TABLE:
@@ -57,7 +57,7 @@ def get(
     sys.stdout.buffer.flush()
 
 
-async def answered(service: ASGIApp, path: str, query: str, accept: bytes) -> tuple[int, bytes]:
+async def fetch_answer(service: ASGIApp, path: str, query: str, accept: bytes) -> tuple[int, bytes]:
     """Return status and body of a GET that an ASGI application answers.
 
     Parameters

@@ -40,6 +40,6 @@ def build(
     for warning in warnings:
         typer.echo(warning, err=True)
     if not quiet:
-        typer.echo(f"{site.kept() if out is None else out}: {len(warnings)} warnings")
+        typer.echo(f"{site.cached_site() if out is None else out}: {len(warnings)} warnings")
     if strict and warnings:
         raise typer.Exit(1)

@@ -17,7 +17,7 @@ from api.cli.measuring import (
     StoreOption,
     interruptible,
 )
-from api.cli.tables import Format, FormatOption, emit, line_width
+from api.cli.table_output import Format, FormatOption, emit, line_width
 from api.cli.working import working_directory
 from api.cli.wrong_call import WrongCallError
 from api.columns import ARCHITECTURES, LEADERBOARD, PARTS
@@ -322,7 +322,7 @@ def _show(
     first = {
         board["name"]: board["conditions"][0] for board in measurements.leaderboard["datasets"]
     }
-    rows, columns, judged = _judged(measurements.board_rows(), field, max_error)
+    rows, columns, judged = _judge(measurements.board_rows(), field, max_error)
     chosen = [
         row
         for row in rows
@@ -361,7 +361,7 @@ def _print_boards(rows: list[Row], columns: tuple[str, ...], title: str, *, divi
             emit(part, shown, Format.TABLE, title=f"{title}: {named}")
 
 
-def _judged(
+def _judge(
     rows: Iterable[Row], field: int | None, max_error: float | None
 ) -> tuple[Iterable[Row], tuple[str, ...], str]:
     """Rank rows as asked; return them with the columns to show and the one they are judged by."""

@@ -15,10 +15,10 @@ from api.cli.measuring import (
     SuiteOption,
     stores_of,
 )
-from api.cli.tables import Format, FormatOption, emit
+from api.cli.table_output import Format, FormatOption, emit
 from benchmark.contract import Cell
 from benchmark.running.durations import Estimate
-from benchmark.suites.planning import FAILED, NEW, Planned, cells_of
+from benchmark.suites.planning import FAILED, NEW, CellPlan, cells_of
 from benchmark.suites.planning import plan as planned_of
 from benchmark.suites.selection import suite as suite_named
 
@@ -81,7 +81,7 @@ def _why(cell: Cell, reasons: tuple[str, ...]) -> str:
     return f"{', '.join(told)} changed"
 
 
-def _summary(found: Planned, workers: int) -> str:
+def _summary(found: CellPlan, workers: int) -> str:
     count = f"{len(found.missing)} of {len(found.cells)} cells to be measured"
     return f"{count}; {_time(found.estimate, workers)}" if found.missing else count
 

@@ -16,7 +16,7 @@ from api.cli.measuring import (
     interruptible,
     stores_of,
 )
-from api.cli.tables import Format, FormatOption, emit, say
+from api.cli.table_output import Format, FormatOption, emit, say
 from api.columns import LEADERBOARD
 from benchmark.leaderboard import candidate
 from benchmark.leaderboard.pages import to_html

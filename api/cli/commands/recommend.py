@@ -9,9 +9,9 @@ from typing import Annotated, Any
 import typer
 
 from api.cli import architectures, attributes, completion
-from api.cli.prepared import measured
-from api.cli.tables import Format, FormatOption, emit, emit_json, line_width
-from api.cli.wrong_call import refused
+from api.cli.prepared_measurements import measure
+from api.cli.table_output import Format, FormatOption, emit, emit_json, line_width
+from api.cli.wrong_call import refuse
 from api.columns import RECOMMENDATIONS
 from api.recommending import rows
 from registry.recommendation import recommend as ranked
@@ -167,11 +167,11 @@ def _document(
     try:
         return ranked(
             {name: sorted(set(v)) if isinstance(v, list) else v for name, v in given.items()},
-            measured(),
+            measure(),
             sort=sort.value,
             limit=limit,
             calibrations=calibrations,
             facts=studies,
         ).document
     except InvalidValueError as error:
-        raise refused(error.parameter, error.value, error.expected, error.nearest) from error
+        raise refuse(error.parameter, error.value, error.expected, error.nearest) from error

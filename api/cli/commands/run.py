@@ -13,14 +13,14 @@ from api.cli.asking import ask, knowledge
 from api.cli.commands import benchmark
 from api.cli.measuring import (
     SchedulerOption,
-    Scored,
+    ScoredCells,
     StoreOption,
     SuiteOption,
     WorkersOption,
-    scored,
+    score_cells,
     stores_of,
 )
-from api.cli.tables import Format, FormatOption, emit
+from api.cli.table_output import Format, FormatOption, emit
 from api.cli.wrong_call import WrongCallError
 from api.columns import RESULTS
 from api.http.routers import studies
@@ -95,8 +95,8 @@ def run(
         return
     ask(studies.study, key=study)  # refuses an unknown key with the nearest one
     resolution = knowledge().of("all").resolutions[study]
-    planned = _planned(resolution, condition)
-    result = scored(planned, workers, store, scheduler)
+    planned = _plan(resolution, condition)
+    result = score_cells(planned, workers, store, scheduler)
     rows = [{"study": study, **row, "assumed": planned[_cell(row)]} for row in result.rows]
     _print(study, resolution, rows, result, form)
     if not rows:
@@ -111,11 +111,11 @@ def _run_suite(
     chosen = suite_named(name)
     stores = stores_of(directory)
     planned = cells_of(chosen, stores)
-    result = scored(planned, workers, directory, scheduler)
+    result = score_cells(planned, workers, directory, scheduler)
     measured = result.measured
     while (now := cells_of(chosen, stores)) != planned:  # what follows from what was measured
         planned = now
-        result = scored(planned, workers, directory, scheduler)
+        result = score_cells(planned, workers, directory, scheduler)
         measured += result.measured
     columns = RESULTS if form is Format.CSV else SUITE_COLUMNS
     sources = {**result.sources(), "kept": result.kept - measured + result.measured}
@@ -129,7 +129,7 @@ def _run_suite(
     )
 
 
-def _planned(resolution: Resolution, conditions: Sequence[str] | None) -> dict[Cell, list[str]]:
+def _plan(resolution: Resolution, conditions: Sequence[str] | None) -> dict[Cell, list[str]]:
     """Return the study's cells, each with what is assumed where the study does not say."""
     presets = {name for pipeline in resolution.pipelines for name in pipeline.datasets}
     everything = [cell for name in presets for cell in cells(name)]
@@ -157,7 +157,7 @@ def _print(
     study: str,
     resolution: Resolution,
     rows: list[dict[str, Any]],
-    result: Scored,
+    result: ScoredCells,
     form: Format,
 ) -> None:
     gaps = [gap.to_dict() for gap in resolution.gaps]

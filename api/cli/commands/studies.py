@@ -11,7 +11,7 @@ import typer
 from api.citations import FORMS
 from api.cli import attributes, completion
 from api.cli.asking import ask
-from api.cli.tables import Format, emit, emit_json, say, write
+from api.cli.table_output import Format, emit, emit_json, say, write
 from api.cli.wrong_call import WrongCallError
 from api.columns import STUDIES, STUDY
 from api.http.models.parameters import LARGEST_PAGE
@@ -163,7 +163,7 @@ def _show(key: str, asked: StudyFormat) -> None:
             say("Added after the survey, which does not map it.")
         for one in study["verified"]:
             say(f"Verified by {one['name']} on {one['date']}: {one['confirms']} ({one['source']})")
-        say(f"{study['grade']}: {labels.named(study['sentence'])}")
+        say(f"{study['grade']}: {labels.label_of(study['sentence'])}")
         for departure in study["departures"]:
             say(f"  {departure['part']} settled by: {departure['settled_by']}")
         typer.echo()
@@ -177,7 +177,7 @@ def _show(key: str, asked: StudyFormat) -> None:
         pipelines = (*("detector", "mask", "extractor", "model", "measured here"), "assumed")
         emit(
             [
-                {**p, "measured here": _measured(p), "assumed": _assumed(p)}
+                {**p, "measured here": _measure(p), "assumed": _assume(p)}
                 for p in study["pipelines"]
             ],
             *(pipelines, form),
@@ -188,15 +188,15 @@ def _show(key: str, asked: StudyFormat) -> None:
         emit(study["gaps"], gaps, form, title=f"Gaps: {len(study['gaps'])}")
 
 
-def _assumed(pipeline: Mapping[str, Any]) -> list[str]:
+def _assume(pipeline: Mapping[str, Any]) -> list[str]:
     """Return a line for each part of a pipeline that the study does not state."""
     return [
-        f"{attribute} ({pipeline['basis'][attribute]}): {labels.named(rule)}"
+        f"{attribute} ({pipeline['basis'][attribute]}): {labels.label_of(rule)}"
         for attribute, rule in pipeline["assumed"].items()
     ]
 
 
-def _measured(pipeline: Mapping[str, Any]) -> list[str]:
+def _measure(pipeline: Mapping[str, Any]) -> list[str]:
     """Return each setting of a pipeline with its published error there."""
     return [
         f"{score['dataset']}, {score['condition']}: {_error(score)}" for score in pipeline["scores"]

@@ -11,8 +11,8 @@ import typer
 import survey_data
 from api.cli.commands import survey_add
 from api.cli.commands.survey_import import import_
-from api.cli.tables import Format, FormatOption, emit, emit_json, say
-from survey_data import FidelityReport, Problem, labels, recorded_facts
+from api.cli.table_output import Format, FormatOption, emit, emit_json, say
+from survey_data import FidelityReport, Problem, facts_manifest, labels
 from survey_data.descriptor import DATA_DIRECTORY
 
 app = typer.Typer(
@@ -53,7 +53,7 @@ def check(
     its clauses and the counts behind them. CSV holds the clauses of the findings. Where a table has
     problems, each is named on stderr with file, row and column, and the exit code is 1.
     """
-    problems = [*survey_data.validate(data), *recorded_facts.changes(data or DATA_DIRECTORY)]
+    problems = [*survey_data.validate(data), *facts_manifest.changes(data or DATA_DIRECTORY)]
     if problems:
         _refuse(problems, form)
     report = survey_data.fidelity(survey_data.load(data))

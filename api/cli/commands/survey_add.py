@@ -9,12 +9,12 @@ from typing import Annotated, Any
 
 import typer
 
-from api.cli.tables import Format, FormatOption, emit, emit_json, say
+from api.cli.table_output import Format, FormatOption, emit, emit_json, say
 from api.cli.wrong_call import WrongCallError
 from files.atomic import replace_file
+from survey_data.additions.addition_reader import Addition
 from survey_data.additions.faults import FaultsError
-from survey_data.additions.publications import SUFFIXES, chosen, read_publications
-from survey_data.additions.reading import Addition
+from survey_data.additions.publications import SUFFIXES, choose, read_publications
 from survey_data.additions.template import empty_template
 from survey_data.additions.vocabulary import vocabulary
 from survey_data.additions.writing import add_study, read_study, remove_study, verify_study
@@ -151,7 +151,7 @@ def _write_template(key: str, file: Path | None, chosen_key: str | None, folder:
     if taken := known.taken.get(key.casefold()):
         raise WrongCallError(f"--init: {key}: {taken}")
     if file is not None and file.suffix.casefold() in SUFFIXES:
-        found = chosen(read_publications(file), chosen_key, file.name)
+        found = choose(read_publications(file), chosen_key, file.name)
         typer.echo(empty_template(known, {**found, "key": key}), nl=False)
         return
     text = empty_template(known, publication)

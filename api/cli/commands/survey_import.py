@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 import survey_data
-from api.cli.tables import Format, FormatOption, emit, emit_json, say
+from api.cli.table_output import Format, FormatOption, emit, emit_json, say
 from api.cli.wrong_call import WrongCallError
 from survey_data import ImportPlan
 

@@ -16,11 +16,11 @@ from api.cli.measuring import (
     interruptible,
     stores_of,
 )
-from api.cli.tables import Format, FormatOption, emit
+from api.cli.table_output import Format, FormatOption, emit
 from api.cli.wrong_call import WrongCallError
 from benchmark.suites.planning import cells_of
 from benchmark.suites.selection import suite as suite_named
-from benchmark.suites.verification import drawn
+from benchmark.suites.verification import draw_cells
 from benchmark.suites.verification import verify as verified
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -66,7 +66,7 @@ def verify(
         published = {cell: row for cell, row in published.items() if cell in chosen}
     number = secrets.randbelow(10**6) if seed is None else seed
     count = sample or (len(published) if suite else 10)
-    cells = drawn(published, count, number)
+    cells = draw_cells(published, count, number)
     typer.echo(f"{len(cells)} of {len(published)} cells, drawn by --seed {number}", err=True)
     with interruptible():
         result = verified(cells, record, workers, scheduler=scheduler)

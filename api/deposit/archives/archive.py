@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Protocol
 
-from api.deposit.archives.contract import Draft, Published, StoredFile
+from api.deposit.archives.contract import Draft, PublishedRecord, StoredFile
 from api.deposit.archives.metadata import Description
 from api.deposit.archives.sealed import SealedFile
 
@@ -31,7 +31,7 @@ class Archive(Protocol):
         """Look at a draft; NoDraftError where there is none."""
         ...
 
-    def published(self, identifier: str) -> Published | None:
+    def published(self, identifier: str) -> PublishedRecord | None:
         """Look at a published record; None where there is none."""
         ...
 
@@ -51,6 +51,6 @@ class Archive(Protocol):
         """Take a file out of a draft."""
         ...
 
-    def publish(self, draft: Draft) -> Published:
+    def publish(self, draft: Draft) -> PublishedRecord:
         """Make the draft public, for good."""
         ...

@@ -66,7 +66,7 @@ class StoredFile:
 
 
 @dataclass(frozen=True)
-class Published:
+class PublishedRecord:
     """A record that is public.
 
     Attributes
@@ -79,7 +79,7 @@ class Published:
     doi: str | None
 
 
-def wanting(found: Mapping[str, StoredFile], wanted: Mapping[str, str]) -> Sequence[str]:
+def file_differences(found: Mapping[str, StoredFile], wanted: Mapping[str, str]) -> Sequence[str]:
     """Say how the files of a draft differ from `wanted`, MD5 by name; empty where they do not."""
     missing = [f"{name} is missing" for name in sorted(wanted.keys() - found.keys())]
     foreign = [f"{name} is not of the bundle" for name in sorted(found.keys() - wanted.keys())]

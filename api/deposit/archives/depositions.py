@@ -13,7 +13,7 @@ from api.deposit.archives.contract import (
     ArchiveError,
     Draft,
     NoDraftError,
-    Published,
+    PublishedRecord,
     RefusedError,
     StoredFile,
 )
@@ -71,7 +71,7 @@ class DepositionsArchive:
             raise NoDraftError(f"{self._address} has no unpublished draft {identifier_}")
         return self._draft(reply)
 
-    def published(self, identifier_: str) -> Published | None:
+    def published(self, identifier_: str) -> PublishedRecord | None:
         """Look at a published record; None where there is none."""
         reply = self._public(identifier_)
         return None if reply is None else self._published(reply)
@@ -99,7 +99,7 @@ class DepositionsArchive:
         where = f"{_ALL}/{draft.id}/files/{segment(file.id)}"
         unless_missing(lambda: self._tell("DELETE", where))
 
-    def publish(self, draft: Draft) -> Published:
+    def publish(self, draft: Draft) -> PublishedRecord:
         """Make the draft public, for good."""
         where = f"{_ALL}/{draft.id}/actions/publish"
         reply = self._ask("POST", where, Deposition, happened=lambda: self._public(draft.id))
@@ -118,5 +118,5 @@ class DepositionsArchive:
         page = f"{self._address}/deposit/{reply.id}"
         return Draft(reply.id, page, reply.authors, reply.link("bucket"))
 
-    def _published(self, reply: Deposition) -> Published:
-        return Published(reply.id, f"{self._address}/records/{reply.id}", reply.doi)
+    def _published(self, reply: Deposition) -> PublishedRecord:
+        return PublishedRecord(reply.id, f"{self._address}/records/{reply.id}", reply.doi)

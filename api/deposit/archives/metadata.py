@@ -19,7 +19,7 @@ Scheme = Literal["arxiv", "doi"]
 
 
 @dataclass(frozen=True)
-class Related:
+class RelatedWork:
     """Another work, and what it is to this one.
 
     Attributes
@@ -38,13 +38,13 @@ class Related:
 #: The survey that the facts were compiled from; its authors' own table, which is another
 #: compilation of the same studies and is not contained here.
 RELATED = (
-    Related(
+    RelatedWork(
         "arXiv:2507.21541",
         "arxiv",
         "isDerivedFrom",
         ("publication-preprint", "publication-preprint"),
     ),
-    Related("10.5281/zenodo.15784429", "doi", "references", ("dataset", "dataset")),
+    RelatedWork("10.5281/zenodo.15784429", "doi", "references", ("dataset", "dataset")),
 )
 
 

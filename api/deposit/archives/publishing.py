@@ -8,10 +8,10 @@ from api.deposit.archives.archive import Archive
 from api.deposit.archives.contract import (
     ArchiveError,
     NoDraftError,
-    Published,
-    wanting,
+    PublishedRecord,
+    file_differences,
 )
-from api.deposit.archives.sealed import SealedBundle, sealed
+from api.deposit.archives.sealed import SealedBundle, seal
 from api.deposit.citation import unpublishable
 
 
@@ -19,7 +19,7 @@ class NotReadyError(ArchiveError):
     """The draft may not become public; the message says why."""
 
 
-def publish(archive: Archive, identifier: str, directory: Path) -> Published:
+def publish(archive: Archive, identifier: str, directory: Path) -> PublishedRecord:
     """Make a draft public whose authors are people and whose files are the bundle's.
 
     Authors are looked at in the bundle and in the draft, whose own become public.
@@ -39,13 +39,13 @@ def publish(archive: Archive, identifier: str, directory: Path) -> Published:
     ArchiveError
         Where the archive does not do as asked.
     """
-    with sealed(directory) as bundle:
+    with seal(directory) as bundle:
         return _published(archive, identifier, directory, bundle)
 
 
 def _published(
     archive: Archive, identifier: str, directory: Path, bundle: SealedBundle
-) -> Published:
+) -> PublishedRecord:
     found = unpublishable(bundle.description.authors)
     if found:
         raise NotReadyError(
@@ -65,7 +65,7 @@ def _published(
             "again; nothing was published"
         )
     sent = {name: file.md5 for name, file in bundle.files.items()}
-    differing = wanting(archive.files(draft), sent)
+    differing = file_differences(archive.files(draft), sent)
     if differing:
         raise NotReadyError(
             f"draft {identifier} is not the bundle in {directory}: {'; '.join(differing)}. Upload "

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from api.deposit.archives.contract import (
     Draft,
     NoDraftError,
-    Published,
+    PublishedRecord,
     StoredFile,
 )
 from api.deposit.archives.metadata import Description, invenio
@@ -65,7 +65,7 @@ class RecordsArchive:
             raise NoDraftError(f"{self._address} has no unpublished draft {identifier_}")
         return self._draft(about(identifier_, reply, reply.id))
 
-    def published(self, identifier_: str) -> Published | None:
+    def published(self, identifier_: str) -> PublishedRecord | None:
         """Look at a published record; None where there is none."""
         reply = self._public(identifier_)
         return None if reply is None else reply.published(self._address)
@@ -103,7 +103,7 @@ class RecordsArchive:
         where = f"{_at(draft)}/files/{segment(file.id)}"
         unless_missing(lambda: self._tell("DELETE", where))
 
-    def publish(self, draft: Draft) -> Published:
+    def publish(self, draft: Draft) -> PublishedRecord:
         """Make the draft public, for good."""
         reply = self._ask(
             "POST",

@@ -6,8 +6,8 @@ from typing import Any
 
 import httpx
 
-from api.deposit.archives.reading import ReplyError, understood
 from api.deposit.archives.replies import Reply
+from api.deposit.archives.responses import ReplyError, parse_response
 
 
 class _Reason(Reply):
@@ -28,7 +28,7 @@ def reasons(answer: httpx.Response, body: bytes) -> str:
     if not body:
         return ""
     try:
-        told = understood(answer, body, Refusal)
+        told = parse_response(answer, body, Refusal)
     except ReplyError as error:
         return f"its reasons cannot be read: {error}"
     parts: list[Any] = [told.message]

@@ -1,7 +1,7 @@
 """Typed models of the archive's replies, for both interfaces.
 
 More members than are read may be there; one that is missing or of another type is named
-(`api.deposit.archives.reading`).
+(`api.deposit.archives.responses`).
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from pydantic import (
     StringConstraints,
 )
 
-from api.deposit.archives.contract import Published, RefusedError, StoredFile
-from api.deposit.archives.reading import ReplyError, short
+from api.deposit.archives.contract import PublishedRecord, RefusedError, StoredFile
+from api.deposit.archives.responses import ReplyError, short
 from api.deposit.citation import Author
 
 _IDENTIFIER = re.compile(r"[A-Za-z0-9][A-Za-z0-9-]{0,63}")
@@ -129,10 +129,12 @@ class Record(Reply):
         creators = self.metadata.creators if self.metadata else None
         return tuple(creator.author for creator in creators or ())
 
-    def published(self, address: str) -> Published:
+    def published(self, address: str) -> PublishedRecord:
         """Return the record as one that is public on a server."""
         doi = (self.pids or {}).get("doi")
-        return Published(self.id, f"{address}/records/{self.id}", doi.identifier if doi else None)
+        return PublishedRecord(
+            self.id, f"{address}/records/{self.id}", doi.identifier if doi else None
+        )
 
 
 class Entry(Reply):

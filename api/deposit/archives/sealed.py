@@ -99,7 +99,7 @@ class SealedBundle:
 
 
 @contextmanager
-def sealed(directory: Path) -> Iterator[SealedBundle]:
+def seal(directory: Path) -> Iterator[SealedBundle]:
     """Verify a private copy of a bundle and of its zip; it is there for as long as the block.
 
     Raises
@@ -116,7 +116,7 @@ def sealed(directory: Path) -> Iterator[SealedBundle]:
             "`sunatlas deposit build`"
         )
     names = contents(directory)
-    if (wrong := limits.oversized(directory, names)) is not None:
+    if (wrong := limits.excess_size(directory, names)) is not None:
         raise BundleError(f"{directory}: {wrong[0]} {wrong[1]}; nothing was sent")
     if (size := packed.stat().st_size) > limits.LARGEST:
         raise BundleError(
@@ -130,14 +130,14 @@ def sealed(directory: Path) -> Iterator[SealedBundle]:
             shutil.copyfile(directory / name, copy / name, follow_symlinks=False)
         shutil.copyfile(packed, copied_zip, follow_symlinks=False)
         try:
-            yield _verified(copy, copied_zip, directory)
+            yield _verify(copy, copied_zip, directory)
         except (OSError, ValueError) as error:
             if str(private) not in str(error):
                 raise
             raise BundleError(str(error).replace(str(private), str(directory.parent))) from error
 
 
-def _verified(copy: Path, packed: Path, directory: Path) -> SealedBundle:
+def _verify(copy: Path, packed: Path, directory: Path) -> SealedBundle:
     if wrong := verify(copy):
         raise BundleError(f"{directory}: {wrong[0][0]}: {wrong[0][1]}; nothing was sent")
     told = description(copy)
@@ -153,10 +153,10 @@ def _verified(copy: Path, packed: Path, directory: Path) -> SealedBundle:
     if lacking:
         raise BundleError(f"{directory}: {lacking[0]} is missing; nothing was sent")
     paths = {f"{top}.zip": packed, **{name: apart[name] for name in APART}}
-    return SealedBundle({name: _sealed(path) for name, path in paths.items()}, told)
+    return SealedBundle({name: _seal(path) for name, path in paths.items()}, told)
 
 
-def _sealed(path: Path) -> SealedFile:
+def _seal(path: Path) -> SealedFile:
     sha256, md5, size = hashlib.sha256(), hashlib.md5(usedforsecurity=False), 0
     with path.open("rb") as file:
         while chunk := file.read(_CHUNK):

@@ -22,8 +22,8 @@ import httpx
 
 from api.deposit.archives.contract import ArchiveError, RefusedError, UnreachableError
 from api.deposit.archives.deadline import Deadline
-from api.deposit.archives.reading import R, ReplyError, holds_json, received, understood
 from api.deposit.archives.refusals import reasons
+from api.deposit.archives.responses import R, ReplyError, holds_json, parse_response, read_response
 from api.deposit.archives.server import Server, Token
 from api.deposit.identity import version
 
@@ -148,7 +148,7 @@ class Transport:
             large or too slow.
         """
         request = _Request(method, self._address(where), json, content)
-        return self._tried(request, happened, lambda got: understood(*got, expected))
+        return self._tried(request, happened, lambda got: parse_response(*got, expected))
 
     def tell(
         self, method: str, where: str, *, json: Any = None, content: Content | None = None
@@ -168,7 +168,7 @@ class Transport:
             asked: float | None = None
             limited = False
             try:
-                answer = self._followed(request)
+                answer = self._follow(request)
                 if answer[0].status_code not in _FOR_THE_MOMENT:
                     if not answer[0].is_success:
                         raise self._refusal(what, answer)
@@ -193,7 +193,7 @@ class Transport:
             self._sleep(pause if asked is None else asked)
         raise AssertionError("the last pause is None")
 
-    def _followed(self, request: _Request) -> Answer:
+    def _follow(self, request: _Request) -> Answer:
         """Return an answer that is no redirect: what is only looked at may be elsewhere here."""
         url = request.url
         for _ in range(HOPS):
@@ -223,7 +223,7 @@ class Transport:
                 extensions={"trace": self._deadline.watch},
             ) as answer,
         ):
-            return answer, received(answer)
+            return answer, read_response(answer)
 
     def _address(self, where: str) -> str:
         url = where if "://" in where else f"{self.server.address}{where}"

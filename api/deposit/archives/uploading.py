@@ -20,7 +20,7 @@ from api.deposit.archives.contract import (
     StoredFile,
 )
 from api.deposit.archives.metadata import Description
-from api.deposit.archives.sealed import BundleError, SealedBundle, SealedFile, sealed
+from api.deposit.archives.sealed import BundleError, SealedBundle, SealedFile, seal
 from files.atomic import replace_file
 
 #: How often a file whose checksum came back wrong is sent.
@@ -35,7 +35,7 @@ class ChecksumError(ArchiveError):
 
 
 @dataclass(frozen=True)
-class Uploaded:
+class UploadResult:
     """What an upload did.
 
     Attributes
@@ -51,7 +51,7 @@ class Uploaded:
 
 
 @dataclass(frozen=True)
-class Opened:
+class OpenDraft:
     """A draft to send to.
 
     Attributes
@@ -74,7 +74,7 @@ def upload(
     version_of: str | None = None,
     draft: str | None = None,
     tell: Tell = lambda _name, _state: None,
-) -> Uploaded:
+) -> UploadResult:
     """Bring a bundle into a draft; nothing becomes public.
 
     Parameters
@@ -92,12 +92,12 @@ def upload(
         Where anything does not go as it should; what has been sent stays in the draft.
     """
     memory = Memory(directory, f"{server} {archive.name}")
-    with sealed(directory) as bundle:
+    with seal(directory) as bundle:
         opened = _open(archive, memory, version_of, draft, bundle.description)
-        return _sent(archive, bundle, opened, tell)
+        return _send(archive, bundle, opened, tell)
 
 
-def _sent(archive: Archive, bundle: SealedBundle, opened: Opened, tell: Tell) -> Uploaded:
+def _send(archive: Archive, bundle: SealedBundle, opened: OpenDraft, tell: Tell) -> UploadResult:
     """Send what the draft lacks."""
     draft = opened.draft
     if not opened.described:
@@ -114,7 +114,7 @@ def _sent(archive: Archive, bundle: SealedBundle, opened: Opened, tell: Tell) ->
             archive.delete(draft, there[name])
             done[name] = "removed"
             tell(name, "removed")
-    return Uploaded(draft, done, () if opened.version_of is not None else tuple(foreign))
+    return UploadResult(draft, done, () if opened.version_of is not None else tuple(foreign))
 
 
 def _settle(
@@ -135,7 +135,7 @@ def _settle(
 
 def _open(
     archive: Archive, memory: Memory, version_of: str | None, draft: str | None, told: Description
-) -> Opened:
+) -> OpenDraft:
     """Find or open the draft."""
     if draft is not None:
         if version_of is not None:
@@ -145,12 +145,12 @@ def _open(
         if remembered is not None and remembered[0] == found.id:
             of = remembered[1]
         memory.keep(found.id, of)
-        return Opened(found, of, described=False)
+        return OpenDraft(found, of, described=False)
     remembered = memory.recall()
     if remembered is not None and version_of in (None, remembered[1]):
         identifier, of = remembered
         try:
-            return Opened(archive.draft(identifier), of, described=False)
+            return OpenDraft(archive.draft(identifier), of, described=False)
         except NoDraftError:
             published = archive.published(identifier)
             if published is not None and version_of is None:
@@ -164,7 +164,7 @@ def _open(
     else:
         opened, fresh = archive.new_version(version_of), False
     memory.keep(opened.id, version_of)
-    return Opened(opened, version_of, fresh)
+    return OpenDraft(opened, version_of, fresh)
 
 
 class Memory:

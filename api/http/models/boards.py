@@ -23,7 +23,7 @@ from api.http.models.parameters import (
 )
 from api.http.models.words import Detector, Mask
 from benchmark.leaderboard.overview import ROLES
-from registry.measured import FINER
+from registry.measured_pipelines import FINER
 
 RoleName = Annotated[str, OneOf(lambda: ROLES)]
 

@@ -11,7 +11,7 @@ from api.http.models.base import Shape, TableQuestion
 from api.http.models.parameters import GIVEN, OneOf
 from api.http.models.studies import OfEdition
 from api.http.models.words import Condition, DatasetName
-from registry.measured import FINER
+from registry.measured_pipelines import FINER
 from registry.studies import facts
 
 Word = TypeVar("Word")

@@ -11,7 +11,7 @@ from api.http.models.base import OpenShape, Shape, TableQuestion
 from api.http.models.flows import LeftOut, Link, Node
 from api.http.models.parameters import LARGEST_PAGE, NUMBER, WHOLE, Several, several
 from api.http.models.studies import OfEdition
-from registry.measured import FINER, LEAST_ANSWERED
+from registry.measured_pipelines import FINER, LEAST_ANSWERED
 from registry.ranking import Sort
 
 

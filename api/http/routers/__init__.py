@@ -16,11 +16,11 @@ from api.http.routers import (
     guide,
     leaderboard,
     metadata,
-    page,
     realism,
     recommendations,
     results,
     search,
+    static_files,
     studies,
     sweeps,
     taxonomy,
@@ -51,7 +51,7 @@ ROUTERS = (
             advice,
             about,
             guide,
-            page,
+            static_files,
         )
     ),
 )

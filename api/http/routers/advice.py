@@ -7,11 +7,11 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from api import columns
-from api.http.answers import Answer, AnswerRoute, listing
+from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
 from api.http.models.advice import AdviceQuery, Advices, Protocol
 from api.http.models.base import Selected
-from api.http.pagination import narrowed, ordered, page
+from api.http.pagination import narrow, order, page
 from api.protocol import protocol as told
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
@@ -23,9 +23,9 @@ async def advice(known: Known, query: Annotated[AdviceQuery, Query()]) -> Answer
 
     Rows of errors say where an error is met, which is no advice to build.
     """
-    found = narrowed(known.advice, query, ("requirement", "detector", "mask"))
-    shown = page(ordered(found, query.sort), "/v1/advice", query)
-    return listing(shown, shown.items, columns.ADVICE, fields=query.fields)
+    found = narrow(known.advice, query, ("requirement", "detector", "mask"))
+    shown = page(order(found, query.sort), "/v1/advice", query)
+    return list_answer(shown, shown.items, columns.ADVICE, fields=query.fields)
 
 
 @router.get("/protocol", summary="How studies and scores came about", response_model=Protocol)

@@ -7,11 +7,11 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from api import columns
-from api.http.answers import Answer, AnswerRoute, listing
+from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import Known
 from api.http.models.algorithms import Algorithms, AlgorithmsQuery
 from api.http.models.base import Selected
-from api.http.pagination import ordered, page
+from api.http.pagination import order, page
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -19,6 +19,8 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 @router.get("/algorithms", summary="The implementations", response_model=Algorithms | Selected)
 async def algorithms(known: Known, query: Annotated[AlgorithmsQuery, Query()]) -> Answer:
     """Extractors and models, each with the value it implements and the studies it follows."""
-    found = [implementation.to_dict() for implementation in known.catalogue.listing(query.role)]
-    shown = page(ordered(found, query.sort), "/v1/algorithms", query)
-    return listing(shown, shown.items, columns.ALGORITHMS, fields=query.fields)
+    found = [
+        implementation.to_dict() for implementation in known.catalogue.implementations(query.role)
+    ]
+    shown = page(order(found, query.sort), "/v1/algorithms", query)
+    return list_answer(shown, shown.items, columns.ALGORITHMS, fields=query.fields)

@@ -8,12 +8,12 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Path, Query
 
 from api import columns
-from api.http.answers import Answer, AnswerRoute, listing
+from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
 from api.http.models.base import Selected
 from api.http.models.claims import ClaimDetail, Claims, ClaimsQuery
 from api.http.models.words import ClaimId
-from api.http.pagination import ordered, page
+from api.http.pagination import order, page
 from benchmark.claims.ledger import Entry, tally
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
@@ -26,10 +26,10 @@ async def claims(known: Known, query: Annotated[ClaimsQuery, Query()]) -> Answer
     What decides is stated as rules with limits. As CSV: a row a claim.
     """
     found = [entry for entry in known.measurements.claims.values() if _is_wanted(entry, query)]
-    items = ordered([entry.to_dict() for entry in found], query.sort)
+    items = order([entry.to_dict() for entry in found], query.sort)
     shown = page(items, "/v1/claims", query)
     counts = tally(found)
-    return listing(shown, shown.items, columns.CLAIMS, fields=query.fields, tally=counts)
+    return list_answer(shown, shown.items, columns.CLAIMS, fields=query.fields, tally=counts)
 
 
 @router.get(
@@ -46,13 +46,13 @@ async def claim(
 
     As CSV: the rules.
     """
-    document = detailed(known.measurements.claims[id])
+    document = detail(known.measurements.claims[id])
     second = {rule["rule"]: rule["standing"] for rule in document["second"]}
     rows = [{**rule, "second_standing": second.get(rule["rule"])} for rule in document["rules"]]
     return Answer(document, columns.CLAIM, lambda: rows)
 
 
-def detailed(entry: Entry) -> dict[str, Any]:
+def detail(entry: Entry) -> dict[str, Any]:
     """Return a claim as `GET /v1/claims/{id}` tells it; NaN stands for none."""
     outcome = entry.outcome
     return {

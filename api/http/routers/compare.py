@@ -27,7 +27,7 @@ async def compare(known: Known, query: Annotated[CompareQuery, Query()]) -> Answ
     far finer on the part that it answers stands in columns of its own.
     """
     try:
-        document = _compared(known.of(query.edition), query)
+        document = _compare(known.of(query.edition), query)
     except InvalidValueError as error:
         came = None if error.value is None else str(error.value)
         violation = Violation(error.parameter, came, error.expected, error.nearest)
@@ -35,7 +35,7 @@ async def compare(known: Known, query: Annotated[CompareQuery, Query()]) -> Answ
     return Answer(document, columns.COMPARISON, lambda: document["items"])
 
 
-def _compared(known: Knowledge, query: CompareQuery) -> dict[str, Any]:
+def _compare(known: Knowledge, query: CompareQuery) -> dict[str, Any]:
     if query.architecture:
         for other in ("dataset", "pipeline", "condition"):
             if given := getattr(query, other):

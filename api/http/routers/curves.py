@@ -7,11 +7,11 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from api import columns
-from api.http.answers import Answer, AnswerRoute, listing
+from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import Known
 from api.http.models.base import Selected
 from api.http.models.curves import Curves, CurvesQuery
-from api.http.pagination import narrowed, ordered, page
+from api.http.pagination import narrow, order, page
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -23,6 +23,6 @@ async def curves(known: Known, query: Annotated[CurvesQuery, Query()]) -> Answer
     Each is calibrated on random draws of growing subsets of the poses, on two units of the sensor,
     and scored on the whole test split. As CSV: a row a pipeline, without the curve's points.
     """
-    rows = narrowed(known.measurements.curves, query, ("dataset", "extractor", "model"))
-    shown = page(ordered(rows, query.sort), "/v1/curves", query)
-    return listing(shown, shown.items, columns.CURVES, fields=query.fields)
+    rows = narrow(known.measurements.curves, query, ("dataset", "extractor", "model"))
+    shown = page(order(rows, query.sort), "/v1/curves", query)
+    return list_answer(shown, shown.items, columns.CURVES, fields=query.fields)

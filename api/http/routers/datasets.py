@@ -8,15 +8,15 @@ from fastapi import APIRouter, Path, Query
 
 from api import columns
 from api.deposit.identity import identity
-from api.http.answers import Answer, AnswerRoute, Columns, Picture, listing
+from api.http.answers import Answer, AnswerRoute, Columns, Picture, list_answer
 from api.http.dependencies import AS_ACCEPTED, NO_PARAMETERS, Known, TableOnly
 from api.http.models.base import Selected
 from api.http.models.datasets import DatasetDetail, Datasets, DatasetsQuery
 from api.http.models.samples import SampleErrors, SampleErrorsQuery
 from api.http.models.words import DatasetName
-from api.http.pagination import ordered, page
+from api.http.pagination import order, page
 from api.http.problems import Problem
-from api.http.sample_errors import chosen, rows_of
+from api.http.sample_errors import choose, rows_of
 from api.metadata.signposting import headers, landing_of_dataset
 from benchmark.results import samples
 
@@ -30,9 +30,9 @@ Name = Annotated[
 @router.get("/datasets", summary="The standard data sets", response_model=Datasets | Selected)
 async def datasets(known: Known, query: Annotated[DatasetsQuery, Query()]) -> Answer:
     """Short cards of the simulated data sets every pipeline is scored on."""
-    cards = ordered(known.measurements.cards, query.sort)
+    cards = order(known.measurements.cards, query.sort)
     shown = page(cards, "/v1/datasets", query)
-    return listing(shown, shown.items, columns.DATASETS, fields=query.fields)
+    return list_answer(shown, shown.items, columns.DATASETS, fields=query.fields)
 
 
 @router.get(
@@ -81,10 +81,10 @@ async def errors(known: Known, name: Name, query: Annotated[SampleErrorsQuery, Q
     By extractor, model, unit and sample, with the sample's direction and bound. The whole table is
     one file: /v1/datasets/{name}/errors.parquet.
     """
-    found = chosen(known.measurements, name, query)
+    found = choose(known.measurements, name, query)
     shown = page(range(len(found)), f"/v1/datasets/{name}/errors", query)
     items = rows_of(found.iloc[list(shown.items)])
-    return listing(shown, items, columns.SAMPLE_ERRORS, fields=query.fields)
+    return list_answer(shown, items, columns.SAMPLE_ERRORS, fields=query.fields)
 
 
 @router.get(
@@ -125,6 +125,6 @@ def _file(known: Known, path: str, name: str) -> Columns:
 
 def _links(known: Known, name: str) -> tuple[str, ...]:
     """Return the links of a data set's content (Signposting)."""
-    sampled = samples.is_there(name, known.measurements.directory)
+    sampled = samples.has_samples(name, known.measurements.directory)
     landing = landing_of_dataset(name, identity(), sampled=sampled)
     return headers(landing.links_of_content())

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Path, Query
 
 from api import columns
 from api.deposit.identity import identity
-from api.http.answers import Answer, AnswerRoute, listing
+from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import Known
 from api.http.models.base import Selected
 from api.http.models.boards import (
@@ -25,7 +25,7 @@ from api.http.models.scores import (
     WholeLeaderboardQuery,
 )
 from api.http.models.words import DatasetName
-from api.http.pagination import Page, narrowed, ordered, page
+from api.http.pagination import Page, narrow, order, page
 from api.metadata.signposting import headers, landing_of_record
 from benchmark.leaderboard.architectures import architectures as best_of_each
 from benchmark.leaderboard.board import at_field, within_error
@@ -79,9 +79,9 @@ async def architectures(known: Known, query: Annotated[ArchitecturesQuery, Query
     How sure: by the standard error of its ratio to the bound, by its errors on other units of the
     sensor, and by whether the pipeline that ranks next is within either.
     """
-    rows = narrowed(best_of_each(known.measurements.leaderboard), query, ("detector", "mask"))
-    shown = page(ordered(rows, query.sort), "/v1/leaderboard/architectures", query)
-    return listing(shown, shown.items, columns.ARCHITECTURES, fields=query.fields)
+    rows = narrow(best_of_each(known.measurements.leaderboard), query, ("detector", "mask"))
+    shown = page(order(rows, query.sort), "/v1/leaderboard/architectures", query)
+    return list_answer(shown, shown.items, columns.ARCHITECTURES, fields=query.fields)
 
 
 @router.get(
@@ -95,9 +95,9 @@ async def overview(known: Known, query: Annotated[OverviewQuery, Query()]) -> An
     `says` tells in words how it aggregates. As CSV: a row a part.
     """
     board = known.measurements.leaderboard
-    boards = narrowed(board["datasets"], query, ("detector", "mask"))
+    boards = narrow(board["datasets"], query, ("detector", "mask"))
     document = overview_of({"datasets": boards})
-    parts = narrowed(document["parts"], query, ("role",))
+    parts = narrow(document["parts"], query, ("role",))
     return Answer({**document, "parts": parts}, columns.PARTS, lambda: parts)
 
 
@@ -125,9 +125,9 @@ async def leaderboard_of_dataset(
         ranked = within_error(ranked, query.max_error_deg)
     rows = [
         row
-        for row in narrowed(ranked, query, ("condition", "extractor", "model"))
+        for row in narrow(ranked, query, ("condition", "extractor", "model"))
         if row["best_of_extractor"] >= query.best_of_extractor
         and bool(row["studies"]) >= query.studied
     ]
-    shown = page(ordered(rows, query.sort), f"/v1/leaderboard/{dataset}", query)
-    return listing(shown, shown.items, columns.LEADERBOARD, fields=query.fields)
+    shown = page(order(rows, query.sort), f"/v1/leaderboard/{dataset}", query)
+    return list_answer(shown, shown.items, columns.LEADERBOARD, fields=query.fields)

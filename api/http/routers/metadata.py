@@ -9,7 +9,7 @@ from fastapi import APIRouter, Path, Request
 
 from api.deposit.codemeta import codemeta
 from api.deposit.identity import identity
-from api.http.answers import AnswerRoute, Linked
+from api.http.answers import AnswerRoute, LinkDocument
 from api.http.dependencies import NO_PARAMETERS, Known
 from api.http.knowledge import Knowledge
 from api.http.models.scores import WholeLeaderboardQuery
@@ -30,13 +30,13 @@ Name = Annotated[
 ]
 
 
-class LinkedData(Linked):
+class LinkedData(LinkDocument):
     """A JSON-LD document."""
 
     media_type = LD_JSON
 
 
-class LinkSet(Linked):
+class LinkSet(LinkDocument):
     """A link set (RFC 9264)."""
 
     media_type = LINKSET
@@ -109,14 +109,14 @@ async def software() -> LinkedData:
     return LinkedData(codemeta(identity().citation), links)
 
 
-def landing_of_dataset(known: Knowledge, name: str) -> signposting.Landing:
+def landing_of_dataset(known: Knowledge, name: str) -> signposting.LandingPage:
     """Return the page of a data set, with the files that are published of it."""
     return signposting.landing_of_dataset(name, identity(), sampled=bool(_samples(known, name)))
 
 
 def _samples(known: Knowledge, name: str) -> dict[str, Callable[[], bytes]]:
     """Return what reads the errors and directions of a data set; nothing where none are there."""
-    if not samples.is_there(name, known.measurements.directory):
+    if not samples.has_samples(name, known.measurements.directory):
         return {}
     return {
         "errors": lambda: known.measurements.file(samples.path_of(name)),

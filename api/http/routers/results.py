@@ -7,11 +7,11 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from api import columns
-from api.http.answers import Answer, AnswerRoute, listing
+from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import Known
 from api.http.models.base import Selected
 from api.http.models.scores import Scores, ScoresQuery
-from api.http.pagination import narrowed, ordered, page
+from api.http.pagination import narrow, order, page
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -20,6 +20,6 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 async def results(known: Known, query: Annotated[ScoresQuery, Query()]) -> Answer:
     """One row a data set, condition, extractor and model, failures included."""
     names = ("dataset", "condition", "extractor", "model")
-    rows = ordered(narrowed(known.measurements.scores, query, names), query.sort)
+    rows = order(narrow(known.measurements.scores, query, names), query.sort)
     shown = page(rows, "/v1/results", query)
-    return listing(shown, shown.items, columns.RESULTS, fields=query.fields)
+    return list_answer(shown, shown.items, columns.RESULTS, fields=query.fields)

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query
 
 from api import columns
-from api.http.answers import Answer, AnswerRoute, listing
+from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import Known
 from api.http.models.search import SearchQuery, SearchResults
 from api.http.pagination import page
@@ -29,4 +29,4 @@ async def search(known: Known, query: Annotated[SearchQuery, Query()]) -> Answer
         told = {name: entry[name] for name in ("kind", "id", "title", "address")}
         ranked.append({"rank": rank, **told, "excerpt": hit.excerpt, "score": hit.score})
     shown = page(ranked, "/v1/search", query)
-    return listing(shown, shown.items, columns.SEARCH)
+    return list_answer(shown, shown.items, columns.SEARCH)

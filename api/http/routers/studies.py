@@ -8,14 +8,14 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Path, Query
 
 from api import columns
-from api.http.answers import Answer, AnswerRoute, CitedAnswer, listing
+from api.http.answers import Answer, AnswerRoute, CitedAnswer, list_answer
 from api.http.dependencies import AS_ACCEPTED as TABLE_AS_ACCEPTED
 from api.http.dependencies import Known, TableOnly
 from api.http.knowledge import Knowledge
 from api.http.models.base import Selected
 from api.http.models.studies import Editions, Studies, StudiesQuery, StudyDetail, StudyQuery
 from api.http.models.words import StudyKey
-from api.http.pagination import ordered, page
+from api.http.pagination import order, page
 from registry.fidelity.runnable import RunnablePipeline
 from registry.resolution import Resolution
 from registry.studies import Study
@@ -42,9 +42,9 @@ async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> Answ
     """
     known = known.of(query.edition)
     found = [study for study in known.facts.studies.values() if _is_wanted(study, query, known)]
-    rows = ordered([_row(study, known) for study in found], query.sort)
+    rows = order([_row(study, known) for study in found], query.sort)
     shown = page(rows, "/v1/studies", query)
-    answer = listing(
+    answer = list_answer(
         shown,
         shown.items,
         columns.STUDIES,
@@ -95,8 +95,8 @@ async def study(
         "attributes": described["attributes"],
         "departures": [departure.to_dict() for departure in resolution.fidelity.departures],
         "purposes": dict(resolution.fidelity.purposes),
-        "reported_accuracy": _reported(found, "accuracy"),
-        "reported_precision": _reported(found, "precision"),
+        "reported_accuracy": _report(found, "accuracy"),
+        "reported_precision": _report(found, "precision"),
         "pipelines": [
             {**pipeline.to_dict(), "scores": _scores(pipeline, known)}
             for pipeline in resolution.pipelines
@@ -107,8 +107,8 @@ async def study(
     return CitedAnswer(answer, [document], key)
 
 
-def _reported(study: Study, quantity: Quantity) -> dict[str, Any] | None:
-    found = study.reported(quantity)
+def _report(study: Study, quantity: Quantity) -> dict[str, Any] | None:
+    found = study.report(quantity)
     return None if found is None else found.to_dict()
 
 

@@ -7,11 +7,11 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from api import columns
-from api.http.answers import Answer, AnswerRoute, listing
+from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import Known
 from api.http.models.assessment import Sweeps, SweepsQuery
 from api.http.models.base import Selected
-from api.http.pagination import narrowed, ordered, page
+from api.http.pagination import narrow, order, page
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -23,6 +23,6 @@ async def sweeps(known: Known, query: Annotated[SweepsQuery, Query()]) -> Answer
     The features are in closed form, and each point has its Cramer-Rao bound. A row without a sweep
     says why an extractor is not measured on a feature.
     """
-    rows = narrowed(known.measurements.sweeps, query, ("series", "sweep", "extractor"))
-    shown = page(ordered(rows, query.sort), "/v1/sweeps", query)
-    return listing(shown, shown.items, columns.SWEEPS, fields=query.fields)
+    rows = narrow(known.measurements.sweeps, query, ("series", "sweep", "extractor"))
+    shown = page(order(rows, query.sort), "/v1/sweeps", query)
+    return list_answer(shown, shown.items, columns.SWEEPS, fields=query.fields)

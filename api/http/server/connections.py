@@ -45,7 +45,7 @@ class BoundedProtocol(H11Protocol):
     def data_received(self, data: bytes) -> None:
         """Read on, and wait for the rest where there is one."""
         many = len(self.connections) > self.most_connections or len(self.tasks) >= self.most_at_once
-        self.app = overloaded if many else self.config.loaded_app
+        self.app = overload_response if many else self.config.loaded_app
         super().data_received(data)
         if self.conn.their_state in (h11.IDLE, h11.SEND_BODY):
             self._wait()
@@ -84,7 +84,7 @@ class BoundedProtocol(H11Protocol):
         self.transport.close()
 
 
-async def overloaded(scope: Scope, receive: Receive, send: Send) -> None:  # noqa: ARG001 - ASGI
+async def overload_response(scope: Scope, receive: Receive, send: Send) -> None:  # noqa: ARG001 - ASGI
     """Answer that there is too much to do now, and when to ask again."""
     detail = f"Too many requests are being answered; ask again in {RETRY_AFTER_S} s."
     body = json.dumps(Problem(503, "overloaded", detail).document(scope["path"])).encode()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from benchmark.simulator.optics.assembly import Assembly
 
-#: In words, for descriptions of the condition ``misaligned``.
+#: In words, for descriptions of the condition ``misalign``.
 MISALIGNED = "tilted by 1.0 and -0.7 deg, turned by 0.5 deg"
 
 
@@ -22,7 +22,7 @@ def careful(
     )
 
 
-def misaligned(
+def misalign(
     focal_length_error_mm: float, offset_x_mm: float = 0.05, offset_y_mm: float = -0.04
 ) -> Assembly:
     """Return errors far above the noise."""

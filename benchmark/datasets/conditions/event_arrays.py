@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any, Final
 
 from algorithms.contract import Observation, SensorGeometry
-from benchmark.datasets.conditions.alignment import MISALIGNED, careful, misaligned
+from benchmark.datasets.conditions.alignment import MISALIGNED, careful, misalign
 from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.datasets.conditions.propagation import LIGHT
 from benchmark.datasets.fields import AngleField
@@ -95,7 +95,7 @@ def conditions(sensor: EventSensor) -> dict[str, Condition]:
     """Return the conditions of a nominal sensor."""
     camera, pixels = sensor.camera, sensor.detector
     quiet = replace(pixels, jitter=0.001, threshold_e=500_000.0, latency_us=0.02, clock_us=0.01)
-    errors = misaligned(round(0.025 * camera.focal_length_mm, 6))
+    errors = misalign(round(0.025 * camera.focal_length_mm, 6))
     hot = replace(pixels, dark=replace(pixels.dark, temperature_c=80))
     seen = partial(Condition, irradiance=LIGHT)
     return {

@@ -19,7 +19,7 @@ from benchmark.datasets.repeats import REPEAT, Rows
 from benchmark.datasets.samples import Samples
 from benchmark.metrics.bounds import Bound
 from benchmark.seeds import generator
-from benchmark.simulator.flight.attitude import Attitude, rotated, turned
+from benchmark.simulator.flight.attitude import Attitude, rotate, turn_frame
 from benchmark.simulator.flight.gyro import Gyro
 from benchmark.simulator.flight.magnetic_field import TiltedDipole
 from benchmark.simulator.flight.orbit import (
@@ -143,9 +143,9 @@ class Flight:
             sunlight=sunlight(day),
             time_s=start_s + since,
             since_s=since,
-            sun_body=turned(turn, sun),
+            sun_body=turn_frame(turn, sun),
             nadir=-place,
-            nadir_body=turned(turn, -place),
+            nadir_body=turn_frame(turn, -place),
             field_nt=self.dipole.inertial(place, orbit.distance_km, start_s + since),
             turn=turn,
             turn_before=self.attitude.matrices(orbit, sun, since - span.step_s, start_s),
@@ -291,7 +291,7 @@ class FlightPreset(Preset):
             missing = aboard.missing_field(distance, *self.streams)
             field_nt = field_nt + missing.inertial(-leg.nadir, distance, leg.time_s)
             offset = aboard.magnetometer_offset_nt(*fixed)
-        read_nt = rotated(leg.turn, field_nt) + offset + self.flight.magnetometer_nt * noise
+        read_nt = rotate(leg.turn, field_nt) + offset + self.flight.magnetometer_nt * noise
         step_s = self.flight.span(known).step_s
         drawn = generator(*self._of_unit(*names, "gyro"))
         rate = self.flight.gyro.read(leg.turn, leg.turn_before, leg.time_s, step_s, drawn)

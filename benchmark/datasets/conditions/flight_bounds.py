@@ -16,7 +16,7 @@ from benchmark.metrics.posterior_bound import (
     sun_information,
     vector_information,
 )
-from benchmark.simulator.flight.attitude import rotated
+from benchmark.simulator.flight.attitude import rotate
 
 #: What who uses a magnetometer, or a horizon sensor, must know: what it reads, the same in the
 #: inertial frame, and the Sun there.
@@ -73,7 +73,7 @@ def posterior_bound(
     read = sun_information(single.fisher, irradiance_known=sequential)
     information = attitude_information(leg.sun_body, read)
     if magnetometer:
-        field_nt = rotated(leg.turn, _true_field_nt(preset, condition, leg))
+        field_nt = rotate(leg.turn, _true_field_nt(preset, condition, leg))
         information = information + vector_information(field_nt, flight.magnetometer_nt)
     if horizon:
         deviation = math.tan(math.radians(flight.horizon_deg))

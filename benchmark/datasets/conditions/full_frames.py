@@ -22,7 +22,7 @@ def for_bound(sensor: MultiSpotSensor) -> MultiSpotSensor:
     return replace(sensor, skirt=BOUND_SKIRT)
 
 
-def drawn(mask: Mask) -> tuple[tuple[float, float, float], ...]:
+def draw_frames(mask: Mask) -> tuple[tuple[float, float, float], ...]:
     """Return a mask's apertures as `SensorGeometry` holds them: x, y and width, mm."""
     return tuple((a.x_mm, a.y_mm, a.width_mm) for a in mask.apertures)
 
@@ -60,4 +60,4 @@ class FullFramePreset(UnevenPreset):
                     references=self.offered,
                 )
             )
-        return Bound.joined(parts)
+        return Bound.join(parts)

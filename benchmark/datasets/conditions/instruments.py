@@ -52,13 +52,13 @@ class Instruments:
             if not (math.isfinite(value) and value >= 0):
                 raise ValueError(f"{name} must be finite, not negative; got {value}")
 
-    def reported(self, sun: Floats, *names: Name) -> Floats:
+    def report(self, sun: Floats, *names: Name) -> Floats:
         """(N, 3) unit vectors to the Sun that attitude and almanac give, for true ones (N, 3)."""
         random = math.tan(math.radians(self.attitude_random_deg))
         tilt = random * generator(*names, "attitude").standard_normal((len(sun), 2))
         first, second = tangent_axes(sun)
         seen = sun + tilt[:, :1] * first + tilt[:, 1:] * second
-        bias = math.radians(self.attitude_bias_deg) * self._fixed("attitude", *names)
+        bias = math.radians(self.attitude_bias_deg) * self._fix("attitude", *names)
         return turned_by(rotation(*bias.tolist()), seen)
 
     def systematic_deg(self, sun: Floats) -> float:
@@ -68,7 +68,7 @@ class Instruments:
 
     def magnetometer_offset_nt(self, *names: Name) -> Floats:
         """(3,) what the magnetometer adds to every reading, body frame."""
-        return self.magnetometer_bias_nt * self._fixed("magnetometer", *names)
+        return self.magnetometer_bias_nt * self._fix("magnetometer", *names)
 
     def missing_field(self, distance_km: float, *names: Name) -> Quadrupole:
         """Return what the model of Earth's field leaves out, so strong this far from the centre."""
@@ -81,13 +81,13 @@ class Instruments:
 
         `fixed` and `noise` name what is drawn for the unit and for the split.
         """
-        bias = self.thermometer_bias_k * float(self._fixed("thermometer", *fixed)[0])
+        bias = self.thermometer_bias_k * float(self._fix("thermometer", *fixed)[0])
         drawn = generator(*noise, "thermometer").standard_normal(len(temperature_k))
         read = temperature_k + bias + self.thermometer_noise_k * drawn
         step = self.thermometer_step_k
         return np.asarray(np.round(read / step) * step if step else read)
 
-    def _fixed(self, what: str, *names: Name) -> Floats:
+    def _fix(self, what: str, *names: Name) -> Floats:
         return generator(*names, what, "bias").standard_normal(3)
 
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from algorithms.contract import Observation, SensorGeometry
-from benchmark.datasets.conditions.alignment import MISALIGNED, misaligned
+from benchmark.datasets.conditions.alignment import MISALIGNED, misalign
 from benchmark.datasets.conditions.pixel_arrays import units
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Condition, Preset
@@ -153,7 +153,7 @@ def blooming(camera: LensCamera) -> dict[str, Condition]:
         "misaligned": seen(
             f"The nominal camera {MISALIGNED}, focal length 1.7 % long, optical axis three and two "
             "and a half pixels off centre.",
-            replace(camera, assembly=misaligned(0.05, 0.03, -0.025)),
+            replace(camera, assembly=misalign(0.05, 0.03, -0.025)),
         ),
         "hot": seen(
             "The nominal camera at 60 deg C: dark current doubles every 7 K.",
@@ -203,7 +203,7 @@ def black_sun(camera: LensCamera) -> dict[str, Condition]:
         "misaligned": seen(
             f"The nominal camera {MISALIGNED}, focal length 2.5 % long, optical axis five and four "
             "pixels off centre.",
-            replace(camera, assembly=misaligned(0.01, 0.015, -0.012)),
+            replace(camera, assembly=misalign(0.01, 0.015, -0.012)),
         ),
         "glare": seen(
             _glare(20, 5, "brighter ghosts (one of them saturated)"),

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any
 
 from algorithms.contract import Observation, SensorGeometry
-from benchmark.datasets.conditions.alignment import careful, misaligned
+from benchmark.datasets.conditions.alignment import careful, misalign
 from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.datasets.conditions.pixel_arrays import as_bought
 from benchmark.datasets.conditions.propagation import GLASS, LIGHT
@@ -22,7 +22,7 @@ from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import DarkCurrent, PixelArray
 from benchmark.simulator.readout.pixel_errors import PixelErrors
 from benchmark.simulator.sensors.blooming_lines import BloomingLineSensor
-from benchmark.simulator.sensors.lines import LineAxis, LineSensor
+from benchmark.simulator.sensors.line_sensor import LineAxis, LineSensor
 
 #: For pixels of some 10 um, over a dozen of which the Sun blurs an edge at 60 deg: the steps that
 #: single points make must not show (0.2 % of the peak).
@@ -38,7 +38,7 @@ _DIODE_ERRORS = PixelErrors(crosstalk=0.01, nonlinearity=0.004, column_offset_e=
 
 ASSEMBLED = careful(0.003)
 SLITS_ASSEMBLED = SlitErrors(deflection_deg=0.03, inclination_deg=0.05)
-MISASSEMBLED = misaligned(0.03)
+MISASSEMBLED = misalign(0.03)
 SLITS_MISASSEMBLED = SlitErrors(deflection_deg=0.5, inclination_deg=1.0)
 
 
@@ -286,7 +286,7 @@ def regime(sensor: LineSensor) -> dict[str, Any]:
     }
 
 
-def saturated(sensor: LineSensor) -> Condition:
+def saturate(sensor: LineSensor) -> Condition:
     """Return the condition in which full pixels of a CCD spill their charge along the line."""
     return Condition(
         "The nominal sensor exposed eight times as long, without anti-blooming drains: full pixels "

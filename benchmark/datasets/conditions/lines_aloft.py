@@ -11,7 +11,7 @@ from benchmark.datasets.conditions.propagation import GLASS
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.simulator.flight.drift import AssemblyDrift
 from benchmark.simulator.flight.drifting_lines import DriftingLineSensor
-from benchmark.simulator.sensors.lines import LineSensor
+from benchmark.simulator.sensors.line_sensor import LineSensor
 
 
 def under_a_filter(ground: Preset, half_fov_deg: float) -> Preset:

@@ -7,10 +7,10 @@ from types import MappingProxyType
 from typing import Any
 
 from algorithms.contract import Observation
-from benchmark.datasets.conditions.full_frames import FullFramePreset, drawn
+from benchmark.datasets.conditions.full_frames import FullFramePreset, draw_frames
 from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.datasets.conditions.pixel_arrays import (
-    assembled,
+    assemble,
     design,
     missing_apertures,
     pixel_conditions,
@@ -73,7 +73,7 @@ def many_spots(
             half_fov_deg,
             aperture_width_mm=diameter_mm,
             aperture_shape="round",
-            apertures=drawn(sensor.camera.mask),
+            apertures=draw_frames(sensor.camera.mask),
             **known,
         ),
         setups={
@@ -87,13 +87,13 @@ def many_spots(
         follows=follows,
         description=description,
         regime={
-            **diffracted(diameter_mm, sensor.camera.focal_length_mm, sensor.spectrum),
+            **diffract(diameter_mm, sensor.camera.focal_length_mm, sensor.spectrum),
             **regime,
         },
     )
 
 
-def diffracted(diameter_mm: float, height_mm: float, spectrum: Spectrum | None) -> dict[str, Any]:
+def diffract(diameter_mm: float, height_mm: float, spectrum: Spectrum | None) -> dict[str, Any]:
     """Return the regime of round holes, of which the narrowest has this diameter.
 
     Raises
@@ -128,7 +128,7 @@ def behind(
         camera=Camera(
             focal_length_mm=focal_length_mm,
             mask=mask,
-            assembly=assembled(focal_length_mm),
+            assembly=assemble(focal_length_mm),
         ),
         detector=detector,
         errors=MaskErrors(position_mm=0.001, size_mm=0.001, edge_mm=0.0005),

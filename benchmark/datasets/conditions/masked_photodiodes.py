@@ -84,7 +84,7 @@ def through(
     )
 
 
-def opening(
+def rectangular_opening(
     width_mm: float, height_mm: float, thickness_mm: float = 0.0, rotation_deg: float = 0.0
 ) -> Mask:
     """Return one rectangular opening."""

@@ -20,7 +20,7 @@ TUMBLING: Final = Spin(30.0)
 PIXEL_S: Final = 80e-9
 
 
-def spinning(
+def spin(
     sensor: DiffractiveFrameSensor,
     *,
     rolls: bool,

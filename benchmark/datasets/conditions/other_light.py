@@ -15,7 +15,7 @@ from benchmark.simulator.optics.ghosts import Ghost
 from benchmark.simulator.sensor import Sensor
 from benchmark.simulator.sensors.code_dial import CodeDialSensor
 from benchmark.simulator.sensors.frames import FrameSensor
-from benchmark.simulator.sensors.lines import LineSensor
+from benchmark.simulator.sensors.line_sensor import LineSensor
 from benchmark.simulator.sensors.position_sensitive import PositionSensor
 from benchmark.simulator.sensors.quadrants import QuadrantSensor
 from benchmark.simulator.sensors.slit_pairs import SlitPairSensor

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any, TypeVar
 
 from algorithms.contract import Observation, SensorGeometry
-from benchmark.datasets.conditions.alignment import MISALIGNED, careful, misaligned
+from benchmark.datasets.conditions.alignment import MISALIGNED, careful, misalign
 from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.datasets.conditions.propagation import GLASS, LIGHT
 from benchmark.datasets.fields import AngleField
@@ -84,7 +84,7 @@ def windows(
     )
 
 
-def windowed(
+def window(
     mask: Mask,
     focal_length_mm: float,
     detector: PixelArray,
@@ -99,7 +99,7 @@ def windowed(
             focal_length_mm=focal_length_mm,
             mask=mask,
             sun=sun or SolarDisc(),
-            assembly=assembly or assembled(focal_length_mm),
+            assembly=assembly or assemble(focal_length_mm),
         ),
         detector=detector,
         window_px=window_px,
@@ -107,7 +107,7 @@ def windowed(
     )
 
 
-def assembled(focal_length_mm: float) -> Assembly:
+def assemble(focal_length_mm: float) -> Assembly:
     """Return the small errors that remain after careful assembly, 0.2 % of focal length."""
     return careful(round(0.002 * focal_length_mm, 6))
 
@@ -193,7 +193,7 @@ def pixel_conditions(
     misaligned.
     """
     detector, camera = sensor.detector, sensor.camera
-    errors = misaligned(round(0.025 * camera.focal_length_mm, 6))
+    errors = misalign(round(0.025 * camera.focal_length_mm, 6))
     return {
         "nominal": Condition(
             "Carefully assembled sensor: tilts of hundredths of a degree, focal length 0.2 % "
@@ -305,7 +305,7 @@ def stray_gradient(sensor: UnevenFrameSensor, stray: float) -> Condition:
     )
 
 
-def inclined(sensor: FrameSensor, mask: Mask) -> Condition:
+def incline(sensor: FrameSensor, mask: Mask) -> Condition:
     """Return the condition of a slit that stands askew: of the `mask` handed in."""
     return Condition(
         "The nominal sensor with its slit turned by 5 deg against the pixel columns.",

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from benchmark.datasets.conditions import pixel_arrays as pixels
-from benchmark.datasets.conditions.motion import spinning
+from benchmark.datasets.conditions.motion import spin
 from benchmark.datasets.fields import AngleField
 from benchmark.simulator.masks.apertures import Aperture, Mask
 
 _MASK = Mask((Aperture("rectangle", 0.2, 0.2),), thickness_mm=0.01)
-_SENSOR = pixels.windowed(_MASK, 2.0, pixels.ccd(512, 0.013, prnu=0.005))
+_SENSOR = pixels.window(_MASK, 2.0, pixels.ccd(512, 0.013, prnu=0.005))
 
 
 PRESET = pixels.windows(
@@ -17,7 +17,7 @@ PRESET = pixels.windows(
     detector="CCD",
     mask="Single-Ap.",
     sensor=_SENSOR,
-    setups={**pixels.pixel_conditions(_SENSOR), "spinning": spinning(_SENSOR, rolls=False)},
+    setups={**pixels.pixel_conditions(_SENSOR), "spinning": spin(_SENSOR, rolls=False)},
     geometry=pixels.design(_SENSOR, 50.0, aperture_width_mm=0.2, aperture_shape="square"),
     directions=AngleField(50.0),
     follows=(),

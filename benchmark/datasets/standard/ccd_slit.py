@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from benchmark.datasets.conditions.line_arrays import SUN, behind, ccd, line_arrays, saturated
+from benchmark.datasets.conditions.line_arrays import SUN, behind, ccd, line_arrays, saturate
 from benchmark.simulator.masks.slits import slit_row
 
 _MASK = slit_row((0.0,), width_mm=0.1, length_mm=15.2, thickness_mm=0.01)
@@ -25,5 +25,5 @@ PRESET = line_arrays(
         "is as long as the Sun needs at the edge of the field. The focal length counts to the "
         "middle of the foil. Each array measures one angle; together they see both."
     ),
-    more={"saturated": saturated(_SENSOR)},
+    more={"saturated": saturate(_SENSOR)},
 )

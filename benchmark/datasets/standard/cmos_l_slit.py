@@ -12,7 +12,7 @@ _LINE_MM = 0.3
 _MIDDLE_MM = -_LINE_MM + 0.1 / 2.0 + 0.1 + 0.57 / 2.0
 _MASK = l_slit(0.1, -_LINE_MM, (_MIDDLE_MM, 0.57), (_MIDDLE_MM, 0.57), thickness_mm=0.01)
 _DETECTOR = pixels.cmos(512, 0.012, sunlit_e=16_000.0)
-_SENSOR = pixels.windowed(_MASK, 1.2, _DETECTOR, window_px=(96, 96))
+_SENSOR = pixels.window(_MASK, 1.2, _DETECTOR, window_px=(96, 96))
 
 PRESET = pixels.windows(
     name="cmos-l-slit",

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from benchmark.datasets.conditions import pixel_arrays as pixels
-from benchmark.datasets.conditions.motion import spinning
+from benchmark.datasets.conditions.motion import spin
 from benchmark.datasets.fields import AngleField
 
 _MASK = pixels.hole(0.1, 0.01)
-_SENSOR = pixels.windowed(_MASK, 0.75, pixels.cmos(512, 0.0065, sunlit_e=14_000.0))
+_SENSOR = pixels.window(_MASK, 0.75, pixels.cmos(512, 0.0065, sunlit_e=14_000.0))
 _ALSO, _OFF = ", read noise of one digital number", "aperture eight and six pixels off centre"
 
 PRESET = pixels.windows(
@@ -19,7 +19,7 @@ PRESET = pixels.windows(
     setups={
         **pixels.pixel_conditions(_SENSOR, careful_also=_ALSO, off_centre=_OFF),
         "glass": pixels.glass(_SENSOR, "refraction pulls the spot inwards, reflection dims it"),
-        "spinning": spinning(_SENSOR, rolls=True),
+        "spinning": spin(_SENSOR, rolls=True),
     },
     geometry=pixels.design(_SENSOR, 60.0, aperture_width_mm=0.1, aperture_shape="round"),
     directions=AngleField(60.0),

@@ -7,7 +7,7 @@ from benchmark.datasets.conditions.uneven_light import UnevenPreset
 from benchmark.datasets.fields import AngleField
 from benchmark.simulator.light.environment import Irradiance
 
-_SENSOR = pixels.windowed(pixels.hole(0.02), 7.0, pixels.cmos(448, 0.024, sunlit_e=3_000_000.0))
+_SENSOR = pixels.window(pixels.hole(0.02), 7.0, pixels.cmos(448, 0.024, sunlit_e=3_000_000.0))
 # stray light counts in full sunlight on the detector, of which the spot's peak gets 1/180
 _LIGHT = Irradiance(stray=2e-5, stray_spread=4e-6)
 

@@ -8,7 +8,7 @@ from benchmark.datasets.conditions import pixel_arrays as pixels
 from benchmark.datasets.fields import AngleField
 
 _MASK = pixels.hole(0.1, 0.05)
-_SENSOR = pixels.windowed(_MASK, 0.75, pixels.cmos(512, 0.0065, sunlit_e=14_000.0))
+_SENSOR = pixels.window(_MASK, 0.75, pixels.cmos(512, 0.0065, sunlit_e=14_000.0))
 _ALSO, _OFF = ", read noise of one digital number", "aperture eight and six pixels off centre"
 
 PRESET = pixels.windows(

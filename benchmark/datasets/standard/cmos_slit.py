@@ -8,7 +8,7 @@ from benchmark.simulator.masks.layouts import slit
 
 _MASK = slit(0.1, 0.72, thickness_mm=0.01)
 _DETECTOR = pixels.cmos(512, 0.012, sunlit_e=16_000.0)
-_SENSOR = pixels.windowed(_MASK, 1.2, _DETECTOR, window_px=(64, 96))
+_SENSOR = pixels.window(_MASK, 1.2, _DETECTOR, window_px=(64, 96))
 
 PRESET = pixels.windows(
     name="cmos-slit",
@@ -18,7 +18,7 @@ PRESET = pixels.windows(
     sensor=_SENSOR,
     setups={
         **pixels.pixel_conditions(_SENSOR),
-        "inclined": pixels.inclined(_SENSOR, slit(0.1, 0.72, 5.0, thickness_mm=0.01)),
+        "inclined": pixels.incline(_SENSOR, slit(0.1, 0.72, 5.0, thickness_mm=0.01)),
     },
     geometry=pixels.design(_SENSOR, 60.0, aperture_width_mm=0.1),
     directions=AngleField(60.0),

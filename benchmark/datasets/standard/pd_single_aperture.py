@@ -6,10 +6,12 @@ from dataclasses import replace
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
 from benchmark.datasets.conditions import other_light
-from benchmark.datasets.conditions.alignment import careful, misaligned
+from benchmark.datasets.conditions.alignment import careful, misalign
 from benchmark.datasets.conditions.propagation import GLASS, measured_geometric
 
-_CAMERA = diodes.through(diodes.opening(0.8, 0.8), 0.5, careful(0.002, 0.002, -0.0015), GLASS)
+_CAMERA = diodes.through(
+    diodes.rectangular_opening(0.8, 0.8), 0.5, careful(0.002, 0.002, -0.0015), GLASS
+)
 _SENSOR = diodes.quadrants(_CAMERA, half_width_mm=0.8, gap_mm=0.02)
 _NOMINAL = (
     "Glued without tilt to speak of, 2 um of glue, 1 % gain mismatch, noise of 2e-4 of full "
@@ -25,7 +27,7 @@ PRESET = diodes.masked_photodiodes(
     readings=f"photodiodes {diodes.QUADRANTS}",
     geometry=replace(diodes.design(_SENSOR, 60.0, width_mm=0.8), cover_glass=((0.5, 1.52),)),
     setups={
-        **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.012, 0.02, -0.015)),
+        **diodes.usual(_SENSOR, _NOMINAL, _OFF, misalign(0.012, 0.02, -0.015)),
         **diodes.temperatures(_SENSOR),
         "albedo": other_light.with_albedo(_SENSOR),
     },

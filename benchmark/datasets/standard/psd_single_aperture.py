@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
-from benchmark.datasets.conditions.alignment import careful, misaligned
+from benchmark.datasets.conditions.alignment import careful, misalign
 from benchmark.datasets.conditions.other_light import seen_with
 from benchmark.datasets.conditions.pixel_arrays import hole
 from benchmark.datasets.conditions.propagation import measured_geometric
@@ -23,7 +23,7 @@ PRESET = diodes.masked_photodiodes(
     readings=f"corner electrodes {diodes.QUADRANTS}",
     geometry=diodes.design(_SENSOR, 45.0, width_mm=4.0, shape=None),
     setups={
-        **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.0375)),
+        **diodes.usual(_SENSOR, _NOMINAL, _OFF, misalign(0.0375)),
         "linear": diodes.linear(_SENSOR),
         **diodes.temperatures(_SENSOR),
         **seen_with(_SENSOR, "ghosts", "albedo"),

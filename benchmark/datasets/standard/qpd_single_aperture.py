@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
-from benchmark.datasets.conditions.alignment import careful, misaligned
+from benchmark.datasets.conditions.alignment import careful, misalign
 from benchmark.datasets.conditions.other_light import seen_with
 from benchmark.datasets.conditions.propagation import measured_geometric
 
-_MASK = diodes.opening(2.0, 2.0, thickness_mm=0.02, rotation_deg=0.1)
+_MASK = diodes.rectangular_opening(2.0, 2.0, thickness_mm=0.02, rotation_deg=0.1)
 _CAMERA = diodes.through(_MASK, 1.0, careful(0.002))
 _SENSOR = diodes.quadrants(_CAMERA, half_width_mm=1.8, gap_mm=0.05)
 _GEOMETRY = diodes.design(_SENSOR, 40.0, width_mm=2.0)
@@ -22,7 +22,7 @@ PRESET = diodes.masked_photodiodes(
     readings=diodes.QUADRANTS,
     geometry=_GEOMETRY,
     setups={
-        **diodes.usual(_SENSOR, _NOMINAL, _OFF, misaligned(0.025)),
+        **diodes.usual(_SENSOR, _NOMINAL, _OFF, misalign(0.025)),
         "wide-gap": diodes.wide_gap(_SENSOR),
         "round-aperture": diodes.round_aperture(_SENSOR, _GEOMETRY),
         **seen_with(_SENSOR, "stray-gradient", "ghosts", "albedo", "albedo-clouds"),

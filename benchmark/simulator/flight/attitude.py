@@ -134,16 +134,16 @@ def _momentum_frame(sun: Floats, angle: float) -> tuple[Floats, Floats, Floats]:
     return first, second, momentum
 
 
-def turned(matrices: Floats, vectors: Floats) -> Floats:
+def turn_frame(matrices: Floats, vectors: Floats) -> Floats:
     """Turn unit vectors (N, 3) or (3,) by rotations (N, 3, 3); unit again to the last bit.
 
     Written out: the order of additions must not depend on the linear algebra library.
     """
-    out = rotated(matrices, vectors)
+    out = rotate(matrices, vectors)
     return np.asarray(out / np.sqrt(out[:, :1] ** 2 + out[:, 1:2] ** 2 + out[:, 2:] ** 2))
 
 
-def rotated(matrices: Floats, vectors: Floats) -> Floats:
+def rotate(matrices: Floats, vectors: Floats) -> Floats:
     """Turn vectors (N, 3) or (3,) of any length by rotations (N, 3, 3)."""
     x, y, z = vectors[..., 0:1], vectors[..., 1:2], vectors[..., 2:3]
     return np.asarray(matrices[:, :, 0] * x + matrices[:, :, 1] * y + matrices[:, :, 2] * z)

@@ -15,7 +15,7 @@ from benchmark.simulator.flight.drift import (
     ThermalCycle,
     dark_levels,
 )
-from benchmark.simulator.flight.time_series import timed
+from benchmark.simulator.flight.time_series import with_times
 from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
@@ -47,8 +47,8 @@ class DriftingSolarCellSensor(SolarCellSensor):
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean microamperes; TypeError for a scene that is not a `TimedScene`."""
-        at = timed(scene, self)
-        light = self.received(scene, pattern)
+        at = with_times(scene, self)
+        light = self.receive(scene, pattern)
         warmer = at.temperature_k[:, None] + self.cells.heating_k * light - REFERENCE_K
         factor = (1.0 + warmer * pattern["gain_per_k"]) * (
             1.0 - at.age_years[:, None] * pattern["loss_per_year"]
@@ -62,7 +62,7 @@ class DriftingSolarCellSensor(SolarCellSensor):
 
         References are taken at 25 deg C before the flight: they tell nothing of the drifts.
         """
-        at = timed(scene, self)
+        at = with_times(scene, self)
         light = expected - dark_levels(self.readout.dark, at.temperature_k)[:, None]
         parts = self.readout.gain_mismatch, self.cells.mismatch, self.cells.loss_spread
         spread = math.sqrt(math.fsum(part**2 for part in parts))

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from benchmark.simulator.flight.drift import AssemblyDrift, ThermalCycle, dark_levels
 from benchmark.simulator.flight.moved_heads import moved_heads
-from benchmark.simulator.flight.time_series import timed
+from benchmark.simulator.flight.time_series import with_times
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.readout.references import References, pixel_unit_variance
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
-from benchmark.simulator.sensors.lines import LineSensor
+from benchmark.simulator.sensors.line_sensor import LineSensor
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class DriftingLineSensor(LineSensor):
 
     def lit(self, scene: Scene) -> Floats:
         """(N, W) light, as `LineSensor` has it; TypeError for a scene that is not timed."""
-        heads = moved_heads(self.camera, self.drift, timed(scene, self))
+        heads = moved_heads(self.camera, self.drift, with_times(scene, self))
         still = self.still
         return np.concatenate(
             [replace(still, camera=head).lit(scene.part(n, n + 1)) for n, head in enumerate(heads)]
@@ -74,7 +74,7 @@ class DriftingLineSensor(LineSensor):
     def _electrons(self, scene: Scene, pattern: FixedPattern) -> Floats:
         electrons = super()._electrons(scene, pattern)
         warmth = dark_levels(
-            replace(self.detector.dark, at_25_c=1.0), timed(scene, self).temperature_k
+            replace(self.detector.dark, at_25_c=1.0), with_times(scene, self).temperature_k
         )
         return np.asarray(electrons + (warmth - 1.0)[:, None] * pattern["dark_e"])
 
@@ -83,6 +83,6 @@ class DriftingLineSensor(LineSensor):
     ) -> NDArray[np.float64] | None:
         """As `LineSensor`; references are taken at 25 deg C, dark signals grow with warmth."""
         warmth = dark_levels(
-            replace(self.detector.dark, at_25_c=1.0), timed(scene, self).temperature_k
+            replace(self.detector.dark, at_25_c=1.0), with_times(scene, self).temperature_k
         )
         return pixel_unit_variance(self.still.detector, expected, references, warmth[:, None])

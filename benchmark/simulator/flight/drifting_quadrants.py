@@ -16,7 +16,7 @@ from benchmark.simulator.flight.drift import (
     dark_levels,
 )
 from benchmark.simulator.flight.moved_heads import moved_heads
-from benchmark.simulator.flight.time_series import timed
+from benchmark.simulator.flight.time_series import with_times
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.optics.projection import ProjectedLight
 from benchmark.simulator.readout import currents as readout
@@ -64,12 +64,12 @@ class DriftingQuadrantSensor(QuadrantSensor):
             "loss_per_year": drift.loss_per_year + drift.loss_per_year_spread * spread[1],
         }
 
-    def projected(self, scene: Scene) -> ProjectedLight:
+    def project(self, scene: Scene) -> ProjectedLight:
         """As `Camera.project`, every sample with its own assembly.
 
         TypeError for a scene that is not a `TimedScene`.
         """
-        heads = moved_heads(self.camera, self.assembly, timed(scene, self))
+        heads = moved_heads(self.camera, self.assembly, with_times(scene, self))
         parts = [head.project(sun[None, :]) for head, sun in zip(heads, scene.sun, strict=True)]
         return ProjectedLight(
             np.concatenate([part.rims_mm for part in parts], axis=1),
@@ -78,7 +78,7 @@ class DriftingQuadrantSensor(QuadrantSensor):
 
     def lit(self, scene: Scene) -> Floats:
         """(N, 4) light on the quadrants, as `QuadrantSensor` has it."""
-        area = self._areas(self.projected(scene), scene)
+        area = self._areas(self.project(scene), scene)
         return np.asarray(area / sum(a.area_mm2 for a in self.camera.mask.apertures))
 
     def earth_through(
@@ -90,11 +90,11 @@ class DriftingQuadrantSensor(QuadrantSensor):
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, 4) mean microamperes; TypeError for a scene that is not a `TimedScene`."""
-        at = timed(scene, self)
+        at = with_times(scene, self)
         factor = self.photodiodes.factors(
             at.temperature_k, at.age_years, pattern["gain_per_k"], pattern["loss_per_year"]
         )
-        light = self.received(scene) * pattern["gain"] * factor
+        light = self.receive(scene) * pattern["gain"] * factor
         dark = dark_levels(self.readout.dark, at.temperature_k)
         return np.asarray(self.readout.sunlit_ua * light + dark[:, None])
 
@@ -103,7 +103,7 @@ class DriftingQuadrantSensor(QuadrantSensor):
 
         References are taken at 25 deg C before the flight: they tell nothing of the drifts.
         """
-        at = timed(scene, self)
+        at = with_times(scene, self)
         light = expected - dark_levels(self.readout.dark, at.temperature_k)[:, None]
         still = readout.spread(self.readout, self.readout.gain_mismatch, references)
         warmed = self.photodiodes.gain_per_k_spread * (at.temperature_k - REFERENCE_K)

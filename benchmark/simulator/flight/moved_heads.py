@@ -25,7 +25,7 @@ def moved_heads(camera: Camera, drift: AssemblyDrift, scene: TimedScene) -> Iter
     built = camera.assembly
     for moved in drift.moved(scene.temperature_k, scene.age_years).tolist():
         tilt_x, tilt_y, longer, x, y = moved
-        yield camera.assembled(
+        yield camera.assemble(
             replace(
                 built,
                 tilt_x_deg=built.tilt_x_deg + tilt_x,

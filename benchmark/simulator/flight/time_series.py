@@ -53,7 +53,7 @@ class DriftingSensor(Sensor, Protocol):
         ...
 
 
-def timed(scene: Scene, sensor: object) -> TimedScene:
+def with_times(scene: Scene, sensor: object) -> TimedScene:
     """Return the scene itself; TypeError where its samples have no temperature and age."""
     if not isinstance(scene, TimedScene):
         raise TypeError(
@@ -85,11 +85,11 @@ class DriftingFaceSensor(FaceSensor):
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean microamperes; TypeError for a scene that is not a `TimedScene`."""
-        at = timed(scene, self)
+        at = with_times(scene, self)
         factor = self.drift.factors(
             at.temperature_k, at.age_years, pattern["gain_per_k"], pattern["loss_per_year"]
         )
-        light = self.received(scene, pattern) * pattern["gain"] * factor
+        light = self.receive(scene, pattern) * pattern["gain"] * factor
         dark = dark_levels(self.readout.dark, at.temperature_k)
         return np.asarray(self.readout.sunlit_ua * light + dark[:, None])
 
@@ -98,7 +98,7 @@ class DriftingFaceSensor(FaceSensor):
 
         References are taken at 25 deg C before the flight: they tell nothing of the drifts.
         """
-        at = timed(scene, self)
+        at = with_times(scene, self)
         light = expected - dark_levels(self.readout.dark, at.temperature_k)[:, None]
         still = readout.spread(self.readout, self.readout.gain_mismatch, references)
         warmed = self.drift.gain_per_k_spread * (at.temperature_k - REFERENCE_K)
@@ -134,7 +134,7 @@ class DriftingFrameSensor(DiffractiveFrameSensor):
         Tilts about x and y (deg), focal length and offsets x and y (mm): errors of assembly and
         drift together. TypeError for a scene that is not a `TimedScene`.
         """
-        at = timed(scene, self)
+        at = with_times(scene, self)
         built = self.camera.assembly
         errors = (
             built.tilt_x_deg,
@@ -145,7 +145,7 @@ class DriftingFrameSensor(DiffractiveFrameSensor):
         )
         return np.asarray(errors + self.drift.moved(at.temperature_k, at.age_years))
 
-    def projected(self, scene: Scene) -> ProjectedLight:
+    def project(self, scene: Scene) -> ProjectedLight:
         """As `Camera.project`, every sample with its own assembly."""
         camera = self.camera
         moved = self.moved(scene)
@@ -168,14 +168,14 @@ class DriftingFrameSensor(DiffractiveFrameSensor):
         moved = self.moved(scene)
         height = self.camera.focal_length_mm + moved[:, 2]
         coarse = replace(self, camera=few_points(self.camera))
-        return Stance(self._head(scene, moved), height, coarse.projected(scene))
+        return Stance(self._head(scene, moved), height, coarse.project(scene))
 
     def _moment(self, scene: Scene) -> tuple[Hashable, ...]:
         return (self.moved(scene).tobytes(),)
 
     def _electrons(self, scene: Scene, pattern: FixedPattern) -> Floats:
         electrons = super()._electrons(scene, pattern)
-        temperature = timed(scene, self).temperature_k
+        temperature = with_times(scene, self).temperature_k
         warmer = dark_levels(replace(self.detector.dark, at_25_c=1.0), temperature) - 1.0
         columns, rows = self.window_px
         for n, (x, y) in enumerate(np.asarray(scene.origin_px)):
@@ -184,7 +184,7 @@ class DriftingFrameSensor(DiffractiveFrameSensor):
 
     def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:
         """As `FrameSensor`; references are taken at 25 deg C, dark signals grow with warmth."""
-        at = timed(scene, self)
+        at = with_times(scene, self)
         warmth = dark_levels(replace(self.detector.dark, at_25_c=1.0), at.temperature_k)
         cold = replace(self.detector, dark=replace(self.detector.dark, temperature_c=25.0))
         return pixel_unit_variance(cold, expected, references, warmth[:, None, None])

@@ -20,7 +20,7 @@ _FAINT = 1e-3
 
 
 @compiled
-def _coupled(fx: float, fy: float, spreads: Three, spectrum: Floats) -> Four:
+def _couple(fx: float, fy: float, spreads: Three, spectrum: Floats) -> Four:
     """Return what coupling adds to the transform of a corner's light at a frequency.
 
     Real and imaginary part, for positive and for negative coupling; neither frequency may be 0.
@@ -128,7 +128,7 @@ def corner_patches(
                 continue
             box = _box(fx * pitch) * _box(fy * pitch)
             box /= _spline(fx * node_x) * _spline(fy * node_y)
-            a, b, c, d = _coupled(fx, fy, (jw, jv, jc), spectrum)
+            a, b, c, d = _couple(fx, fy, (jw, jv, jc), spectrum)
             a, b, c, d = first * box * a, first * box * b, second * box * c, second * box * d
             for i in range(size):
                 cosine, sine = cosines[j, i], sines[j, i]

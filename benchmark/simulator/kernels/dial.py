@@ -72,7 +72,7 @@ def _past(line: float, edge: Floats, scale: float) -> float:
 
 
 @compiled
-def _carried(ends: Interval, track: Floats, numbers: Floats, edge: Floats, scale: float) -> float:
+def _carry(ends: Interval, track: Floats, numbers: Floats, edge: Floats, scale: float) -> float:
     """Open length that diffraction at both ends of the slit's light adds to a track's.
 
     At each border of the pattern where it opens, light from further along is won or lost.
@@ -130,8 +130,9 @@ def read_dial(
         (9,) fine period and cell, mm; 1 for square fine rows, 0 for sinusoidal ones; the slit's
         row of `Mask.table` without its kind.
     diffraction
-        `edge_light.crossing` with its steps a unit behind it, empty for geometric light; (N,) the
-        length of its unit, mm. Sinusoidal rows, of which it changes little, stay geometric.
+        `edge_light.light_across_edge` with its steps a unit behind it, empty for geometric light;
+        (N,) the length of its unit, mm. Sinusoidal rows, of which it changes little, stay
+        geometric.
     """
     tilted = numbers[8] != 0.0
     rims, light = sunlight
@@ -150,6 +151,6 @@ def read_dial(
                         passed = _open_length(right, track, numbers)
                         passed -= _open_length(left, track, numbers)
                         if edge.shape[0] > 0:
-                            passed += _carried((left, right), track, numbers, edge, scale[n])
+                            passed += _carry((left, right), track, numbers, edge, scale[n])
                         total += light[n, k] * share * passed
             out[n, t] = total

@@ -25,7 +25,7 @@ _W = 16
 
 
 @compiled
-def _blended(out: Floats, tables: Floats, place: float, slope: float) -> None:
+def _blend(out: Floats, tables: Floats, place: float, slope: float) -> None:
     """Interpolate (T, ...) tables at a node coordinate by Lagrange's cubic.
 
     It is `place` in the middle row and grows by `slope` a row; below 0 light comes from the other
@@ -163,7 +163,7 @@ def add_round(
         if numbers[n, 0] == 0.0:
             continue
         way = _way(suns[n], numbers[n], layers)
-        _blended(table, tables, numbers[n, 1], numbers[n, 9] / way[3])
+        _blend(table, tables, numbers[n, 1], numbers[n, 9] / way[3])
         for m in range(places.shape[1]):
             for row in range(rows):
                 y = row * pitch - places[n, m, 1]
@@ -270,12 +270,12 @@ def add_spots(
 
 @compiled
 def _blended_sizes(tables: Sizes, place: float, slope: float) -> Sizes:
-    """`_blended` of each."""
+    """`_blend` of each."""
     shape = tables[0].shape[1:]
     one, two, three = np.empty(shape), np.empty(shape), np.empty(shape)
-    _blended(one, tables[0], place, slope)
-    _blended(two, tables[1], place, slope)
-    _blended(three, tables[2], place, slope)
+    _blend(one, tables[0], place, slope)
+    _blend(two, tables[1], place, slope)
+    _blend(three, tables[2], place, slope)
     return one, two, three
 
 

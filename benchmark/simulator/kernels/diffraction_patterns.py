@@ -163,7 +163,7 @@ def strip_fields(
 
 
 @compiled
-def turned(cosines: Floats, sines: Floats, argument: Floats) -> None:
+def turn(cosines: Floats, sines: Floats, argument: Floats) -> None:
     """Write ``exp(i pi u^2 / 2)`` of every argument u; (R, T) each."""
     for row in range(argument.shape[0]):
         for column in range(argument.shape[1]):

@@ -117,7 +117,7 @@ def digitise(
 
 @compiled
 def gather(out: Floats, light: Floats, shares: tuple[float, float, float]) -> None:
-    """Write the charge of a frame as `PixelErrors.gathered` has it, in light's unit.
+    """Write the charge of a frame as `PixelErrors.gather` has it, in light's unit.
 
     Parameters
     ----------

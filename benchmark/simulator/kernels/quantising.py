@@ -40,7 +40,7 @@ def _density(z: float) -> float:
 
 
 @compiled
-def summed(mean: float, sigma: float, lowest: float, highest: float) -> float:
+def add_up(mean: float, sigma: float, lowest: float, highest: float) -> float:
     """Information of one reading times sigma^2, code by code; `lowest` and `highest` are lumped."""
     first = max(lowest, math.floor(mean - _REACH * sigma + 0.5))
     last = min(highest, math.ceil(mean + _REACH * sigma - 0.5))
@@ -77,13 +77,13 @@ def table() -> Floats:
     for row in range(_ROWS):
         sigma = FINE + (COARSE - FINE) * row / (_ROWS - 1)
         for column in range(_COLUMNS):
-            out[row, column] = summed(0.5 * column / (_COLUMNS - 1), sigma, -99.0, 99.0)
+            out[row, column] = add_up(0.5 * column / (_COLUMNS - 1), sigma, -99.0, 99.0)
     out.flags.writeable = False
     return out
 
 
 @compiled
-def _tabulated(fraction: float, sigma: float, table: Floats) -> float:
+def _tabulate(fraction: float, sigma: float, table: Floats) -> float:
     y = (sigma - FINE) * ((_ROWS - 1) / (COARSE - FINE))
     x = fraction * (2.0 * (_COLUMNS - 1))
     row, column = min(int(y), _ROWS - 2), min(int(x), _COLUMNS - 2)
@@ -95,7 +95,7 @@ def _tabulated(fraction: float, sigma: float, table: Floats) -> float:
 
 
 @compiled
-def _kept(z: float) -> float:
+def _keep(z: float) -> float:
     """Share of the information on its mean that a normal value keeps when known below `z` only."""
     if z > _FAR:
         return 1.0
@@ -131,12 +131,12 @@ def reading_variances(
             above = (highest - 0.5 - mu) / sigma
             ended = min(below, above) < _FAR
             if sigma < FINE or (ended and sigma < _SUMMED):
-                information = summed(mu, sigma, lowest, highest) / (sigma * sigma)
+                information = add_up(mu, sigma, lowest, highest) / (sigma * sigma)
             elif sigma < COARSE:
                 fraction = abs(mu - math.floor(mu + 0.5))
-                information = _tabulated(fraction, sigma, table) / (sigma * sigma)
+                information = _tabulate(fraction, sigma, table) / (sigma * sigma)
             else:
                 information = 1.0 / (sigma * sigma + 1.0 / 12.0)
                 if ended:
-                    information *= max(_kept(below) + _kept(above) - 1.0, 0.0)
+                    information *= max(_keep(below) + _keep(above) - 1.0, 0.0)
         out[n] = 1.0 / information if information > 1e-290 else math.inf

@@ -102,7 +102,7 @@ def _integrals(light: Floats, single: Floats, double: Floats, place: float, step
 
 
 @compiled
-def _sheared(out: Floats, sums: Floats, light: Floats, shear: float, step: float) -> None:
+def _shear(out: Floats, sums: Floats, light: Floats, shear: float, step: float) -> None:
     """Fill a pattern sheared by so much on either side, and its running integral.
 
     The integral is exact for cubics; where the shear is less than half a step, the second
@@ -194,4 +194,4 @@ def patterns(
         start, stop = starts[m], starts[m] + 2 * ends + 1
         for k in range(2):
             one, two = out[2 * k, start:stop], out[2 * k + 1, start:stop]
-            _sheared(one, two, light[k], shapes[m, 4], 1.0 / steps)
+            _shear(one, two, light[k], shapes[m, 4], 1.0 / steps)

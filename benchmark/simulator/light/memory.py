@@ -2,7 +2,7 @@
 
 Conditions of a dataset see the same Suns, and differ in pixels and noise more often than in what
 stands in front of them; the bound moves the Sun alike under each. Nothing is kept until
-`remember` is called; kept light is the rendered one to the last bit.
+`cache_for` is called; kept light is the rendered one to the last bit.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class LightMemory:
         self._runs: dict[Hashable, Runs] = {}
         self._latest: OrderedDict[Hashable, Runs] = OrderedDict()
 
-    def remember(self, owner: Hashable, family: Hashable = None) -> None:
+    def cache_for(self, owner: Hashable, family: Hashable = None) -> None:
         """Keep light from now on; what was kept for another owner is let go.
 
         So are tables (`tables`) when owners of another family come, who look up others.
@@ -58,7 +58,7 @@ class LightMemory:
             self._family = family
 
     def tables(self, most: int) -> Callable[[Function], Function]:
-        """Keep what a function made for its last so many arguments until `remember` lets go."""
+        """Keep what a function made for its last so many arguments until `cache_for` lets go."""
 
         def kept(function: Function) -> Function:
             known = lru_cache(maxsize=most)(function)
@@ -75,7 +75,7 @@ class LightMemory:
         self.kept_bytes = self.runs_bytes = 0
         self._owner = None
 
-    def rendered(self, key: Hashable, render: Callable[[], Light]) -> Light:
+    def render(self, key: Hashable, render: Callable[[], Light]) -> Light:
         """Return what `render` makes, which the key names, as an array of the caller's own.
 
         Once the limit is reached nothing more is kept: letting go of the oldest would lose
@@ -93,13 +93,13 @@ class LightMemory:
             whole.reshape(-1)[places] = values
             return cast("Light", whole)
         light = render()
-        kept = _packed(light)
+        kept = _pack(light)
         if self._has_room(kept[1].nbytes + (0 if kept[0] is None else kept[0].nbytes)):
             self._kept[key] = kept
         return light
 
     def runs(self, key: Hashable, render: Callable[[], Runs]) -> Runs:
-        """Return what `render` makes, as `rendered`, for frames too large to be filled twice.
+        """Return what `render` makes, as `render`, for frames too large to be filled twice.
 
         Not the caller's own: to be read only. Where there is no room the latest few are kept
         nevertheless, for passes over the same poses.
@@ -142,7 +142,7 @@ def digest_of(*arrays: NDArray[Any]) -> bytes:
     return state.digest()
 
 
-def _packed(light: NDArray[Any]) -> _Kept:
+def _pack(light: NDArray[Any]) -> _Kept:
     """Copy `light` in whichever form is smaller."""
     flat = light.reshape(-1)
     places = np.flatnonzero(flat)

@@ -195,7 +195,7 @@ def round_skew(
         (light, skew),
         np.ascontiguousarray(radial),
         cut.places,
-        np.array([along, across, *changes, fading(along)]),
+        np.array([along, across, *changes, fade_half_waves(along)]),
         cut.fields,
     )
     return light, skew
@@ -256,7 +256,7 @@ def strips(
     return Strips(along_it, fields)
 
 
-def fading(number: float) -> float:
+def fade_half_waves(number: float) -> float:
     """Half waves from a point of the opening at which `round_skew` fades out there.
 
     Of far patterns, which have few, much later.
@@ -274,16 +274,16 @@ def lost_at_rims(displaced: Floats) -> NDArray[np.complex128]:
     lie on top of each other, less than 0.1 from 1 on. The foil's walls are black.
     """
     rest = 0.5 + 0.5j - fresnel(displaced)
-    edge = _turned(displaced[None])[0]
+    edge = _turn(displaced[None])[0]
     return np.asarray((1j / math.pi * edge - displaced * rest) / (1.0 + 1j))
 
 
-def _turned(argument: Floats) -> NDArray[np.complex128]:
+def _turn(argument: Floats) -> NDArray[np.complex128]:
     """``exp(i pi u^2 / 2)`` of (R, T) arguments u, the same on every processor."""
-    from benchmark.simulator.kernels.diffraction_patterns import turned  # noqa: PLC0415 - Numba
+    from benchmark.simulator.kernels.diffraction_patterns import turn  # noqa: PLC0415 - Numba
 
     cosines, sines = np.empty(argument.shape), np.empty(argument.shape)
-    turned(cosines, sines, np.ascontiguousarray(argument))
+    turn(cosines, sines, np.ascontiguousarray(argument))
     return np.asarray(cosines + 1j * sines)
 
 

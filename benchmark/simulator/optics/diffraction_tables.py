@@ -14,7 +14,7 @@ from benchmark.simulator.light.memory import memory
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.optics.diffraction import (
     Spectrum,
-    fading,
+    fade_half_waves,
     fresnel,
     round_intensity,
     round_skew,
@@ -100,7 +100,9 @@ class RoundPattern:
 
     def numbers(self, sine: Floats, wavelength_mm: float) -> Floats:
         """(N, 2) Fresnel numbers along and across the plane of incidence."""
-        return np.asarray(self.radius_mm**2 / (wavelength_mm * landing(sine, self.layers())[:, 1:]))
+        return np.asarray(
+            self.radius_mm**2 / (wavelength_mm * landing_points(sine, self.layers())[:, 1:])
+        )
 
     def scales(self, sine: Floats) -> tuple[Floats, Floats]:
         """Return direction cosines a step of the tables (N, 2), and the tables' unit (N,).
@@ -150,8 +152,8 @@ class RoundPattern:
         small = 1e-4
         low, high = np.maximum(sine - small, 0.0), np.minimum(sine + small, limit)
         stack = self.layers()
-        _, along, across = landing(sine, stack).T
-        before, after = landing(low, stack), landing(high, stack)
+        _, along, across = landing_points(sine, stack).T
+        before, after = landing_points(low, stack), landing_points(high, stack)
         change = (after[:, 1] - before[:, 1]) / (high - low)
         safe = np.maximum(sine, small)
         third = change / (3.0 * along**2)
@@ -220,7 +222,7 @@ class RoundPattern:
         light, _ = self._quadrants(sine, reach + margin + 1, skewed=False)
         return spread(both_sides(light), shifts, weights, margin, cell)
 
-    def filled(self, reach: int) -> Floats:
+    def fill(self, reach: int) -> Floats:
         """(T, 2 n + 1, n + 1) tables, with what `seen` leaves of the cubic phase.
 
         And of the rims' own depths. To first order: the whole of it less what taking points to
@@ -245,7 +247,7 @@ class RoundPattern:
         if sine == 0.0:
             return np.zeros(light.shape)
         steps, _ = self.scales(np.array([sine]))
-        _, along, across = landing(np.array([sine]), self.layers())[0]
+        _, along, across = landing_points(np.array([sine]), self.layers())[0]
         c = self.seen(np.array([sine]))[0]
         places = np.arange(len(light))
         x, y = places[:, None] * (steps[0, 0] * along), places * (steps[0, 1] * across)
@@ -254,7 +256,7 @@ class RoundPattern:
         done += c[4] * x * light + c[5] * x * change
         number = float(self.numbers(np.array([sine]), self._middle_mm)[0, 0])
         place = x / self.radius_mm
-        waves = number * place * place / fading(number)
+        waves = number * place * place / fade_half_waves(number)
         turned = math.pi * number * self._changes(sine)[0] * place**3 / _TURNED
         rest = np.exp(-turned * turned) * (whole - np.exp(-waves * waves) * done)
         # odd: the finite differences of `slopes` leave a little in the middle
@@ -266,9 +268,11 @@ class RoundPattern:
         small = 1e-4
         angle = np.array([max(sine, small)])
         stack = self.layers()
-        _, along, across = landing(angle, stack)[0]
-        slope = (landing(angle + small, stack) - landing(angle - small, stack))[0, 1] / (2 * small)
-        foil = landing(angle, np.array([[self.thickness_mm, 1.0]]))[0] / 2.0
+        _, along, across = landing_points(angle, stack)[0]
+        slope = (landing_points(angle + small, stack) - landing_points(angle - small, stack))[
+            0, 1
+        ] / (2 * small)
+        foil = landing_points(angle, np.array([[self.thickness_mm, 1.0]]))[0] / 2.0
         share = self.radius_mm * sine / float(angle[0])
         return (
             share * slope / (3.0 * along**2),
@@ -325,9 +329,9 @@ class RoundPattern:
         """(K, 2) shifts in steps of the table and (K,) weights of the Sun's disc, and the cell."""
         centre = np.array([[sine, 0.0, math.sqrt(1.0 - sine * sine)]])
         points = self.sun.directions(centre)
-        chief, along, across = landing(np.array([sine]), self.layers())[0]
+        chief, along, across = landing_points(np.array([sine]), self.layers())[0]
         sines = np.sqrt(np.sum(points[0, :, :2] ** 2, axis=1))
-        places = points[0, :, :2] * landing(sines, self.layers())[:, 2:]
+        places = points[0, :, :2] * landing_points(sines, self.layers())[:, 2:]
         shifts = (places - np.array([chief, 0.0])) / (np.array([along, across]) * steps)
         _, shares = self.sun.quadrature()
         passed = self.glass.transmission(points)[0] / self.glass.transmission(centre)[0]
@@ -342,11 +346,11 @@ class RoundPattern:
 @memory.tables(40)
 def _tables(pattern: RoundPattern) -> Floats:
     steps, _ = pattern.scales(np.zeros(1))
-    across = landing(np.zeros(1), pattern.layers())[0, 1]
+    across = landing_points(np.zeros(1), pattern.layers())[0, 1]
     wave = min(pattern.spectrum.wavelengths_nm) * 1e-6 / (2.0 * math.pi * pattern.radius_mm)
     widest = min(pattern.reach_mm / across, pattern.radius_mm / across + _OUTSIDE * wave)
     reach = math.ceil(widest / float(steps[0, 0])) + 3
-    tables = pattern.filled(reach)
+    tables = pattern.fill(reach)
     tables.flags.writeable = False
     return tables
 
@@ -357,7 +361,7 @@ def layers(height_mm: float, glass: CoverGlass) -> Floats:
     return np.array(rows + [(plate.thickness_mm, plate.index) for plate in glass.plates])
 
 
-def landing(sine: Floats, stack: Floats) -> Floats:
+def landing_points(sine: Floats, stack: Floats) -> Floats:
     """(N, 3) where rays of these sines of incidence land, and J_r, J_t (see `diffraction`)."""
     square = stack[:, 1] ** 2 - sine[:, None] ** 2
     share = stack[:, 0] / np.sqrt(square)

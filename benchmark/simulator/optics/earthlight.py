@@ -22,7 +22,7 @@ from algorithms.contract import Floats
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.masks.apertures import Aperture
 from benchmark.simulator.optics.assembly import Assembly
-from benchmark.simulator.optics.diffraction_tables import landing, layers
+from benchmark.simulator.optics.diffraction_tables import landing_points, layers
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.scene import Scene
 
@@ -247,10 +247,10 @@ def _landings(camera: Camera) -> tuple[Floats, float]:
     fine = np.array(
         [math.sin(math.radians(_WIDEST_DEG * n / (4 * _STEPS))) for n in range(4 * _STEPS + 1)]
     )
-    landed = landing(fine, stack)
+    landed = landing_points(fine, stack)
     step = float(landed[-1, 0]) / _STEPS
     sine = np.interp(step * np.arange(_STEPS + 1), landed[:, 0], fine)
-    spread = landing(sine, stack)
+    spread = landing_points(sine, stack)
     cosine = np.sqrt(1.0 - sine**2)
     rays = np.column_stack([sine, np.zeros(len(sine)), cosine])
     light = camera.glass.transmission(rays) / (spread[:, 1] * spread[:, 2])

@@ -38,7 +38,7 @@ def light_below(v: Floats) -> Floats:
 
 
 @lru_cache(maxsize=8)
-def crossing(spectrum: Spectrum) -> tuple[Floats, float]:
+def light_across_edge(spectrum: Spectrum) -> tuple[Floats, float]:
     """(M,) light of a spectrum that diffraction carries past a line, and steps a unit.
 
     In units of ``sqrt(lambda J / 2)`` at `REFERENCE_NM`, as is the line's place from the shadow's

@@ -38,7 +38,7 @@ class Camera:
     glass: CoverGlass = field(default_factory=CoverGlass)
     assembly: Assembly = field(default_factory=Assembly)
 
-    def assembled(self, assembly: Assembly) -> Camera:
+    def assemble(self, assembly: Assembly) -> Camera:
         """Return the camera with other errors of assembly; glass yields where the gap shrinks."""
         lowest = self.focal_length_mm + assembly.focal_length_error_mm
         lowest -= self.mask.thickness_mm / 2.0

@@ -100,7 +100,7 @@ def bend(
     return found / np.stack(spread[:2], axis=1) ** 2
 
 
-def shaded(directions: Floats, apart_mm: Floats, thickness_mm: float) -> tuple[Floats, Floats]:
+def shade_edges(directions: Floats, apart_mm: Floats, thickness_mm: float) -> tuple[Floats, Floats]:
     """How a foil narrows each half of a rectangle (N, 2), and its share of softness (N, 2).
 
     Across and along. Light bent at the upper rim is cut by the lower one: an edge whose amplitude
@@ -123,8 +123,8 @@ def apart(
     """(N, 2) by which share J is larger at a rectangle's edges of positive x and y.
 
     And smaller at the other ones: oblique light is cut by the lower rim where it goes to and by
-    the upper one where it comes from. `soft` (N, 2) are the shares of `shaded`, by which both rims
-    cut alike.
+    the upper one where it comes from. `soft` (N, 2) are the shares of `shade_edges`, by which both
+    rims cut alike.
     """
     foil = matrix(directions, np.full(len(directions), thickness_mm), CoverGlass())
     share = np.stack(foil[:2], axis=1) / np.stack(spread[:2], axis=1) / 2.0
@@ -266,7 +266,7 @@ class RectanglePattern:
         steps = round(_END_REACH / _CORNER_STEP)
         out = np.zeros((1, 2 * steps + 1, 2 * steps + 1))
         parted = self.thickness_mm * np.abs(directions[:, :2]) / directions[:, 2:]
-        shade, _ = shaded(directions, parted, self.thickness_mm)
+        shade, _ = shade_edges(directions, parted, self.thickness_mm)
         half = self.half_mm[0] - float(shade[0, 0])
         if half > 0.0:
             design, grid = self._frequencies(directions, _END_REACH)

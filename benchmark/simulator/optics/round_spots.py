@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.optics.diffraction import Spectrum
-from benchmark.simulator.optics.diffraction_tables import RoundPattern, landing, layers
+from benchmark.simulator.optics.diffraction_tables import RoundPattern, landing_points, layers
 from benchmark.simulator.optics.projection import Camera
 
 Integers = NDArray[np.int64]
@@ -180,7 +180,7 @@ class RoundSpots:
     def _stretch(self) -> float:
         """How many times larger a spot is than from the drawn height: the root of the way's."""
         ways = [
-            float(landing(np.zeros(1), layers(height, self.camera.glass))[0, 1])
+            float(landing_points(np.zeros(1), layers(height, self.camera.glass))[0, 1])
             for height in (self.camera.height_mm, self.camera.focal_length_mm)
         ]
         return math.sqrt(ways[0] / ways[1])
@@ -192,7 +192,9 @@ class RoundSpots:
 
     def cells(self, diameter_mm: float) -> int:
         """Cells a side of a pixel."""
-        across = float(landing(np.zeros(1), self._pattern(diameter_mm, 0.0, 1).layers())[0, 2])
+        across = float(
+            landing_points(np.zeros(1), self._pattern(diameter_mm, 0.0, 1).layers())[0, 2]
+        )
         phase = math.pi * diameter_mm / (self._wave_mm * across) * self.pitch_mm
         return max(1, math.ceil(phase / _CELL_RAD))
 
@@ -224,7 +226,7 @@ class RoundSpots:
         """(N, 2) of the ellipses that hold a spot, along and across the plane of incidence, mm."""
         pattern = group.drawn
         sine = np.sqrt(np.sum(head[:, :2] ** 2, axis=1))
-        spread = landing(sine, pattern.layers())[:, 1:]
+        spread = landing_points(sine, pattern.layers())[:, 1:]
         numbers = pattern.numbers(sine, self._wave_mm)
         light = 4.0 * math.pi * numbers[:, 0] * numbers[:, 1] * head[:, 2]
         out = np.array([(float(share) / group.level) ** (1.0 / 3.0) for share in light])
@@ -390,7 +392,7 @@ class RoundLight:
         lit = (boxes[:, 1] > boxes[:, 0]) & (boxes[:, 3] > boxes[:, 2])
         sine = math.hypot(sun[0], sun[1])
         direction = sun[:2] / sine if sine > 0.0 else np.array([1.0, 0.0])
-        chief = direction * float(landing(np.array([sine]), self.layers)[0, 0])
+        chief = direction * float(landing_points(np.array([sine]), self.layers)[0, 0])
         for group, axes in zip(self.groups, self.patterns[1], strict=True):
             mine = group.mine[lit[group.mine]]
             middles = (self.holes_mm[mine] + chief) / group.pitch_mm

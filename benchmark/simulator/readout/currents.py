@@ -39,7 +39,7 @@ def variance(readout: CurrentReadout, expected: Floats) -> Floats:
     return np.asarray(codes * readout.step_ua**2)
 
 
-def converted(readout: CurrentReadout, expected: Floats, streams: NoiseStreams) -> Floats:
+def convert(readout: CurrentReadout, expected: Floats, streams: NoiseStreams) -> Floats:
     """(N, K) microamperes read out: whole codes within the converter's range."""
     shot = readout.electron_ua * np.maximum(expected, 0.0)
     noise = np.sqrt(shot + readout.noise_ua**2) * streams.gaussian.standard_normal(expected.shape)
@@ -78,7 +78,7 @@ def mean_readings(
         "flat_ua": (references.flats, dark + light * gains),
     }
     return {
-        name: np.mean(converted(readout, np.tile(mean, (count, 1)), streams), axis=0)
+        name: np.mean(convert(readout, np.tile(mean, (count, 1)), streams), axis=0)
         for name, (count, mean) in means.items()
         if count
     }

@@ -44,7 +44,7 @@ class NoiseStreams:
         return deviation * self.columns.standard_normal(shape)
 
 
-def counted(mean: Floats, read_noise: float, streams: NoiseStreams) -> Floats:
+def draw_counts(mean: Floats, read_noise: float, streams: NoiseStreams) -> Floats:
     """Electrons read out: Poisson(mean) plus Gaussian read noise, same shape as `mean`.
 
     Means of `GAUSSIAN_FROM` electrons and more are drawn as Gaussians of variance equal to the

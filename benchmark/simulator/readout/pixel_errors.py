@@ -72,14 +72,14 @@ class PixelErrors:
         """Return the electrons (columns,) by which the columns of this unit read too much."""
         return self.column_offset_e * generator(*names, "columns").standard_normal(columns)
 
-    def gathered(self, light: Floats) -> Floats:
+    def gather(self, light: Floats) -> Floats:
         """Charge of frames (N, H, W) or profiles (N, W) of the light that falls on their pixels.
 
         Beyond the edges the light goes on as it is at them. An image is shifted under the mask
         with the rows that are read out alone: a window's gathers the light of the window.
         """
         if light.ndim == 2:  # a line shifts no image
-            return _spilled(light, self.crosstalk) if self.crosstalk else light
+            return _spill(light, self.crosstalk) if self.crosstalk else light
         if not self.moves_charge:
             return light
         from benchmark.simulator.kernels.digitising import gather  # noqa: PLC0415 - Numba on demand
@@ -91,7 +91,7 @@ class PixelErrors:
 
     @property
     def moves_charge(self) -> bool:
-        """Whether `gathered` is any other than the light."""
+        """Whether `gather` is any other than the light."""
         return self.crosstalk > 0.0 or self.smear > 0.0
 
     @property
@@ -119,7 +119,7 @@ class PixelErrors:
         return np.asarray(1.0 - 2.0 * self.nonlinearity / full_well_e * electrons)
 
 
-def _spilled(light: Floats, share: float) -> Floats:
+def _spill(light: Floats, share: float) -> Floats:
     """Give a share of every pixel of profiles (N, W) to its two neighbours."""
     out = (1.0 - share) * light
     part = share / 2.0 * light

@@ -16,7 +16,7 @@ import numpy as np
 
 from algorithms.contract import Floats
 from benchmark.simulator.readout.detectors import PixelArray
-from benchmark.simulator.readout.noise import NoiseStreams, counted
+from benchmark.simulator.readout.noise import NoiseStreams, draw_counts
 from benchmark.simulator.readout.quantisation import ROUNDING, reading_variance
 
 #: Fractions of a code over which readings of a calibration are spread.
@@ -198,7 +198,9 @@ def _mean_reading(
 ) -> Floats:
     total, errors = np.zeros(electrons.shape), detector.errors
     for _ in range(count):
-        read = np.minimum(counted(electrons, detector.read_noise_e, streams), detector.full_well_e)
+        read = np.minimum(
+            draw_counts(electrons, detector.read_noise_e, streams), detector.full_well_e
+        )
         read = errors.read(read, detector.full_well_e)
         if column_e is not None:
             read += column_e

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
-from benchmark.simulator.readout.noise import NoiseStreams, counted
+from benchmark.simulator.readout.noise import NoiseStreams, draw_counts
 from benchmark.simulator.readout.quantisation import charge_variance
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
@@ -120,7 +120,7 @@ class BlackSunSensor:
             one = scene.part(n, n + 1)
             light = self.camera.photo_electrons(one, pattern)[0]
             light += self.camera.cloud_electrons(one.sun, pattern, streams.gaussian)
-            signal = counted(light + pattern["dark_e"], 0.0, streams)
+            signal = draw_counts(light + pattern["dark_e"], 0.0, streams)
             # a Gaussian even of few electrons: below the threshold, of thousands, nothing matters
             reset = light * share
             reset += np.sqrt(reset) * streams.gaussian.standard_normal(shape, dtype=np.float32)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
-from benchmark.simulator.readout.noise import NoiseStreams, counted
+from benchmark.simulator.readout.noise import NoiseStreams, draw_counts
 from benchmark.simulator.readout.quantisation import ROUNDING, charge_variance
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
@@ -142,7 +142,7 @@ class BloomingSensor:
             light = self.camera.photo_electrons(one, pattern)[0]
             light += self.camera.cloud_electrons(one.sun, pattern, streams.gaussian)
             light += pattern["dark_e"]
-            charge[n] = counted(light, 0.0, streams)
+            charge[n] = draw_counts(light, 0.0, streams)
             read[n] = streams.gaussian.standard_normal(shape[1:], dtype=np.float32)
         numbers = self._numbers(charge, pattern)
         numbers += read * (detector.read_noise_e / detector.gain_e_per_dn)

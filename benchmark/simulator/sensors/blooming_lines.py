@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
-from benchmark.simulator.readout.noise import NoiseStreams, counted
+from benchmark.simulator.readout.noise import NoiseStreams, draw_counts
 from benchmark.simulator.readout.quantisation import ROUNDING, charge_variance
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.blooming import spill
-from benchmark.simulator.sensors.lines import LineSensor
+from benchmark.simulator.sensors.line_sensor import LineSensor
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class BloomingLineSensor(LineSensor):
     def picture(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, W) digital numbers of the mean electrons: no noise, no rounding."""
         held, _ = self.held(self._electrons(scene, pattern))
-        held = self._amplified(held, pattern)
+        held = self._amplify(held, pattern)
         return np.asarray(self.detector.offset_dn + held / self.detector.gain_e_per_dn)
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
@@ -100,11 +100,11 @@ class BloomingLineSensor(LineSensor):
         mean = self._electrons(scene, pattern)
         charge, read = np.empty_like(mean), np.empty(mean.shape, dtype=np.float32)
         for n in range(len(scene)):  # one by one: a sample's randomness is drawn in one run
-            charge[n] = counted(mean[n], 0.0, streams)
+            charge[n] = draw_counts(mean[n], 0.0, streams)
             read[n] = streams.gaussian.standard_normal(mean.shape[1], dtype=np.float32)
         held, _ = self.held(charge)
         held += read * detector.read_noise_e
-        held = self._amplified(held, pattern)
+        held = self._amplify(held, pattern)
         if detector.errors.column_noise_e:
             held += streams.column_noise(detector.errors.column_noise_e, held.shape)
         values = np.rint(detector.offset_dn + held / detector.gain_e_per_dn)

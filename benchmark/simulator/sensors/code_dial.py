@@ -13,9 +13,9 @@ from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.optics.diffraction import Spectrum
-from benchmark.simulator.optics.diffraction_tables import landing, layers
+from benchmark.simulator.optics.diffraction_tables import landing_points, layers
 from benchmark.simulator.optics.earthlight import EarthInView, on_elements
-from benchmark.simulator.optics.edge_light import REFERENCE_NM, crossing
+from benchmark.simulator.optics.edge_light import REFERENCE_NM, light_across_edge
 from benchmark.simulator.optics.ghosts import Ghost
 from benchmark.simulator.optics.projection import Camera, ProjectedLight
 from benchmark.simulator.readout import currents as readout
@@ -24,7 +24,7 @@ from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
-from benchmark.simulator.sensors.lines import LineAxis
+from benchmark.simulator.sensors.line_sensor import LineAxis
 
 #: Sine of the widest incidence that diffraction is worked out for.
 _WIDEST_SINE = 0.9998
@@ -204,20 +204,21 @@ class CodeDialSensor:
     def _diffraction(self, scene: Scene) -> tuple[Floats, Floats]:
         """Table of light past an edge for the kernel, and (N, 2) its unit along x and y, mm.
 
-        ``sqrt(lambda J / 2)`` with J the part of `landing`'s along the axis, for the Sun's centre.
+        ``sqrt(lambda J / 2)`` with J the part of `landing_points`'s along the axis, for the Sun's
+        centre.
         """
         if self.spectrum is None:
             return np.empty(0), np.empty((len(scene), 2))
         camera = self.camera
         head = camera.assembly.to_head(scene.sun)
         square = np.minimum(head[:, 0] ** 2 + head[:, 1] ** 2, _WIDEST_SINE**2)
-        landed = landing(np.sqrt(square), layers(camera.height_mm, camera.glass))
+        landed = landing_points(np.sqrt(square), layers(camera.height_mm, camera.glass))
         bend = (landed[:, 1] - landed[:, 2]) / np.maximum(square, 1e-12)
         spread = landed[:, 2:] + bend[:, None] * head[:, :2] ** 2
-        table, steps = crossing(self.spectrum)
+        table, steps = light_across_edge(self.spectrum)
         return np.append(table, steps), np.sqrt(REFERENCE_NM * 1e-6 * spread / 2.0)
 
-    def received(self, scene: Scene, pattern: FixedPattern) -> Floats:
+    def receive(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) all light: direct, stray and from the Earth; units as of `lit`."""
         response = self.lit(scene, pattern) + scene.stray[:, None]
         if scene.albedo is not None:
@@ -236,7 +237,7 @@ class CodeDialSensor:
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean microamperes."""
-        return readout.currents(self.readout, self.received(scene, pattern), pattern)
+        return readout.currents(self.readout, self.receive(scene, pattern), pattern)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared microamperes."""
@@ -254,4 +255,4 @@ class CodeDialSensor:
 
     def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
         """(N, K) microamperes."""
-        return readout.converted(self.readout, self.expected(scene, pattern), streams)
+        return readout.convert(self.readout, self.expected(scene, pattern), streams)

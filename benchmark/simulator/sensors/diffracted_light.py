@@ -19,7 +19,7 @@ from benchmark.simulator.optics.rectangle_patterns import (
     disc_image,
     disc_strips,
     matrix,
-    shaded,
+    shade_edges,
 )
 
 #: Points of the Sun that give the middle of its image and its light.
@@ -207,7 +207,7 @@ class DiffractedLight:
         pattern = self._rectangle(aperture)
         turn = math.radians(aperture.rotation_deg)
         c, s = math.cos(turn), math.sin(turn)
-        own = _turned(stance.head, c, s)
+        own = _turn(stance.head, c, s)
         sine = np.sqrt(np.sum(own[:, :2] ** 2, axis=1))
         limit = math.sin(math.radians(self.widest_deg))
         share = np.minimum(1.0, limit / np.maximum(sine, limit))[:, None]
@@ -215,7 +215,7 @@ class DiffractedLight:
         spread = matrix(known, stance.height_mm, self.camera.glass)
         across, along, both = spread
         radius = math.sin(math.radians(self.camera.sun.diameter_deg / 2.0))
-        shade, soft = shaded(known, np.abs(_turned(parted, c, s)), self.camera.mask.thickness_mm)
+        shade, soft = shade_edges(known, np.abs(_turn(parted, c, s)), self.camera.mask.thickness_mm)
         shapes = np.column_stack(
             [
                 light,
@@ -249,7 +249,7 @@ class DiffractedLight:
         )
 
 
-def _turned(vectors: Floats, cosine: float, sine: float) -> Floats:
+def _turn(vectors: Floats, cosine: float, sine: float) -> Floats:
     """Vectors (N, 2 or 3) in axes turned by an angle about z."""
     out = vectors.copy()
     out[:, 0] = cosine * vectors[:, 0] + sine * vectors[:, 1]

@@ -57,9 +57,9 @@ class DiffractiveFrameSensor(UnevenFrameSensor):
         """How the head stands at each sample."""
         head = self.camera.assembly.to_head(scene.sun)
         coarse = replace(self, camera=few_points(self.camera))
-        return Stance(head, np.full(len(head), self.camera.height_mm), coarse.projected(scene))
+        return Stance(head, np.full(len(head), self.camera.height_mm), coarse.project(scene))
 
-    def _rendered(self, scene: Scene, origin_px: NDArray[np.int64]) -> Floats:
-        """(N, H, W) as `FrameSensor._rendered`, diffracted."""
+    def _render(self, scene: Scene, origin_px: NDArray[np.int64]) -> Floats:
+        """(N, H, W) as `FrameSensor._render`, diffracted."""
         corner = origin_px - 0.5 - np.asarray(self.detector.centre_px)
         return self._light().render(self._stance(scene), corner * self.detector.pitch_mm)

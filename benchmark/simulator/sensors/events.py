@@ -149,11 +149,11 @@ class EventSensor:
         size = detector.rows, detector.columns, detector.pitch_mm
         optics = self.camera, size, self.spectrum, self.widest_deg
         key = type(self).__name__, *optics, scene.sun.tobytes()
-        flux = memory.rendered(key, lambda: self._rendered(scene.sun))
+        flux = memory.render(key, lambda: self._render(scene.sun))
         flux *= scene.irradiance[:, None, None]
         return flux
 
-    def _rendered(self, sun: Floats) -> Floats:
+    def _render(self, sun: Floats) -> Floats:
         """(N, H, W) light of the mean sunlight from (N, 3)."""
         detector = self.detector
         head = self.camera.assembly.to_head(sun)

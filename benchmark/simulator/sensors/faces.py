@@ -70,7 +70,7 @@ class Faces:
         head = self.assembly.to_head
         return earth.response(head(sun), head(nadir), pattern["normals"], self.response)
 
-    def received(self, scene: Scene, pattern: FixedPattern) -> Floats:
+    def receive(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) response to all light: direct, stray and from the Earth; units as of `lit`."""
         response = self.lit(scene, pattern) + scene.stray[:, None]
         if scene.albedo is not None:
@@ -108,7 +108,7 @@ class FaceSensor(Faces):
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean microamperes."""
-        return readout.currents(self.readout, self.received(scene, pattern), pattern)
+        return readout.currents(self.readout, self.receive(scene, pattern), pattern)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared microamperes."""
@@ -126,4 +126,4 @@ class FaceSensor(Faces):
 
     def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
         """(N, K) microamperes."""
-        return readout.converted(self.readout, self.expected(scene, pattern), streams)
+        return readout.convert(self.readout, self.expected(scene, pattern), streams)

@@ -16,7 +16,7 @@ from benchmark.simulator.optics.ghosts import Ghost, add_ghost
 from benchmark.simulator.optics.projection import Camera, ProjectedLight
 from benchmark.simulator.readout.column_noise import CommonNoise, window_noise
 from benchmark.simulator.readout.detectors import PixelArray, tunnel_response
-from benchmark.simulator.readout.noise import NoiseStreams, counted
+from benchmark.simulator.readout.noise import NoiseStreams, draw_counts
 from benchmark.simulator.readout.quantisation import pixel_variance
 from benchmark.simulator.readout.references import (
     References,
@@ -74,7 +74,7 @@ class FrameSensor:
         wanted = np.rint(self.spot_px(sun)).astype(np.int64) + offset - half
         return np.asarray(np.clip(wanted, 0, last), dtype=np.int64)
 
-    def projected(self, scene: Scene) -> ProjectedLight:
+    def project(self, scene: Scene) -> ProjectedLight:
         """Where the mask's rims fall, and with how much light, before sunlight's own variation."""
         return self.camera.project(scene.sun)
 
@@ -92,11 +92,11 @@ class FrameSensor:
             raise ValueError("frames need the windows' origins; the scene's origin_px is None")
         seen = scene.sun.tobytes(), scene.origin_px.tobytes()
         key = (*self._optics(), *self._moment(scene), *seen)
-        flux = memory.rendered(key, lambda: self._rendered(scene, np.asarray(scene.origin_px)))
-        flux *= self._dimmed(scene)[:, None, None]
+        flux = memory.render(key, lambda: self._render(scene, np.asarray(scene.origin_px)))
+        flux *= self._dim(scene)[:, None, None]
         return flux
 
-    def _dimmed(self, scene: Scene) -> Floats:
+    def _dim(self, scene: Scene) -> Floats:
         """(N,) sunlight that pixels respond to, askew as it comes."""
         if not self.detector.tunnel:
             return scene.irradiance
@@ -104,21 +104,21 @@ class FrameSensor:
         return scene.irradiance * tunnel_response(cosine, self.detector.tunnel)
 
     def _optics(self) -> tuple[Hashable, ...]:
-        """Everything `_rendered` depends on but its arguments."""
+        """Everything `_render` depends on but its arguments."""
         detector = self.detector
         size = detector.rows, detector.columns, detector.pitch_mm
         return type(self).__name__, self.camera, self.window_px, size
 
     def _moment(self, scene: Scene) -> tuple[Hashable, ...]:  # noqa: ARG002 - for sensors that drift
-        """Everything of a scene `_rendered` depends on but its Suns and windows."""
+        """Everything of a scene `_render` depends on but its Suns and windows."""
         return ()
 
-    def _rendered(self, scene: Scene, origin_px: NDArray[np.int64]) -> Floats:
+    def _render(self, scene: Scene, origin_px: NDArray[np.int64]) -> Floats:
         """(N, H, W) light of the mean sunlight in windows at (N, 2)."""
         from benchmark.simulator.kernels.rasteriser import render  # noqa: PLC0415 - Numba on demand
 
         pitch = self.detector.pitch_mm
-        light = self.projected(scene)
+        light = self.project(scene)
         columns, rows = self.window_px
         flux = np.empty((len(scene), rows, columns))
         render(
@@ -152,12 +152,12 @@ class FrameSensor:
         if self.ghost is not None:
             middle = np.asarray(self.detector.centre_px)
             corner = np.asarray(scene.origin_px) - 0.5 - middle
-            moved = replace(scene, origin_px=corner, irradiance=self._dimmed(scene))
+            moved = replace(scene, origin_px=corner, irradiance=self._dim(scene))
             add_ghost(electrons, self.camera, self.ghost, moved, self.detector.pitch_mm)
         if scene.albedo is not None:
             add_between(electrons, scene.albedo)
         electrons += scene.stray[:, None, None]
-        electrons = self.detector.errors.gathered(electrons)
+        electrons = self.detector.errors.gather(electrons)
         electrons *= self.detector.sunlit_e
         columns, rows = self.window_px
         for n, (x, y) in enumerate(np.asarray(scene.origin_px)):
@@ -173,7 +173,7 @@ class FrameSensor:
             electrons[n] += pattern["dark_e"][window]
         return electrons
 
-    def _amplified(self, electrons: Floats, scene: Scene, pattern: FixedPattern) -> Floats:
+    def _amplify(self, electrons: Floats, scene: Scene, pattern: FixedPattern) -> Floats:
         """Electrons (N, H, W) as the columns' amplifiers show them, without their noise."""
         electrons = self.detector.errors.read(electrons, self.detector.full_well_e)
         if "column_e" in pattern:
@@ -186,7 +186,7 @@ class FrameSensor:
         detector = self.detector
         numbers = self._electrons(scene, pattern)
         np.minimum(numbers, detector.full_well_e, out=numbers)
-        numbers = self._amplified(numbers, scene, pattern)
+        numbers = self._amplify(numbers, scene, pattern)
         numbers /= detector.gain_e_per_dn
         numbers += detector.offset_dn
         return numbers
@@ -216,9 +216,9 @@ class FrameSensor:
     ) -> NDArray[np.uint16]:
         """(N, H, W) uint16 digital numbers."""
         detector = self.detector
-        electrons = counted(self._electrons(scene, pattern), detector.read_noise_e, streams)
+        electrons = draw_counts(self._electrons(scene, pattern), detector.read_noise_e, streams)
         np.minimum(electrons, detector.full_well_e, out=electrons)
-        electrons = self._amplified(electrons, scene, pattern)
+        electrons = self._amplify(electrons, scene, pattern)
         if detector.errors.column_noise_e:
             size = len(electrons), 1, self.window_px[0]
             electrons += streams.column_noise(detector.errors.column_noise_e, size)

@@ -114,7 +114,7 @@ class LensCamera:
         size = detector.rows, detector.columns, detector.pitch_mm
         optics = self.lens, self.blur_mm, self.flare, self.sun, self.assembly
         key = (type(self).__name__, size, optics, sun.tobytes())
-        return memory.rendered(key, lambda: self._shares(sun))
+        return memory.render(key, lambda: self._shares(sun))
 
     def _shares(self, sun: Floats) -> Floats:
         head = self.assembly.to_head(sun)
@@ -151,7 +151,7 @@ class LensCamera:
         electrons = self.shares(scene.sun)
         electrons *= light[:, None, None]
         electrons += scene.stray[:, None, None]
-        electrons = detector.errors.gathered(electrons)
+        electrons = detector.errors.gather(electrons)
         electrons *= detector.sunlit_e
         electrons *= pattern["gain"]
         return electrons
@@ -166,7 +166,7 @@ class LensCamera:
         light = self.clouds.light(
             (detector.rows, detector.columns), self.image_px(sun)[0], detector.pitch_mm, generator
         )
-        light = detector.errors.gathered(light[None])[0]
+        light = detector.errors.gather(light[None])[0]
         return np.asarray(light * detector.sunlit_e * pattern["gain"])
 
 

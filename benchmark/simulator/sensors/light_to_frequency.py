@@ -152,7 +152,7 @@ class FrequencySensor(Faces):
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean hertz."""
-        return self.readout.rate(self.received(scene, pattern), pattern["gain"])
+        return self.readout.rate(self.receive(scene, pattern), pattern["gain"])
 
     def variance(self, expected: Floats) -> Floats:
         """Squared hertz: of whole counts (`counts_variance`)."""

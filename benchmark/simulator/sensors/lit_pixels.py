@@ -46,7 +46,7 @@ class LitPixels:
 
     def __post_init__(self) -> None:
         detector, pattern = self.sensor.detector, self.pattern
-        pixels, sums = self._listed()
+        pixels, sums = self._list_items()
         gain, dark = pattern["gain"].ravel(), pattern["dark_e"].ravel()
         offsets = pattern.get("column_e", np.zeros(detector.columns))
         name = self.sensor.place(pattern), digest_of(pixels), detector.errors.crosstalk
@@ -58,9 +58,9 @@ class LitPixels:
         object.__setattr__(self, "_rest", np.stack([count, *(total / some for total in totals)]))
         object.__setattr__(self, "_earth", self._earthlight())
 
-    def _listed(self) -> tuple[NDArray[np.int32], Floats]:
+    def _list_items(self) -> tuple[NDArray[np.int32], Floats]:
         """Places (N, P) of the pixels near light; (3, N, K) the others' number, gains and darks."""
-        from benchmark.simulator.sensors.lit_pixels_kernel import listed  # noqa: PLC0415 - Numba on demand
+        from benchmark.simulator.sensors.lit_pixels_kernel import list_items  # noqa: PLC0415 - Numba on demand
 
         detector = self.sensor.detector
         shape = detector.rows, detector.columns
@@ -71,7 +71,7 @@ class LitPixels:
         for n, margin in enumerate(self._margins()):
             light.mark(near, n, margin)
             mine = np.empty((3, detector.columns))
-            count = listed(place, near, unit, mine)
+            count = list_items(place, near, unit, mine)
             sums[:, n] = mine
             chosen.append(place[:count].copy())
         pixels = np.full((len(chosen), max(map(len, chosen), default=0)), -1, dtype=np.int32)
@@ -115,27 +115,27 @@ class LitPixels:
             frame = np.zeros((1, detector.rows, detector.columns))
             if not self.sensor.add_uneven(frame, self.scene.part(n, n + 1)):
                 continue
-            frame = spilling.gathered(frame)
+            frame = spilling.gather(frame)
             listed = mine[mine >= 0]
             out[n, : len(listed)] = frame.ravel()[listed]
             frame.ravel()[listed] = 0.0
-            beyond[n] = self._summed(frame.ravel())
+            beyond[n] = self._add_up(frame.ravel())
             frame[0] *= self.pattern["gain"]
             ones[listed] = 0.0
-            means[n] = self._summed(frame.ravel()) / np.maximum(self._summed(ones), 1.0)
+            means[n] = self._add_up(frame.ravel()) / np.maximum(self._add_up(ones), 1.0)
             ones[listed] = 1.0
         return out, means, beyond
 
-    def _summed(self, values: Floats) -> Floats:
+    def _add_up(self, values: Floats) -> Floats:
         """(K,) sums of a flat frame: of all, or of every column."""
         if self._means == 1:
             return np.array([values.sum()])
         return np.asarray(values.reshape(-1, self._means).sum(axis=0))
 
-    def _rendered(self, sun: Floats) -> NDArray[np.float32]:
+    def _render(self, sun: Floats) -> NDArray[np.float32]:
         """(N, P) light of mean sunlight on the pixels; single precision, half the room to keep."""
         key = (*self._place, sun.tobytes())
-        return memory.rendered(key, lambda: self._from(sun))
+        return memory.render(key, lambda: self._from(sun))
 
     def _from(self, sun: Floats) -> NDArray[np.float32]:
         from benchmark.simulator.sensors.lit_pixels_kernel import take  # noqa: PLC0415 - Numba on demand
@@ -156,7 +156,7 @@ class LitPixels:
         from benchmark.simulator.sensors.lit_pixels_kernel import read_out  # noqa: PLC0415 - Numba on demand
 
         detector, errors = self.sensor.detector, self.sensor.detector.errors
-        light = self._rendered(scene.sun)
+        light = self._render(scene.sun)
         count, gain, dark = self._rest
         near, means, _ = self._earth
         numbers = np.empty((len(scene), light.shape[1] + self._means))

@@ -26,7 +26,7 @@ def mark_boxes(near: NDArray[np.bool_], boxes: NDArray[np.int64], margin: int) -
 
 
 @compiled
-def listed(
+def list_items(
     pixels: Places, near: NDArray[np.bool_], unit: tuple[Floats, Floats], sums: Floats
 ) -> int:
     """List the marked pixels, and sum up the others.

@@ -188,7 +188,7 @@ class MultiSpotSensor:
             light.add(frame, n)
         return frames
 
-    def dimmed(self, scene: Scene) -> Floats:
+    def dim(self, scene: Scene) -> Floats:
         """(N,) sunlight that pixels respond to, askew as it comes."""
         if not self.detector.tunnel:
             return scene.irradiance
@@ -197,7 +197,7 @@ class MultiSpotSensor:
 
     def light(self, scene: Scene, pattern: FixedPattern) -> Rendering:
         """Return the light of the samples of a scene, to be added to frames one by one."""
-        dimmed = self.dimmed(scene)
+        dimmed = self.dim(scene)
         if self.spectrum is not None:
             passed = dimmed[:, None] * pattern["transmission"]
             return self._spots.light(scene.sun, self._holes(pattern), passed)
@@ -248,7 +248,7 @@ class MultiSpotSensor:
         electrons = self.lit(scene, pattern)
         self.add_uneven(electrons, scene)
         electrons += scene.stray[:, None, None]
-        electrons = detector.errors.gathered(electrons)
+        electrons = detector.errors.gather(electrons)
         electrons *= detector.sunlit_e * pattern["gain"]
         electrons += pattern["dark_e"]
         np.minimum(electrons, detector.full_well_e, out=electrons)

@@ -25,7 +25,7 @@ class OptoIsolatorSensor(Faces):
     """K opto-isolators with outward normals, their phototransistors looking at the Sun.
 
     The light's current is the transistor's base current. Recombination in the junction takes its
-    share of it, which counts the more the smaller the current (`collected`); gains differ from
+    share of it, which counts the more the smaller the current (`collect`); gains differ from
     unit to unit by tens of percent. `readout.gain_mismatch` is the standard deviation of the
     logarithm of the gain (a gain is never negative), and `readout.sunlit_ua` the output of a unit
     of median gain in mean sunlight at normal incidence. Response, normals and assembly as in
@@ -60,8 +60,8 @@ class OptoIsolatorSensor(Faces):
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean microamperes."""
-        light = collected(self.received(scene, pattern), self.knee)
-        return readout.currents(self.readout, light / collected(np.ones(1), self.knee), pattern)
+        light = collect(self.receive(scene, pattern), self.knee)
+        return readout.currents(self.readout, light / collect(np.ones(1), self.knee), pattern)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared microamperes."""
@@ -69,7 +69,7 @@ class OptoIsolatorSensor(Faces):
 
     def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
         """Squared microamperes that unknown gains add; small spreads of their logarithm."""
-        return readout.unit_variance(self.readout, expected, _dimmed(references))
+        return readout.unit_variance(self.readout, expected, _dim(references))
 
     def reference_readings(
         self, pattern: FixedPattern, references: References, streams: NoiseStreams
@@ -78,18 +78,18 @@ class OptoIsolatorSensor(Faces):
 
         Gains differ so much that one element in a hundred would end at full scale otherwise.
         """
-        return readout.mean_readings(self.readout, pattern["gain"], _dimmed(references), streams)
+        return readout.mean_readings(self.readout, pattern["gain"], _dim(references), streams)
 
     def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
         """(N, K) microamperes."""
-        return readout.converted(self.readout, self.expected(scene, pattern), streams)
+        return readout.convert(self.readout, self.expected(scene, pattern), streams)
 
 
-def _dimmed(references: References) -> References:
+def _dim(references: References) -> References:
     return replace(references, level=references.level / 2.0)
 
 
-def collected(light: Floats, knee: float) -> Floats:
+def collect(light: Floats, knee: float) -> Floats:
     """Collector current of a phototransistor in light x, in the unit of its greatest gain.
 
     Gummel and Poon's law with an ideal base current and one of recombination, whose ideality

@@ -21,7 +21,7 @@ from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
-from benchmark.simulator.sensors.stray_slope import sloping
+from benchmark.simulator.sensors.stray_slope import slope
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class PositionSensor:
         Exact (by Gauss's rule) while the spot lies whole inside the active area; light beyond it
         is lost, point by point of the rule.
         """
-        collected = self._collected(self.camera.project(scene.sun))
+        collected = self._collect(self.camera.project(scene.sun))
         if self.ghost is not None:
             collected += self._again(self.ghost, scene.sun)
         return np.asarray(collected * scene.irradiance[:, None])
@@ -110,7 +110,7 @@ class PositionSensor:
     def _again(self, ghost: Ghost, sun: Floats) -> Floats:
         """(N, 4) what the ghost gives: its whole image less what the aperture let out again."""
         near, far, light = ghost.paths(self.camera, sun)
-        collected = self._collected(ProjectedLight(np.stack([far, far]), light), 4, 16)
+        collected = self._collect(ProjectedLight(np.stack([far, far]), light), 4, 16)
         if ghost.surface == "glass":
             return collected
         hole = self.camera.mask.apertures[0]
@@ -126,7 +126,7 @@ class PositionSensor:
             collected[n] -= light[n, k] * np.sum(parts, axis=0)
         return collected
 
-    def _collected(self, light: ProjectedLight, radial: int = 2, turns: int = 8) -> Floats:
+    def _collect(self, light: ProjectedLight, radial: int = 2, turns: int = 8) -> Floats:
         """(N, 4) shares that the electrodes take of images of the apertures, one a point."""
         apertures = self.camera.mask.apertures
         whole = sum(aperture.area_mm2 for aperture in apertures)
@@ -140,11 +140,11 @@ class PositionSensor:
                 collected += share * np.sum(light.light[..., None] * parts, axis=1)
         return collected
 
-    def received(self, scene: Scene) -> Floats:
+    def receive(self, scene: Scene) -> Floats:
         """(N, 4) all light: direct, stray and from the Earth; units as of `lit`."""
         # each electrode's share (1 +- u)(1 +- v) / 4 has its mean at a third of the way to it
         thirds = np.array([(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)]) / 3.0
-        response = self.lit(scene) + sloping(scene, thirds) / 4.0
+        response = self.lit(scene) + slope(scene, thirds) / 4.0
         if scene.albedo is not None:
             response += scene.albedo
         return np.asarray(response)
@@ -165,7 +165,7 @@ class PositionSensor:
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, 4) mean microamperes; a quarter of the stray light to each electrode."""
-        return readout.currents(self.readout, self.received(scene), pattern)
+        return readout.currents(self.readout, self.receive(scene), pattern)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared microamperes."""
@@ -183,7 +183,7 @@ class PositionSensor:
 
     def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
         """(N, 4) microamperes."""
-        return readout.converted(self.readout, self.expected(scene, pattern), streams)
+        return readout.convert(self.readout, self.expected(scene, pattern), streams)
 
 
 def aperture_rule(aperture: Aperture, radial: int = 2, turns: int = 8) -> tuple[Floats, Floats]:

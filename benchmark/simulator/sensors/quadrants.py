@@ -18,7 +18,7 @@ from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
-from benchmark.simulator.sensors.stray_slope import sloping
+from benchmark.simulator.sensors.stray_slope import slope
 
 
 @dataclass(frozen=True)
@@ -62,11 +62,11 @@ class QuadrantSensor:
         )
         return area
 
-    def received(self, scene: Scene) -> Floats:
+    def receive(self, scene: Scene) -> Floats:
         """(N, 4) all light: direct, stray and from the Earth; units as of `lit`."""
         boxes = self.detector.boxes() / self.detector.half_width_mm
         middles = np.stack([boxes[:, :2].mean(axis=1), boxes[:, 2:].mean(axis=1)], axis=1)
-        response = self.lit(scene) + sloping(scene, middles)
+        response = self.lit(scene) + slope(scene, middles)
         if scene.albedo is not None:
             response += scene.albedo
         return np.asarray(response)
@@ -87,7 +87,7 @@ class QuadrantSensor:
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, 4) mean microamperes."""
-        return readout.currents(self.readout, self.received(scene), pattern)
+        return readout.currents(self.readout, self.receive(scene), pattern)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared microamperes."""
@@ -105,4 +105,4 @@ class QuadrantSensor:
 
     def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
         """(N, 4) microamperes."""
-        return readout.converted(self.readout, self.expected(scene, pattern), streams)
+        return readout.convert(self.readout, self.expected(scene, pattern), streams)

@@ -87,10 +87,10 @@ class RollingFrameSensor(FrameSensor):
         turns = (scene.rate_deg_s != 0.0).any(axis=1)
         return np.where(turns, count, 1).astype(np.int64)
 
-    def _rendered(self, scene: Scene, origin_px: NDArray[np.int64]) -> Floats:
+    def _render(self, scene: Scene, origin_px: NDArray[np.int64]) -> Floats:
         """(N, H, W) as of the sensor at rest, every row over its own exposure."""
         if scene.rate_deg_s is None:
-            return super()._rendered(scene, origin_px)
+            return super()._render(scene, origin_px)
         columns, rows = self.window_px
         flux = np.zeros((len(scene), rows, columns))
         counts = self.nodes(scene, origin_px)
@@ -98,14 +98,14 @@ class RollingFrameSensor(FrameSensor):
             mine = np.flatnonzero(counts == count)
             part, origin = scene.rows(mine), origin_px[mine]
             if count == 1:
-                flux[mine] = super()._rendered(part, origin)
+                flux[mine] = super()._render(part, origin)
                 continue
             middle = self._middle_s(part, origin)
             light = np.zeros((len(mine), rows, columns))
             moments, shares = row_shares(self._rows_s(), self.detector.exposure_s, int(count))
             for moment, share in zip(moments, shares.T, strict=True):
                 seen = part.seen_from(seen_at(part, middle + moment))
-                light += share[:, None] * super()._rendered(seen, origin)
+                light += share[:, None] * super()._render(seen, origin)
             flux[mine] = light
         return flux
 

@@ -19,7 +19,7 @@ from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
-from benchmark.simulator.sensors.stray_slope import sloping
+from benchmark.simulator.sensors.stray_slope import slope
 
 _DIAGONAL = math.sqrt(0.5)  # sine and cosine of 45 deg
 
@@ -112,12 +112,12 @@ class SlitPairSensor:
             out[:, columns] = area
         return out
 
-    def received(self, scene: Scene) -> Floats:
+    def receive(self, scene: Scene) -> Floats:
         """(N, 4) all light: direct, stray and from the Earth; units as of `lit`."""
         near, far = self.pair.gap_mm / 2.0, self.pair.reach_mm
         off = _DIAGONAL * (near + far) / 2.0 / far
         middles = off * np.array([(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)])
-        response = self.lit(scene) + sloping(scene, middles)
+        response = self.lit(scene) + slope(scene, middles)
         if scene.albedo is not None:
             response += scene.albedo
         return np.asarray(response)
@@ -138,7 +138,7 @@ class SlitPairSensor:
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, 4) mean microamperes."""
-        return readout.currents(self.readout, self.received(scene), pattern)
+        return readout.currents(self.readout, self.receive(scene), pattern)
 
     def variance(self, expected: Floats) -> Floats:
         """Squared microamperes."""
@@ -156,4 +156,4 @@ class SlitPairSensor:
 
     def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
         """(N, 4) microamperes."""
-        return readout.converted(self.readout, self.expected(scene, pattern), streams)
+        return readout.convert(self.readout, self.expected(scene, pattern), streams)

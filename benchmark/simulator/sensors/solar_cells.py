@@ -101,7 +101,7 @@ class SolarCellSensor(Faces):
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean microamperes of the strings."""
-        light = self.received(scene, pattern)
+        light = self.receive(scene, pattern)
         # all cells of a face get the same light, so the weakest is the same one in any of it
         string = light * np.min(pattern["cells"], axis=1)
         return readout.currents(
@@ -131,4 +131,4 @@ class SolarCellSensor(Faces):
 
     def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
         """(N, K) microamperes."""
-        return readout.converted(self.readout, self.expected(scene, pattern), streams)
+        return readout.convert(self.readout, self.expected(scene, pattern), streams)

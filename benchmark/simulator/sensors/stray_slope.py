@@ -69,7 +69,7 @@ def slope_nodes(scene: Scene, columns: int, rows: int) -> Floats | None:
     return np.asarray(x * np.array([[-right, right]]) + y * np.array([[-low], [low]]))
 
 
-def sloping(scene: Scene, places: Floats) -> Floats:
+def slope(scene: Scene, places: Floats) -> Floats:
     """(N, K) stray light of a scene on elements at `places` (K, 2), uneven part included.
 
     Places are in units of half the detector's size, of its middle: an element gets the mean over

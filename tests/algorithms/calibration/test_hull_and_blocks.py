@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from scipy.spatial import Delaunay
 
 from algorithms.calibration.blocks import best, folds, folds_along, splits
-from algorithms.calibration.hull import Hull, spacing
-from algorithms.calibration.orders import chosen, errors_of_orders
+from algorithms.calibration.hull import Hull, median_spacing
+from algorithms.calibration.orders import choose_order, errors_of_orders
 from algorithms.contract import UnusableDataError
 
 
@@ -76,7 +76,7 @@ def test_directions_are_held_by_their_cone_and_all_of_them_by_a_sphere():
 def test_spacing_is_the_usual_distance_to_the_next():
     axis = np.linspace(0.0, 9.0, 4)
     grid = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
-    assert spacing(grid) == pytest.approx(3.0)
+    assert median_spacing(grid) == pytest.approx(3.0)
 
 
 def test_folds_are_alike_in_size_and_in_place():
@@ -145,7 +145,7 @@ def test_errors_of_nested_orders_are_those_of_one_fit_each():
             fit = np.linalg.lstsq(design[fold != number, :size], wanted[fold != number])[0]
             total += ((design[fold == number, :size] @ fit - wanted[fold == number]) ** 2).sum()
         assert error == pytest.approx(total / 120, rel=1e-9)
-    assert chosen(found, "test").rms == pytest.approx(math.sqrt(found.min()))
+    assert choose_order(found, "test").rms == pytest.approx(math.sqrt(found.min()))
 
 
 def test_orders_that_samples_leave_open_are_not_chosen():
@@ -154,7 +154,7 @@ def test_orders_that_samples_leave_open_are_not_chosen():
     found = errors_of_orders(design, [2, 3, 5], np.sin(x)[:, None], np.arange(40) % 5, design)
     assert np.isfinite(found).tolist() == [True, True, False]
     with pytest.raises(UnusableDataError, match="test needs more samples"):
-        chosen(np.array([np.inf, np.inf]), "test")
+        choose_order(np.array([np.inf, np.inf]), "test")
 
 
 @pytest.mark.parametrize("seed", range(4))

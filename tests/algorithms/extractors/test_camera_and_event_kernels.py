@@ -64,9 +64,9 @@ def test_a_line_s_own_runs_are_narrow_and_near_and_within_its_ends():
     runs = np.array(
         [run(5, 0.5, 1), run(6, -1.0, 3), run(7, 1.6, 2), run(8, 0.2, 9), run(20, 0.3, 2)]
     )
-    mean = blooming._refined(runs, 5, r, turn, 4.0, (4.0, 10.0))
+    mean = blooming._refine(runs, 5, r, turn, 4.0, (4.0, 10.0))
     assert mean == pytest.approx(r + (0.5 * 1 - 1.0 * 3) / 4)  # weighed by their widths
-    assert math.isnan(blooming._refined(runs, 5, r, turn, 4.0, (30.0, 40.0)))
+    assert math.isnan(blooming._refine(runs, 5, r, turn, 4.0, (30.0, 40.0)))
     assert blooming._typical_width(runs, 5, r, turn) == 2.5  # of 1, 3, 9 and 2
     assert blooming._widest(2.5) == pytest.approx(4.75)
 
@@ -223,7 +223,7 @@ def test_frames_are_blurred_as_by_scipy(shape):
     frame = np.random.default_rng(1).integers(0, 99, shape).astype(np.uint16)
     taps = np.array([0.1, 0.2, 0.4, 0.2, 0.1])
     rows, out = np.empty(shape), np.empty(shape)
-    holes.blurred(frame, taps, rows, out)
+    holes.blur(frame, taps, rows, out)
     across = ndimage.convolve1d(frame.astype(float), taps, axis=1, mode="nearest")
     np.testing.assert_allclose(rows, across)
     np.testing.assert_allclose(out, ndimage.convolve1d(across, taps, axis=0, mode="nearest"))
@@ -307,7 +307,7 @@ def test_events_are_counted_up_to_the_last_and_broken_ones_told(changed, count):
     events[:, :3] = [(4.0, 7.0, 60.0), (5.0, 8.0, 70.0), (6.0, 9.0, 80.0)]
     for (m, column), value in changed.items():
         events[1, m, column] = value
-    assert spikes.counted(events).tolist() == [3, count]
+    assert spikes.count(events).tolist() == [3, count]
 
 
 def test_light_is_the_inverse_of_times_but_for_hot_pixels():

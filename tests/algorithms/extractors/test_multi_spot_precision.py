@@ -11,7 +11,7 @@ from algorithms.contract import SensorGeometry
 from algorithms.extractors.frames.multi_spot.image_correlation import ImageCorrelation
 from algorithms.extractors.frames.multi_spot.mean_shift import MeanShift
 from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
-from benchmark.datasets.conditions.full_frames import drawn
+from benchmark.datasets.conditions.full_frames import draw_frames
 from benchmark.datasets.standard.cmos_multi_aperture import PRESET
 from benchmark.simulator.masks.layouts import grid
 from benchmark.simulator.scene import Scene
@@ -60,7 +60,9 @@ def draw(side: int, missing: float = 0.0) -> Drawn:
     noise *= spread[:, None]
     noise += clean[:, None]
     mask = sensor.camera.mask
-    geometry = replace(PRESET.geometry, apertures=drawn(mask), centre_px=sensor.detector.centre_px)
+    geometry = replace(
+        PRESET.geometry, apertures=draw_frames(mask), centre_px=sensor.detector.centre_px
+    )
     return Drawn(geometry, clean, noise.reshape(-1, *clean.shape[1:]))
 
 

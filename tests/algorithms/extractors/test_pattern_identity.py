@@ -11,7 +11,7 @@ from algorithms.extractors.frames.multi_spot.image_correlation import ImageCorre
 from algorithms.extractors.frames.multi_spot.mean_shift import MeanShift
 from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
 from algorithms.extractors.frames.multi_spot.weighted_spots import WeightedSpots
-from algorithms.measurement import Doubt
+from algorithms.measurement import QualityFlag
 
 WIDTH = 7.0
 FRAMES = 200
@@ -131,7 +131,7 @@ def test_an_identity_without_a_doubt_is_right(side, pitch):
         scenes = Scenes(seed, side, pitch, **faults)
         extractor = MultipleCentroids(scenes.apertures, faulty_lines=1)
         found = extractor.measure(scenes.frames)
-        doubted = found.doubts == int(Doubt.AMBIGUOUS_PATTERN)
+        doubted = found.doubts == int(QualityFlag.AMBIGUOUS_PATTERN)
         wrong = np.abs(found.features - scenes.places).max(axis=1) > pitch / 4
         assert not (wrong & ~doubted).any()
         np.testing.assert_array_equal(found.features, extractor.extract(scenes.frames))
@@ -148,8 +148,8 @@ def test_an_ambiguous_pattern_and_a_dark_frame_are_different_doubts(method):
     ]
     frames.append(draw(rng, (120, 120), []))
     found = method(apertures, faulty_lines=1, **own.get(method, {})).measure(np.array(frames))
-    unsure = int(Doubt.AMBIGUOUS_PATTERN)
-    assert found.doubts.tolist() == [0, unsure, unsure, int(Doubt.NO_SPOT)]
+    unsure = int(QualityFlag.AMBIGUOUS_PATTERN)
+    assert found.doubts.tolist() == [0, unsure, unsure, int(QualityFlag.NO_SPOT)]
     assert np.isfinite(found.features[:, 0]).tolist() == [True, False, True, False]
 
 

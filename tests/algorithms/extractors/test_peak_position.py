@@ -74,7 +74,7 @@ def noisy(lines, seed):
 @pytest.mark.parametrize("kind", IMAGES)
 @pytest.mark.parametrize("u", [-6.0, -1.2, -0.3, 0.0, 1e-5, 0.7, 1.0, 2.5, 7.9])
 def test_the_slope_of_an_image_is_its_difference(kind, u):
-    number, c, step = peak_fit_kernel.numbered(kind), np.array(SLIT_IMAGE), 1e-6
+    number, c, step = peak_fit_kernel.number_items(kind), np.array(SLIT_IMAGE), 1e-6
     value, slope = peak_fit_kernel.image_of(u, number, c)
     assert value == pytest.approx(image(u, kind), abs=1e-9)
     expected = (image(u + step, kind) - image(u - step, kind)) / (2 * step)
@@ -100,7 +100,7 @@ def test_the_normal_equations_are_those_of_differenced_residuals(kind):
         np.array([0, 0, 1, 1]),
         np.full(4, 5.0),
         np.array([0, 1, 2, 0]),
-        peak_fit_kernel.numbered(kind),
+        peak_fit_kernel.number_items(kind),
         np.array(SLIT_IMAGE),
         truth,
         truth,

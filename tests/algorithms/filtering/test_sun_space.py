@@ -43,7 +43,7 @@ def some_states(space, count=7):
 @pytest.mark.parametrize("name", NAMES)
 def test_a_body_that_turns_sees_the_sun_turn_back(name: str) -> None:
     states = some_states(SPACES[name])
-    after = SPACES[name].propagated(states, KNOWN, STEP_S)
+    after = SPACES[name].propagate(states, KNOWN, STEP_S)
     for before, found in zip(states, after, strict=True):
         turn = -(KNOWN[:3] - before[9:12]) * STEP_S
         expected = turned_exactly(before[:9].reshape(3, 3), turn)
@@ -72,13 +72,13 @@ def test_derivatives_are_those_of_differences(name: str) -> None:
     n, step = space.errors, 1e-6
     transition = space.transition(states, KNOWN, STEP_S)
     sensitivity = space.sensitivity(states, KNOWN)
-    after = space.propagated(states, KNOWN, STEP_S)
+    after = space.propagate(states, KNOWN, STEP_S)
     for column in range(n):
         error = np.zeros((len(states), n))
         error[:, column] = step
         up, down = space.moved(states, error), space.moved(states, -error)
-        change = space.away(space.propagated(up, KNOWN, STEP_S), after)
-        change -= space.away(space.propagated(down, KNOWN, STEP_S), after)
+        change = space.away(space.propagate(up, KNOWN, STEP_S), after)
+        change -= space.away(space.propagate(down, KNOWN, STEP_S), after)
         np.testing.assert_allclose(transition[:, :, column], change / (2 * step), atol=2e-6)
         read = space.measured(up, KNOWN) - space.measured(down, KNOWN)
         np.testing.assert_allclose(sensitivity[:, :, column], read / (2 * step), atol=2e-5)

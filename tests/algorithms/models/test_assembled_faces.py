@@ -14,8 +14,8 @@ from algorithms.angles import separation_deg
 from algorithms.contract import UnusableDataError
 from algorithms.models.physics_informed.assembled_faces import (
     AssembledFaces,
-    bent_and_slope,
-    inverted,
+    bend_and_slope,
+    invert,
 )
 from algorithms.models.physics_informed.faces_fit import FacesFit
 
@@ -75,11 +75,11 @@ def test_intervals_hold_what_was_put_in():
     sun = spread(200, 50.0)
     clean = read(sun, normals, gains)
     drawn = np.array(nominal)
-    truth = FacesFit(drawn, clean, sun, "test").solved(each=False).parameters
+    truth = FacesFit(drawn, clean, sun, "test").solve(each=False).parameters
     held = []
     for seed in range(200):
         noisy = clean + np.random.default_rng(seed).normal(0, 1e-3, clean.shape)
-        found = FacesFit(drawn, noisy, sun, "test").solved(each=False).parameters
+        found = FacesFit(drawn, noisy, sun, "test").solve(each=False).parameters
         held.append(
             [
                 abs(one.value - true.value) < 1.96 * one.deviation
@@ -105,7 +105,7 @@ def test_a_direction_is_the_least_squares_one():
         def cost(vector, signal=signal):
             level = np.linalg.norm(vector)
             light = [
-                bent_and_slope(np.array([vector @ normal / level]), response, noise / 2)[0][0]
+                bend_and_slope(np.array([vector @ normal / level]), response, noise / 2)[0][0]
                 for normal, response, noise in zip(
                     model.normals_, model.responses_, model.noise_, strict=True
                 )
@@ -174,14 +174,14 @@ def test_parameters_out_of_range_are_named(wrong, named):
 
 def test_a_response_is_inverted_within_its_range():
     cosines = np.linspace(0.03, 1.0, 50)
-    value, slope = bent_and_slope(cosines, KELLY, 1e-4)
-    np.testing.assert_allclose(inverted(value, KELLY), cosines, atol=1e-9)
+    value, slope = bend_and_slope(cosines, KELLY, 1e-4)
+    np.testing.assert_allclose(invert(value, KELLY), cosines, atol=1e-9)
     step = 1e-6
     for wide in (cosines, np.linspace(-1.0, 1.0, 50)):
-        _, slope = bent_and_slope(wide, KELLY, 1e-2)
-        ends = [bent_and_slope(wide + way * step, KELLY, 1e-2)[0] for way in (1.0, -1.0)]
+        _, slope = bend_and_slope(wide, KELLY, 1e-2)
+        ends = [bend_and_slope(wide + way * step, KELLY, 1e-2)[0] for way in (1.0, -1.0)]
         np.testing.assert_allclose(slope, (ends[0] - ends[1]) / (2 * step), atol=1e-5)
-    assert bent_and_slope(np.array([-0.2]), KELLY, 1e-4)[0][0] == pytest.approx(0.0, abs=1e-12)
+    assert bend_and_slope(np.array([-0.2]), KELLY, 1e-4)[0][0] == pytest.approx(0.0, abs=1e-12)
 
 
 @given(st.integers(0, 2**32 - 1))

@@ -72,7 +72,7 @@ def own_fit(nominal, signals, sun, test):
 )
 def test_no_standard_data_set_is_read_better_by_an_independent_fit(name, unit):
     """Of what both answer and the readings settle: its error, within two per cent."""
-    preset = datasets.get(name).as_unit(unit)
+    preset = datasets.get(name).for_unit(unit)
     told = preset.generate("nominal", "calibration")
     asked = preset.generate("nominal", "test", 400)
     nominal = np.array(preset.geometry.face_normals)
@@ -97,7 +97,7 @@ def test_weighed_residuals_are_independent_ones():
     used[0, 1:] = False  # one face alone
     weighing = Weighing(used, noise, np.where(used, modelled, 0) / noise, tau)
     off = rng.normal(size=(5, 4))
-    found = weighing.weighed(off)
+    found = weighing.weigh(off)
     for row in range(5):
         kept = used[row]
         m = modelled[row, kept]
@@ -105,7 +105,7 @@ def test_weighed_residuals_are_independent_ones():
         expected = off[row, kept] @ np.linalg.solve(covariance, off[row, kept])
         assert (found[row, kept] ** 2).sum() == pytest.approx(expected, rel=1e-12)
     stacked = np.stack([off, 2.0 * off], axis=2)
-    np.testing.assert_allclose(weighing.weighed(stacked)[..., 1], 2.0 * found, rtol=1e-12)
+    np.testing.assert_allclose(weighing.weigh(stacked)[..., 1], 2.0 * found, rtol=1e-12)
 
 
 @pytest.mark.parametrize(("flicker", "low", "high"), [(0.01, 0.009, 0.0115), (0.0, 0.0, 2e-4)])
@@ -129,7 +129,7 @@ def test_flickering_light_costs_a_calibration_nothing_to_speak_of():
         off = []
         for seed in range(5):
             signals = read(sun, np.random.default_rng(seed), flicker)
-            fit = FacesFit(PYRAMID, signals, sun, "test").solved(each=False)
+            fit = FacesFit(PYRAMID, signals, sun, "test").solve(each=False)
             off.append(separation_deg(fit.normals, PYRAMID))
             np.testing.assert_allclose(fit.noise, 1e-3, rtol=0.25)
         wrong[flicker] = np.sqrt(np.mean(np.square(off)))
@@ -143,7 +143,7 @@ def test_intervals_hold_the_tilts_in_flickering_light():
     held = []
     for seed in range(200):
         signals = read(sun, np.random.default_rng(seed), 0.01)
-        found = FacesFit(PYRAMID, signals, sun, "test").solved(each=False).parameters
+        found = FacesFit(PYRAMID, signals, sun, "test").solve(each=False).parameters
         held += [
             abs(one.value) < 1.96 * one.deviation for one in found if one.name.startswith("tilt")
         ]

@@ -9,7 +9,7 @@ from algorithms.models.neural_network.network_kernel import (
     TANH,
     network_derivatives,
     network_values,
-    solved,
+    solve,
     train,
 )
 
@@ -62,7 +62,7 @@ def test_a_step_has_the_bits_of_sums_in_the_stated_order(widths, kinds, samples)
         damping = 1e-2
         for _ in range(power):
             damping *= 10.0
-        assert solved(normal, damping * mean, gradient, np.empty((count, count)), step)
+        assert solve(normal, damping * mean, gradient, np.empty((count, count)), step)
         tried.append(start - step)
     assert any(np.array_equal(found, one) for one in tried)
     assert held < np.mean(np.sum((answers - wanted) ** 2, axis=1))

@@ -29,11 +29,11 @@ from algorithms.models.neural_network.network_kernel import (
     LOG_SIGMOID,
     TANH,
     network_derivatives,
-    solved,
+    solve,
     train,
 )
 from algorithms.models.neural_network.portable_kernel import angles_deg
-from algorithms.models.neural_network.training import Network, Training, held_out, trained
+from algorithms.models.neural_network.training import Network, Training, hold_out, train_network
 
 DEEP = ((3, 3, 5, 4, 2), (LOG_SIGMOID, TANH, TANH, LINEAR))
 
@@ -109,7 +109,9 @@ def test_a_linear_network_is_least_squares():
     inputs = rng.uniform(-1.0, 1.0, (90, 3))
     wanted = inputs @ rng.uniform(-1, 1, (3, 2)) + rng.normal(0.3, 0.1, (90, 2))
     held = np.arange(90) < 30
-    found = trained(inputs, wanted, held, Training((3, 2), (LINEAR,), 1, 0, patience=10**6), "t")
+    found = train_network(
+        inputs, wanted, held, Training((3, 2), (LINEAR,), 1, 0, patience=10**6), "t"
+    )
     design = np.column_stack([inputs, np.ones(90)])[~held]
     best = np.linalg.lstsq(design, wanted[~held], rcond=None)[0]
     # kept is the step that was best on what was held out, hardly another one than the last
@@ -148,7 +150,9 @@ def test_a_network_that_could_have_made_the_samples_finds_them():
     inputs = np.random.default_rng(6).uniform(-1.0, 1.0, (200, 2))
     wanted = truth.values(inputs)
     held = np.arange(200) % 5 == 0
-    found = trained(inputs, wanted, held, Training((2, 3, 1), truth.kinds, 5, 0, 1000, 200), "t")
+    found = train_network(
+        inputs, wanted, held, Training((2, 3, 1), truth.kinds, 5, 0, 1000, 200), "t"
+    )
     assert found.held < 1e-4 * wanted.std()
 
 
@@ -157,7 +161,7 @@ def test_stopping_early_keeps_noise_out():
     inputs, clean, wanted, held = noisy_curve(75, 0.3)
     widths, kinds = (1, 12, 1), (LOG_SIGMOID, LINEAR)
     plan = Training(widths, kinds, restarts=3, seed=0)
-    kept = trained(inputs, wanted, held, plan, "t")
+    kept = train_network(inputs, wanted, held, plan, "t")
     last = plan.start(0)
     part = np.ascontiguousarray(inputs[~held]), np.ascontiguousarray(wanted[~held])
     train(*part, *part, last, np.array(widths), np.array(kinds), 2000, 2000, 0.0)
@@ -174,12 +178,12 @@ def test_samples_held_out_move_no_weight():
     """They say when to stop, nothing else: with no patience to lose, any will do."""
     inputs, _, wanted, held = noisy_curve(60, 0.1)
     one = Training((1, 4, 1), (LOG_SIGMOID, LINEAR), 1, 0, steps=0)
-    first = trained(inputs, wanted, held, one, "t")
+    first = train_network(inputs, wanted, held, one, "t")
     assert np.isfinite(first.held)
     found = [first.network.weights]
     moved = wanted.copy()
     moved[held] *= 1.0 + 1e-9
-    found.append(trained(inputs, moved, held, one, "t").network.weights)
+    found.append(train_network(inputs, moved, held, one, "t").network.weights)
     np.testing.assert_array_equal(*found)
 
 
@@ -188,9 +192,9 @@ def test_cholesky_solves_what_numpy_solves():
     half = rng.standard_normal((20, 12))
     matrix, wanted = half.T @ half, rng.standard_normal(12)
     factor, found = np.empty((12, 12)), np.empty(12)
-    assert solved(np.triu(matrix), 0.5, wanted, factor, found)
+    assert solve(np.triu(matrix), 0.5, wanted, factor, found)
     np.testing.assert_allclose((matrix + 0.5 * np.eye(12)) @ found, wanted, atol=1e-12)
-    assert not solved(-matrix, 0.0, wanted, factor, found)
+    assert not solve(-matrix, 0.0, wanted, factor, found)
 
 
 def test_least_squares_is_numpys_where_every_column_counts():
@@ -223,7 +227,7 @@ def test_the_errors_of_a_direction_undo_it(frontal):
     count = errors.shape[1]
     weights = np.column_stack([np.eye(count), np.zeros(count)]).ravel()
     handed = Network(weights, np.array([count, count]), np.array([LINEAR]))
-    found = Correction(handed, 2.0, 0.0, 0).corrected(base, errors / 2.0)
+    found = Correction(handed, 2.0, 0.0, 0).correct(base, errors / 2.0)
     np.testing.assert_allclose(found, sun, atol=1e-14)
 
 
@@ -295,7 +299,7 @@ def test_seeds_give_other_networks_and_one_seed_the_same():
 
 def test_poses_held_out_are_a_fifth_and_none_of_the_rim():
     sun = turntable(40, 5)
-    held = held_out(sun)
+    held = hold_out(sun)
     assert 0.1 < held.mean() < 0.2
     edge = np.abs(sun[:, :2] / sun[:, 2:]).max(axis=1) > np.tan(np.radians(39.0))
     assert not held[edge].any()
@@ -319,7 +323,7 @@ def test_fewer_poses_than_weights_are_refused():
     with pytest.raises(UnusableDataError, match="49 weights"):
         AxisNetworks().fit(quadrants(sun), sun)
     with pytest.raises(UnusableDataError, match="hold some out"):
-        trained(
+        train_network(
             np.zeros((9, 1)), np.zeros((9, 1)), np.zeros(9, bool), Training((1, 1), (0,), 1, 0), "t"
         )
 

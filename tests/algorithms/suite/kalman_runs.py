@@ -68,7 +68,7 @@ def drawn(
     for step in range(steps):
         if step:
             # the gyroscope's noise moves the truth: the rate is one for all runs
-            states = space.propagated(states, known[step], STEP_S)
+            states = space.propagate(states, known[step], STEP_S)
             states = space.moved(states, draws(rng, space.process_noise(STEP_S), runs))
         history.append(states)
         noise = draws(rng, space.measurement_noise(), runs)

@@ -17,7 +17,7 @@ def run(*arguments):
 
 def test_formats_and_http_say_the_same_as_the_record(atlas):
     document = json.loads(run("--format", "json").stdout)
-    assert document["items"] == record.shown() == atlas.walk("/v1/curves?limit=50")
+    assert document["items"] == record.published_curves() == atlas.walk("/v1/curves?limit=50")
     rows = list(csv.DictReader(io.StringIO(run("--format", "csv").stdout)))
     assert rows == atlas.table("/v1/curves")
     assert len(rows) == document["total"]
@@ -26,7 +26,7 @@ def test_formats_and_http_say_the_same_as_the_record(atlas):
 def test_the_table_shows_a_row_a_leader_and_a_dash_for_more_than_all_poses():
     shown = run("--dataset", "cmos-l-slit")
     assert shown.exit_code == 0
-    known = [row for row in record.shown() if row["dataset"] == "cmos-l-slit"]
+    known = [row for row in record.published_curves() if row["dataset"] == "cmos-l-slit"]
     assert len(known) == 3
     for row in known:
         (line,) = [
@@ -53,10 +53,10 @@ def test_they_are_narrowed_and_a_wrong_name_is_answered_with_the_nearest(atlas):
 
 
 def test_the_page_lists_every_leader_and_who_does_not_reach_its_floor(monkeypatch):
-    rows = record.shown()
-    lines = page.needed().splitlines()
+    rows = record.published_curves()
+    lines = page.poses_needed().splitlines()
     assert len(lines) == 2 + len(rows)
     short = [row for row in rows if row["reached"] < row["draws"]]
-    assert len(page.unreached().splitlines()) == (2 + len(short) if short else 1)
+    assert len(page.leaders_short_of_poses().splitlines()) == (2 + len(short) if short else 1)
     monkeypatch.setattr(page, "_rows", lambda: [row for row in rows if row not in short])
-    assert page.unreached().startswith("Every leader")
+    assert page.leaders_short_of_poses().startswith("Every leader")

@@ -18,11 +18,11 @@ from benchmark.contract import SPLITS, Cell
 from benchmark.datasets.coverage import coverage
 from benchmark.datasets.preview import preview_png
 from benchmark.datasets.preview_overlay import overlay_png
-from benchmark.plan.parts import installed
+from benchmark.plan.parts import installed_parts
 from benchmark.results.samples import Directions, SampleErrors
 from benchmark.results.store import Store
 from benchmark.running import pinning
-from benchmark.running.pinning import Pinned
+from benchmark.running.pinning import PinResult
 from benchmark.sweeps.albedo_influence import influence
 
 CUBE = "pd-maskless-cube"
@@ -144,7 +144,7 @@ def test_an_overlay_shows_what_an_extractor_finds(tmp_path):
     path = tmp_path / "lens.png"
     shown = sunatlas("preview", "ccd-lens", "--out", path, "--overlay", "hough-lines")
     assert shown.exit_code == 0
-    preset, extractor = datasets.get("ccd-lens"), installed().extractor("hough-lines")
+    preset, extractor = datasets.get("ccd-lens"), installed_parts().extractor("hough-lines")
     assert path.read_bytes() == overlay_png(preset, extractor, ["nominal"])
 
 
@@ -245,7 +245,7 @@ def test_pin_takes_every_data_set_by_default(published, monkeypatch):
 
     def update(store, workers, progress, *, datasets):
         asked.append((store.directory, workers, datasets))
-        return Pinned(store.directory, 3, 2, ("one that fails",), 1.5)
+        return PinResult(store.directory, 3, 2, ("one that fails",), 1.5)
 
     monkeypatch.setattr(pinning, "update", update)
     shown = sunatlas("pin", "--workers", 2)

@@ -16,7 +16,7 @@ from api.cli import command_line
 from api.cli.command_line import COMMANDS, DEBUG, app
 from api.deposit.bundle import DepositError
 from benchmark.contract import UnknownNameError
-from benchmark.results.tables import StoreError
+from benchmark.results.csv_tables import StoreError
 
 ROOT = Path(__file__).resolve().parents[3]
 SUNATLAS = (sys.executable, "-m", "api.cli.command_line")

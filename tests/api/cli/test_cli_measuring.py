@@ -17,12 +17,12 @@ from api.cli.command_line import app
 from api.cli.commands import leaderboard
 from benchmark.contract import ON_BENCH, Cell
 from benchmark.leaderboard.pages import FORMATS
-from benchmark.leaderboard.scope import wanted
+from benchmark.leaderboard.scope import published_scope
 from benchmark.plan.combinations import cells, scorable
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import times
-from benchmark.running.run import RunInterruptedError, stale
+from benchmark.running.runner import RunInterruptedError, stale
 from registry.catalogue import catalogue
 from registry.fidelity.grading import Fidelity
 from registry.fidelity.runnable import Gap
@@ -207,7 +207,7 @@ def test_the_leaderboard_is_shown_and_nothing_is_measured(untimed):
     best = listed("--each")
     assert {row["rank"] for row in best} == {1}
     assert {row["condition"] for row in best} == {"nominal"}
-    assert {row["dataset"] for row in best} == set(installed().presets)
+    assert {row["dataset"] for row in best} == set(installed_parts().presets)
     assert all(row["latency_us"] is None for row in best)
     whole = listed("--dataset", "ccd-orbit", "--condition", "stable")
     assert {(row["dataset"], row["condition"]) for row in whole} == {("ccd-orbit", "stable")}
@@ -297,7 +297,9 @@ def test_what_is_not_of_the_code_is_named(published):
 @pytest.mark.slow
 def test_an_up_to_date_record_is_left_as_it_is(published):
     held = Store(published).scores()
-    assert stale(wanted(held, installed()), Store(published)) == [], "run `make leaderboard`"
+    assert stale(published_scope(held, installed_parts()), Store(published)) == [], (
+        "run `make leaderboard`"
+    )
     before = {path: path.read_bytes() for path in published.rglob("*") if path.is_file()}
     shown = sunatlas("leaderboard", "update", "--workers", 1)
     assert shown.exit_code == 0, shown.stderr
@@ -328,11 +330,11 @@ def test_everything_else_is_derived(tmp_path, untimed):
 
 @pytest.mark.slow
 def test_times_are_of_this_machine_and_kept_beside_the_record(untimed, monkeypatch):
-    known = installed()
+    known = installed_parts()
     few = Parts(
         {"pd-maskless-cube": known.presets["pd-maskless-cube"]}, known.extractors, known.models
     )
-    monkeypatch.setattr(times, "installed", lambda: few)
+    monkeypatch.setattr(times, "installed_parts", lambda: few)
     first = sunatlas("leaderboard", "times", "--format", "json")
     assert first.exit_code == 0, first.stderr
     rows = json.loads(first.stdout)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from api.cli import prepared
+from api.cli import prepared_measurements
 from api.cli.working import working_directory
 from api.http.measurements import Measurements as Published
 from registry.studies import facts, facts_from
@@ -37,12 +37,12 @@ def made(monkeypatch, rows):
         calls.append(directory)
         return rows
 
-    monkeypatch.setattr(prepared, "_made", make)
+    monkeypatch.setattr(prepared_measurements, "_made", make)
     return calls
 
 
 def test_what_is_kept_is_what_was_made(made, rows):
-    first, again = prepared.measured(), prepared.measured()
+    first, again = prepared_measurements.measure(), prepared_measurements.measure()
     assert made == [working_directory()]
     assert again.rows == first.rows
     assert {repr(row) for row in again.rows} <= {repr(row) for row in rows}
@@ -50,33 +50,33 @@ def test_what_is_kept_is_what_was_made(made, rows):
 
 
 def test_it_is_made_anew_where_what_it_is_made_of_has_changed(made, tmp_path, monkeypatch):
-    prepared.measured()
+    prepared_measurements.measure()
     (tmp_path / "times.csv").write_text("dataset,extractor,model\n")
-    prepared.measured()
+    prepared_measurements.measure()
     assert len(made) == 2
     other = tmp_path / "published"
     (other / "scores").mkdir(parents=True)
-    monkeypatch.setattr(prepared, "_PUBLISHED", other)
-    prepared.measured()
+    monkeypatch.setattr(prepared_measurements, "_PUBLISHED", other)
+    prepared_measurements.measure()
     (other / "scores" / "x.csv").write_text("1")
-    prepared.measured()
-    prepared.measured()
+    prepared_measurements.measure()
+    prepared_measurements.measure()
     assert len(made) == 4
 
 
 @pytest.mark.parametrize("content", ["", "{", '{"key": 1}', "[]", "\xff"])
 def test_a_file_that_is_broken_is_made_anew(made, content):
-    path = working_directory() / prepared.FILE
+    path = working_directory() / prepared_measurements.FILE
     path.write_text(content, encoding="latin-1")
-    prepared.measured()
+    prepared_measurements.measure()
     assert len(made) == 1
-    assert json.loads(path.read_text())["key"] == prepared.digest(working_directory())
+    assert json.loads(path.read_text())["key"] == prepared_measurements.digest(working_directory())
 
 
 def test_where_nothing_can_be_kept_it_is_made_at_every_call(made, monkeypatch, tmp_path):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("SUNATLAS_STORE", str(tmp_path / "file" / "below"))
-    assert prepared.measured().rows == prepared.measured().rows
+    assert prepared_measurements.measure().rows == prepared_measurements.measure().rows
     assert len(made) == 2
 
 

@@ -22,7 +22,7 @@ from api.cli.command_line import app
 from api.cli.commands.serve import address, listen
 from files import manifest
 from registry import studies
-from survey_data import recorded_facts
+from survey_data import facts_manifest
 from survey_data.descriptor import DATA_DIRECTORY
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -137,13 +137,13 @@ def test_workers_add_up_their_counts_and_leave_nothing_behind(tmp_path):
 
 
 def test_damaged_facts_are_refused_in_one_line_before_anything_is_served(monkeypatch, tmp_path):
-    for name in (*recorded_facts.names(), manifest.FILE):
+    for name in (*facts_manifest.names(), manifest.FILE):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         shutil.copyfile(DATA_DIRECTORY / name, tmp_path / name)
     path = tmp_path / "attributes.csv"
     path.write_text(path.read_text().replace("accuracy_deg,0", "accuracy_deg,0x1", 1))
-    monkeypatch.setattr(recorded_facts.changes, "__defaults__", (tmp_path,))
-    monkeypatch.setattr(recorded_facts.require_unchanged, "__defaults__", (tmp_path,))
+    monkeypatch.setattr(facts_manifest.changes, "__defaults__", (tmp_path,))
+    monkeypatch.setattr(facts_manifest.require_unchanged, "__defaults__", (tmp_path,))
     monkeypatch.setattr(uvicorn.Server, "run", lambda *_, **__: pytest.fail("it serves"))
     studies._facts.cache_clear()
     asking.knowledge.cache_clear()

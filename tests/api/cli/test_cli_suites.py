@@ -14,9 +14,9 @@ from api.cli.command_line import app
 from benchmark.contract import Cell
 from benchmark.leaderboard.scope import UNITS, first
 from benchmark.plan.combinations import cells
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running.run import run
+from benchmark.running.runner import run
 from benchmark.suites import planning
 from files import manifest
 
@@ -35,14 +35,14 @@ def working(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.fixture
 def small(working: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Two small data sets with one model are all there is, and nothing is published."""
-    known = installed()
+    known = installed_parts()
     names = ("pd-maskless-cube", "qpd-single-aperture")
     few = Parts(
         {name: known.presets[name] for name in names},
         {name: known.extractors[name] for name in ("direct", "voltage-balance")},
         {name: known.models[name] for name in ("basic", "qpd")},
     )
-    monkeypatch.setattr(planning, "installed", lambda: few)
+    monkeypatch.setattr(planning, "installed_parts", lambda: few)
     monkeypatch.setattr(measuring, "PUBLISHED", working.parent / "published")
     return working
 
@@ -88,7 +88,7 @@ def test_a_suite_is_planned_run_and_then_there(small: Path) -> None:
 
 
 def test_a_plan_says_what_failed_and_how_long_its_like_took(small: Path) -> None:
-    wanted = first(planning.installed())
+    wanted = first(planning.installed_parts())
     store = Store(small)
     run(wanted, store, progress=lambda *_told: None)
     text = (store.scores_directory / "pd-maskless-cube.csv").read_text()
@@ -127,7 +127,7 @@ def test_a_wrong_call_is_one_line_that_says_what_is_right(
 def published(small: Path) -> Store:
     """A record of the small plan."""
     store = Store(measuring.PUBLISHED)
-    run(first(planning.installed()), store, progress=lambda *_told: None)
+    run(first(planning.installed_parts()), store, progress=lambda *_told: None)
     return store
 
 

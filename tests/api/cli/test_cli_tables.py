@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
-from api.cli.layout import Column, laid_out, wrapped
+from api.cli.layout import Column, laid_out, wrap
 
 #: The narrowest, which is the hardest; slow are what most terminals have, and others.
 WIDTHS = (40, *[pytest.param(width, marks=pytest.mark.slow) for width in (60, 80, 120, 200)])
@@ -119,12 +119,12 @@ def test_prose_is_wrapped_in_its_column_and_headings_by_words():
 @pytest.mark.parametrize("width", [20, 33, 47])
 def test_only_a_word_longer_than_a_line_is_divided_and_behind_a_mark(width):
     word = "https://sensors.example/a-long-address/of-a-page/with-many-parts-in-it"
-    lines = wrapped(f"see {word} there", width)
+    lines = wrap(f"see {word} there", width)
     assert max(map(len, lines)) <= width
     assert "".join(lines).replace("see", "").replace("there", "").replace(" ", "") == word
     assert all(line[-1] in "-/." for line in lines[1:-2])
-    assert wrapped("", width) == []
-    assert wrapped("x" * (2 * width), width) == ["x" * width] * 2
+    assert wrap("", width) == []
+    assert wrap("x" * (2 * width), width) == ["x" * width] * 2
 
 
 def test_empty_columns_are_left_out_where_there_are_rows():

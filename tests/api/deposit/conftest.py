@@ -14,13 +14,13 @@ from typing import Any
 
 import pytest
 
-from api.deposit.archives.contract import Published
+from api.deposit.archives.contract import PublishedRecord
 from api.deposit.archives.depositions import DepositionsArchive
 from api.deposit.archives.publishing import publish
 from api.deposit.archives.records import RecordsArchive
 from api.deposit.archives.server import Token, server_at
 from api.deposit.archives.transport import Transport
-from api.deposit.archives.uploading import Uploaded, upload
+from api.deposit.archives.uploading import UploadResult, upload
 from api.deposit.bundle import Bundle, build
 from tests.api.deposit import small_bundle
 from tests.api.deposit.standins.depositions import Depositions
@@ -90,12 +90,12 @@ class Journey:
         )
         return transport, (RecordsArchive if self.api == "records" else DepositionsArchive)
 
-    def upload(self, **options: Any) -> Uploaded:
+    def upload(self, **options: Any) -> UploadResult:
         transport, kind = self._client()
         with transport:
             return upload(kind(transport), self.archive.address, self.bundle, **options)
 
-    def publish(self, identifier: str) -> Published:
+    def publish(self, identifier: str) -> PublishedRecord:
         transport, kind = self._client()
         with transport:
             return publish(kind(transport), identifier, self.bundle)

@@ -10,10 +10,10 @@ from api.deposit.bundle import write_other_forms
 from api.deposit.citation import authors
 from api.deposit.crate import CRATE, crate
 from api.deposit.database import DATABASE
+from api.deposit.deposit_tables import MeasuredTable
 from api.deposit.identity import Identity, identity
 from api.deposit.package import DESCRIPTOR, package
 from api.deposit.packing import pack
-from api.deposit.tables import MeasuredTable
 from api.deposit.terms import terms
 from benchmark.datasets.checksums import contents, sha256, write_checksums
 

@@ -19,7 +19,7 @@ from pyarrow import parquet
 
 import survey_data
 from api.deposit import bundle as deposit
-from api.deposit.tables import NothingPublishedError
+from api.deposit.deposit_tables import NothingPublishedError
 from api.deposit.verification import verify
 from benchmark.claims.rules import claims
 from benchmark.datasets.checksums import CHECKSUMS, write_checksums
@@ -27,7 +27,7 @@ from benchmark.results import samples
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.sweeps import record as sweeps
 from files import atomic, manifest
-from registry.taxonomy import exported_row
+from registry.taxonomy import taxonomy_row
 from survey_data.editions import editions
 from tests.api.deposit.conftest import FRAMES
 
@@ -124,7 +124,7 @@ def test_the_tables_hold_what_their_sources_hold(built):
     measured = [dict(row) for row in package.get_resource("scores").read_rows()]
     for row, stored in zip(measured, Store(PUBLISHED).rows(unit=None), strict=True):
         assert set(row) == set(stored)
-        for column, value in exported_row(stored).items():
+        for column, value in taxonomy_row(stored).items():
             found = row[column]
             # An empty cell is text that is empty, or nothing at all.
             assert (found if found is None or isinstance(found, str) else type(value)(found)) in (

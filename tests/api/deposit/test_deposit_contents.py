@@ -16,7 +16,7 @@ import rispy
 
 from api.deposit.database import NameNotPlainError, plain, write_database
 from api.deposit.frames import LEAST, ROOM, sample_size
-from api.deposit.typed import CellError, typed_tables
+from api.deposit.typed_tables import CellError, typed_tables
 from benchmark.datasets.checksums import CHECKSUMS
 from benchmark.datasets.export_verification import verify as verify_export
 from benchmark.results.store import PUBLISHED, Store

@@ -17,9 +17,9 @@ from typer.testing import CliRunner
 
 from api.cli.command_line import app
 from api.deposit.archives.contract import ArchiveError, UnreachableError
-from api.deposit.archives.reading import LARGEST, ReplyError, received, understood
 from api.deposit.archives.refusals import reasons
 from api.deposit.archives.replies import Deposition, DepositionFiles, Entries, Record
+from api.deposit.archives.responses import LARGEST, ReplyError, parse_response, read_response
 from tests.api.deposit.conftest import only
 from tests.api.deposit.standins.replies import bomb, drip, more_replies, of, replies, reply
 from tests.api.deposit.standins.server import TOKEN
@@ -91,7 +91,7 @@ def test_a_bomb_is_unpacked_no_further_than_the_limit():
     assert len(packed) < LARGEST
     tracemalloc.start()
     with pytest.raises(ReplyError, match="more than 4,194,304 bytes"):
-        received(streamed(packed, Content_Encoding="gzip"))
+        read_response(streamed(packed, Content_Encoding="gzip"))
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert peak < 3 * LARGEST
@@ -102,7 +102,7 @@ def test_a_bomb_is_unpacked_no_further_than_the_limit():
 def test_what_is_within_the_limit_is_read_whole(size, packing):
     body = os.urandom(size // 2) + bytes(size - size // 2)
     sent = gzip.compress(body) if packing else body
-    assert received(streamed(sent, Content_Encoding=packing)) == body
+    assert read_response(streamed(sent, Content_Encoding=packing)) == body
 
 
 VALUES = st.recursive(
@@ -147,7 +147,7 @@ def test_any_json_whole_or_cut_is_read_or_refused_in_a_sentence(value, cut):
     for expected in (Record, Entries, Deposition, DepositionFiles):
         for text in (body, body[: len(body) - cut]):
             with suppress(ReplyError):
-                assert isinstance(understood(answer, text, expected), expected)
+                assert isinstance(parse_response(answer, text, expected), expected)
     assert isinstance(reasons(answer, body), str)
 
 

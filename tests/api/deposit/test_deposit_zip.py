@@ -11,7 +11,7 @@ import pytest
 
 from api.deposit import limits
 from api.deposit.archives import sealed as sealing
-from api.deposit.archives.sealed import BundleError, ChangedError, SealedFile, sealed
+from api.deposit.archives.sealed import BundleError, ChangedError, SealedFile, seal
 from api.deposit.packing import PackingError, check, pack
 from api.deposit.verification import verify
 from benchmark.datasets.checksums import write_checksums
@@ -109,7 +109,7 @@ def test_what_is_swapped_after_the_check_is_not_sent(journey, monkeypatch, which
 
 @only("records")
 def test_a_copy_that_is_changed_while_it_is_sent_never_arrives_whole(journey):
-    with sealed(journey.bundle) as bundle:
+    with seal(journey.bundle) as bundle:
         (readme,) = (file for name, file in bundle.files.items() if name == "README.md")
         assert b"".join(readme.chunks()) == (journey.bundle / "README.md").read_bytes()
         readme.path.write_bytes(b"# rEAD me\n")
@@ -124,7 +124,7 @@ def test_the_last_bytes_wait_for_the_sum_of_all(tmp_path, size):
     path = tmp_path / "file"
     content = os.urandom(size)
     path.write_bytes(content)
-    file = sealing._sealed(path)
+    file = sealing._seal(path)
     assert b"".join(file.chunks()) == content
     for other in (content + b"x", content[:-1], content[:-1] + b"\xff" * 2):
         if other == content:

@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 from api.docs import documentation
-from api.docs.documentation import PAGES, DocumentationError, regenerate, renewed
+from api.docs.documentation import PAGES, DocumentationError, regenerate, renew_parts
 
 PAGE = "prose\n<!-- generated: one -->\nold\n<!-- end: one -->\nmore prose\n"
 
@@ -43,17 +43,17 @@ def test_what_is_altered_is_noticed_and_renewed(tmp_path, monkeypatch, capsys):
 
 
 def test_prose_stays_and_the_part_is_replaced():
-    new = renewed("page.md", PAGE, {"one": lambda: "new\n"})
+    new = renew_parts("page.md", PAGE, {"one": lambda: "new\n"})
     assert new == "prose\n<!-- generated: one -->\n\nnew\n\n<!-- end: one -->\nmore prose\n"
-    assert renewed("page.md", new, {"one": lambda: "new"}) == new
+    assert renew_parts("page.md", new, {"one": lambda: "new"}) == new
 
 
 @pytest.mark.parametrize("parts", [("two",), ("one", "two"), ()])
 def test_a_part_that_is_missing_or_unknown_is_named(parts):
     with pytest.raises(DocumentationError, match=r"page\.md: expected"):
-        renewed("page.md", PAGE, {name: lambda: "" for name in parts})
+        renew_parts("page.md", PAGE, {name: lambda: "" for name in parts})
 
 
 def test_a_part_that_stands_twice_is_refused():
     with pytest.raises(DocumentationError, match="found one, one"):
-        renewed("page.md", PAGE + PAGE, {"one": lambda: ""})
+        renew_parts("page.md", PAGE + PAGE, {"one": lambda: ""})

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from algorithms.angles import sun_from_angles
-from api.docs import documentation, field_pictures, limits, model_pages
-from api.docs.field_pictures import Shown
+from api.docs import documentation, field_plots, limits, model_pages
+from api.docs.field_plots import PlottedPipeline
 from api.docs.knowledge import knowledge
 
-SHOWN = Shown("ccd-slit", "ppe", "slit")
+SHOWN = PlottedPipeline("ccd-slit", "ppe", "slit")
 
 
 def test_every_category_with_a_model_has_a_page_and_every_model_a_line_on_one():
-    listed = knowledge().catalogue.listing("model")
+    listed = knowledge().catalogue.implementations("model")
     texts = [
         (model_pages.DIRECTORY / model_pages.page_of(category)).read_text("utf-8")
         for category in model_pages.categories()
@@ -35,7 +35,7 @@ def test_a_category_without_a_page_starts_from_prose_or_a_bare_frame(tmp_path):
     assert frame.startswith("# Other things models\n")
     parts = {name: lambda: "(made)" for name in ("models", "measured", "picture")}
     for text in (page, frame):
-        assert documentation.renewed("page", text, parts).count("(made)") == 3
+        assert documentation.renew_parts("page", text, parts).count("(made)") == 3
 
 
 def test_an_example_that_fails_is_named(tmp_path):
@@ -50,7 +50,7 @@ def test_an_example_that_fails_is_named(tmp_path):
 
 def test_the_plane_keeps_the_angle_off_the_axis_and_the_side():
     vectors = np.array([[0, 0, 1.0], [1, 0, 0], [0, -1, 0], [0, np.sqrt(0.5), np.sqrt(0.5)]])
-    found = field_pictures.on_plane(vectors)
+    found = field_plots.on_plane(vectors)
     np.testing.assert_allclose(found, [[0, 0], [90, 0], [0, -90], [0, 45]], atol=1e-12)
 
 
@@ -62,24 +62,22 @@ def tilted(monkeypatch):
     sun = sun_from_angles(angles)
     given = sun_from_angles(angles + np.array([0.1, 0.0]))
     given[3] = np.nan
-    monkeypatch.setattr(
-        field_pictures, "residuals", lambda _: (sun, {"as_is": given, "perfect": sun})
-    )
+    monkeypatch.setattr(field_plots, "residuals", lambda _: (sun, {"as_is": given, "perfect": sun}))
 
 
 def test_a_picture_draws_every_answer_and_is_the_same_every_time(tilted):
-    drawn = field_pictures.picture(SHOWN)
-    assert drawn == field_pictures.picture(SHOWN)
+    drawn = field_plots.picture(SHOWN)
+    assert drawn == field_plots.picture(SHOWN)
     root = ET.fromstring(drawn)
     texts = [one.text for one in root.iter("{http://www.w3.org/2000/svg}text")]
-    assert f"as it is: {field_pictures.rms_deg(SHOWN)['as_is']:.2g} deg rms" in texts
+    assert f"as it is: {field_plots.rms_deg(SHOWN)['as_is']:.2g} deg rms" in texts
     assert "0.1 deg " in texts  # the bar
     longest = max(root.iter("{http://www.w3.org/2000/svg}path"), key=lambda one: len(one.get("d")))
     assert longest.get("d").count("M") >= 24
 
 
 def test_the_error_said_is_that_of_the_answers(tilted):
-    said = field_pictures.rms_deg(SHOWN)
+    said = field_plots.rms_deg(SHOWN)
     assert said["as_is"] == pytest.approx(0.1, rel=0.05)  # alpha turns less off beta = 0
     assert said["perfect"] == pytest.approx(0.0, abs=1e-12)
 

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from api.figures import svg
 from api.figures.catalogue import TITLES, evidence_map, figure
-from api.figures.lettering import shortened, text_width, wrapped
-from api.figures.ordering import crossings, ordered
-from api.figures.sankey_drawing import Mark, SankeyMarks, draw_sankey
+from api.figures.lettering import shorten, text_width, wrap
+from api.figures.ordering import crossings, order
 from api.figures.sankey_layout import sankey_layout
-from api.figures.sunburst_drawing import Sector, draw_sunburst
+from api.figures.sankey_svg import Mark, SankeyMarks, draw_sankey
+from api.figures.sunburst_svg import Sector, draw_sunburst
 from api.figures.svg import Drawing
 from registry.studies import facts
 from tests.api.figures.geometry import meeting, outside, shapes, width_of
@@ -146,7 +146,7 @@ def test_bands_fill_no_more_than_their_nodes_and_keep_to_their_proportion(
 
 @given(marks=flow())
 def test_ordering_keeps_the_nodes_and_never_crosses_more(marks: SankeyMarks) -> None:
-    found = ordered(marks.columns, marks.values)
+    found = order(marks.columns, marks.values)
     assert [sorted(column) for column in found] == [sorted(column) for column in marks.columns]
     assert crossings(found, marks.values) <= crossings(marks.columns, marks.values)
 
@@ -166,8 +166,8 @@ def test_crossings_are_those_of_every_pair_of_links(marks: SankeyMarks) -> None:
 def test_two_crossed_flows_are_uncrossed() -> None:
     links = {("a", "y"): 5.0, ("b", "x"): 3.0}
     assert crossings([["a", "b"], ["x", "y"]], links) == 15
-    assert ordered([["a", "b"], ["x", "y"]], links) == (("a", "b"), ("y", "x"))
-    assert ordered([["a", "b"], ["x", "y"]], links, pinned=[1]) == (("b", "a"), ("x", "y"))
+    assert order([["a", "b"], ["x", "y"]], links) == (("a", "b"), ("y", "x"))
+    assert order([["a", "b"], ["x", "y"]], links, pinned=[1]) == (("b", "a"), ("x", "y"))
 
 
 def sector(size: int, name: str, inside: tuple[Sector, ...] = ()) -> Sector:
@@ -205,7 +205,7 @@ def test_text_is_never_wider_than_said(text: str, size: float, bold: bool) -> No
 def test_wrapped_text_keeps_to_its_width_and_loses_nothing_silently(
     text: str, width: float, most: int
 ) -> None:
-    lines = wrapped(text, width, 12.0, most)
+    lines = wrap(text, width, 12.0, most)
     assert len(lines) <= most
     assert all(text_width(line, 12.0) <= width for line in lines)
     said = " ".join(lines)
@@ -213,6 +213,6 @@ def test_wrapped_text_keeps_to_its_width_and_loses_nothing_silently(
 
 
 def test_what_is_shortened_says_so() -> None:
-    assert shortened("Photodiode", 1000, 12) == "Photodiode"
-    assert shortened("Photodiode", 40, 12).endswith("…")
+    assert shorten("Photodiode", 1000, 12) == "Photodiode"
+    assert shorten("Photodiode", 40, 12).endswith("…")
     assert math.isclose(text_width("", 12), 0)

@@ -150,7 +150,7 @@ def test_scripts_that_stand_in_pages_become_files(tmp_path: Path) -> None:
 
 def test_a_guide_that_cannot_be_built_says_what_to_install(monkeypatch, tmp_path: Path) -> None:
     monkeypatch.setattr(site, "missing_builders", lambda: ("furo",))
-    assert site.kept() is None
+    assert site.cached_site() is None
     for build in (site.keep, lambda: site.build(tmp_path / "out")):
         with pytest.raises(site.GuideError, match=r"needs furo: pip install .*\[guide\]"):
             build()
@@ -176,7 +176,7 @@ def test_the_site_of_changed_pages_is_another_and_the_oldest_are_let_go(
     monkeypatch.setattr(site, "build", build)
     for number in range(site.KEPT + 2):
         (pages / "index.md").write_text(f"# {number}\n")
-        places.append(site.kept())
+        places.append(site.cached_site())
         assert site.keep() == ["a warning"]
         assert site.keep() == [], "built once"
     assert len(set(places)) == len(places)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import survey_data
-from registry.taxonomy import exported_row
+from registry.taxonomy import taxonomy_row
 
 TABLES = Path(survey_data.__file__).parent
 ATTRIBUTES = ("task", "error", "accuracy", "detector", "mask", "model", "extractor")
@@ -214,7 +214,7 @@ def test_the_taxonomy_is_the_table(atlas):
     for row in flat:
         assert title.get(row["section"], "") in row["section_name"]
     assert [{k: v for k, v in row.items() if k != "section_name"} for row in flat] == expected
-    exported = [{k: "" if v is None else v for k, v in exported_row(row).items()} for row in flat]
+    exported = [{k: "" if v is None else v for k, v in taxonomy_row(row).items()} for row in flat]
     assert atlas.table("/v1/taxonomy") == exported  # "None" is a value, and no empty cell
 
 

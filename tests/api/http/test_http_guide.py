@@ -16,7 +16,7 @@ def place(tmp_path, monkeypatch):
     (place / "secret.key").write_text("not served")
     (tmp_path / "beside.html").write_text("not of the site")
     (place / "out.html").symlink_to(tmp_path / "beside.html")
-    monkeypatch.setattr(site, "kept", lambda: place)
+    monkeypatch.setattr(site, "cached_site", lambda: place)
     guide._file.cache_clear()
     return place
 
@@ -46,7 +46,7 @@ def test_only_files_of_the_site_are_served(atlas, place, path):
 
 
 def test_until_it_is_built_a_page_says_how(atlas, tmp_path, monkeypatch):
-    monkeypatch.setattr(site, "kept", lambda: tmp_path / "not-yet")
+    monkeypatch.setattr(site, "cached_site", lambda: tmp_path / "not-yet")
     answer = atlas.get("/guide/")
     assert answer.status_code == 503
     assert answer.headers["cache-control"] == "no-store"
@@ -54,7 +54,7 @@ def test_until_it_is_built_a_page_says_how(atlas, tmp_path, monkeypatch):
 
 
 def test_where_it_cannot_be_built_a_page_says_how_to_install_it(atlas, monkeypatch):
-    monkeypatch.setattr(site, "kept", lambda: None)
+    monkeypatch.setattr(site, "cached_site", lambda: None)
     answer = atlas.get("/guide/models/lut.html")
     assert answer.status_code == 503
     assert site.INSTALL in answer.text

@@ -9,10 +9,10 @@ from api.http.service import create_app
 from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin
 from benchmark.metrics.score import METRICS
-from benchmark.plan.parts import installed
+from benchmark.plan.parts import installed_parts
 from benchmark.results.components import Components, ComponentsError, current
+from benchmark.results.csv_tables import text_of
 from benchmark.results.store import Store, StoreError
-from benchmark.results.tables import text_of
 from benchmark.running import times
 
 CMOS = "cmos-single-aperture"
@@ -57,7 +57,7 @@ def stored_pins():
         sizes = {"n": 200, "data_hash": "d" * 32, "head_hash": "h" * 32}
         told = {"observable": 190, "bound_deg": bound, "head_bound_deg": bound}
         return Pin(
-            dataset, condition, "test", installed().presets[dataset].version, **sizes, **told
+            dataset, condition, "test", installed_parts().presets[dataset].version, **sizes, **told
         )
 
     return [pin(CMOS, "nominal", 0.0015), pin(CMOS, "misaligned", 0.001), pin(QPD, "nominal", 0.05)]
@@ -65,7 +65,7 @@ def stored_pins():
 
 @pytest.fixture(scope="module")
 def components():
-    return current(installed()).only(stored_scores())
+    return current(installed_parts()).only(stored_scores())
 
 
 @pytest.fixture(scope="module")

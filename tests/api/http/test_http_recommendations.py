@@ -5,7 +5,7 @@ from collections import defaultdict
 from pathlib import Path
 
 import survey_data
-from registry.taxonomy import exported
+from registry.taxonomy import taxonomy_rows
 
 TABLES = Path(survey_data.__file__).parent
 LEVELS = ("task", "detector", "mask", "model", "extractor")
@@ -153,8 +153,8 @@ def test_csv_rows_are_the_calibrations_of_the_architectures(atlas):
             "mask": a["mask"],
             "advised": "true" if a["advised"] else "false",
             "calibration": str(one["rank"]),
-            "extractor": exported("extractor", one["extractor"]),
-            "model": exported("model", one["model"]),
+            "extractor": taxonomy_rows("extractor", one["extractor"]),
+            "model": taxonomy_rows("model", one["model"]),
         }
         for a in found
         for one in a["calibrations"]

@@ -8,7 +8,7 @@ from urllib.parse import quote
 import pytest
 from playwright.sync_api import Locator, expect
 
-from api.pages.terms import shown as named
+from api.pages.terms import display_text as named
 from tests.api.page.visiting import Visit, get_json
 
 pytestmark = pytest.mark.slow

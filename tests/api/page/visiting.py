@@ -69,7 +69,7 @@ def build_guide() -> None:
         env=os.environ, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, "")
-    place = site.kept()
+    place = site.cached_site()
     assert place is not None
     assert place.is_dir()
 

@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from api.pages.charts.lines import Line, LineChart
+from api.pages.plots.line_chart import Line, LineChart
 from tests.api.conftest import Client
 
 #: Places in a drawing: coordinates, radii and paths.

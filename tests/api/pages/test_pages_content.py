@@ -11,8 +11,8 @@ import pytest
 
 from api.http.service import create_app
 from api.pages import dataset, sensors
-from api.pages.numbers import counted, degrees, number, percent, times
-from api.pages.terms import explained, glossary, shown
+from api.pages.numbers import count_text, degrees, number, percent, times
+from api.pages.terms import display_text, explain_terms, glossary
 from benchmark.leaderboard.architectures import architectures
 from registry.studies import facts
 from tests.api.conftest import Client
@@ -92,8 +92,8 @@ def test_the_answer_reads_without_a_script(atlas: Client) -> None:
     asked = "task=Accuracy&survive=albedo"
     told = atlas.get(f"/v1/recommendations?{asked}&limit=500").json()
     page = text_of(atlas.get(f"/?{asked}").text)
-    assert counted(told["count"], "architecture") in page
-    assert counted(told["designs"], "calibration") in page
+    assert count_text(told["count"], "architecture") in page
+    assert count_text(told["designs"], "calibration") in page
     for architecture in told["architectures"][:10]:
         assert f"{architecture['detector']} + {architecture['mask']}" in page
         measured = architecture["best"]["measured"]
@@ -232,16 +232,16 @@ def test_every_abbreviation_of_the_taxonomy_is_told_in_the_glossary() -> None:
 
 
 def test_an_abbreviation_is_explained_at_its_first_place_and_no_part_of_a_name_is() -> None:
-    text = str(explained("RMS of RMS, not RMS-like nor <CCD>"))
+    text = str(explain_terms("RMS of RMS, not RMS-like nor <CCD>"))
     assert text.count('class="term"') == 2
     assert 'title="root mean square">RMS</a> of RMS, not RMS-like' in text
     assert "&lt;<a" in text
-    assert shown("None", "mask") == "no mask"
+    assert display_text("None", "mask") == "no mask"
 
 
 def test_what_stands_between_backquotes_is_code_and_nothing_else_of_a_text_changes() -> None:
-    assert explained("RMS of `RMS_deg`: ``a < b``, one ` alone") == (
-        f"{explained('RMS')} of <code>RMS_deg</code>: <code>a &lt; b</code>, one ` alone"
+    assert explain_terms("RMS of `RMS_deg`: ``a < b``, one ` alone") == (
+        f"{explain_terms('RMS')} of <code>RMS_deg</code>: <code>a &lt; b</code>, one ` alone"
     )
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from api.mathml import mathml
 from api.pages.formulas import tex
-from api.pages.methods import marked
+from api.pages.methods import mark_up
 from registry.catalogue import catalogue
 
 LITERAL = re.compile(r"``([^`]+)``")
@@ -122,10 +122,10 @@ def test_a_fraction_has_the_value_of_the_quotient(text: str) -> None:
 
 
 def test_a_text_links_the_studies_that_it_names_and_keeps_its_code() -> None:
-    said = marked("Implements: alg:BCM (Chang2008): ``x = a / b`` by `Some2099`, <not> ``track``")
+    said = mark_up("Implements: alg:BCM (Chang2008): ``x = a / b`` by `Some2099`, <not> ``track``")
     assert '(<a href="/studies/Chang2008">Chang2008</a>)' in said
     assert "<mfrac>" in said
-    assert marked("``a = b``, then").endswith("</math>,</span> then")
+    assert mark_up("``a = b``, then").endswith("</math>,</span> then")
     assert '<span title="alg:BCM">Algorithm 5</span>' in said
     assert 'alttext="x = a / b"' in said
     assert "<code>Some2099</code>, &lt;not&gt; <code>track</code>" in said

@@ -10,7 +10,7 @@ from urllib.parse import unquote, urlsplit
 import pytest
 from fastapi.routing import APIRoute
 
-from api.http.page import page_files
+from api.http.static_files import page_files
 from api.pages.rendering import NAVIGATION
 from api.pages.routers import ROUTERS
 from api.pages.serving import PageRouter

@@ -12,7 +12,7 @@ from benchmark.assessment import assess as assessment
 from benchmark.assessment import former
 from benchmark.assessment.assess import assess
 from benchmark.assessment.definitions import DEFINITIONS
-from benchmark.assessment.measures import SCORED, SWEPT, Unmeasured
+from benchmark.assessment.measures import SCORED, SWEPT, NotMeasuredError
 from benchmark.running.times import Time
 from benchmark.sweeps.record import RECORD, point_of
 from survey_data.tables import load
@@ -52,7 +52,7 @@ def test_what_a_table_does_not_claim_no_outcome_opposes():
     def judged(name):
         """(survey, measured) that the definition lets be compared."""
         pairs = [(survey, measured) for survey in (0, 1, 2) for measured in (0, 1, 2)]
-        return {pair for pair in pairs if not DEFINITIONS[name].undecided(*pair)}
+        return {pair for pair in pairs if not DEFINITIONS[name].why_undecided(*pair)}
 
     everything = {(survey, measured) for survey in (0, 1, 2) for measured in (0, 1, 2)}
     assert judged("High precision") == judged("Noise level agnostic") == everything
@@ -111,7 +111,7 @@ def test_ratios_are_of_the_named_points_and_nan_says_why():
 
 def test_a_series_without_a_bound_is_no_outcome():
     rows = [row("location", "middle", over_bound=None), row("location", "anywhere")]
-    with pytest.raises(Unmeasured, match="disc: no bound at location `middle`"):
+    with pytest.raises(NotMeasuredError, match="disc: no bound at location `middle`"):
         SWEPT["Feature location agnostic"](rows)
 
 
@@ -135,7 +135,7 @@ def test_gain_is_told_over_that_of_independent_features():
     assert gain == pytest.approx(4.0 / 5.0)
     refused = {**row("", ""), "series": "grid", "status": "refused", "n": 0, "rms": None}
     assert SWEPT["Multi-feature"]([row("noise", "5", 5.0), refused])[0][0] == 0.0
-    with pytest.raises(Unmeasured, match="does not read a single feature"):
+    with pytest.raises(NotMeasuredError, match="does not read a single feature"):
         SWEPT["Multi-feature"]([row("features", "25", 25.0)])
 
 
@@ -168,12 +168,12 @@ def test_a_design_that_was_refused_is_no_outcome():
     refused = {**row("size", "2"), "n": 0, "rms": None, "status": "refused", "reason": "too small"}
     rows = [refused, *(row("size", str(r), float(r)) for r in (4, 8))]
     assert not math.isnan(SWEPT["Resolution scaling"](rows)[0][0])
-    with pytest.raises(Unmeasured, match=r"no reference feature .* `tracking`"):
+    with pytest.raises(NotMeasuredError, match=r"no reference feature .* `tracking`"):
         SWEPT["Feature tracking"](rows)
-    with pytest.raises(Unmeasured, match="nothing is stored of the sweep `noise`"):
+    with pytest.raises(NotMeasuredError, match="nothing is stored of the sweep `noise`"):
         SWEPT["Robust to noise"]([])
     rows = [row("missing", "0.2"), {**refused, "sweep": "missing", "point": "0"}]
-    with pytest.raises(Unmeasured, match="disc: its design is refused at `0`"):
+    with pytest.raises(NotMeasuredError, match="disc: its design is refused at `0`"):
         SWEPT["Robust to missing features"](rows)
 
 
@@ -191,7 +191,7 @@ def test_applicability_takes_the_best_of_its_group_in_the_nominal_condition():
     assert best["Slit Mask"].value == 3.0 == best["Other Detector"].value
     assert best["Other Mask"].value == 0.1 == best["CCD Detector"].value
     assert best["Blooming features"].value == 0.1
-    with pytest.raises(Unmeasured, match="no published score"):
+    with pytest.raises(NotMeasuredError, match="no published score"):
         SCORED["CCD Detector"]([])
 
 
@@ -200,10 +200,10 @@ def test_a_mask_that_a_method_was_never_given_is_no_outcome_and_silence_is_one()
     value, why = only(SCORED["CMOS Detector"]([seldom]))
     assert math.isnan(value)
     assert why == "answers 40% of the Suns at most"
-    with pytest.raises(Unmeasured, match="no data set of this kind"):
+    with pytest.raises(NotMeasuredError, match="no data set of this kind"):
         SCORED["CCD Detector"]([seldom])
     refused = score(status="refused", availability=None, rms_deg=None, reason="too few lights")
-    with pytest.raises(Unmeasured, match="d with m: refused, too few lights"):
+    with pytest.raises(NotMeasuredError, match="d with m: refused, too few lights"):
         SCORED["CMOS Detector"]([refused])
 
 

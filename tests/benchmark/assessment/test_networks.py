@@ -54,7 +54,7 @@ def test_an_albedo_model_takes_off_what_no_correction_leaves(parts):
     rms = {}
     for method in ("no correction", "albedo model"):
         found = networks.METHODS[method](PRESET.geometry, known, asked)
-        rms[method] = networks._measured("orbits", "", method, found, asked).rms_deg
+        rms[method] = networks._measure("orbits", "", method, found, asked).rms_deg
     assert rms["albedo model"] < 0.2 * rms["no correction"]
     assert 1.0 < rms["no correction"] < 10.0  # degrees: what Soken2023 and Sozen2021 speak of
 
@@ -84,12 +84,12 @@ def test_errors_count_lit_samples_that_were_answered(parts):
     )
     ten = np.array([np.sin(np.radians(10.0)), 0.0, np.cos(np.radians(10.0))])
     found = np.array([ten, [0.0, 0.0, 1.0], ten, [np.nan] * 3])
-    row = networks._measured("orbits", "case", "method", found, part)
+    row = networks._measure("orbits", "case", "method", found, part)
     assert row.rms_deg == pytest.approx(np.sqrt(50.0))
     assert row.max_deg == pytest.approx(10.0)
     assert row.answered == pytest.approx(2.0 / 3.0)
     assert "rms 7.0711" in networks.line(row)
-    none = networks._measured("orbits", "case", "method", np.full((4, 3), np.nan), part)
+    none = networks._measure("orbits", "case", "method", np.full((4, 3), np.nan), part)
     assert np.isnan(none.rms_deg)
     assert none.answered == 0.0
 

@@ -61,5 +61,5 @@ def test_what_is_no_seed_is_refused(capsys):
 )
 def test_an_answer_that_hides_its_regret_is_found(measured, advice, told, kept):
     first = {"measured": measured, "advice": advice}
-    one = regret.Drawn({}, 0.1, 0.1, 0.1, first, {"measured": 1.0, "advice": told})
+    one = regret.DrawnRequirement({}, 0.1, 0.1, 0.1, first, {"measured": 1.0, "advice": told})
     assert one.kept == kept

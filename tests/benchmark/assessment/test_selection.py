@@ -7,15 +7,15 @@ import pytest
 
 from algorithms.angles import sun_from_angles
 from algorithms.models.non_physical.polynomial import AxisPolynomial
-from benchmark.assessment.selection import SETTINGS, WORST, Known, choices, chosen_and_best
-from benchmark.plan.parts import installed
+from benchmark.assessment.selection import SETTINGS, WORST, SelectionData, choices, chosen_and_best
+from benchmark.plan.parts import installed_parts
 
 
 def test_every_model_that_chooses_is_compared():
     """A setting that is None unless given is one that the samples choose."""
     choosing = {
         name
-        for name, model in installed().models.items()
+        for name, model in installed_parts().models.items()
         for field in getattr(model, "__dataclass_fields__", {}).values()
         if field.name in {"degree", "smoothing", "harmonics"} and field.default is None
     }
@@ -31,7 +31,9 @@ def test_a_choice_is_set_beside_the_best_degree_of_all():
     def read(a):  # beta on x, alpha on y, each bent
         return a[:, ::-1] + 1e-3 * a[:, ::-1] ** 3
 
-    told = Known(read(angles), sun_from_angles(angles), read(between), sun_from_angles(between))
+    told = SelectionData(
+        read(angles), sun_from_angles(angles), read(between), sun_from_angles(between)
+    )
     settings = [{"degree": 1}, {"degree": 7}]
     chosen, best, chosen_deg, best_deg = chosen_and_best(AxisPolynomial(), settings, told)
     assert best == {"degree": 7}

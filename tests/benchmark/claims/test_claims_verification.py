@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from benchmark.claims.ledger import LedgerError, ledger
-from benchmark.claims.outcomes import RECORD, read
+from benchmark.claims.outcomes import RECORD, read_outcomes
 from benchmark.claims.rules import claims
 from benchmark.claims.verification import contradictions
 from benchmark.experiments.claims import Claims
@@ -37,7 +37,9 @@ def first(document: Any) -> list[float]:
 
 
 def test_no_published_outcome_contradicts_its_plan() -> None:
-    found = {name: list(contradictions(claims()[name], one)) for name, one in read().items()}
+    found = {
+        name: list(contradictions(claims()[name], one)) for name, one in read_outcomes().items()
+    }
     assert {name for name, told in found.items() if told} == set()
     assert len(found) >= 50
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from algorithms.extractors.frames.centroid import BasicCentroid
-from benchmark.claims.experiments.frames.c46_hough_circle import corrupted
+from benchmark.claims.experiments.frames.c46_hough_circle import corrupt
 from benchmark.claims.experiments.frames.single_discs import (
     RADIUS_PX,
     Spots,
@@ -82,7 +82,7 @@ def test_trials_and_claims_draw_their_own(drawn: Spots) -> None:
 
 def test_two_thirds_of_the_corruption_are_lost_and_one_is_a_glint() -> None:
     many = single("test", 2)
-    spoilt = corrupted(many, 0.2, np.random.default_rng(1))
+    spoilt = corrupt(many, 0.2, np.random.default_rng(1))
     area = math.pi * RADIUS_PX**2
     inside = many.light > 0.5
     lost = np.where(inside, many.light - spoilt.light, 0.0).sum(axis=(1, 2)) / area
@@ -90,4 +90,4 @@ def test_two_thirds_of_the_corruption_are_lost_and_one_is_a_glint() -> None:
     assert float(lost.mean()) == pytest.approx(0.2 * 2.0 / 3.0, rel=0.1)
     glint = np.where(many.light < 1e-9, spoilt.light, 0.0).sum(axis=(1, 2)) / area
     assert 0.03 < float(glint.mean()) < 0.2 / 3.0 + 0.01
-    np.testing.assert_array_equal(corrupted(many, 0.0, np.random.default_rng(1)).light, many.light)
+    np.testing.assert_array_equal(corrupt(many, 0.0, np.random.default_rng(1)).light, many.light)

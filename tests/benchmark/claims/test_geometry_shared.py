@@ -10,12 +10,12 @@ import pytest
 from algorithms.angles import sun_from_tangents
 from algorithms.models.geometric.least_squares import LeastSquaresGeometry
 from benchmark.claims.experiments.geometry.alterations import (
-    altered,
-    assembled,
-    misaligned,
+    alter,
+    assemble,
+    misalign,
     sensor_of,
 )
-from benchmark.claims.experiments.geometry.held import Held
+from benchmark.claims.experiments.geometry.partly_fixed import PartlyFixedModel
 from benchmark.datasets.standard import qpd_single_aperture
 
 PRESET = qpd_single_aperture.PRESET
@@ -31,7 +31,7 @@ def _model() -> LeastSquaresGeometry:
 
 
 def test_scaled_misalignment_is_scaled_in_every_unit_and_leaves_the_focal_length() -> None:
-    twice = assembled(PRESET, partial(misaligned, times=2.0))
+    twice = assemble(PRESET, partial(misalign, times=2.0))
     for unit in (0, 3):
         once = sensor_of(PRESET, unit).camera.assembly
         more = sensor_of(twice, unit).camera.assembly
@@ -41,27 +41,27 @@ def test_scaled_misalignment_is_scaled_in_every_unit_and_leaves_the_focal_length
 
 
 def test_an_unchanged_sensor_sees_what_the_preset_sees() -> None:
-    same = altered(PRESET, lambda sensor: sensor).as_unit(2).generate("nominal", "test", 5)
-    known = PRESET.as_unit(2).generate("nominal", "test", 5)
+    same = alter(PRESET, lambda sensor: sensor).for_unit(2).generate("nominal", "test", 5)
+    known = PRESET.for_unit(2).generate("nominal", "test", 5)
     np.testing.assert_array_equal(same.sun, known.sun)
     np.testing.assert_array_equal(same.observations, known.observations)
 
 
 def test_an_altered_condition_is_the_only_one_and_keeps_the_drawing() -> None:
-    other = altered(PRESET, lambda sensor: sensor, condition="round-aperture")
+    other = alter(PRESET, lambda sensor: sensor, condition="round-aperture")
     assert other.conditions == ("round-aperture",)
     assert other.geometry_for("round-aperture").aperture_shape == "round"
 
 
 def test_with_nothing_free_the_drawing_answers() -> None:
-    held = Held(_model(), ()).fit(SPOTS, SUN)
+    held = PartlyFixedModel(_model(), ()).fit(SPOTS, SUN)
     # 2 mm drawn, 2.12 mm built: tangents come out 1.06 times as large
     wanted = sun_from_tangents(1.06 * TANGENTS)
     np.testing.assert_allclose(held.predict(SPOTS), wanted, atol=1e-12)
 
 
 def test_the_one_free_parameter_takes_up_its_error_and_no_other_moves() -> None:
-    held = Held(_model(), ("focal_length_error",)).fit(SPOTS, SUN)
+    held = PartlyFixedModel(_model(), ("focal_length_error",)).fit(SPOTS, SUN)
     (found,) = held.quality_.parameters
     assert (found.name, found.unit) == ("focal_length_error", "mm")
     assert found.value == pytest.approx(0.12, abs=1e-9)
@@ -69,11 +69,16 @@ def test_the_one_free_parameter_takes_up_its_error_and_no_other_moves() -> None:
 
 
 def test_a_wrong_parameter_held_leaves_the_error() -> None:
-    angles = Held(_model(), ("alpha_0", "beta_0")).fit(SPOTS, SUN)
+    angles = PartlyFixedModel(_model(), ("alpha_0", "beta_0")).fit(SPOTS, SUN)
     assert angles.quality_.residual_rms_deg > 0.5
-    assert Held(_model(), ("focal_length_error",)).fit(SPOTS, SUN).quality_.residual_rms_deg < 1e-6
+    assert (
+        PartlyFixedModel(_model(), ("focal_length_error",))
+        .fit(SPOTS, SUN)
+        .quality_.residual_rms_deg
+        < 1e-6
+    )
 
 
 def test_a_free_name_that_is_no_parameter_is_refused() -> None:
     with pytest.raises(ValueError, match=r"among focal_length_error, .*got \['gap'\]"):
-        Held(_model(), ("gap",))
+        PartlyFixedModel(_model(), ("gap",))

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from benchmark.claims.judgement import judged, verdict
+from benchmark.claims.judgement import judge, verdict
 from benchmark.claims.rules import Rule
 
 
@@ -18,7 +18,7 @@ def rule(relation, limit, upper=math.nan, scale="linear"):
 
 @given(st.lists(st.floats(-1e3, 1e3), min_size=5, max_size=12))
 def test_the_interval_is_scipys(values):
-    found = judged(rule(">", 0.0), values)
+    found = judge(rule(">", 0.0), values)
     mean, sem = np.mean(values), stats.sem(values)
     assert found.estimate == pytest.approx(mean)
     if sem > 1e-9:
@@ -28,8 +28,8 @@ def test_the_interval_is_scipys(values):
 
 @given(st.lists(st.floats(1e-3, 1e3), min_size=5, max_size=12), st.floats(0.1, 10.0))
 def test_ratios_are_averaged_so_that_turning_them_over_turns_the_verdict_over(values, limit):
-    one = judged(rule(">", limit, scale="log"), values)
-    other = judged(rule("<", 1.0 / limit, scale="log"), [1.0 / value for value in values])
+    one = judge(rule(">", limit, scale="log"), values)
+    other = judge(rule("<", 1.0 / limit, scale="log"), [1.0 / value for value in values])
     assert other.estimate == pytest.approx(1.0 / one.estimate)
     near = min(abs(math.log(one.low / limit)), abs(math.log(one.high / limit)))
     if near > 1e-9:
@@ -50,25 +50,25 @@ def test_ratios_are_averaged_so_that_turning_them_over_turns_the_verdict_over(va
     ],
 )
 def test_a_rule_holds_where_the_whole_interval_keeps_the_limit(relation, values, standing):
-    assert judged(rule(relation, 1.0), values).standing == standing
+    assert judge(rule(relation, 1.0), values).standing == standing
 
 
 def test_within_needs_both_ends():
     within = rule("within", -0.6, -0.4)
-    assert judged(within, [-0.5, -0.51, -0.49, -0.5, -0.5]).standing == "holds"
-    assert judged(within, [-0.3, -0.31, -0.29, -0.3, -0.3]).standing == "fails"
-    assert judged(within, [-0.6, -0.61, -0.59, -0.6, -0.6]).standing == "open"
+    assert judge(within, [-0.5, -0.51, -0.49, -0.5, -0.5]).standing == "holds"
+    assert judge(within, [-0.3, -0.31, -0.29, -0.3, -0.3]).standing == "fails"
+    assert judge(within, [-0.6, -0.61, -0.59, -0.6, -0.6]).standing == "open"
 
 
 def test_four_trials_decide_nothing_whatever_they_say():
-    found = judged(rule(">", 1.0), [9.0, 9.0, math.nan, 9.0, 9.0])
+    found = judge(rule(">", 1.0), [9.0, 9.0, math.nan, 9.0, 9.0])
     assert (found.standing, found.trials) == ("open", 4)
     assert math.isnan(found.estimate)
 
 
 def test_no_logarithm_of_less_than_nothing():
     with pytest.raises(ValueError, match=r"never negative; got -1"):
-        judged(rule(">", 1.0, scale="log"), [1.0, 2.0, -1.0, 2.0, 1.0])
+        judge(rule(">", 1.0, scale="log"), [1.0, 2.0, -1.0, 2.0, 1.0])
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_no_logarithm_of_less_than_nothing():
 )
 def test_verdicts(standings, expected):
     values = {"h": [2.0] * 5, "f": [0.5] * 5, "o": [0.1, 5.0, 0.2, 3.0, 0.4]}
-    assert verdict(judged(rule(">", 1.0), values[letter]) for letter in standings) == expected
+    assert verdict(judge(rule(">", 1.0), values[letter]) for letter in standings) == expected
 
 
 def test_nothing_has_no_verdict():

@@ -9,14 +9,21 @@ import pytest
 
 import survey_data
 from benchmark.claims import rules as claim_rules
-from benchmark.claims.experiment import Trial, found
-from benchmark.claims.judgement import judged
-from benchmark.claims.ledger import LedgerError, ledger, tally, unexplained
-from benchmark.claims.outcomes import RECORD, OutcomeError, outcome_of, plan_digest, read, row_of
+from benchmark.claims.experiment import Trial, find_experiments
+from benchmark.claims.judgement import judge
+from benchmark.claims.ledger import LedgerError, ledger, tally, unexplained_claims
+from benchmark.claims.outcomes import (
+    RECORD,
+    OutcomeError,
+    outcome_of,
+    plan_digest,
+    read_outcomes,
+    row_of,
+)
 from benchmark.claims.rules import DIRECTORY, VERDICTS, claims
 from benchmark.experiments.__main__ import main
 from benchmark.experiments.claims import Claims
-from benchmark.results.tables import StoreError
+from benchmark.results.csv_tables import StoreError
 from benchmark.running.experiment import due
 
 
@@ -40,7 +47,7 @@ def test_every_claim_of_the_survey_has_rules_and_trials():
 
 
 def test_every_claim_has_an_experiment_in_its_family():
-    for name, one in found().items():
+    for name, one in find_experiments().items():
         assert one.module.split(".")[-2] == claims()[name].family
 
 
@@ -76,7 +83,7 @@ def test_verdicts_follow_from_the_published_numbers():
 
 
 def test_what_is_not_reproduced_is_explained():
-    assert unexplained(ledger()) == ()
+    assert unexplained_claims(ledger()) == ()
 
 
 def test_a_second_method_is_named():
@@ -93,7 +100,7 @@ def test_tally_counts_every_claim_once():
 
 def test_an_outcome_is_read_as_it_was_written(tmp_path):
     keep(tmp_path, trials())
-    again = read(tmp_path)["C04"]
+    again = read_outcomes(tmp_path)["C04"]
     assert again.values == {"little": (1.0,) * 6, "before": (2.0,) * 6}
     assert again.lines["line"].across == (1.0, 2.0)
     assert again.lines["line"].median[0] == 0.5
@@ -145,7 +152,7 @@ def test_a_plan_is_of_rules_and_trials_and_of_no_words():
 def test_a_broken_file_is_named(tmp_path):
     (tmp_path / RECORD.name).write_text('{"schema":1,"claims":[{"claim": "C04"}]}')
     with pytest.raises(StoreError, match=r"claims\.json: claims, row 1: the member"):
-        read(tmp_path)
+        read_outcomes(tmp_path)
 
 
 def test_an_explanation_of_another_verdict_is_refused(tmp_path):
@@ -164,7 +171,7 @@ def test_what_was_not_measured_says_so(tmp_path):
     said.write_text("claim,verdict,says\n")
     entries = ledger(tmp_path, said)
     assert tally(entries)["not measured"] == 55
-    assert unexplained(entries) == ()
+    assert unexplained_claims(entries) == ()
 
 
 def test_the_second_method_disagrees_where_a_rule_comes_out_otherwise(tmp_path):
@@ -175,7 +182,7 @@ def test_the_second_method_disagrees_where_a_rule_comes_out_otherwise(tmp_path):
     said.write_text("claim,verdict,says\n")
     (entry,) = (e for e in ledger(tmp_path, said) if e.claim.id == "C04")
     assert entry.agrees is False
-    assert judged(entry.claim.rule("little"), [0.5] * 6).standing == "fails"
+    assert judge(entry.claim.rule("little"), [0.5] * 6).standing == "fails"
 
 
 def test_only_what_is_asked_for_is_measured(tmp_path, monkeypatch, capsys):

@@ -11,15 +11,15 @@ from benchmark.claims.experiments.fits import c05_overfitting as c05
 from benchmark.claims.experiments.fits import c07_periodic_error as c07
 from benchmark.claims.experiments.fits.poses import Poses
 from benchmark.claims.experiments.geometry import c09_main_error as c09
-from benchmark.claims.judgement import judged, verdict
+from benchmark.claims.judgement import judge, verdict
 from benchmark.claims.rules import claims
-from benchmark.claims.truth import told_truly
+from benchmark.claims.truth import with_true_directions
 from benchmark.datasets.standard import pd_maskless_cube, pd_orbit
 
 
 def standings(claim, trials):
     """How each rule of a claim stands after these trials, and the verdict."""
-    rules = [judged(rule, [t[rule.name] for t in trials]) for rule in claims()[claim].rules]
+    rules = [judge(rule, [t[rule.name] for t in trials]) for rule in claims()[claim].rules]
     return {one.rule.name: one.standing for one in rules}, verdict(rules)
 
 
@@ -53,12 +53,12 @@ def test_orders_overfit_a_line_read_with_noise():
 
 def test_a_series_that_takes_up_little_of_a_wave_refutes():
     """C07: half of the wave's error is a quarter of its square left; two thirds are not enough."""
-    assert c07.captured(waved=0.1, plain=0.1, unknowing=0.5) == 1.0
-    assert c07.captured(waved=0.5, plain=0.1, unknowing=0.5) == 0.0
-    assert c07.captured(waved=0.6, plain=0.1, unknowing=0.5) < 0.0
-    half = c07.captured(waved=math.hypot(0.1, 0.2), plain=0.1, unknowing=math.hypot(0.1, 0.4))
+    assert c07.capture(waved=0.1, plain=0.1, unknowing=0.5) == 1.0
+    assert c07.capture(waved=0.5, plain=0.1, unknowing=0.5) == 0.0
+    assert c07.capture(waved=0.6, plain=0.1, unknowing=0.5) < 0.0
+    half = c07.capture(waved=math.hypot(0.1, 0.2), plain=0.1, unknowing=math.hypot(0.1, 0.4))
     assert half == pytest.approx(0.75)
-    made = [{"captures": c07.captured(0.3, 0.1, 0.4 + 0.001 * n), "better": 0.9, "costs": 0.8}
+    made = [{"captures": c07.capture(0.3, 0.1, 0.4 + 0.001 * n), "better": 0.9, "costs": 0.8}
             for n in range(8)]  # fmt: skip
     assert standings("C07", made)[1] == "refuted"
     made = [{"captures": 0.95, "better": 1.1, "costs": 1.3}] * 8
@@ -99,7 +99,7 @@ def test_an_earth_that_costs_little_or_far_more_refutes():
 @pytest.mark.parametrize("preset", [pd_maskless_cube.PRESET, pd_orbit.PRESET])
 def test_true_directions_come_with_the_same_readings(preset):
     told, truly = (
-        one.generate("nominal", "calibration", 40) for one in (preset, told_truly(preset))
+        one.generate("nominal", "calibration", 40) for one in (preset, with_true_directions(preset))
     )
     np.testing.assert_array_equal(truly.observations, told.observations)
     assert np.abs(told.sun - told.true_sun).max() > 1e-5

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from benchmark import datasets
-from benchmark.datasets.benches import aligned_bench_deg, reported
+from benchmark.datasets.benches import aligned_bench_deg, report
 from benchmark.datasets.controls import board_facts, oracle
-from benchmark.datasets.corrected import corrected, correction, reference_condition
+from benchmark.datasets.corrected import correct, correction, reference_condition
 from benchmark.metrics.score import separation_deg
 
 
@@ -17,13 +17,13 @@ def slit():
 
 def test_benches_err_as_stated_over_many_draws_and_each_draw_is_its_own(slit):
     sun = slit.generate("nominal", "test", 100).sun
-    errors = [separation_deg(reported(slit, "nominal", sun, k), sun) for k in range(150)]
+    errors = [separation_deg(report(slit, "nominal", sun, k), sun) for k in range(150)]
     stated = np.hypot(slit.reference_error_deg("nominal"), np.sqrt(2) * 0.003)
     assert np.sqrt(np.mean(np.square(errors))) == pytest.approx(stated, rel=0.1)
     assert len({round(float(np.mean(e)), 9) for e in errors}) == 150
-    again = reported(slit, "nominal", sun, 7)
-    np.testing.assert_array_equal(again, reported(slit, "nominal", sun, 7))
-    other = reported(slit.as_unit(3), "nominal", sun, 7)
+    again = report(slit, "nominal", sun, 7)
+    np.testing.assert_array_equal(again, report(slit, "nominal", sun, 7))
+    other = report(slit.for_unit(3), "nominal", sun, 7)
     assert (again != other).any()
 
 
@@ -45,7 +45,7 @@ def test_a_board_states_no_rounding_as_what_alignment_leaves():
 def test_a_perfect_calibration_has_no_bench():
     cube = datasets.get("pd-maskless-cube")
     sun = cube.generate("ideal-calibration", "test", 30).sun
-    np.testing.assert_array_equal(reported(cube, "ideal-calibration", sun, 0), sun)
+    np.testing.assert_array_equal(report(cube, "ideal-calibration", sun, 0), sun)
     assert aligned_bench_deg(cube, "ideal-calibration", sun) == 0.0
 
 
@@ -73,10 +73,10 @@ def test_correction_takes_away_the_pattern_that_units_differ_by(slit):
     """Of two units under one light the corrected readings are alike but for noise."""
     raw, ready = [], []
     for number in (1, 2):
-        unit = slit.as_unit(number)
+        unit = slit.for_unit(number)
         samples = unit.generate("hot", "test", 20)
         raw.append(np.asarray(samples.observations, dtype=float))
-        ready.append(corrected(correction(unit, "hot"), samples).observations)
+        ready.append(correct(correction(unit, "hot"), samples).observations)
     # most pixels are in the dark: over the samples each reads its own dark signal
     size = [np.median(np.abs(np.median(one - two, axis=0))) for one, two in (raw, ready)]
     assert size[1] < 0.5 * size[0]

@@ -26,7 +26,7 @@ def off_deg(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 
 def test_a_bench_without_errors_reports_the_truth() -> None:
-    np.testing.assert_allclose(PERFECT.reported(SPHERE, "unit"), SPHERE, atol=4e-16)
+    np.testing.assert_allclose(PERFECT.report(SPHERE, "unit"), SPHERE, atol=4e-16)
     assert (PERFECT.light(SPHERE, "unit") == 1.0).all()
     assert PERFECT.systematic_deg(SPHERE) == 0.0
 
@@ -34,7 +34,7 @@ def test_a_bench_without_errors_reports_the_truth() -> None:
 def test_a_mounting_rotation_is_an_error_until_a_rotation_is_fitted() -> None:
     """Of length w about n the readings are off by w |n x s|; Kabsch takes it away to rounding."""
     bench = replace(PERFECT, mounting_deg=0.02)
-    said = bench.reported(GRID, "unit")
+    said = bench.report(GRID, "unit")
     vector = np.array(bench.drawn("unit").mounting_deg)
     expected = np.linalg.norm(np.cross(vector, GRID), axis=1)
     np.testing.assert_allclose(off_deg(said, GRID), expected, rtol=1e-3)  # w^2 / 2 of an axis
@@ -63,7 +63,7 @@ def test_the_table_is_that_of_its_rotations() -> None:
         * Rotation.from_euler("Y", read(inner, built.inner_deg)[:, None], degrees=True)
     )
     expected = turned.apply([0.0, 0.0, 1.0])
-    np.testing.assert_allclose(bench.reported(SPHERE, "unit"), expected, atol=1e-14)
+    np.testing.assert_allclose(bench.report(SPHERE, "unit"), expected, atol=1e-14)
 
 
 @pytest.mark.parametrize("poses", [9, 81])
@@ -72,7 +72,7 @@ def test_random_errors_of_the_axes_average_out_in_a_linear_fit(poses: int) -> No
     bench = replace(PERFECT, axis_random_deg=0.003)
     sun = np.repeat([[0.0, 0.0, 1.0]], poses, axis=0)
     trials = 400
-    means = [bench.reported(sun, trial, poses)[:, :2].mean(axis=0) for trial in range(trials)]
+    means = [bench.report(sun, trial, poses)[:, :2].mean(axis=0) for trial in range(trials)]
     ratio = np.degrees(np.std(means)) / (0.003 / math.sqrt(poses))
     # of a standard deviation from 800 numbers: 4 standard errors
     assert ratio == pytest.approx(1.0, abs=4 / math.sqrt(2 * 2 * trials))
@@ -84,7 +84,7 @@ def test_the_stated_reference_error_is_the_spread_of_benches(sun: np.ndarray) ->
         axis_random_deg=0.0, mounting_deg=0.01, squareness_deg=0.02, eccentricity_deg=0.015
     )
     few = sun[::6]
-    squares = [np.mean(off_deg(bench.reported(few, trial), few) ** 2) for trial in range(500)]
+    squares = [np.mean(off_deg(bench.report(few, trial), few) ** 2) for trial in range(500)]
     error = np.std(squares) / math.sqrt(len(squares))
     assert abs(np.mean(squares) - bench.systematic_deg(few) ** 2) < 4 * error
     assert bench.systematic_deg(few) == Bench(
@@ -164,7 +164,7 @@ def test_conditions_share_a_bench_and_units_do_not() -> None:
     assert np.array_equal(nominal.sun, noisy.sun)
     lamps = [preset.scene(c, "calibration").irradiance for c in ("nominal", "high-noise")]
     assert np.array_equal(*lamps)
-    other = preset.as_unit(2)
+    other = preset.for_unit(2)
     assert not np.array_equal(other.generate("nominal", "calibration", 9).sun, nominal.sun[:9])
     assert not np.array_equal(other.scene("nominal", "calibration").irradiance, lamps[0])
 

@@ -12,7 +12,7 @@ import pytest
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets import Condition, Preset, preset, units
 from benchmark.datasets.calibration import STANDARD_BENCH
-from benchmark.datasets.card import differences, merged, parameters_of
+from benchmark.datasets.card import differences, merge, parameters_of
 from benchmark.datasets.fields import AngleField, SphereField
 from benchmark.datasets.repeats import Repeats
 from benchmark.seeds import generator
@@ -93,7 +93,7 @@ def test_every_stream_is_named_after_what_it_is_for(condition: str, split: str) 
     light, stray = LIGHT.draw(count, generator(*names, "irradiance"))
     if split == "calibration":
         light = STANDARD_BENCH.light(sun, "fake-teller", 3, "bench")
-        told = STANDARD_BENCH.reported(sun, "fake-teller", 3, "bench")
+        told = STANDARD_BENCH.report(sun, "fake-teller", 3, "bench")
         np.testing.assert_array_equal(found.sun, told)
     origin = generator(*names, "window").integers(0, 1000, (count, 2))
     level = {"nominal": 1.0, "brighter": 2.0}[condition]
@@ -105,7 +105,7 @@ def test_every_stream_is_named_after_what_it_is_for(condition: str, split: str) 
 
 
 def test_another_unit_has_its_own_pattern_noise_and_assembly_and_the_same_suns() -> None:
-    one, other = fake(), fake().as_unit(7)
+    one, other = fake(), fake().for_unit(7)
     assert other.unit == 7
     assert other.fixed_pattern("nominal")["names"] == repr(("fake-teller", 3, "unit", 7))
     found, standard = other.generate("nominal", "test"), one.generate("nominal", "test")
@@ -124,13 +124,13 @@ def test_another_unit_has_its_own_pattern_noise_and_assembly_and_the_same_suns()
 
 def test_units_are_numbered_from_0_and_drawn_from_it() -> None:
     one = fake()
-    assert one.as_unit(0) is one
-    assert one.as_unit(1).unit == 1
+    assert one.for_unit(0) is one
+    assert one.for_unit(1).unit == 1
     for wrong in (-1, -2):
         with pytest.raises(ValueError, match=f"numbered from 0; got {wrong}"):
-            one.as_unit(wrong)
+            one.for_unit(wrong)
     with pytest.raises(ValueError, match="this is unit 1"):
-        one.as_unit(1).as_unit(0)
+        one.for_unit(1).for_unit(0)
 
 
 # Batches
@@ -296,7 +296,7 @@ def test_objects_that_name_another_type_stand_whole() -> None:
     other = {"a": {"type": "Y", "b": 1, "c": 3}, "d": {"e": 1, "f": 3}, "g": [2]}
     found = differences(base, other)
     assert found == {"a": {"type": "Y", "b": 1, "c": 3}, "d": {"f": 3}, "g": [2]}
-    assert merged(base, found) == other
+    assert merge(base, found) == other
     assert base["d"] == {"e": 1, "f": 2}, "what is merged into stays as it is"
 
 

@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 import pytest
 
-from api.pictures import published
+from api.previews import published_preview
 from benchmark import datasets
 from benchmark.datasets.preview import FIRST_SAMPLES, preview_png
 from benchmark.datasets.preview_sheet import Sheet, heat, number, span
@@ -38,7 +38,7 @@ def test_every_data_set_has_a_picture_with_much_on_it(name):
     assert drawn[:60].any(), "a title"
     assert not drawn[:, -8:].any(), "nothing runs off the edge"
     assert not drawn[-3:].any()
-    kept = read(published(name).read_bytes())
+    kept = read(published_preview(name).read_bytes())
     assert kept.shape == image.shape
     # other processors round a few samples another way; text is smoothed as libraries have it
     apart = np.abs(kept.astype(int) - image).max(axis=2)
@@ -165,7 +165,7 @@ def test_matplotlib_is_loaded_by_pictures_alone():
     code = (
         "import sys\n"
         "import api.http.service, benchmark.datasets.export, benchmark.datasets.preview_overlay\n"
-        "import benchmark.running.task, benchmark.sweeps.pictures, benchmark.experiments.sweeps\n"
+        "import benchmark.running.task, benchmark.sweeps.plots, benchmark.experiments.sweeps\n"
         "assert 'matplotlib' not in sys.modules\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, timeout=600)

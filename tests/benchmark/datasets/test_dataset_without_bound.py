@@ -15,7 +15,7 @@ from benchmark.leaderboard.pages import page, render
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts
 from benchmark.results.store import Store
-from benchmark.running import run as runner
+from benchmark.running import runner
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ import pytest
 from algorithms.contract import Observation
 from benchmark import datasets
 from benchmark.datasets import Samples, UnknownDatasetError, samples_hash
-from benchmark.datasets.card import differences, merged
+from benchmark.datasets.card import differences, merge
 from benchmark.datasets.conditions.full_frames import FullFramePreset
 from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 from benchmark.simulator.sensors.events import EventSensor
@@ -148,7 +148,7 @@ def test_differences_of_objects_are_taken_back_by_merging() -> None:
         {**base, "i": None},
         {**base, "i": {"j": 1}, "k": {"type": "X", "c": 2}},
     ):
-        assert merged(base, differences(base, other)) == other
+        assert merge(base, differences(base, other)) == other
     assert differences(base, {**base, "b": {"type": "X", "c": 3, "d": [1, 2]}}) == {"b": {"c": 3}}
     with pytest.raises(ValueError, match="no member of the first may be missing"):
         differences(base, {"a": 1})

@@ -85,13 +85,13 @@ def test_the_missing_field_is_as_strong_as_stated() -> None:
 
 
 def test_the_reference_in_orbit_is_off_by_noise_and_a_fixed_rotation() -> None:
-    noisy = replace(NONE, attitude_random_deg=0.02).reported(SPHERE, "unit")
+    noisy = replace(NONE, attitude_random_deg=0.02).report(SPHERE, "unit")
     error = np.degrees(np.linalg.norm(np.cross(noisy, SPHERE), axis=1))
     # of 600 numbers: 4 standard errors
     assert math.sqrt(np.mean(error**2) / 2) == pytest.approx(0.02, rel=4 / math.sqrt(1200))
     bias = replace(NONE, attitude_bias_deg=0.02)
     squares = [
-        np.mean(np.sum(np.cross(bias.reported(SPHERE[:30], trial), SPHERE[:30]) ** 2, axis=1))
+        np.mean(np.sum(np.cross(bias.report(SPHERE[:30], trial), SPHERE[:30]) ** 2, axis=1))
         for trial in range(500)
     ]
     stated = math.radians(bias.systematic_deg(SPHERE)) ** 2
@@ -106,7 +106,7 @@ def test_the_magnetometer_has_one_offset_on_both_splits_and_another_on_another_u
     found = [offset(biased, split) - offset(plain, split) for split in ("calibration", "test")]
     np.testing.assert_allclose(found[0], np.tile(found[0][0], (len(found[0]), 1)), atol=1e-9)
     np.testing.assert_allclose(found[1][0], found[0][0], atol=1e-9)
-    other = offset(biased.as_unit(1), "test") - offset(plain.as_unit(1), "test")
+    other = offset(biased.for_unit(1), "test") - offset(plain.for_unit(1), "test")
     assert np.abs(other[0] - found[0][0]).min() > 1.0
 
 

@@ -21,7 +21,7 @@ from benchmark.simulator.optics.plates import CoverGlass
 from benchmark.simulator.readout.detectors import DarkCurrent
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.code_dial import CodeDialSensor
-from benchmark.simulator.sensors.lines import LineSensor
+from benchmark.simulator.sensors.line_sensor import LineSensor
 
 GRID = np.array([-58.0, -41.3, -20.0, -0.7, 0.0, 3.1, 17.7, 35.2, 59.0])
 POINT = SolarDisc(diameter_deg=0.0)

@@ -14,7 +14,7 @@ from algorithms.pipeline import Pipeline
 from benchmark import datasets
 from benchmark.datasets.conditions.line_arrays import MISASSEMBLED
 from benchmark.plan import combinations as plan
-from benchmark.plan.parts import installed
+from benchmark.plan.parts import installed_parts
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.masks.apertures import Mask
 from benchmark.simulator.optics.assembly import Assembly
@@ -39,7 +39,7 @@ DIAL = "pd-code-dial"
 
 def error_deg(name: str, model: str, sensor: Any, built: Any = None) -> np.ndarray:
     """(N,) of the dataset's test directions, the pipeline calibrated on its calibration ones."""
-    preset, parts = datasets.get(name), installed()
+    preset, parts = datasets.get(name), installed_parts()
     extractor = "dial-tracks" if name == DIAL else "direct"
     pipeline = Pipeline.for_sensor(parts.extractor(extractor), parts.model(model), preset.geometry)
     pattern = sensor.fixed_pattern("test") if built is None else built
@@ -167,7 +167,7 @@ def test_models_of_other_bodies_say_why_they_cannot_read_a_dataset() -> None:
 
 
 def test_dark_dials_and_faces_are_not_found() -> None:
-    parts = installed()
+    parts = installed_parts()
     for name, extractor, model, width in (
         ("pva-maskless-sphere", "direct", "panoramic", 16),
         ("pd-maskless-pyramid", "direct", "pyramidal", 6),
@@ -186,7 +186,7 @@ def test_dark_dials_and_faces_are_not_found() -> None:
 
 def test_beyond_the_dial_nothing_is_made_up() -> None:
     """At 75 degrees the light falls beside the dial's last cell."""
-    parts, sensor = installed(), ideal_dial()
+    parts, sensor = installed_parts(), ideal_dial()
     preset = datasets.get(DIAL)
     pipeline = Pipeline.for_sensor(
         parts.extractor("dial-tracks"), parts.model("periodic"), preset.geometry

@@ -167,7 +167,7 @@ def test_drift_moves_the_spot_by_more_than_the_bound(made) -> None:
     preset = PRESETS["ccd-orbit"]
     nominal, stable = preset.condition("nominal").sensor, preset.condition("stable").sensor
     scene = preset.scene("nominal", "test")
-    moved = nominal.projected(scene).rims_mm[0] - stable.projected(scene).rims_mm[0]
+    moved = nominal.project(scene).rims_mm[0] - stable.project(scene).rims_mm[0]
     shift = moved.mean(axis=1)
     assert np.ptp(shift[:, 0]) > 1e-3
     assert np.ptp(shift[:, 0]) < 0.013  # a pixel

@@ -13,11 +13,11 @@ from algorithms.contract import FeatureKind
 from algorithms.discovery import discover_models
 from algorithms.models.filters import AssemblyDriftFilter, ExtendedKalmanFilter
 from algorithms.models.physics_informed.assembled_faces import AssembledFaces
-from algorithms.pipeline import extracted
+from algorithms.pipeline import extract_features
 from benchmark import datasets
 from benchmark.metrics.score import repeatability_deg
 from benchmark.plan.combinations import cells
-from benchmark.plan.parts import installed
+from benchmark.plan.parts import installed_parts
 from benchmark.simulator.flight.gyro import Gyro, rotation_vectors_deg
 from benchmark.simulator.flight.orbit import DAY_S, YEAR_DAYS
 
@@ -186,12 +186,13 @@ def test_the_split_repeat_is_no_sequence(flown) -> None:
 def test_a_drifting_assembly_behind_a_spot_is_no_worse_filtered_than_still() -> None:
     preset = datasets.get("ccd-orbit")
     calibration, test = (preset.generate("nominal", split) for split in ("calibration", "test"))
-    extractor = installed().extractor("bctm").for_sensor(preset.geometry)
+    extractor = installed_parts().extractor("bctm").for_sensor(preset.geometry)
     known, seen = (
-        extracted(extractor, part.observations, part.origin_px) for part in (calibration, test)
+        extract_features(extractor, part.observations, part.origin_px)
+        for part in (calibration, test)
     )
     eclipse = np.asarray(test.context["eclipse"])
-    static = installed().model("homography").for_sensor(preset.geometry, extractor.about.kind)
+    static = installed_parts().model("homography").for_sensor(preset.geometry, extractor.about.kind)
     static.fit(known, calibration.sun)
     single = separation_deg(static.predict(seen), test.sun)
     model = ExtendedKalmanFilter().fit(known, calibration.sun, calibration.context)

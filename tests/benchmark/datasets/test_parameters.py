@@ -10,7 +10,7 @@ import pytest
 
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.canonical import canonical_json
-from benchmark.datasets.parameters import described
+from benchmark.datasets.parameters import describe
 
 
 @dataclass(frozen=True)
@@ -21,18 +21,18 @@ class Part:
 
 
 def test_a_dataclass_names_its_type_and_tells_every_field() -> None:
-    assert described(Part()) == {"type": "Part", "size": 0.1 + 0.2, "names": ["a"], "derived": 7}
-    assert described({"part": Part(), 3: None}) == {"part": described(Part()), "3": None}
+    assert describe(Part()) == {"type": "Part", "size": 0.1 + 0.2, "names": ["a"], "derived": 7}
+    assert describe({"part": Part(), 3: None}) == {"part": describe(Part()), "3": None}
 
 
 def test_parameters_are_exact_where_digests_forgive_the_last_bits() -> None:
     nearly = Part(size=0.3)
-    assert described(Part()) != described(nearly)
+    assert describe(Part()) != describe(nearly)
     assert canonical_json(Part()) == canonical_json(nearly) == '{"names":["a"],"size":0.3}'
 
 
 def test_a_design_tells_its_first_fields_always_and_later_ones_where_there_are_any() -> None:
-    told = described(SensorGeometry(line_axes=("x",)))
+    told = describe(SensorGeometry(line_axes=("x",)))
     assert told.pop("type") == "SensorGeometry"
     assert told.pop("line_axes") == ["x"]
     assert set(told) == {
@@ -43,7 +43,7 @@ def test_a_design_tells_its_first_fields_always_and_later_ones_where_there_are_a
 
 
 def test_numpy_s_numbers_and_words_of_an_enumeration_are_plain() -> None:
-    found = described((np.float64(0.5), np.int64(2), Observation.FRAMES, True))
+    found = describe((np.float64(0.5), np.int64(2), Observation.FRAMES, True))
     assert found == [0.5, 2, str(Observation.FRAMES), True]
     assert [type(one) for one in found] == [float, int, str, bool]
     assert json.loads(json.dumps(found)) == found
@@ -52,9 +52,9 @@ def test_numpy_s_numbers_and_words_of_an_enumeration_are_plain() -> None:
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), np.float64("-inf")])
 def test_a_number_that_json_has_no_word_for_is_refused(value: float) -> None:
     with pytest.raises(ValueError, match=r"parameters must be finite; got (nan|inf|-inf)"):
-        described(Part(size=value))
+        describe(Part(size=value))
 
 
 def test_what_has_no_spelling_is_refused() -> None:
     with pytest.raises(TypeError, match="object has no canonical spelling"):
-        described([object()])
+        describe([object()])

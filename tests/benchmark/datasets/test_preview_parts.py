@@ -172,7 +172,7 @@ def test_frames_are_repeated_or_the_brightest_of_blocks_to_fit_a_tile(
     shape: tuple[int, int], fitted: tuple[int, int]
 ) -> None:
     frame = np.random.default_rng(1).random(shape)
-    found = preview._fitted(frame)
+    found = preview._fit(frame)
     assert found.shape == fitted
     assert found.max() == frame.max()
     if shape[0] > preview._TILE:

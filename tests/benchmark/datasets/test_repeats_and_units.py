@@ -9,7 +9,7 @@ import pytest
 
 from benchmark import datasets
 from benchmark.datasets.repeats import Repeats
-from benchmark.datasets.units import assembled, tolerance_of, tolerances
+from benchmark.datasets.units import assemble, tolerance_of, tolerances
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.sensors.frames import FrameSensor
 
@@ -76,31 +76,31 @@ def test_repeats_need_two_passes() -> None:
 
 def test_unit_0_is_the_dataset_itself() -> None:
     preset = PRESETS["cmos-single-aperture"]
-    assert preset.as_unit(0) is preset
+    assert preset.for_unit(0) is preset
     with pytest.raises(ValueError, match="numbered from 0; got -1"):
-        preset.as_unit(-1)
+        preset.for_unit(-1)
     with pytest.raises(ValueError, match="this is unit 2"):
-        preset.as_unit(2).as_unit(1)
+        preset.for_unit(2).for_unit(1)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", PRESETS)
 def test_another_unit_sees_the_same_suns_otherwise(name: str) -> None:
-    standard, other = PRESETS[name], PRESETS[name].as_unit(1)
+    standard, other = PRESETS[name], PRESETS[name].for_unit(1)
     one, two = (preset.generate("nominal", "test", 8) for preset in (standard, other))
     assert np.array_equal(one.sun, two.sun)
     assert one.observations.dtype == two.observations.dtype
     same = one.observations.tobytes() == two.observations.tobytes()
     assert not same
     assert other.geometry == standard.geometry, "the design is what it was"
-    again = PRESETS[name].as_unit(1).generate("nominal", "test", 8)
+    again = PRESETS[name].for_unit(1).generate("nominal", "test", 8)
     assert again.observations.tobytes() == two.observations.tobytes()
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", PRESETS)
 def test_the_last_condition_of_another_unit_can_be_generated(name: str) -> None:
-    preset = PRESETS[name].as_unit(3)
+    preset = PRESETS[name].for_unit(3)
     condition = preset.conditions[-1]
     sensor = preset.condition(condition).sensor
     for split in ("calibration", "test", "repeat"):
@@ -118,7 +118,7 @@ def test_errors_of_assembly_are_uniform_within_the_tolerance_of_unit_0() -> None
     built = sensor.camera.assembly
     ((place, limit),) = tolerances(sensor).items()
     assert place == "camera.assembly"
-    drawn = np.array([astuple(assembled(sensor, "test", n).camera.assembly) for n in range(2000)])
+    drawn = np.array([astuple(assemble(sensor, "test", n).camera.assembly) for n in range(2000)])
     height = 0.002 * sensor.camera.focal_length_mm
     expected = np.array([0.05, 0.05, 0.05, height, 0.004, 0.004])
     assert (np.abs(drawn) <= np.array(astuple(limit))).all()
@@ -131,7 +131,7 @@ def test_errors_of_assembly_are_uniform_within_the_tolerance_of_unit_0() -> None
 
 
 def test_conditions_of_equal_tolerance_see_one_unit() -> None:
-    preset = PRESETS["cmos-single-aperture"].as_unit(4)
+    preset = PRESETS["cmos-single-aperture"].for_unit(4)
     nominal, noisy, crooked = (
         preset.condition(name).sensor.camera.assembly
         for name in ("nominal", "high-noise", "misaligned")
@@ -147,7 +147,7 @@ def test_conditions_of_equal_tolerance_see_one_unit() -> None:
 def test_a_mask_that_lies_on_its_glass_takes_it_along() -> None:
     """The gap of pd-single-aperture is glass all through: a shorter one holds thinner glass."""
     preset = PRESETS["pd-single-aperture"]
-    cameras = [preset.as_unit(n).condition("nominal").sensor.camera for n in range(1, 30)]
+    cameras = [preset.for_unit(n).condition("nominal").sensor.camera for n in range(1, 30)]
     gaps = np.array([camera.height_mm for camera in cameras])
     glass = np.array([camera.glass.thickness_mm for camera in cameras])
     assert (gaps < 0.5).any()
@@ -168,4 +168,4 @@ def test_cards_say_what_is_repeated_and_the_tolerances() -> None:
     assert (card["splits"]["repeat"]["poses"], card["splits"]["repeat"]["samples"]) == (10, 50)
     limit = card["conditions"]["nominal"]["tolerances"]["camera.assembly"]
     assert limit["tilt_x_deg"] == pytest.approx(0.05 * np.sqrt(3))
-    assert PRESETS["cmos-multi-aperture"].as_unit(2).parameters("nominal")["unit"] == 2
+    assert PRESETS["cmos-multi-aperture"].for_unit(2).parameters("nominal")["unit"] == 2

@@ -13,7 +13,7 @@ from benchmark.error_budget import perfected
 from benchmark.error_budget.measure import directions, held
 from benchmark.error_budget.variants import SINGLE, VARIANTS
 from benchmark.metrics.score import separation_deg
-from benchmark.plan.parts import installed
+from benchmark.plan.parts import installed_parts
 from benchmark.running.task import Task, measure
 from benchmark.simulator.readout.references import References
 
@@ -124,7 +124,7 @@ def test_a_perfect_bench_says_where_the_sun_stands_and_shines_evenly():
 @pytest.fixture(scope="module")
 def quadrant():
     """The polynomial behind a quadrant: errors of every variant, beside the runner's score."""
-    parts = installed()
+    parts = installed_parts()
     preset, condition = _first("qpd-single-aperture")
     extractor, model = parts.extractor("voltage-balance"), parts.model("polynomial-2d")
     found = held(preset, condition, extractor, model, all_observable=True)
@@ -176,7 +176,7 @@ def test_a_perfect_part_never_makes_it_worse_beyond_chance(quadrant):
 
 
 def test_what_is_left_over_the_field_is_what_the_variants_err_by(quadrant):
-    parts = installed()
+    parts = installed_parts()
     preset, condition = _first("qpd-single-aperture")
     sun, answers = directions(
         preset, condition, parts.extractor("voltage-balance"), parts.model("polynomial-2d")
@@ -188,7 +188,7 @@ def test_what_is_left_over_the_field_is_what_the_variants_err_by(quadrant):
 
 @pytest.mark.slow
 def test_a_geometric_model_inverts_the_true_places_of_its_sensor():
-    parts = installed()
+    parts = installed_parts()
     preset, condition = _first("ccd-slit")
     found = held(
         preset,

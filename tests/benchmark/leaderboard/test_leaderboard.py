@@ -21,7 +21,7 @@ from benchmark.leaderboard.scope import UNITS
 from benchmark.leaderboard.update import update, write_page
 from benchmark.progress import silent
 from benchmark.results.store import Store
-from benchmark.running import generated
+from benchmark.running import condition_data
 from benchmark.running.pinning import UnversionedChangeError
 from benchmark.sweeps.record import swept
 
@@ -35,7 +35,7 @@ PLANNED = 8 + 2 * (UNITS - 1) + 2 * UNITS
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory, readings_only):
-    generated.forget()
+    condition_data.forget()
     directory = tmp_path_factory.mktemp("published")
     update(directory, progress=silent, parts=PARTS)
     return directory

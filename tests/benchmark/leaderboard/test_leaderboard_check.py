@@ -14,10 +14,10 @@ from benchmark.leaderboard.check import NATIVE, OLDER, Difference
 from benchmark.leaderboard.pages import PAGE
 from benchmark.leaderboard.update import update, write_page
 from benchmark.progress import silent
+from benchmark.results.csv_tables import StoreError
 from benchmark.results.store import Store
-from benchmark.results.tables import StoreError
-from benchmark.running import generated
-from benchmark.running.run import RunInterruptedError
+from benchmark.running import condition_data
+from benchmark.running.runner import RunInterruptedError
 from benchmark.sweeps.record import RECORD as SWEEPS
 
 pytestmark = pytest.mark.usefixtures("readings_only", "log")
@@ -28,7 +28,7 @@ SCORES = "scores/fake-diodes.csv"
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory, readings_only):
-    generated.forget()
+    condition_data.forget()
     directory = tmp_path_factory.mktemp("published")
     update(directory, progress=silent, parts=PARTS)
     return directory

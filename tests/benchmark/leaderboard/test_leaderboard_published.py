@@ -11,14 +11,13 @@ from benchmark.contract import ON_BENCH
 from benchmark.datasets import Preset
 from benchmark.leaderboard.board import board_of
 from benchmark.leaderboard.check import check, compare_scores
-from benchmark.leaderboard.scope import BEHIND, CLOSE, MOST, UNITS, UNITS_BEHIND, wanted
+from benchmark.leaderboard.scope import BEHIND, CLOSE, MOST, UNITS, UNITS_BEHIND, published_scope
 from benchmark.leaderboard.update import update
 from benchmark.plan import combinations as plan
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import silent
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running import generated, pinning
-from benchmark.running import run as runner
+from benchmark.running import condition_data, pinning, runner
 
 #: Standard errors by which the best of some hundred unbiased scores may fall below the bound.
 BY_CHANCE = 4.0
@@ -71,7 +70,7 @@ def files():
 
 def test_the_record_is_of_the_code_as_it_is(published):
     assert check(PUBLISHED, stored_only=True) == []
-    assert wanted(published.scores(), installed()) == published.scores().keys()
+    assert published_scope(published.scores(), installed_parts()) == published.scores().keys()
 
 
 def test_it_is_small_and_holds_nothing_that_can_be_derived():
@@ -180,7 +179,7 @@ def test_no_planned_pipeline_fails(published):
 
 def unreadable():
     """Datasets of which no installed pipeline can measure anything, by the plan's own reasons."""
-    parts = installed()
+    parts = installed_parts()
     why_not = {(i.dataset, i.extractor, i.model): i.reason for i in plan.incompatible()}
 
     def refused(dataset, extractor, model):
@@ -271,7 +270,7 @@ def test_no_pipeline_beats_the_cramer_rao_bound_beyond_statistical_error(source,
 def test_a_model_that_peeks_at_the_truth_is_caught(tmp_path, monkeypatch):
     """The same question asked of a leak: half of the noise is taken out with the true direction."""
     [cell] = plan.cells("qpd-single-aperture", "high-noise", "voltage-balance", "polynomial-2d")
-    model = installed().model("polynomial-2d")
+    model = installed_parts().model("polynomial-2d")
     truth = datasets.get("qpd-single-aperture").generate("high-noise", "test").sun
     honest = model.predict
 
@@ -282,7 +281,7 @@ def test_a_model_that_peeks_at_the_truth_is_caught(tmp_path, monkeypatch):
         return mixed / np.linalg.norm(mixed, axis=1, keepdims=True)
 
     monkeypatch.setattr(model, "predict", peek)
-    generated.forget()
+    condition_data.forget()
     store = Store(tmp_path)
     assert runner.run([cell], store).failed == ()
     assert len(beaten(store)) == 1

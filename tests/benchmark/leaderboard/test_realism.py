@@ -10,8 +10,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmark import datasets
-from benchmark.datasets.realism import COLUMNS, UNNAMED, RealismError, Standing, standing, standings
-from benchmark.leaderboard.realism import FACTOR, nearest_ratio, realism, unexplained
+from benchmark.datasets.realism import (
+    COLUMNS,
+    UNNAMED,
+    HardwareMatch,
+    RealismError,
+    hardware_match,
+    standings,
+)
+from benchmark.leaderboard.realism import FACTOR, nearest_ratio, realism, unexplained_differences
 from benchmark.metrics.rings import RINGS
 from benchmark.results.store import PUBLISHED, Store
 from survey_data.hardware import hardware
@@ -29,9 +36,9 @@ def row(**more: Any) -> dict[str, Any]:
     return {**given, **{ring.column: 0.05 for ring in RINGS}, **more}
 
 
-def fake(*ids: str, sentence: str = "") -> dict[str, Standing]:
+def fake(*ids: str, sentence: str = "") -> dict[str, HardwareMatch]:
     sensors = tuple(hardware()[name] for name in ids)
-    return {"fake": Standing("fake", sensors, "" if ids else "none", sentence)}
+    return {"fake": HardwareMatch("fake", sensors, "" if ids else "none", sentence)}
 
 
 def test_every_dataset_has_a_row_and_every_row_a_dataset() -> None:
@@ -42,7 +49,7 @@ def test_no_published_difference_is_unexplained() -> None:
     """Of the record as it is; a renewed one may ask for other sentences: they are named."""
     nominal = {name: datasets.get(name).conditions[0] for name in datasets.names()}
     table = realism(Store(PUBLISHED).rows(), nominal)
-    assert unexplained(table) == []
+    assert unexplained_differences(table) == []
 
 
 def test_a_sensor_stands_beside_data_of_its_own_kind() -> None:
@@ -65,7 +72,7 @@ def test_cards_say_what_a_dataset_stands_for() -> None:
     ideal = datasets.get("oi-maskless-pyramid").card()["stands_for"]
     assert ideal["sensors"] == []
     assert "Wang2019" in ideal["idealisation"]
-    assert standing("not-of-the-table") == Standing("not-of-the-table", (), UNNAMED, "")
+    assert hardware_match("not-of-the-table") == HardwareMatch("not-of-the-table", (), UNNAMED, "")
 
 
 def test_the_best_answering_pipeline_of_the_standard_unit_is_compared() -> None:
@@ -98,8 +105,11 @@ def test_a_difference_wants_a_sentence() -> None:
     for sentence, wanted in (("", True), ("Because.", False)):
         table = realism(beyond, NOMINAL, fake("C03", sentence=sentence))
         assert table[0]["unexplained"] is wanted
-        assert bool(unexplained(table)) is wanted
-    assert "fake: accuracy 2.02 times" in unexplained(realism(beyond, NOMINAL, fake("C03")))[0]
+        assert bool(unexplained_differences(table)) is wanted
+    assert (
+        "fake: accuracy 2.02 times"
+        in unexplained_differences(realism(beyond, NOMINAL, fake("C03")))[0]
+    )
     within = [row(rms_deg=0.9, repeatability_deg=0.1)]
     assert not realism(within, NOMINAL, fake("C03"))[0]["unexplained"]
     (ideal,) = realism(beyond, NOMINAL, fake())

@@ -14,10 +14,10 @@ from benchmark.leaderboard import scope
 from benchmark.leaderboard.scope import BEHIND, CLOSE, LEADING, UNITS, UNITS_BEHIND
 from benchmark.leaderboard.update import update
 from benchmark.plan.combinations import cells
-from benchmark.plan.parts import installed
+from benchmark.plan.parts import installed_parts
 from benchmark.progress import silent
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running import backend, generated
+from benchmark.running import backend, condition_data
 from benchmark.running.durations import Took
 
 NAMES = ("a", "b", "c")
@@ -97,7 +97,7 @@ def test_studies_of_another_architecture_do_not_count():
 
 
 def test_nothing_is_scored_twice_nor_outside_the_plan():
-    scores, parts = Store(PUBLISHED).scores(), installed()
+    scores, parts = Store(PUBLISHED).scores(), installed_parts()
     first, found = scope.first(parts), scope.followers(scores, parts)
     assert not set(first) & set(found)
     own = [cell for cell in (*first, *found) if cell.condition != ON_BENCH]
@@ -107,9 +107,9 @@ def test_nothing_is_scored_twice_nor_outside_the_plan():
 
 
 def test_each_extractor_is_seen_under_every_condition():
-    scores, parts = Store(PUBLISHED).scores(), installed()
+    scores, parts = Store(PUBLISHED).scores(), installed_parts()
     planned = {(cell.dataset, cell.extractor) for cell in scope.first(parts)}
-    found = {(c.dataset, c.condition, c.extractor) for c in scope.wanted(scores, parts)}
+    found = {(c.dataset, c.condition, c.extractor) for c in scope.published_scope(scores, parts)}
     for dataset, extractor in planned:
         assert {(dataset, c, extractor) for c in parts.presets[dataset].conditions} <= found
 
@@ -122,7 +122,7 @@ def test_a_worker_that_goes_on_at_once_measures_what_would_be_asked_for_later(
     parts = fake_plan.parts(presets=[Diodes(name=f"fake-{number}") for number in range(4)])
 
     def recorded(name):
-        generated.forget()
+        condition_data.forget()
         start = len(log())
         update(tmp_path / name, progress=silent, parts=parts)
         seen = [line.split()[1:3] for line in log()[start:] if line.startswith("generate")]
@@ -136,7 +136,7 @@ def test_a_worker_that_goes_on_at_once_measures_what_would_be_asked_for_later(
     at_once, order = recorded("at once")
     monkeypatch.setattr(
         backend,
-        "_measured",
+        "_measure",
         lambda bundle, _: ((task, backend.measure(task), Took(1, 1, 0.0)) for task in bundle),
     )
     later, staged = recorded("later")

@@ -12,7 +12,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 @pytest.fixture(scope="module")
 def rows():
-    return record.shown()
+    return record.published_curves()
 
 
 @pytest.mark.slow

@@ -21,8 +21,8 @@ from benchmark.learning_curves.record import RECORD
 from benchmark.plan.parts import Parts
 from benchmark.progress import silent
 from benchmark.results.components import current
+from benchmark.results.csv_tables import StoreError
 from benchmark.results.store import Store
-from benchmark.results.tables import StoreError
 from benchmark.running.experiment import due, update
 
 LEADER = Leader("fake-plane", 1, "nominal", "fake-readings", "fake-lines")

@@ -9,7 +9,7 @@ from benchmark.experiments.learning_curves import LearningCurves
 from benchmark.leaderboard.check import RELATIVE_TOLERANCE
 from benchmark.learning_curves.measure import DRAWS, UNITS
 from benchmark.learning_curves.record import RECORD
-from benchmark.plan.parts import installed
+from benchmark.plan.parts import installed_parts
 from benchmark.progress import silent
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running.experiment import due, measured
@@ -32,7 +32,7 @@ def cell(leader, unit=0):
 def test_they_are_of_the_code_and_of_the_leaders_as_they_are(rows):
     assert due(LearningCurves()) == [], "run `python -m benchmark.experiments learning_curves`"
     assert list(rows) == LearningCurves().cells()
-    assert {leader.dataset for leader in rows} == set(installed().presets)
+    assert {leader.dataset for leader in rows} == set(installed_parts().presets)
 
 
 def test_the_file_is_small():

@@ -192,8 +192,8 @@ def test_bounds_joined_are_those_of_all_their_samples() -> None:
     half = Bound(
         np.ones(2), np.ones(2), np.ones(2), np.array([True, False]), np.array([2.0, np.inf])
     )
-    whole = Bound.joined([half, half])
+    whole = Bound.join([half, half])
     assert whole.unit_angle_deg is not None
     assert whole.unit_angle_deg.tolist() == [2.0, math.inf, 2.0, math.inf]
     assert (whole.rms_deg, whole.unit_rms_deg) == (1.0, 2.0)
-    assert Bound.joined([half, replace(half, unit_angle_deg=None)]).unit_angle_deg is None
+    assert Bound.join([half, replace(half, unit_angle_deg=None)]).unit_angle_deg is None

@@ -13,7 +13,7 @@ from benchmark.metrics.paired import (
     groups,
     logarithms,
     over,
-    separated,
+    separate,
     smallest_ratio,
 )
 
@@ -43,7 +43,7 @@ def test_of_twenty_equal_methods_one_is_separated_on_at_most_one_board_in_twenty
 ):
     """At most 5 %: more than 5 % of 400 boards by what chance does to a true 5 % is a failure."""
     falsely = sum(
-        separated(logs, leader(logs)).any() for logs in boards(1, spread, shared, uneven=uneven)
+        separate(logs, leader(logs)).any() for logs in boards(1, spread, shared, uneven=uneven)
     )
     assert falsely <= stats.binom.ppf(0.99, BOARDS, LEVEL)
 
@@ -66,10 +66,10 @@ def test_a_difference_of_ten_percent_is_told_apart(spread, shared):
     """One method worse than the nineteen others, and one better than they are."""
     ratios = np.ones(METHODS)
     ratios[7] = 1.1
-    found = [separated(logs, leader(logs)) for logs in boards(3, spread, shared, ratios)]
+    found = [separate(logs, leader(logs)) for logs in boards(3, spread, shared, ratios)]
     assert np.mean([apart[7] for apart in found]) >= 0.9
     assert np.mean([np.delete(apart, 7).any() for apart in found]) <= LEVEL
-    found = [separated(logs, leader(logs)) for logs in boards(4, spread, shared, 1.1 / ratios)]
+    found = [separate(logs, leader(logs)) for logs in boards(4, spread, shared, 1.1 / ratios)]
     assert np.mean([apart.sum() for apart in found]) >= 0.9 * (METHODS - 1)
 
 
@@ -78,7 +78,7 @@ def test_the_smallest_ratio_is_told_apart_in_nine_cases_of_ten(spread):
     told = np.median([smallest_ratio(logs, leader(logs)) for logs in boards(5, spread)])
     ratios = np.ones(METHODS)
     ratios[3] = told
-    found = [separated(logs, 0)[3] for logs in boards(6, spread, ratios=ratios)]
+    found = [separate(logs, 0)[3] for logs in boards(6, spread, ratios=ratios)]
     assert 0.83 <= np.mean(found) <= 0.97
 
 

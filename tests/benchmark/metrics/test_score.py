@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from benchmark.metrics.score import METRICS, is_available, score, separation_deg, stored
+from benchmark.metrics.score import METRICS, is_available, score, separation_deg, store
 
 ANGLES = st.floats(1e-9, 179.0)
 NAN = float("nan")
@@ -304,9 +304,9 @@ def test_a_bound_of_zero_gives_no_ratio():
 
 
 def test_numbers_are_stored_with_five_significant_digits_and_rings_with_four():
-    assert stored(0.000123456789) == 0.00012346
-    assert stored(123456789.0) == 123460000.0
-    assert stored(float("inf")) is None
+    assert store(0.000123456789) == 0.00012346
+    assert store(123456789.0) == 123460000.0
+    assert store(float("inf")) is None
     sun = np.array([[0.0, 0.0, 1.0]] * 5)
     row = score(rotated(sun, [1, 0, 0], 1.23456789), sun, None, np.ones(5, bool)).row()
     assert (row["rms_deg"], row["rms_0_10_deg"]) == (1.2346, 1.235)

@@ -75,7 +75,7 @@ def test_differences_name_kind_and_component():
 
 
 def test_some_are_renewed_and_the_others_stay():
-    known = components().updated(replace(components(harness="x", d="y"), models={}))
+    known = components().update(replace(components(harness="x", d="y"), models={}))
     assert known.harness == "x"
     assert known.datasets["d"]["digest"] == "y"
     assert known.models == components().models

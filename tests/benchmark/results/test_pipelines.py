@@ -9,7 +9,7 @@ from benchmark.datasets.hazards import TRIED, hazards
 from benchmark.metrics.score import METRICS
 from benchmark.results.pipelines import pipelines
 from benchmark.results.store import Store
-from registry.measured import Measurements
+from registry.measured_pipelines import Measurements
 from registry.recommendation import recommend
 from registry.requirements import HAZARDS
 from registry.studies import facts

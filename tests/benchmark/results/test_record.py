@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from fake_results import cell, components, numbers, pin
 
-from benchmark.results import recorded, samples
-from benchmark.results.journal import chained
-from benchmark.results.record import Record, StoreLockedError, opened
+from benchmark.results import record_manifest, samples
+from benchmark.results.csv_tables import StoreError
+from benchmark.results.journal import chain_rows
+from benchmark.results.record import Record, StoreLockedError, open_record
 from benchmark.results.samples import CellErrors, Directions
 from benchmark.results.store import Store
-from benchmark.results.tables import StoreError
 
 
 @pytest.fixture
@@ -51,10 +51,10 @@ def test_errors_sample_by_sample_survive_a_kill_and_follow_their_scores(store):
         directions={one.dataset: Directions(np.eye(3)[:2], np.ones(2, bool), np.full(2, 0.01))},
     )
     Record(store).write(components())
-    assert samples.read(one.dataset, store.directory)["error_deg"].tolist() == [
+    assert samples.read_samples(one.dataset, store.directory)["error_deg"].tolist() == [
         *errors.error_deg.tolist()
     ]
-    assert not recorded.changes(store.directory, required=True)
+    assert not record_manifest.changes(store.directory, required=True)
     again = Record(store)
     again.drop(scores=lambda cell: cell != one)
     again.write(components())
@@ -97,7 +97,7 @@ def test_what_was_never_measured_is_not_known(store):
 
 
 def test_writing_makes_files_of_the_journal_and_forgets_it(store):
-    with opened(store) as record:
+    with open_record(store) as record:
         keep_all(record)
         record.write(components())
         assert not record.journal.exists()
@@ -110,7 +110,7 @@ def test_writing_makes_files_of_the_journal_and_forgets_it(store):
 
 def test_what_other_code_measured_is_left_out_where_the_new_one_says_anything_of_it(store):
     """One model's code changed and one of its cells was measured again: the other is of neither."""
-    with opened(store) as record:
+    with open_record(store) as record:
         record.keep(
             components(),
             scores={cell("a"): numbers(), cell("a", "other"): numbers(), cell("b"): numbers()},
@@ -118,7 +118,7 @@ def test_what_other_code_measured_is_left_out_where_the_new_one_says_anything_of
         )
         record.write(components())
     newer = components(a="newer")
-    with opened(store) as record:
+    with open_record(store) as record:
         record.keep(newer, scores={cell("a"): numbers(0.1)})
         record.write(newer.only([cell("a")]))
     assert {one: row["rms_deg"] for one, row in store.scores().items()} == {
@@ -129,7 +129,7 @@ def test_what_other_code_measured_is_left_out_where_the_new_one_says_anything_of
 
 
 def test_what_is_dropped_is_what_is_not_wanted(store):
-    with opened(store) as record:
+    with open_record(store) as record:
         keep_all(record)
         record.drop(scores=lambda one: one.model == "a", pins=lambda place: False)
         record.write(components())
@@ -139,7 +139,7 @@ def test_what_is_dropped_is_what_is_not_wanted(store):
 
 def test_numbers_that_change_are_written_though_what_they_are_of_does_not(store):
     """A failure tried again, and a row no longer wanted: the components are those of before."""
-    with opened(store) as record:
+    with open_record(store) as record:
         record.keep(
             components(),
             scores={
@@ -148,29 +148,29 @@ def test_numbers_that_change_are_written_though_what_they_are_of_does_not(store)
             },
         )
         record.write(components())
-    with opened(store) as record:
+    with open_record(store) as record:
         record.keep(components(), scores={cell("a"): numbers(0.25)})
         record.write(components())
     assert store.scores()[cell("a")]["rms_deg"] == 0.25
-    with opened(store) as record:
+    with open_record(store) as record:
         record.drop(scores=lambda one: one.condition == "c")
         record.write(components())
     assert set(store.scores()) == {cell("a")}
 
 
 def test_a_record_nothing_was_done_to_is_not_written_again(store, monkeypatch):
-    with opened(store) as record:
+    with open_record(store) as record:
         keep_all(record)
         record.write(components())
     monkeypatch.setattr(Store, "write", lambda *_arguments: pytest.fail("written"))
-    with opened(store) as record:
+    with open_record(store) as record:
         record.drop(scores=lambda one: True, pins=lambda one: True)
         record.keep(components())
         record.write(components().only([]))
 
 
 def test_the_journal_adds_to_the_store_and_loses_only_a_torn_last_line(store):
-    with opened(store) as record:
+    with open_record(store) as record:
         record.keep(components(), scores={cell("a"): numbers()})
         record.write(components())
     record = Record(store)
@@ -184,7 +184,7 @@ def test_the_journal_adds_to_the_store_and_loses_only_a_torn_last_line(store):
         cell("b"): 0.5,
     }
     assert torn.pins == {pin().place: pin()}
-    with opened(store) as record:
+    with open_record(store) as record:
         record.keep(components(), scores={cell("z"): numbers()})
     assert {one.model for one in Record(store).scores} == {"a", "b", "z"}
 
@@ -204,7 +204,7 @@ def test_a_journal_line_that_is_not_a_record_is_an_error(store, line, message):
     record.keep(components(), pins=[pin()])
     first = record.journal.read_text()
     if line.startswith("{") and line != "{":
-        line, _ = chained(line, json.loads(first)["chain"])
+        line, _ = chain_rows(line, json.loads(first)["chain"])
     record.journal.write_text(f"{first}{line}\n")
     with pytest.raises(StoreError, match=message):
         Record(store)
@@ -260,8 +260,8 @@ def test_every_line_is_json_of_its_own(store):
 def test_a_second_runner_is_refused_with_the_first_ones_process(store):
     hold = (
         "import sys; from benchmark.results.store import Store; "
-        "from benchmark.results.record import opened\n"
-        "with opened(Store(sys.argv[1])): print('held', flush=True); sys.stdin.read()"
+        "from benchmark.results.record import open_record\n"
+        "with open_record(Store(sys.argv[1])): print('held', flush=True); sys.stdin.read()"
     )
     with subprocess.Popen(
         [sys.executable, "-c", hold, str(store.directory)],
@@ -269,8 +269,8 @@ def test_a_second_runner_is_refused_with_the_first_ones_process(store):
         stdout=subprocess.PIPE,
     ) as other:
         assert other.stdout.readline() == b"held\n"
-        with pytest.raises(StoreLockedError, match=f"process {other.pid}"), opened(store):
+        with pytest.raises(StoreLockedError, match=f"process {other.pid}"), open_record(store):
             pass
         other.kill()
-    with opened(store) as record:
+    with open_record(store) as record:
         assert record.scores == {}, "the lock went with its process"

@@ -12,9 +12,9 @@ import pytest
 from pyarrow import parquet
 
 from benchmark.contract import Cell
-from benchmark.results import recorded, samples
+from benchmark.results import record_manifest, samples
+from benchmark.results.csv_tables import StoreError
 from benchmark.results.samples import CellErrors, Directions, SampleErrors
-from benchmark.results.tables import StoreError
 
 SUN = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.0, -0.8, 0.6], [1.0, 0.0, 0.0]])
 CELLS = [Cell("lamp", "nominal", *names) for names in (("b", "y", 0), ("a", "x", 3), ("a", "x", 0))]
@@ -38,7 +38,7 @@ def collected(*cells: Cell, factor: float = 1.0) -> SampleErrors:
 
 @pytest.fixture
 def record(tmp_path: Path) -> Path:
-    recorded.write(tmp_path, {"pins.csv": "dataset\n"}, start=True)
+    record_manifest.write(tmp_path, {"pins.csv": "dataset\n"}, start=True)
     collected().write(tmp_path, everything)
     return tmp_path
 
@@ -63,7 +63,7 @@ def test_pandas_reads_what_the_samples_are(record: Path) -> None:
 
 def test_what_is_read_equals_what_pandas_reads(record: Path) -> None:
     for read, name in (
-        (samples.read, "lamp"),
+        (samples.read_samples, "lamp"),
         (samples.read_directions, "lamp.directions"),
     ):
         expected = pd.read_parquet(record / "samples" / f"{name}.parquet")
@@ -92,17 +92,17 @@ def test_two_records_of_the_same_numbers_have_the_same_bytes(tmp_path: Path) -> 
 
 
 def test_the_manifest_names_a_changed_file(record: Path) -> None:
-    assert not recorded.changes(record, required=True)
+    assert not record_manifest.changes(record, required=True)
     path = record / "samples" / "lamp.parquet"
     path.write_bytes(path.read_bytes() + b"\n")
-    assert [str(p.file) for p in recorded.changes(record)] == ["samples/lamp.parquet"]
+    assert [str(p.file) for p in record_manifest.changes(record)] == ["samples/lamp.parquet"]
 
 
 def test_cells_not_measured_now_stay_and_unwanted_ones_go(record: Path) -> None:
-    before = samples.read("lamp", record)
+    before = samples.read_samples("lamp", record)
     now = collected(CELLS[0], factor=0.5)
     assert now.write(record, lambda cell: cell != CELLS[2])
-    found = samples.read("lamp", record)
+    found = samples.read_samples("lamp", record)
     assert found[["extractor", "unit"]].drop_duplicates().to_numpy().tolist() == [
         ["a", 3],
         ["b", 0],
@@ -112,16 +112,16 @@ def test_cells_not_measured_now_stay_and_unwanted_ones_go(record: Path) -> None:
     assert not now.write(record, lambda cell: cell != CELLS[2])
     assert SampleErrors().write(record, lambda _cell: False)
     assert samples.datasets(record) == ()
-    assert not recorded.changes(record, required=True)
+    assert not record_manifest.changes(record, required=True)
 
 
 def test_the_journal_brings_errors_and_directions_back() -> None:
     errors = CellErrors.of(ERRORS, FOUND)
-    again = CellErrors.read(errors.spelt())
+    again = CellErrors.read(errors.to_texts())
     np.testing.assert_array_equal(again.error_deg, errors.error_deg)
     np.testing.assert_array_equal(again.doubt, errors.doubt)
     directions = collected().directions["lamp"]
-    known = Directions.read(directions.spelt())
+    known = Directions.read(directions.to_texts())
     for name in ("sun", "observable", "bound_deg"):
         np.testing.assert_array_equal(getattr(known, name), getattr(directions, name))
 
@@ -132,16 +132,16 @@ def test_a_truncated_file_is_refused(record: Path, share: float) -> None:
     data = path.read_bytes()
     path.write_bytes(data[: int(len(data) * share)])
     with pytest.raises(StoreError, match=r"lamp\.parquet: not a whole Parquet file"):
-        samples.read("lamp", record)
+        samples.read_samples("lamp", record)
 
 
 def test_no_changed_byte_passes_unseen_or_crashes(record: Path) -> None:
     path = record / "samples" / "lamp.parquet"
-    data, before = path.read_bytes(), samples.read("lamp", record)
+    data, before = path.read_bytes(), samples.read_samples("lamp", record)
     for place in range(0, len(data), 3):
         path.write_bytes(data[:place] + bytes([data[place] ^ 0x55]) + data[place + 1 :])
         with suppress(StoreError):
-            assert samples.read("lamp", record).equals(before)
+            assert samples.read_samples("lamp", record).equals(before)
 
 
 def _written(record: Path, **changes: Any) -> None:
@@ -176,14 +176,14 @@ def test_other_types_and_values_are_refused(
 ) -> None:
     _written(record, **changes)
     with pytest.raises(StoreError, match=said):
-        samples.read("lamp", record)
+        samples.read_samples("lamp", record)
 
 
 def test_other_columns_are_refused(record: Path) -> None:
     path = record / "samples" / "lamp.parquet"
     pd.read_parquet(path).drop(columns="doubt").to_parquet(path)
     with pytest.raises(StoreError, match="expected the columns extractor"):
-        samples.read("lamp", record)
+        samples.read_samples("lamp", record)
 
 
 @pytest.mark.parametrize(
@@ -211,12 +211,12 @@ def test_cells_need_the_samples_that_directions_say(tmp_path: Path) -> None:
 
 
 def test_other_units_alone_are_kept_and_get_their_directions_later(tmp_path: Path) -> None:
-    recorded.write(tmp_path, {"pins.csv": "dataset\n"}, start=True)
+    record_manifest.write(tmp_path, {"pins.csv": "dataset\n"}, start=True)
     other, standard = Cell("lamp", "nominal", "a", "x", 3), Cell("lamp", "nominal", "a", "x", 0)
     first = collected(other)
     first.directions.clear()
     assert first.write(tmp_path, everything)
-    assert not samples.is_there("lamp", tmp_path)
+    assert not samples.has_samples("lamp", tmp_path)
     assert collected(standard).write(tmp_path, everything)
-    assert samples.is_there("lamp", tmp_path)
-    assert set(samples.read("lamp", tmp_path)["unit"]) == {0, 3}
+    assert samples.has_samples("lamp", tmp_path)
+    assert set(samples.read_samples("lamp", tmp_path)["unit"]) == {0, 3}

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from benchmark.datasets.pins import alike
 from benchmark.metrics.score import METRICS
 from benchmark.results.components import ComponentsError
+from benchmark.results.csv_tables import StoreError, format_cell, number, read_csv, text_of
 from benchmark.results.store import NUMBERS, PUBLISHED, Store, UnknownFieldError
-from benchmark.results.tables import StoreError, number, read, spelt, text_of
 
 TEXT = st.text(st.characters(exclude_categories=("Cc", "Cs", "Zl", "Zp"))).map(
     lambda text: " ".join(text.split())
@@ -73,7 +73,7 @@ def test_what_is_written_is_read_back_sorted_whatever_the_order(store, tmp_path)
 def test_a_table_reads_back_every_number_and_word(rows, tmp_path_factory):
     path = tmp_path_factory.mktemp("table") / "t.csv"
     path.write_text(text_of(["a", "b", "text"], rows), encoding="utf-8", newline="")
-    assert [row for _, row in read(path, {"a": number, "b": number, "text": str})] == rows
+    assert [row for _, row in read_csv(path, {"a": number, "b": number, "text": str})] == rows
 
 
 @pytest.mark.parametrize(
@@ -92,7 +92,7 @@ def test_a_table_reads_back_every_number_and_word(rows, tmp_path_factory):
     ],
 )
 def test_a_number_is_spelt_with_the_fewest_digits_that_read_back(value, text):
-    assert spelt(value) == text
+    assert format_cell(value) == text
     assert value is None or isinstance(value, str) or float(text) == value
 
 

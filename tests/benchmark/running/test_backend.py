@@ -16,7 +16,7 @@ from benchmark.contract import Cell, UnknownNameError
 from benchmark.plan.combinations import cells
 from benchmark.progress import silent
 from benchmark.results.store import Store
-from benchmark.running import backend, run
+from benchmark.running import backend, runner
 from benchmark.running.cluster import WorkerLostError
 from benchmark.running.task import Task, measure
 
@@ -110,7 +110,7 @@ def test_a_scheduler_is_asked_though_there_is_one_worker_and_one_task(
         yield Cluster()
         asked.append("left")
 
-    monkeypatch.setattr(backend, "connected", connected)
+    monkeypatch.setattr(backend, "connect", connected)
     some = tasks(1)
     assert list(backend.outcomes(some, 1, "tcp://somewhere:1")) == some == here
     assert asked == ["tcp://somewhere:1", 1, "left"]
@@ -124,10 +124,10 @@ def test_a_worker_of_this_machine_that_is_killed_ends_the_run_by_name(
     parts = fake_cluster.parts(deadly=str(deadly))
     wanted = cells(parts=parts)
     with pytest.raises(WorkerLostError, match="a worker process was killed"):
-        run.run(wanted, store, 2, silent, parts=parts)
+        runner.run(wanted, store, 2, silent, parts=parts)
     deadly.unlink()
-    kept = len(wanted) - len(run.stale(wanted, store, parts=parts))
-    assert run.run(wanted, store, 2, silent, parts=parts).computed == len(wanted) - kept
+    kept = len(wanted) - len(runner.stale(wanted, store, parts=parts))
+    assert runner.run(wanted, store, 2, silent, parts=parts).computed == len(wanted) - kept
     assert len(Store(store.directory).rows()) == len(wanted)
 
 
@@ -138,8 +138,8 @@ def test_a_cell_of_what_is_not_installed_is_named_before_anything_is_done(
     known = Cell("fake-diodes", "quiet", "fake-currents", "fake-least-squares")
     wrong = replace(known, **{name: "fake-nothing"})
     parts, store = fake_plan.parts(), Store(tmp_path / "store")
-    assert run.stale([known], store, parts=parts) == [known]
-    for call in (run.stale, run.run):
+    assert runner.stale([known], store, parts=parts) == [known]
+    for call in (runner.stale, runner.run):
         with pytest.raises(UnknownNameError, match=f"no {name} named 'fake-nothing'"):
             call([known, wrong], store, parts=parts)
     assert not store.directory.exists()
@@ -159,7 +159,7 @@ def test_a_task_is_of_the_standard_unit_unless_it_says_otherwise() -> None:
 def test_cells_are_measured_once_each_and_the_time_is_told(tmp_path: Any) -> None:
     cell = Cell("fake-diodes", "quiet", "fake-currents", "fake-least-squares")
     store = Store(tmp_path)
-    done = run.run([cell, cell], store, progress=silent, parts=fake_plan.parts())
+    done = runner.run([cell, cell], store, progress=silent, parts=fake_plan.parts())
     assert (done.planned, done.already_stored, done.computed) == (1, 0, 1)
     assert 0.0 < done.seconds < 600.0
     assert done.store == tmp_path

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from algorithms.pipeline import Pipeline, extracted
+from algorithms.pipeline import Pipeline, extract_features
 from benchmark import datasets
 from benchmark.contract import ON_BENCH
-from benchmark.datasets.corrected import corrected, correction
-from benchmark.plan.parts import installed
+from benchmark.datasets.corrected import correct, correction
+from benchmark.plan.parts import installed_parts
 from benchmark.results.store import PUBLISHED, Store
 
 Array = NDArray[np.float64]
@@ -72,15 +72,15 @@ def mean_square(errors: Array) -> float:
 def on_drawn_benches(dataset: str, extractor_name: str, model_name: str) -> tuple[float, ...]:
     """Mean squares of a pipeline: own error, error on drawn benches, error of those benches."""
     rng = np.random.default_rng([len(dataset), len(model_name), 33])
-    parts, preset = installed(), datasets.get(dataset).as_unit(0)
+    parts, preset = installed_parts(), datasets.get(dataset).for_unit(0)
     condition = preset.conditions[0]
     geometry = preset.geometry_for(condition)
     by = correction(preset, condition)
     extractor = parts.extractor(extractor_name).for_sensor(geometry)
     known, test = (preset.generate(condition, name) for name in ("calibration", "test"))
     features, asked = (
-        extracted(extractor, seen.observations, seen.origin_px)
-        for seen in (corrected(by, known), corrected(by, test))
+        extract_features(extractor, seen.observations, seen.origin_px)
+        for seen in (correct(by, known), correct(by, test))
     )
     truth, sun = np.asarray(known.truth), np.asarray(test.sun)
 

@@ -24,7 +24,7 @@ from benchmark.results.store import Store
 from benchmark.running import cluster as dask_cluster
 from benchmark.running.cluster import ClusterError, OtherCodeError, WorkerLostError
 from benchmark.running.planned import tasks_of
-from benchmark.running.run import RunInterruptedError, Summary, run
+from benchmark.running.runner import RunInterruptedError, Summary, run
 
 PLANNED = 10  # one condition of the first data set, two of the others, two extractors on each
 
@@ -204,9 +204,9 @@ def test_what_measures_a_task_is_of_its_data_and_methods_alone() -> None:
     parts = fake_cluster.parts()
     of_a, *others = tasks_of(cells("fake-a", parts=parts), parts, {})
     assert dask_cluster.code_of([of_a]) == dask_cluster.code_of([of_a, *others])
-    from benchmark.plan.parts import installed
+    from benchmark.plan.parts import installed_parts
 
-    real = tasks_of(cells("pd-maskless-cube", "nominal"), installed(), {})
+    real = tasks_of(cells("pd-maskless-cube", "nominal"), installed_parts(), {})
     assert dask_cluster.code_of(real) != dask_cluster.code_of([of_a])
 
 
@@ -262,7 +262,7 @@ def test_threads_of_a_worker_measure_one_after_another() -> None:
     parts = fake_cluster.parts()
     tasks = tasks_of(cells("fake-a", parts=parts), parts, {})
     code = dask_cluster.code_of(tasks)
-    threads = [Thread(target=dask_cluster._measured, args=(code, tasks, measure)) for _ in "12"]
+    threads = [Thread(target=dask_cluster._measure, args=(code, tasks, measure)) for _ in "12"]
     for thread in threads:
         thread.start()
     for thread in threads:

@@ -12,8 +12,8 @@ import pytest
 from benchmark.contract import UnknownNameError
 from benchmark.experiments import __main__ as command
 from benchmark.progress import silent
+from benchmark.results.csv_tables import StoreError
 from benchmark.results.row_file import Row, RowFile
-from benchmark.results.tables import StoreError
 from benchmark.running.experiment import Recorded, Report, due, experiments, repeated, update
 from files.strict_json import require_members
 

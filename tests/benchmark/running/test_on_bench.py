@@ -7,7 +7,7 @@ import pytest
 
 from benchmark import datasets
 from benchmark.contract import ON_BENCH
-from benchmark.plan.parts import installed
+from benchmark.plan.parts import installed_parts
 from benchmark.running.task import BENCHES, Task, measure
 
 MODELS = ("lut-polynomial", "slit")
@@ -15,7 +15,7 @@ MODELS = ("lut-polynomial", "slit")
 
 @pytest.fixture(scope="module")
 def measured():
-    parts = installed()
+    parts = installed_parts()
     preset = datasets.get("pda-slit")
     task = Task(
         preset,

@@ -12,12 +12,11 @@ from benchmark import datasets
 from benchmark.contract import SPLITS, UnknownNameError
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.plan import combinations as plan
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import silent
-from benchmark.results.record import opened
+from benchmark.results.record import open_record
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running import generated, pinning
-from benchmark.running import run as runner
+from benchmark.running import condition_data, pinning, runner
 from benchmark.running.pinning import UnversionedChangeError, changed_heads
 
 SMALL = ("pd-maskless-cube", "oi-maskless-pyramid")  # a second each
@@ -45,7 +44,7 @@ def parts(*presets):
 
 @pytest.fixture
 def store(tmp_path):
-    generated.forget()
+    condition_data.forget()
     return Store(tmp_path / "store")
 
 
@@ -248,7 +247,7 @@ def test_wrong_calls_are_refused(store):
         update(store, workers=0)
     with pytest.raises(UnknownNameError, match="did you mean 'fake-diodes'"):
         update(store, datasets=["fake-diode"], parts=parts(Diodes()))
-    with opened(store), pytest.raises(RuntimeError, match="another runner"):
+    with open_record(store), pytest.raises(RuntimeError, match="another runner"):
         update(store, parts=parts(Diodes()))
 
 
@@ -266,7 +265,7 @@ def test_hashes_depend_on_neither_workers_nor_order_nor_company(tmp_path):
 
     def made(name, *wanted, workers):
         store = Store(tmp_path / name)
-        generated.forget()
+        condition_data.forget()
         update(store, workers=workers, parts=_some(*wanted))
         return {place: pin.data_hash for place, pin in store.pins().items()}
 
@@ -287,7 +286,7 @@ def test_everything_there_is_is_pinned():
     pins = Store(PUBLISHED).pins()
     assert set(pins) == pinning.places(), "run `sunatlas dataset pin`"
     assert len({pin.data_hash for pin in pins.values()}) == len(pins)
-    presets = installed().presets
+    presets = installed_parts().presets
     splits = {name: preset.card()["splits"] for name, preset in presets.items()}
     for (name, _, split), pin in pins.items():
         assert pin.n == splits[name][split]["samples"]

@@ -15,10 +15,10 @@ from benchmark.contract import UnknownNameError
 from benchmark.datasets.samples import HEAD
 from benchmark.progress import silent
 from benchmark.results.components import Components, current
-from benchmark.results.record import opened
+from benchmark.results.record import open_record
 from benchmark.results.store import Store
 from benchmark.running import pinning
-from benchmark.running.generated import rms_bound
+from benchmark.running.condition_data import rms_bound
 from benchmark.running.pinning import UnversionedChangeError
 
 
@@ -29,12 +29,12 @@ def by_place(*pins: Any) -> dict[Any, Any]:
 def test_a_change_is_one_of_the_same_place_and_version() -> None:
     known = by_place(pin(), pin("calibration"), pin(dataset="e"))
     same = [pin(), pin("repeat", data_hash="new"), pin(dataset="f")]
-    assert pinning.unversioned(known, same) == {}
+    assert pinning.unversioned_changes(known, same) == {}
     pinning.require_versions(known, same)
     newer = [pin(version=2, data_hash="x")]
-    assert pinning.unversioned(known, newer) == {}
+    assert pinning.unversioned_changes(known, newer) == {}
     changed = [pin(data_hash="x"), pin("calibration", n=4), pin(dataset="e", bound_deg=0.5)]
-    assert pinning.unversioned(known, changed) == {
+    assert pinning.unversioned_changes(known, changed) == {
         "d": ["c test: data_hash x, pinned h", "c calibration: n 4, pinned 3"],
         "e": ["c test: bound_deg 0.5, pinned 0.25"],
     }
@@ -133,7 +133,7 @@ def test_only_what_is_missing_is_generated_and_counted(tmp_path: Any) -> None:
 
     parts = fake_plan.parts(presets=(Diodes(n=40), Broken(name="z", conditions=("quiet",))))
     components = current(parts)
-    with opened(Store(tmp_path)) as record:
+    with open_record(Store(tmp_path)) as record:
         seen: list[tuple[int, int, str]] = []
         first = pinning.pin_missing(
             record, components, parts, workers=1, progress=lambda *said: seen.append(said)

@@ -13,8 +13,7 @@ from benchmark.plan import combinations as plan
 from benchmark.progress import silent, terminal_progress
 from benchmark.results.record import Record
 from benchmark.results.store import Store
-from benchmark.running import cluster, generated, task
-from benchmark.running import run as runner
+from benchmark.running import cluster, condition_data, runner, task
 from benchmark.running.backend import bundles
 from benchmark.running.cluster import DaskMissingError
 
@@ -311,24 +310,24 @@ def test_a_worker_lets_go_of_large_data_before_it_generates_more(monkeypatch):
     generate = fake_atlas.Diodes.generate
 
     def watched(self, condition, split, n=None):
-        held.append(len(generated._kept))
+        held.append(len(condition_data._kept))
         return generate(self, condition, split, n)
 
     monkeypatch.setattr(fake_atlas.Diodes, "generate", watched)
     for limit, expected in ((2**30, [0, 0, 0, 1, 1, 1]), (1000, [0] * 6)):
-        monkeypatch.setattr(generated, "_KEPT_BYTES", limit)
-        generated.forget()
+        monkeypatch.setattr(condition_data, "_KEPT_BYTES", limit)
+        condition_data.forget()
         held.clear()
         for condition in preset.conditions:
-            generated.generated_pins(preset, condition)
+            condition_data.generated_pins(preset, condition)
         assert held == expected
 
 
 def test_data_kept_are_those_of_the_same_parameters_and_unit():
     first, other = fake_atlas.Diodes(), fake_atlas.Diodes(seed=8)
-    one, two = (generated.generated_pins(preset, "quiet") for preset in (first, other))
+    one, two = (condition_data.generated_pins(preset, "quiet") for preset in (first, other))
     assert [a.data_hash == b.data_hash for a, b in zip(one, two, strict=True)] == [False] * 3
-    again = generated.generated_pins(fake_atlas.Diodes(), "quiet")
+    again = condition_data.generated_pins(fake_atlas.Diodes(), "quiet")
     assert again is one, "an equal preset finds them"
 
 

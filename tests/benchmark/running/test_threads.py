@@ -52,9 +52,9 @@ def test_a_blas_that_is_not_loaded_yet_is_held_to_one_thread_too():
 def test_measuring_does_without_opencv():
     code = (
         "import sys\n"
-        "from benchmark.plan.parts import installed\n"
+        "from benchmark.plan.parts import installed_parts\n"
         "from benchmark.running.task import Task, measure\n"
-        "parts = installed()\n"
+        "parts = installed_parts()\n"
         "models = (parts.model('basic'),)\n"
         "cube, direct = parts.preset('pd-maskless-cube'), parts.extractor('direct')\n"
         "task = Task(cube, 'nominal', direct, models)\n"

@@ -12,7 +12,7 @@ import pytest
 
 from benchmark.plan.combinations import cells
 from benchmark.progress import silent
-from benchmark.results.tables import StoreError
+from benchmark.results.csv_tables import StoreError
 from benchmark.running import times
 
 pytestmark = pytest.mark.usefixtures("log")

@@ -92,7 +92,7 @@ def test_ratios_are_of_extraction_and_of_the_whole_to_the_reference(
 
 @pytest.mark.parametrize(("value", "kept"), [(0.0012349, 0.00123), (98765.4, 98800.0), (1.0, 1.0)])
 def test_times_are_kept_to_three_digits(value: float, kept: float) -> None:
-    assert times._rounded(value) == kept
+    assert times._round_to(value) == kept
 
 
 @pytest.mark.parametrize(

@@ -7,17 +7,17 @@ import pytest
 
 from benchmark.contract import Cell
 from benchmark.plan.combinations import cells
-from benchmark.plan.parts import installed
-from benchmark.suites.perturbation import SIZE, Sensitive, perturbed, search
+from benchmark.plan.parts import installed_parts
+from benchmark.suites.perturbation import SIZE, Sensitive, perturb, search
 
 
 def test_counts_stay_and_other_numbers_move_by_a_rounding():
     values = np.array([0.0, 3.0, 0.1, np.nan])
-    moved = perturbed(values, "test")
+    moved = perturb(values, "test")
     assert moved[:2].tolist() == [0.0, 3.0]
     assert 0 < abs(moved[2] / 0.1 - 1) < 10 * SIZE
     assert np.isnan(moved[3])
-    np.testing.assert_array_equal(moved, perturbed(values, "test"))
+    np.testing.assert_array_equal(moved, perturb(values, "test"))
 
 
 @pytest.mark.parametrize(
@@ -29,7 +29,7 @@ def test_counts_stay_and_other_numbers_move_by_a_rounding():
     ids=["assembled-faces", "every model"],
 )
 def test_no_model_of_a_cube_hangs_on_rounding(wanted):
-    found = search(wanted, installed())
+    found = search(wanted, installed_parts())
     assert found.cells == len(wanted) > 0
     assert [str(one) for one in found.moved] == []
 

@@ -17,9 +17,9 @@ from benchmark.plan.parts import Parts
 from benchmark.progress import silent
 from benchmark.results import components
 from benchmark.results.store import Store
-from benchmark.running.durations import Durations, Estimate, Extracted, Took
-from benchmark.running.run import run
-from benchmark.suites.planning import Planned, cells_of, plan
+from benchmark.running.durations import Durations, Estimate, ExtractionTask, Took
+from benchmark.running.runner import run
+from benchmark.suites.planning import CellPlan, cells_of, plan
 from benchmark.suites.selection import suite
 
 
@@ -37,7 +37,7 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Store:
     return there
 
 
-def why(found: Planned) -> dict[tuple[str, ...], set[str]]:
+def why(found: CellPlan) -> dict[tuple[str, ...], set[str]]:
     """Reasons and the data sets, extractors and models of their cells."""
     by_reason: dict[tuple[str, ...], set[str]] = {}
     for cell, reasons in found.missing.items():
@@ -119,10 +119,10 @@ def test_an_estimate_is_of_the_data_and_the_tasks() -> None:
     """Data of a place take 5 s; the extractors `a` and `b` 1 and 3 s."""
     durations = Durations(
         {
-            Extracted("d", "one", 0, "a"): Took(models=2, made_data=1, seconds=6.0),
-            Extracted("d", "one", 0, "b"): Took(models=2, made_data=0, seconds=3.0),
-            Extracted("d", "two", 0, "a"): Took(models=2, made_data=0, seconds=1.0),
-            Extracted("d", "two", 0, "c"): Took(models=1, made_data=0, seconds=1.0),
+            ExtractionTask("d", "one", 0, "a"): Took(models=2, made_data=1, seconds=6.0),
+            ExtractionTask("d", "one", 0, "b"): Took(models=2, made_data=0, seconds=3.0),
+            ExtractionTask("d", "two", 0, "a"): Took(models=2, made_data=0, seconds=1.0),
+            ExtractionTask("d", "two", 0, "c"): Took(models=1, made_data=0, seconds=1.0),
         }
     )
 

@@ -12,7 +12,7 @@ from algorithms.chain import Chain
 from benchmark.contract import Cell, UnknownNameError
 from benchmark.leaderboard import scope
 from benchmark.plan.combinations import cells
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.suites.selection import NOT_QUICK, SUITES, suite
 from registry.studies import facts
@@ -20,22 +20,22 @@ from registry.studies import facts
 
 @pytest.fixture(scope="module")
 def quick() -> list[Cell]:
-    return suite("quick").select({}, installed())
+    return suite("quick").select({}, installed_parts())
 
 
 def test_quick_meets_every_extractor_and_every_model_that_fits_a_data_set(
     quick: list[Cell],
 ) -> None:
     everything = cells()
-    assert {cell.extractor for cell in quick} == set(installed().extractors)
+    assert {cell.extractor for cell in quick} == set(installed_parts().extractors)
     assert {cell.model for cell in quick} == {cell.model for cell in everything}
-    assert {cell.dataset for cell in quick} == set(installed().presets) - NOT_QUICK
+    assert {cell.dataset for cell in quick} == set(installed_parts().presets) - NOT_QUICK
     assert set(quick) <= set(everything)
     assert len(set(quick)) == len(quick) < 150
 
 
 def test_quick_meets_every_category_of_models_that_has_one(quick: list[Cell]) -> None:
-    taxonomy, models = facts().taxonomy, installed().models
+    taxonomy, models = facts().taxonomy, installed_parts().models
 
     def category(name: str) -> str:
         model = models[name]
@@ -54,7 +54,7 @@ def test_quick_needs_nothing_that_is_not_published_anyway(quick: list[Cell]) -> 
 
 def test_standard_is_all_that_is_published() -> None:
     published = Store(PUBLISHED).scores()
-    assert suite("standard").select(published, installed()) == sorted(published)
+    assert suite("standard").select(published, installed_parts()) == sorted(published)
 
 
 def test_standard_is_the_first_cells_where_nothing_is_known() -> None:

@@ -13,12 +13,12 @@ import pytest
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts
 from benchmark.progress import silent
-from benchmark.results.record import StoreLockedError, opened
+from benchmark.results.record import StoreLockedError, open_record
 from benchmark.results.store import Store
 from benchmark.running import times
 from benchmark.running.durations import Durations
-from benchmark.running.run import run, stale
-from benchmark.suites.tidying import Tidied, tidy, would_tidy
+from benchmark.running.runner import run, stale
+from benchmark.suites.tidying import TidyResult, tidy, would_tidy
 from files import manifest
 
 NOTHING = (0, 0, 0)
@@ -53,7 +53,7 @@ def total(found: dict[Path, bytes]) -> int:
     return sum(len(text) for path, text in found.items() if path.name != manifest.FILE)
 
 
-def dropped(found: Tidied) -> tuple[int, int, int]:
+def dropped(found: TidyResult) -> tuple[int, int, int]:
     return found.scores, found.pins, found.times
 
 
@@ -111,10 +111,10 @@ def test_a_broken_off_run_s_journal_is_taken_in_before(tmp_path: Path) -> None:
 
 def test_a_store_that_is_not_there_is_not_made(tmp_path: Path) -> None:
     for do in (would_tidy, tidy):
-        assert do(Store(tmp_path / "none"), parts=parts()) == Tidied(0, 0, 0, 0, 0)
+        assert do(Store(tmp_path / "none"), parts=parts()) == TidyResult(0, 0, 0, 0, 0)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_store_that_a_runner_writes_to_is_left_alone(store: Store) -> None:
-    with opened(store), pytest.raises(StoreLockedError):
+    with open_record(store), pytest.raises(StoreLockedError):
         tidy(store, parts=parts(seed=8))

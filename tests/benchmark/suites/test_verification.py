@@ -13,8 +13,8 @@ from benchmark.contract import Cell
 from benchmark.plan.combinations import cells
 from benchmark.progress import silent
 from benchmark.results.store import Store
-from benchmark.running.run import RunInterruptedError, run
-from benchmark.suites.verification import Verified, drawn, verify
+from benchmark.running.runner import RunInterruptedError, run
+from benchmark.suites.verification import VerificationResult, draw_cells, verify
 
 PARTS = fake_plan.parts(fake_atlas.LeastSquares, fake_atlas.Choosy)
 CELLS = [Cell(f"d{n % 7}", "c", f"e{n % 11}", f"m{n}") for n in range(200)]
@@ -29,7 +29,7 @@ def record(tmp_path: Path) -> Store:
     return store
 
 
-def verified(record: Store, wanted: list[Cell] | None = None) -> Verified:
+def verified(record: Store, wanted: list[Cell] | None = None) -> VerificationResult:
     return verify(wanted or list(record.scores()), record, 1, silent, parts=PARTS)
 
 
@@ -93,22 +93,22 @@ def test_a_cell_that_the_record_lacks_is_a_difference(record: Store, tmp_path: P
 
 
 def test_a_seed_draws_the_same_cells_whatever_else_there_is() -> None:
-    ten = drawn(CELLS, 10, 1)
-    assert ten == sorted(set(ten)) == drawn(reversed(CELLS), 10, 1)
-    assert set(drawn(CELLS, 5, 1)) < set(ten)
+    ten = draw_cells(CELLS, 10, 1)
+    assert ten == sorted(set(ten)) == draw_cells(reversed(CELLS), 10, 1)
+    assert set(draw_cells(CELLS, 5, 1)) < set(ten)
     rest = [cell for cell in CELLS if cell.dataset != "d3"]
-    assert set(drawn(rest, 10, 1)) >= {cell for cell in ten if cell.dataset != "d3"}
-    assert drawn(CELLS, 1000, 1) == sorted(CELLS)
-    assert drawn(CELLS, 10, 2) != ten
+    assert set(draw_cells(rest, 10, 1)) >= {cell for cell in ten if cell.dataset != "d3"}
+    assert draw_cells(CELLS, 1000, 1) == sorted(CELLS)
+    assert draw_cells(CELLS, 10, 2) != ten
     with pytest.raises(ValueError, match="at least 1; got 0"):
-        drawn(CELLS, 0, 1)
+        draw_cells(CELLS, 0, 1)
 
 
 def test_every_cell_is_drawn_as_often_as_any_other() -> None:
     """Over 400 seeds a cell of 200 is drawn 20 +- 4.4 times of 10: none beyond five of those."""
     counts = dict.fromkeys(CELLS, 0)
     for seed in range(400):
-        for cell in drawn(CELLS, 10, seed):
+        for cell in draw_cells(CELLS, 10, seed):
             counts[cell] += 1
     assert sum(counts.values()) == 4000
     assert max(abs(count - 20) for count in counts.values()) < 5 * 4.4

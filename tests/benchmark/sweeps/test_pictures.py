@@ -4,7 +4,7 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-from benchmark.sweeps import pictures
+from benchmark.sweeps import plots
 from benchmark.sweeps.record import swept
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -16,9 +16,9 @@ def rows():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("sweep", pictures.DRAWN)
+@pytest.mark.parametrize("sweep", plots.DRAWN)
 def test_every_panel_holds_the_stored_numbers_of_its_method(rows, sweep):
-    drawn = pictures.figure(rows, sweep)
+    drawn = plots.figure(rows, sweep)
     kept = [row for row in rows if row["sweep"] == sweep and row["value"] is not None]
     named = {(axes.texts[0].get_text(), axes.texts[1].get_text()) for axes in drawn.axes}
     assert len(drawn.axes) == len({(row["series"], row["extractor"]) for row in kept})
@@ -40,7 +40,7 @@ def test_every_panel_holds_the_stored_numbers_of_its_method(rows, sweep):
 
 @pytest.mark.slow
 def test_the_file_is_small_says_what_it_is_and_holds_no_time(rows):
-    text = pictures.picture(rows, "noise")
+    text = plots.picture(rows, "noise")
     assert len(text.encode()) < 150_000
     assert text.startswith("<svg")
     root = ET.fromstring(text)

@@ -19,9 +19,9 @@ from benchmark.experiments.sweeps import Sweeps
 from benchmark.plan.parts import Parts
 from benchmark.progress import silent
 from benchmark.running.experiment import due, update
-from benchmark.sweeps import pictures as sweep_pictures
 from benchmark.sweeps import plan as sweep_plan
-from benchmark.sweeps import tables as sweep_tables
+from benchmark.sweeps import plots as sweep_pictures
+from benchmark.sweeps import sweep_tables
 from benchmark.sweeps.differences import differences
 from benchmark.sweeps.record import RECORD, Point, point_of, swept
 from benchmark.synthetic_features.series import SWEEPS
@@ -90,7 +90,7 @@ def test_points_are_measured_failures_named_and_misfits_listed(made):
     assert len(rows) == 1 + 2 * POINTS
     reasons = {row["reason"] for row in rows if row["status"] == "failed"}
     assert reasons == {"RuntimeError: no light"}
-    listed = sweep_tables.unmeasured(rows)
+    listed = sweep_tables.unmeasured_settings(rows)
     assert listed == [
         ("", "spots-of-readings", "no reference series of currents that are read as spot")
     ]
@@ -142,7 +142,7 @@ def test_a_reason_that_changes_is_renewed(made, monkeypatch):
     monkeypatch.setattr(Spots, "about", events)
     monkeypatch.setattr(sweep_plan, "_SERIES_OF", dict.fromkeys(Observation, ()))
     computed(made)
-    assert sweep_tables.unmeasured(swept(made)) == [
+    assert sweep_tables.unmeasured_settings(swept(made)) == [
         ("", "spots-of-readings", "no reference series of events that are read as spot")
     ]
 
@@ -225,7 +225,7 @@ def test_pictures_are_the_same_every_time_and_well_formed(made):
 def test_every_method_of_the_survey_has_a_noise_sweep():
     """Accept point: all 19 values of the taxonomy, error and bound from SNR 5 upwards."""
     known = discover_extractors()
-    plan = sweep_plan.planned(known)
+    plan = sweep_plan.plan_points(known)
     swept = {known[p.extractor].about.taxonomy for p in plan.settings if p.sweep == "noise"}
     implemented = {extractor.about.taxonomy for extractor in known.values()}
     assert implemented <= swept

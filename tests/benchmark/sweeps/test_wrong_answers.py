@@ -7,7 +7,7 @@ import pytest
 
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Observation
 from benchmark.sweeps.measure import Task, measure
-from benchmark.sweeps.plan import SERIES, planned
+from benchmark.sweeps.plan import SERIES, plan_points
 from benchmark.sweeps.record import Point
 from benchmark.synthetic_features.frame_sets import FRAME_SETS
 from benchmark.synthetic_features.series import WRONG_PX
@@ -48,7 +48,7 @@ def test_every_set_of_the_bench_is_a_point():
 def test_every_single_spot_extractor_of_frames_is_measured_on_every_set():
     from algorithms.discovery import discover_extractors
 
-    plan = planned(discover_extractors())
+    plan = plan_points(discover_extractors())
     seen = {}
     for point in plan.settings:
         if point.series == "frames":

@@ -1,11 +1,11 @@
 """Measured pipelines made up for a test."""
 
-from registry.measured import Measured, Score
+from registry.measured_pipelines import MeasuredPipeline, Score
 
 _SCORE = {"rms_deg", "bound_deg", "over_bound", "repeatability_deg", "availability", "available"}
 
 
-def pipeline(**changed: object) -> Measured:
+def pipeline(**changed: object) -> MeasuredPipeline:
     """A pipeline on CMOS behind a slit that errs 0.1 deg over 120, with some of it changed."""
     nominal: dict[str, object] = {"condition": "nominal", "rms_deg": 0.1, "availability": 1.0}
     row: dict[str, object] = {
@@ -20,4 +20,4 @@ def pipeline(**changed: object) -> Measured:
     }
     for name, value in changed.items():
         (nominal if name in {*_SCORE, "cones"} else row)[name] = value
-    return Measured(nominal=Score(**nominal), **row)  # type: ignore[arg-type]
+    return MeasuredPipeline(nominal=Score(**nominal), **row)  # type: ignore[arg-type]

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from survey_data.additions.addition_reader import read_addition
 from survey_data.additions.faults import FaultsError
-from survey_data.additions.reading import read_addition
 from survey_data.additions.toml_lines import parse_toml
 from survey_data.additions.vocabulary import Vocabulary
 

@@ -10,9 +10,9 @@ import pytest
 
 import survey_data
 from files import manifest
-from survey_data import recorded_facts
+from survey_data import facts_manifest
+from survey_data.additions.addition_reader import read_addition
 from survey_data.additions.faults import FaultsError
-from survey_data.additions.reading import read_addition
 from survey_data.additions.template import empty_template
 from survey_data.additions.toml_lines import parse_toml
 from survey_data.additions.vocabulary import Vocabulary
@@ -42,7 +42,7 @@ def test_a_study_is_added_whole_and_the_survey_stays_as_it_is(recorded: Path) ->
         manifest.FILE,
     }
     assert survey_data.validate(recorded) == []
-    assert recorded_facts.changes(recorded) == []
+    assert facts_manifest.changes(recorded) == []
     tables = survey_data.load(recorded)
     assert len(tables.studies) == survey_data.fidelity(tables).studies == 129
     every = tables.edition("all").studies.set_index("key")

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 import survey_data
-from survey_data import recorded_facts
+from survey_data import facts_manifest
 from survey_data.additions.writing import (
     add_study,
     read_study,
@@ -69,7 +69,7 @@ def test_a_kill_between_any_two_steps_leaves_the_study_whole_or_away(recorded: P
             check=False,
         )
         assert ran.returncode in (0, -signal.SIGKILL), ran.stderr
-        assert recorded_facts.changes(recorded) == []
+        assert facts_manifest.changes(recorded) == []
         assert survey_data.validate(recorded) == []
         tables = survey_data.load(recorded)
         there = "Doe2030" in set(tables.extension_studies["key"])

@@ -9,8 +9,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import survey_data
+from survey_data.additions.addition_reader import Addition, read_addition
 from survey_data.additions.faults import FaultsError
-from survey_data.additions.reading import Addition, read_addition
 from survey_data.additions.template import filled_template
 from survey_data.additions.toml_lines import parse_toml
 from survey_data.additions.vocabulary import vocabulary

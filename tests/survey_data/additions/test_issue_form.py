@@ -13,9 +13,9 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
+from survey_data.additions.addition_reader import read_addition
 from survey_data.additions.faults import FaultsError
 from survey_data.additions.issue_form import form, main, template_of
-from survey_data.additions.reading import read_addition
 from survey_data.additions.toml_lines import parse_toml
 from survey_data.additions.vocabulary import Vocabulary, vocabulary
 

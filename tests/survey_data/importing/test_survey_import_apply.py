@@ -132,7 +132,7 @@ def test_who_imports_while_another_writes_reads_what_that_one_wrote(copy: Any) -
     with held_tables(copy.directory):
         waiting.start()
         assert not applied.wait(0.5)
-        table_import._applied(copy.directory, ours)
+        table_import._apply(copy.directory, ours)
     waiting.join(60)
     assert applied.is_set()
     assert [row[2] for row in cell(copy, "Alvi2014", "mask")] == ["Lens"]

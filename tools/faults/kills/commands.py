@@ -40,8 +40,7 @@ from benchmark.plan.combinations import cells
 from benchmark.processes import call_to_end
 from benchmark.progress import silent
 from benchmark.results.store import Store
-from benchmark.running import compiling, pinning
-from benchmark.running import run as runner
+from benchmark.running import compiling, pinning, runner
 from benchmark.running import times as running_times
 from benchmark.running.experiment import update
 from benchmark.suites import tidying

@@ -19,7 +19,7 @@ from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin
 from benchmark.error_budget.variants import VARIANTS
 from benchmark.plan.combinations import cells
-from benchmark.plan.parts import Parts, installed
+from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.components import current
 from benchmark.results.store import Store
 
@@ -44,7 +44,7 @@ def parts(*, n: int = 40) -> Parts:
 
 def few_parts(dataset: str) -> Parts:
     """One installed data set, and of what fits it a few models."""
-    known = installed()
+    known = installed_parts()
     fitting = cells(dataset, parts=known)
     extractors = {cell.extractor for cell in fitting}
     models = sorted({cell.model for cell in fitting} - {m for m in known.models if "+" in m})[:4]

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from algorithms.contract import Floats, SensorGeometry
 from algorithms.inputs import require_positive
-from algorithms.row_arithmetic import normalised
+from algorithms.row_arithmetic import normalise
 
 Matrix = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
 
@@ -79,7 +79,7 @@ class LineCamera:
             good = np.abs(radius * stretch - reach) <= 1e-9 * (1.0 + reach)
             tangents = np.where(good[:, None], image / stretch[:, None], np.nan)
         head = np.column_stack([tangents, np.ones(len(tangents))])
-        return np.asarray(normalised(head) @ np.asarray(self.rotation).T)
+        return np.asarray(normalise(head) @ np.asarray(self.rotation).T)
 
     def points_px(self, directions: Floats) -> Floats:
         """Detector points (N, 2) of directions (N, 3) in the common frame; NaN from behind."""
@@ -141,7 +141,7 @@ def sun_from_blooming_lines(lines: Sequence[ArrayLike], cameras: Sequence[LineCa
         votes = given[a][:, 4] * given[b][:, 4] / (given[a][:, 4] + given[b][:, 4])
         met = np.isfinite(sun).all(axis=1) & (sine >= _PARALLEL) & np.isfinite(votes)
         total[met] += (sine**2 * votes)[met, None] * sun[met]
-    return normalised(total)
+    return normalise(total)
 
 
 def _meeting(
@@ -150,7 +150,7 @@ def _meeting(
     """Directions (N, 3) that two cameras' lines have in common, and the sine of their angle."""
     with np.errstate(invalid="ignore"):
         at = [0.5 * (line[:, :2] + line[:, 2:4]) for line in (line_a, line_b)]
-        along = [normalised(line[:, 2:4] - line[:, :2]) for line in (line_a, line_b)]
+        along = [normalise(line[:, 2:4] - line[:, :2]) for line in (line_a, line_b)]
     cameras = (camera_a, camera_b)
     sun = np.full((len(line_a), 3), np.nan)
     sine = np.zeros(len(line_a))
@@ -161,11 +161,11 @@ def _meeting(
                 cameras[n].directions(at[n] + step * along[n])
                 for step in (-_STEP_PX, 0.0, _STEP_PX)
             )
-            normals.append(normalised(np.cross(here, after - before)))
+            normals.append(normalise(np.cross(here, after - before)))
         cross = np.cross(normals[0], normals[1])
         sine = np.nan_to_num(np.linalg.norm(cross, axis=1))
         towards = cameras[0].directions(at[0]) + cameras[1].directions(at[1])
-        sun = normalised(cross) * np.sign(np.sum(cross * towards, axis=1))[:, None]
+        sun = normalise(cross) * np.sign(np.sum(cross * towards, axis=1))[:, None]
         for n in range(2):
             point = cameras[n].points_px(sun)
             at[n] = at[n] + np.sum((point - at[n]) * along[n], axis=1)[:, None] * along[n]

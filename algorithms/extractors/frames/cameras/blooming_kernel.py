@@ -86,7 +86,7 @@ def _peak(runs: Floats, count: int, turns: Floats, votes: Floats) -> tuple[float
 
 
 @compiled
-def _refined(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _refine(  # noqa: PLR0917 - Numba takes no keyword-only ones
     runs: Floats,
     count: int,
     r: float,
@@ -299,7 +299,7 @@ def blooming_lines(  # noqa: PLR0917 - Numba takes no keyword-only ones
         widest = _widest(typical)
         if not last - first >= _LENGTH * typical:
             continue
-        whole = _refined(runs, found, r, turn, widest, (first, last))
+        whole = _refine(runs, found, r, turn, widest, (first, last))
         place, apart = _meeting(
             frame, low, level, whole, turn, 0.5 * typical + 1.5, reach, room, votes
         )
@@ -307,7 +307,7 @@ def blooming_lines(  # noqa: PLR0917 - Numba takes no keyword-only ones
         # fraction of a pixel: not those cut by the frame's edge, which all end there.
         start = place if top <= 0.0 else first
         end = place if bottom >= height - 1.0 else last
-        half = _refined(runs, found, r, turn, widest, (start, end))
+        half = _refine(runs, found, r, turn, widest, (start, end))
         if not math.isnan(half):
             whole = half
         out[k, 0] = whole * c - first * s

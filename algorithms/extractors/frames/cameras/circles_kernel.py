@@ -195,7 +195,7 @@ def _radius(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _gathered(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _gather(  # noqa: PLR0917 - Numba takes no keyword-only ones
     edges: Floats,
     count: int,
     way: float,
@@ -241,7 +241,7 @@ def _fit(
     matrix = np.empty((3, 3))
     side = np.empty(3)
     for _ in range(_MOVES):
-        used, scatter = _gathered(edges, count, way, (x, y, radius), matrix, side)
+        used, scatter = _gather(edges, count, way, (x, y, radius), matrix, side)
         if used < 6 or not abs(np.linalg.det(matrix)) > 1e-6 * used**3:
             return np.nan, np.nan, np.nan
         step = np.linalg.solve(matrix, side)
@@ -252,7 +252,7 @@ def _fit(
             return np.nan, np.nan, np.nan
         if abs(step[0]) + abs(step[1]) < 1e-9:
             break
-    used, scatter = _gathered(edges, count, way, (x, y, radius), matrix, side)
+    used, scatter = _gather(edges, count, way, (x, y, radius), matrix, side)
     if scatter > scattered * scattered * used:
         return np.nan, np.nan, np.nan
     return x, y, radius

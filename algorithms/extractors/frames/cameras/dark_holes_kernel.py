@@ -19,7 +19,7 @@ _RIVAL = 0.8
 
 
 @compiled
-def blurred(frame: NDArray[Any], taps: Floats, rows: Floats, out: Floats) -> None:
+def blur(frame: NDArray[Any], taps: Floats, rows: Floats, out: Floats) -> None:
     """Write the frame convolved with symmetric taps on both axes to `out`, edges repeated.
 
     `rows` (H, W) holds the frame convolved along its rows.
@@ -224,7 +224,7 @@ def _darkest(image: Floats, pixels: NDArray[np.int64], count: int) -> int:
 
 
 @compiled
-def _followed(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _follow(  # noqa: PLR0917 - Numba takes no keyword-only ones
     image: Floats,
     levels: Floats,
     seed: int,
@@ -300,7 +300,7 @@ def black_suns(  # noqa: PLR0917 - Numba takes no keyword-only ones
         out[k, 1] = np.nan
         if not usable[k]:
             continue
-        blurred(frames[k], taps, rows, image)
+        blur(frames[k], taps, rows, image)
         low, high = image.min(), image.max()
         if not high > low:
             continue
@@ -316,7 +316,7 @@ def black_suns(  # noqa: PLR0917 - Numba takes no keyword-only ones
             if sizes[n] == 0:
                 continue
             mark = 1 + n * levels.size
-            x, y = _followed(
+            x, y = _follow(
                 image, levels, seeds[n], 4 * sizes[n] + 16, survivals, moved, mark, marks, pixels
             )
             if math.isnan(x):

@@ -16,7 +16,7 @@ from algorithms.compiled import compiled
 from algorithms.contract import Floats
 from algorithms.extractors.frames.mirror.records import Form, Light, State
 from algorithms.kernels.records import Records
-from algorithms.measurement import Doubt
+from algorithms.measurement import QualityFlag
 
 #: Light that departs in clusters of pairs, over the spot's, and the square of what neighbours miss
 #: alike, over that of the light: above either, the spot is not symmetric.
@@ -40,11 +40,15 @@ _UNSURE = 0.5
 _ASTRAY, _ASTRAY_PX = 0.25, 0.75
 #: Bits of converters whose most is looked for.
 _FEWEST_BITS, _MOST_BITS = 8, 16
-_NO_SPOT, _SEVERAL, _CUT = int(Doubt.NO_SPOT), int(Doubt.SEVERAL_SPOTS), int(Doubt.CUT)
+_NO_SPOT, _SEVERAL, _CUT = (
+    int(QualityFlag.NO_SPOT),
+    int(QualityFlag.SEVERAL_SPOTS),
+    int(QualityFlag.CUT),
+)
 _SATURATED, _NOT_SYMMETRIC, _GHOST = (
-    int(Doubt.SATURATED),
-    int(Doubt.NOT_SYMMETRIC),
-    int(Doubt.GHOST),
+    int(QualityFlag.SATURATED),
+    int(QualityFlag.NOT_SYMMETRIC),
+    int(QualityFlag.GHOST),
 )
 
 

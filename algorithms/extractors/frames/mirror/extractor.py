@@ -15,7 +15,7 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
-from algorithms.extractors.frames.one_light import longest_px_of
+from algorithms.extractors.frames.single_light import longest_px_of
 from algorithms.extractors.profiles.single_spot import require_one_spot
 from algorithms.inputs import as_frames, require_positive
 from algorithms.measurement import Measurement

@@ -42,7 +42,7 @@ _AWAY, _NOISY = 0.75, 0.05
 
 
 @compiled
-def _weighting(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _weight(  # noqa: PLR0917 - Numba takes no keyword-only ones
     s: Line, p: int, stride: int, line: Line, h_x: Line, h_y: Line
 ) -> None:
     """Write the slopes of the mean, sharp but with little noise; the core begins at `p` of `s`."""
@@ -159,7 +159,7 @@ def _normal(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _smoothed(s: Line, apart: int, stride: int, line: Line, out: Line) -> None:
+def _smooth(s: Line, apart: int, stride: int, line: Line, out: Line) -> None:
     """Smooth by the binomial (1, 2, 1) / 4 of pixels `apart` along both axes; ends repeat."""
     n, far = s.size, apart * stride
     above, here, below, out_here = s[: n - 2 * far], s[far : n - far], s[2 * far :], line[far:]
@@ -344,7 +344,7 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
         differences = d[k, from_row : from_row + n]
         w, h_x, h_y, g_x, g_y = work[0, :n], work[1, :n], work[2, :n], work[3, :n], work[4, :n]
         share = wide[4, :n]
-        _weighting(s[k], p, stride, work[5], h_x, h_y)
+        _weight(s[k], p, stride, work[5], h_x, h_y)
         _weights(s[k], p, stride, kept, state, work[5], w, share)
         d_x, d_y = 0.0, 0.0
         if first:
@@ -370,10 +370,10 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
             and 2**level < 0.5 * stride
         ):
             smooth = wide[level % 2, :end]
-            _smoothed(old[:end], 2 ** (level + 1), stride, wide[2, :end], smooth)
+            _smooth(old[:end], 2 ** (level + 1), stride, wide[2, :end], smooth)
             wide[level % 2, end:] = ZERO
             a, b = work[6, :n], work[7, :n]
-            _weighting(wide[level % 2], p, stride, work[5], a, b)
+            _weight(wide[level % 2], p, stride, work[5], a, b)
             _normal(a, b, g_x, g_y, differences, w, share, lanes, other_sums)
             product_x = half * _in_common(level + 1, d_x)
             product_y = half * _in_common(level + 1, d_y)

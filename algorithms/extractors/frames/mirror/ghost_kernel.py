@@ -43,7 +43,7 @@ _MOST = 4000
 
 
 @compiled
-def _weighted(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _weight(  # noqa: PLR0917 - Numba takes no keyword-only ones
     mean: Line, keep: Line, e: Line, state: State, w: Line, lanes: Line
 ) -> tuple[float, float]:
     """Write what lit pairs weigh; return the weighted squares of the departures and of the light.
@@ -149,7 +149,7 @@ def _equations(lanes: Line, matrix: Floats, right: Floats) -> None:
 
 
 @compiled
-def _explained(matrix: Floats, right: Floats) -> float:
+def _explain(matrix: Floats, right: Floats) -> float:
     """Chi squared that the cubic shapes explain beyond the slopes: by Cholesky, slopes first."""
     size = len(right)
     total = 0.0
@@ -193,7 +193,7 @@ def skewness(  # noqa: PLR0917 - Numba takes no keyword-only ones
             continue
         n, p = padded(box), core_start(box)
         w = space[0, :n]
-        most, light = _weighted(s[k, p : p + n], keep[k, :n], e[k, :n], states[k], w, lanes)
+        most, light = _weight(s[k, p : p + n], keep[k, :n], e[k, :n], states[k], w, lanes)
         least = max(_SURELY * form.scatter, _MUCH * light)
         if not most > 0.99 * least:
             continue
@@ -203,4 +203,4 @@ def skewness(  # noqa: PLR0917 - Numba takes no keyword-only ones
         _of_slopes(s[k], p, box.stride, w, e[k], x, y, lanes)
         _of_cubes(s[k], p, w, e[k], x, y, lanes)
         _equations(lanes, matrix, right)
-        form.skew = _explained(matrix, right) > least
+        form.skew = _explain(matrix, right) > least

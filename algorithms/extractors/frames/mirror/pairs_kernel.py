@@ -98,7 +98,7 @@ def _window(light: Light, middle: NDArray[np.int64], height: int, width: int, bo
 
 
 @compiled
-def _scaled(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _scale(  # noqa: PLR0917 - Numba takes no keyword-only ones
     pixels: NDArray[Any],
     begin: int,
     step: int,
@@ -121,7 +121,7 @@ def _scaled(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _reversed(line: Line, last: int, rows: int, stride: int, out: Line) -> None:
+def _reverse(line: Line, last: int, rows: int, stride: int, out: Line) -> None:
     """Write rows of `line` from their `last` number back; numbers ahead of the first must be."""
     for i in range(rows):
         end = np.uint64(last + i * stride)  # an index that may be negative would not be vectorised
@@ -164,9 +164,9 @@ def _pairs(  # noqa: PLR0917 - Numba takes no keyword-only ones
     rows, first = box.above + box.rows, 8 + REACH * stride
     n = rows * stride
     means, differences, lower = s[first : first + n], d[:n], work[WHOLE : WHOLE + n]
-    _scaled(flat, begin + top * width + left, width, rows, base, scale, means, stride)
-    _scaled(flat, begin + last * width + left, -width, rows, base, scale, lower, stride)
-    _reversed(work, WHOLE + columns - 1, rows, stride, differences)
+    _scale(flat, begin + top * width + left, width, rows, base, scale, means, stride)
+    _scale(flat, begin + last * width + left, -width, rows, base, scale, lower, stride)
+    _reverse(work, WHOLE + columns - 1, rows, stride, differences)
     for j in range(n):
         a, b = means[j], differences[j]
         means[j] = HALF * (a + b)

@@ -44,7 +44,7 @@ from algorithms.contract import Floats
 from algorithms.extractors.frames.mirror.records import BACKGROUND, BOX, FORM, LIGHT, STATE
 from algorithms.inputs import Frames, as_frames
 from algorithms.kernels.records import Records
-from algorithms.measurement import Doubt, Measurement, as_bad, as_batch, without_bad
+from algorithms.measurement import Measurement, QualityFlag, as_bad, as_batch, without_bad
 
 #: Turns of fit and leaving out; middles that are tried; d, px, from which another one is nearer.
 _TURNS, _CENTRES, _FAR = 6, 3, 0.75
@@ -54,7 +54,7 @@ _CHUNK, _MOST = 2**18, 2**22
 _KEPT = threading.local()
 
 
-class Registered(NamedTuple):
+class Registration(NamedTuple):
     """What is found of frames (N, H, W), and how their pixels scatter.
 
     Attributes
@@ -108,12 +108,12 @@ def register(
     >>> found.features.round(1), found.deviations.round(3), found.doubts
     (array([[21.3, 18.8]]), array([[0.003, 0.003]]), array([0]))
     """
-    return registered(observations, bad, longest_px).found
+    return register_frames(observations, bad, longest_px).found
 
 
-def registered(
+def register_frames(
     observations: ArrayLike, bad: ArrayLike | None = None, longest_px: float | None = None
-) -> Registered:
+) -> Registration:
     """Register as `register` does, and tell the noise of each frame too."""
     kernels = _kernels()
     search = kernels.search
@@ -127,9 +127,9 @@ def registered(
     found = Measurement(
         np.full((count, 2), np.nan),
         np.full((count, 2, 2), np.nan),
-        np.full(count, int(Doubt.NO_SPOT), dtype=np.int64),
+        np.full(count, int(QualityFlag.NO_SPOT), dtype=np.int64),
     )
-    result = Registered(found, np.full((count, 2), np.nan))
+    result = Registration(found, np.full((count, 2), np.nan))
     if min(height, width) < 5:
         return result
     lights = np.empty(count, dtype=LIGHT)
@@ -137,8 +137,8 @@ def registered(
     kernels.moments.unusable(frames, frames.dtype.kind == "f", unusable)
     search.find_lights(frames, unusable, lights)
     why = lights["refusal"]
-    found.doubts[why == search.SEVERAL] = int(Doubt.SEVERAL_SPOTS)
-    found.doubts[why == search.EDGE] = int(Doubt.CUT)
+    found.doubts[why == search.SEVERAL] = int(QualityFlag.SEVERAL_SPOTS)
+    found.doubts[why == search.EDGE] = int(QualityFlag.CUT)
     seen = np.flatnonzero(why == 0)
     if len(seen):
         _register_seen(frames, seen, lights[seen], mask, longest_px, result)
@@ -151,7 +151,7 @@ def _register_seen(  # noqa: PLR0917 - what is known of the frames
     lights: Records,
     mask: NDArray[np.bool_],
     longest_px: float | None,
-    result: Registered,
+    result: Registration,
 ) -> None:
     """Write centres, covariances, doubts and noise of the frames `seen`, chunk by chunk."""
     kernels, n = _kernels(), len(seen)

@@ -84,14 +84,14 @@ def _lines(  # noqa: PLR0917 - Numba takes no keyword-only ones
         templates[3, j], templates[3, columns - 1 - j] = np.float32(j) - middle, middle - j
     n, top = rows * stride, -0.5 * (box.last - box.top)
     _departures(s, d, box, displacement, lines[0])
-    _masked(lines, 0, above, stride, top, templates[:2])
-    _masked(lines, above, rows, stride, top, templates[2:])
+    _mask(lines, 0, above, stride, top, templates[:2])
+    _mask(lines, above, rows, stride, top, templates[2:])
     for q in range(n, (n + LANES - 1) // LANES * LANES):
         lines[0, q], lines[1, q], lines[2, q] = ZERO, ZERO, ZERO
 
 
 @compiled
-def _masked(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _mask(  # noqa: PLR0917 - Numba takes no keyword-only ones
     lines: Line, begin: int, end: int, stride: int, top: float, template: Line
 ) -> None:
     """Write x and y of some rows, and zero where there is no ring."""

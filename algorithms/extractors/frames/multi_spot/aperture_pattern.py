@@ -311,7 +311,7 @@ def margin_px(blur_px: float) -> float:
     return blur_px / 2.0 + 1.0
 
 
-def followed(
+def follow_pattern(
     search: PatternSearch,
     frames: NDArray[Any],
     follow: Callable[[NDArray[Any], Levels, Pattern], Floats],

@@ -47,7 +47,7 @@ def _leave_out(values: Floats, noise: Floats, limit: float, used: NDArray[np.boo
 
 
 @compiled
-def _weighted(values: Floats, variances: Floats, used: NDArray[np.bool_]) -> tuple[float, float]:
+def _weight(values: Floats, variances: Floats, used: NDArray[np.bool_]) -> tuple[float, float]:
     """Mean of the values used, weighted by their variances, and its own variance.
 
     What they scatter more than their variances say, surely, places of apertures are off: it is
@@ -124,5 +124,5 @@ def combine(  # noqa: PLR0917 - Numba takes no keyword-only ones
             _leave_out(away[0], noise, _AWAY, used[k])
             _leave_out(away[1], noise, _AWAY, used[k])
         if number > 0 and used[k].any():
-            found[k, 0], sure[k, 0] = _weighted(away[0], variances[k], used[k])
-            found[k, 1], sure[k, 1] = _weighted(away[1], variances[k], used[k])
+            found[k, 0], sure[k, 0] = _weight(away[0], variances[k], used[k])
+            found[k, 1], sure[k, 1] = _weight(away[1], variances[k], used[k])

@@ -31,14 +31,14 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     Levels,
     Pattern,
     find_pattern,
-    followed,
+    follow_pattern,
     frame_levels,
     lattice,
     margin_px,
     nearest_distance,
 )
-from algorithms.extractors.frames.multi_spot.pattern_doubts import without_covariance
-from algorithms.extractors.frames.one_light import frames_to_measure
+from algorithms.extractors.frames.multi_spot.pattern_flags import without_covariance
+from algorithms.extractors.frames.single_light import frames_to_measure
 from algorithms.inputs import Frames, as_frames
 from algorithms.measurement import Measurement
 
@@ -191,7 +191,7 @@ class ImageCorrelation(Extractor):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
-        return self._correlated(as_frames(observations))[0]
+        return self._correlate_frames(as_frames(observations))[0]
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
         """Positions and doubts of frames (N, H, W) or of one; no covariance is stated.
@@ -200,7 +200,7 @@ class ImageCorrelation(Extractor):
         Bad pixels are replaced by their neighbours.
         """
         frames = frames_to_measure(observations, bad, self.about.name)
-        found, *_, pattern = self._correlated(frames)
+        found, *_, pattern = self._correlate_frames(frames)
         return without_covariance(found, pattern)
 
     def spots(self, observations: ArrayLike) -> Floats:
@@ -208,7 +208,7 @@ class ImageCorrelation(Extractor):
 
         Each from its own correlation. ValueError on wrong input.
         """
-        return self._correlated(as_frames(observations))[1]
+        return self._correlate_frames(as_frames(observations))[1]
 
     def track(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in successive frames (N, H, W) of one sequence.
@@ -223,9 +223,9 @@ class ImageCorrelation(Extractor):
         def follow(frames: NDArray[Any], levels: Levels, first: Pattern) -> Floats:
             return self._correlate(frames, levels, first.displacement, sequence=True)[0]
 
-        return followed(self, as_frames(observations), follow)
+        return follow_pattern(self, as_frames(observations), follow)
 
-    def _correlated(self, frames: Frames) -> tuple[Floats, Floats, Pattern]:
+    def _correlate_frames(self, frames: Frames) -> tuple[Floats, Floats, Pattern]:
         levels = frame_levels(frames, self.apertures_px, self.threshold)
         pattern = find_pattern(self, frames, levels)
         return *self._correlate(frames, levels, pattern.displacement, sequence=False), pattern

@@ -28,14 +28,14 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     Levels,
     Pattern,
     find_pattern,
-    followed,
+    follow_pattern,
     frame_levels,
     lattice,
     margin_px,
     nearest_distance,
 )
-from algorithms.extractors.frames.multi_spot.pattern_doubts import without_covariance
-from algorithms.extractors.frames.one_light import frames_to_measure
+from algorithms.extractors.frames.multi_spot.pattern_flags import without_covariance
+from algorithms.extractors.frames.single_light import frames_to_measure
 from algorithms.inputs import Frames, as_frames, require_positive
 from algorithms.measurement import Measurement
 
@@ -179,7 +179,7 @@ class MeanShift(Extractor):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Averaged positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
-        return self._shifted(as_frames(observations))[0]
+        return self._shift_means(as_frames(observations))[0]
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
         """Positions and doubts of frames (N, H, W) or of one; no covariance is stated.
@@ -188,7 +188,7 @@ class MeanShift(Extractor):
         Bad pixels are replaced by their neighbours.
         """
         frames = frames_to_measure(observations, bad, self.about.name)
-        found, *_, pattern = self._shifted(frames)
+        found, *_, pattern = self._shift_means(frames)
         return without_covariance(found, pattern)
 
     def spots(self, observations: ArrayLike) -> Floats:
@@ -196,14 +196,14 @@ class MeanShift(Extractor):
 
         ValueError on wrong input.
         """
-        return self._shifted(as_frames(observations))[1]
+        return self._shift_means(as_frames(observations))[1]
 
     def weights(self, observations: ArrayLike) -> Floats:
         """Similarity (N, A) of each aperture's spot to the goal, over that of the goal's own.
 
         Zero where no spot is found. ValueError on wrong input.
         """
-        return self._shifted(as_frames(observations))[2]
+        return self._shift_means(as_frames(observations))[2]
 
     def track(self, observations: ArrayLike) -> Floats:
         """Averaged positions (N, 2) in successive frames (N, H, W) of one sequence.
@@ -218,9 +218,9 @@ class MeanShift(Extractor):
         def follow(frames: NDArray[Any], levels: Levels, first: Pattern) -> Floats:
             return self._shift(frames, levels, first, sequence=True)[0]
 
-        return followed(self, as_frames(observations), follow)
+        return follow_pattern(self, as_frames(observations), follow)
 
-    def _shifted(self, frames: Frames) -> tuple[Floats, Floats, Floats, Pattern]:
+    def _shift_means(self, frames: Frames) -> tuple[Floats, Floats, Floats, Pattern]:
         levels = frame_levels(frames, self.apertures_px, self.threshold)
         pattern = find_pattern(self, frames, levels)
         return *self._shift(frames, levels, pattern, sequence=False), pattern

@@ -103,7 +103,7 @@ def _climb(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _agreed(
+def _agree(
     spots: Floats, weights: Floats, apertures: Floats, tolerance: float
 ) -> tuple[float, float, int]:
     """Weighted mean (x, y) of spots less apertures, and the number of spots in it.
@@ -294,7 +294,7 @@ def shift_spots(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 spots[k, a, 0] = near_x
                 spots[k, a, 1] = near_y
                 weights[k, a] = likeness / reference
-        near_x, near_y, number = _agreed(spots[k], weights[k], apertures, astray)
+        near_x, near_y, number = _agree(spots[k], weights[k], apertures, astray)
         if number > 0 and number >= share * expected:
             x, y = near_x, near_y
             found[k, 0] = x

@@ -29,8 +29,8 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     frame_levels,
     lattice,
 )
-from algorithms.extractors.frames.multi_spot.pattern_doubts import without_covariance
-from algorithms.extractors.frames.one_light import frames_to_measure
+from algorithms.extractors.frames.multi_spot.pattern_flags import without_covariance
+from algorithms.extractors.frames.single_light import frames_to_measure
 from algorithms.inputs import Frames, as_frames
 from algorithms.measurement import Measurement
 

@@ -31,9 +31,9 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     frame_levels,
     lattice,
 )
-from algorithms.extractors.frames.multi_spot.pattern_doubts import pattern_doubts
-from algorithms.extractors.frames.one_light import (
-    agreed,
+from algorithms.extractors.frames.multi_spot.pattern_flags import pattern_doubts
+from algorithms.extractors.frames.single_light import (
+    check_agreement,
     frames_to_measure,
     longest_px_of,
     require_light,
@@ -160,7 +160,7 @@ class WeightedSpots(Extractor):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Weighted positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
-        return self._combined(as_frames(observations))[0]
+        return self._combine(as_frames(observations))[0]
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
         """Positions, covariances and doubts of frames (N, H, W) or of one.
@@ -171,7 +171,7 @@ class WeightedSpots(Extractor):
         pixels are replaced by their neighbours.
         """
         frames = frames_to_measure(observations, bad, self.about.name)
-        found, _, sure, pattern = self._combined(frames)
+        found, _, sure, pattern = self._combine(frames)
         covariance = np.zeros((len(found), 2, 2))
         covariance[:, [0, 1], [0, 1]] = sure
         covariance[np.isnan(sure[:, 0]) | np.isnan(found[:, 0])] = np.nan
@@ -183,9 +183,9 @@ class WeightedSpots(Extractor):
         NaN where a spot is missing, cut or disagrees with the others, and for the whole of a
         frame in which the pattern is not found. ValueError on wrong input.
         """
-        return self._combined(as_frames(observations))[1]
+        return self._combine(as_frames(observations))[1]
 
-    def _combined(self, frames: Frames) -> tuple[Floats, Floats, Floats, Pattern]:
+    def _combine(self, frames: Frames) -> tuple[Floats, Floats, Floats, Pattern]:
         """Positions (N, 2), centres (N, A, 2), variances of positions (N, 2), and the pattern."""
         from algorithms.extractors.frames.multi_spot import combination_kernel  # noqa: PLC0415 - Numba, at first use
 
@@ -199,7 +199,7 @@ class WeightedSpots(Extractor):
         centres[~used] = np.nan
         if len(known) == 1:  # no others say which light it is
             place = known[0, :2]
-            found = agreed(frames, found + place, longest_px=self.longest_px) - place
+            found = check_agreement(frames, found + place, longest_px=self.longest_px) - place
             centres[np.isnan(found[:, 0])] = np.nan
             sure[:] = np.nan
         return found, centres, sure, pattern

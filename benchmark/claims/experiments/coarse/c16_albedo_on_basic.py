@@ -14,7 +14,7 @@ import numpy as np
 from algorithms.contract import Floats
 from algorithms.extractors.currents.photodiode import DirectSignals
 from algorithms.models.geometric.multisensor_fusion import SixFaces
-from benchmark.claims.benches import Seen, ratio, rms
+from benchmark.claims.benches import ConditionView, ratio, rms
 from benchmark.claims.experiment import Sketch, Trial
 from benchmark.datasets.standard import pd_maskless_cube
 
@@ -45,6 +45,6 @@ def trial(number: int) -> Trial:
 
 
 def _errors(number: int, without: str, with_albedo: str) -> tuple[Floats, Floats]:
-    bare, earth = (Seen(PRESET, condition, number) for condition in (without, with_albedo))
-    calibrated = bare.calibrated(DirectSignals, SixFaces)
+    bare, earth = (ConditionView(PRESET, condition, number) for condition in (without, with_albedo))
+    calibrated = bare.calibrate(DirectSignals, SixFaces)
     return bare.errors_of(calibrated, DirectSignals), earth.errors_of(calibrated, DirectSignals)

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from algorithms.extractors.currents.photodiode import DirectSignals
 from algorithms.models.geometric.solar_panel import SolarPanels
-from benchmark.claims.benches import Seen, ratio, rms
+from benchmark.claims.benches import ConditionView, ratio, rms
 from benchmark.claims.experiment import Trial
 from benchmark.datasets.standard import pva_maskless_panels
 from benchmark.simulator.light.environment import Irradiance
@@ -27,11 +27,11 @@ DISTURBANCES = {"degradation": "aged", "interference": "stray-light", "albedo": 
 
 def trial(number: int) -> Trial:
     """Measure one unit."""
-    new = Seen(PRESET, "nominal", number)
-    calibrated = new.calibrated(DirectSignals, SolarPanels)
+    new = ConditionView(PRESET, "nominal", number)
+    calibrated = new.calibrate(DirectSignals, SolarPanels)
     clean = rms(new.errors_of(calibrated, DirectSignals))
     disturbed = {
-        name: rms(Seen(PRESET, condition, number).errors_of(calibrated, DirectSignals))
+        name: rms(ConditionView(PRESET, condition, number).errors_of(calibrated, DirectSignals))
         for name, condition in DISTURBANCES.items()
     }
     values = {name: ratio(error, clean) for name, error in disturbed.items()}

@@ -17,7 +17,7 @@ from algorithms.contract import Floats, Model
 from algorithms.extractors.currents.photodiode import DirectSignals
 from algorithms.models.geometric.pyramidal import RegularPyramid
 from algorithms.models.geometric.pyramidal_constant import SteadyPyramid
-from benchmark.claims.benches import Seen, ratio, rms, separation
+from benchmark.claims.benches import ConditionView, ratio, rms, separation
 from benchmark.claims.experiment import Sketch, Trial
 from benchmark.datasets.standard import pd_maskless_pyramid
 from benchmark.seeds import generator
@@ -31,9 +31,9 @@ METHODS: dict[str, Scored] = {"pyramidal": RegularPyramid, "pyramidal-constant":
 
 def trial(number: int) -> Trial:
     """Measure one unit."""
-    seen = Seen(pd_maskless_pyramid.PRESET, "nominal", number)
+    seen = ConditionView(pd_maskless_pyramid.PRESET, "nominal", number)
     features, sun = seen.features(DirectSignals, "test"), seen.samples("test").sun
-    models = {n: seen.calibrated(DirectSignals, method).model for n, method in METHODS.items()}
+    models = {n: seen.calibrate(DirectSignals, method).model for n, method in METHODS.items()}
     clean = {n: separation(model.predict(features), sun) for n, model in models.items()}
     both = np.isfinite(list(clean.values())).all(axis=0)
     full = float(np.max(features))

@@ -16,7 +16,7 @@ from algorithms.contract import Floats
 from algorithms.extractors.currents.photodiode import DirectSignals
 from algorithms.models.geometric.detector_faces import directions
 from algorithms.models.geometric.panoramic import WeightedCells
-from benchmark.claims.benches import Seen, middles, ratio, rms, rms_within, separation
+from benchmark.claims.benches import ConditionView, middles, ratio, rms, rms_within, separation
 from benchmark.claims.experiment import Sketch, Trial
 from benchmark.datasets.standard import pva_maskless_sphere
 from benchmark.simulator.readout.detectors import RESPONSES
@@ -31,7 +31,7 @@ _CIRCLES = 6
 
 def trial(number: int) -> Trial:
     """Measure one unit."""
-    seen = Seen(PRESET, "nominal", number)
+    seen = ConditionView(PRESET, "nominal", number)
     weighted = WeightedCells(PRESET.geometry.face_normals or ())
     equal = replace(weighted, weighting="equal", largest_incidence_deg=89.0)
     errors = {

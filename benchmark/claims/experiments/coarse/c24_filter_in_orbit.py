@@ -21,10 +21,10 @@ from algorithms.contract import FeatureKind, Floats
 from algorithms.extractors.currents.photodiode import DirectSignals
 from algorithms.models.filters import ConsiderKalmanFilter
 from algorithms.models.physics_informed.assembled_faces import AssembledFaces
-from benchmark.claims.benches import Seen, middles, ratio, rms, rms_within, separation
+from benchmark.claims.benches import ConditionView, middles, ratio, rms, rms_within, separation
 from benchmark.claims.experiment import Trial
 from benchmark.claims.experiments.coarse.in_sunlight import orbits_since
-from benchmark.claims.truth import told_truly
+from benchmark.claims.truth import with_true_directions
 from benchmark.datasets.standard import pd_orbit
 
 EDGES = np.arange(0.0, 3.01, 0.25)
@@ -42,8 +42,8 @@ class Pair:
 
 def trial(number: int) -> Trial:
     """Measure one unit."""
-    preset = told_truly(pd_orbit.PRESET)
-    seen = {c: Seen(preset, c, number) for c in ("nominal", "high-noise")}
+    preset = with_true_directions(pd_orbit.PRESET)
+    seen = {c: ConditionView(preset, c, number) for c in ("nominal", "high-noise")}
     errors = {condition: _errors(one) for condition, one in seen.items()}
     pairs = {condition: _pair(*two) for condition, two in errors.items()}
     since = orbits_since(seen["nominal"])
@@ -68,7 +68,7 @@ def values(nominal: Pair, noisy: Pair) -> dict[str, float]:
     }
 
 
-def _errors(seen: Seen) -> tuple[Floats, Floats]:
+def _errors(seen: ConditionView) -> tuple[Floats, Floats]:
     """Errors (N,) of the filter, and of itself without a memory."""
     known, tested = seen.samples("calibration"), seen.samples("test")
     geometry = seen.preset.geometry_for(seen.condition)

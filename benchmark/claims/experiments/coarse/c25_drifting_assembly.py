@@ -19,11 +19,11 @@ from algorithms.contract import Extractor
 from algorithms.extractors.currents.photodiode import DirectSignals
 from algorithms.extractors.frames.centroid import ThresholdedCentroid
 from algorithms.models.filters import AssemblyDriftFilter, ExtendedKalmanFilter
-from benchmark.claims.benches import Seen, middles, ratio, rms, rms_within
+from benchmark.claims.benches import ConditionView, middles, ratio, rms, rms_within
 from benchmark.claims.experiment import Line, Trial
 from benchmark.claims.experiments.coarse.in_sunlight import orbits_since
 from benchmark.claims.experiments.fits.means import geometric
-from benchmark.claims.truth import told_truly
+from benchmark.claims.truth import with_true_directions
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.standard import ccd_orbit, pd_orbit
 
@@ -64,7 +64,7 @@ def _pair(
     number: int,
     lines: dict[str, Line],
 ) -> Pair:
-    seen = Seen(told_truly(preset), condition, number)
+    seen = ConditionView(with_true_directions(preset), condition, number)
     kept, tracked = (
         seen.errors(extractor, model) for model in (ExtendedKalmanFilter, AssemblyDriftFilter)
     )

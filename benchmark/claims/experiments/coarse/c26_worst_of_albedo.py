@@ -15,9 +15,9 @@ import numpy as np
 from algorithms.contract import Floats
 from algorithms.extractors.currents.photodiode import DirectSignals
 from algorithms.models.physics_informed.assembled_faces import AssembledFaces
-from benchmark.claims.benches import Seen, separation
+from benchmark.claims.benches import ConditionView, separation
 from benchmark.claims.experiment import Sketch, Trial
-from benchmark.claims.truth import told_truly
+from benchmark.claims.truth import with_true_directions
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.standard import pd_maskless_cube, pd_maskless_pyramid
 from benchmark.seeds import generator
@@ -54,10 +54,10 @@ class _Sensor:
     """One calibrated unit, and what the Earth does to it."""
 
     def __init__(self, preset: Preset, half_field_deg: float, number: int) -> None:
-        seen = Seen(told_truly(preset), unit=number)
-        self.pipeline = seen.calibrated(DirectSignals, AssembledFaces)
+        seen = ConditionView(with_true_directions(preset), unit=number)
+        self.pipeline = seen.calibrate(DirectSignals, AssembledFaces)
         self.extractor = DirectSignals.for_sensor(preset.geometry)
-        unit = preset.as_unit(number)
+        unit = preset.for_unit(number)
         self.pattern = unit.fixed_pattern("nominal")
         sensor = unit.condition("nominal").sensor
         if not isinstance(sensor, FaceSensor):

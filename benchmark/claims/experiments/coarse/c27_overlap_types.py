@@ -22,7 +22,7 @@ from algorithms.contract import Floats
 from algorithms.extractors.currents.photodiode import DirectSignals
 from algorithms.models.geometric.multisensor_fusion import SixFaces
 from algorithms.models.geometric.solar_panel import SolarPanels
-from benchmark.claims.benches import Seen, ratio, rms, separation
+from benchmark.claims.benches import ConditionView, ratio, rms, separation
 from benchmark.claims.experiment import Trial
 from benchmark.datasets.standard import pd_orbit
 
@@ -37,7 +37,7 @@ _DARK = 0.02
 
 def trial(number: int) -> Trial:
     """Measure one unit."""
-    seen = Seen(pd_orbit.PRESET, "nominal", number)
+    seen = ConditionView(pd_orbit.PRESET, "nominal", number)
     errors = {name: _errors(seen, method) for name, method in METHODS.items()}
     types = _problem_types(seen)
     answered = np.isfinite(list(errors.values())).all(axis=0)
@@ -53,19 +53,19 @@ def trial(number: int) -> Trial:
     return Trial(values, lines)
 
 
-def _errors(seen: Seen, method: Chain) -> Floats:
+def _errors(seen: ConditionView, method: Chain) -> Floats:
     flight = pd_orbit.PRESET.flight
     season = flight.leg("test").sunlight / flight.leg("calibration").sunlight
     samples = seen.samples("test")
-    pipeline = seen.calibrated(DirectSignals, method)
+    pipeline = seen.calibrate(DirectSignals, method)
     signals = seen.features(DirectSignals, "test") / season
     return separation(pipeline.predict_features(signals, samples.context), samples.sun)
 
 
-def _problem_types(seen: Seen) -> Floats:
+def _problem_types(seen: ConditionView) -> Floats:
     """Faces (N,) that Sun and Earth share; NaN in eclipse."""
-    preset = seen.preset.as_unit(seen.unit)
-    scene = pd_orbit.PRESET.as_unit(seen.unit).scene("nominal", "test")
+    preset = seen.preset.for_unit(seen.unit)
+    scene = pd_orbit.PRESET.for_unit(seen.unit).scene("nominal", "test")
     normals = np.asarray(preset.geometry.face_normals)
     earth = np.asarray(scene.albedo) / np.maximum(scene.irradiance, 1e-12)[:, None]
     shared = (scene.sun @ normals.T > _DARK) & (earth > _DARK)

@@ -13,9 +13,9 @@ from functools import cache
 from benchmark.assessment.networks import (
     Method,
     by_albedo_model,
-    networked,
+    network_directions,
     parts,
-    uncorrected,
+    uncorrected_directions,
 )
 from benchmark.claims.benches import ratio, rms, separation
 from benchmark.claims.experiment import Trial
@@ -27,9 +27,9 @@ PRESET = pd_albedo_orbit.PRESET
 def trial(number: int) -> Trial:
     """Measure one seed of the network."""
     errors = {
-        "uncorrected": _fixed("uncorrected"),
-        "albedo model": _fixed("albedo model"),
-        "dnn": _error(networked(number)),
+        "uncorrected": _fix("uncorrected"),
+        "albedo model": _fix("albedo model"),
+        "dnn": _error(network_directions(number)),
     }
     values = {
         "corrects": ratio(errors["uncorrected"], errors["dnn"]),
@@ -39,9 +39,9 @@ def trial(number: int) -> Trial:
 
 
 @cache
-def _fixed(name: str) -> float:
+def _fix(name: str) -> float:
     """Error of a method that has no seed."""
-    return _error({"uncorrected": uncorrected, "albedo model": by_albedo_model}[name])
+    return _error({"uncorrected": uncorrected_directions, "albedo model": by_albedo_model}[name])
 
 
 def _error(method: Method) -> float:

@@ -14,9 +14,9 @@ from algorithms.extractors.currents.photodiode import DirectSignals
 from algorithms.extractors.frames.centroid import ThresholdedCentroid
 from algorithms.models.non_physical.polynomial import SurfacePolynomial
 from algorithms.models.physics_informed.assembled_faces import AssembledFaces
-from benchmark.claims.benches import Seen, ratio, rms
+from benchmark.claims.benches import ConditionView, ratio, rms
 from benchmark.claims.experiment import Trial
-from benchmark.claims.truth import told_truly
+from benchmark.claims.truth import with_true_directions
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.standard import cmos_single_aperture_pinhole, pd_maskless_cube
 
@@ -29,7 +29,7 @@ def trial(number: int) -> Trial:
     digital = _errors(cmos_single_aperture_pinhole.PRESET, number, digital=True)
     analog = _errors(pd_maskless_cube.PRESET, number, digital=False)
     values = {
-        "immune": ratio(max(_added(*digital), _LEAST_DEG), _added(*analog)),
+        "immune": ratio(max(_add(*digital), _LEAST_DEG), _add(*analog)),
         "digital": ratio(digital[1], digital[0]),
     }
     places = ("CMOS pinhole", "photodiode cube")
@@ -44,11 +44,12 @@ def _errors(preset: Preset, number: int, *, digital: bool) -> tuple[float, float
     extractor = ThresholdedCentroid if digital else DirectSignals
     model = SurfacePolynomial if digital else AssembledFaces
     bare, earth = (
-        Seen(told_truly(preset), condition, number) for condition in ("nominal", "albedo")
+        ConditionView(with_true_directions(preset), condition, number)
+        for condition in ("nominal", "albedo")
     )
-    calibrated = bare.calibrated(extractor, model)
+    calibrated = bare.calibrate(extractor, model)
     return rms(bare.errors_of(calibrated, extractor)), rms(earth.errors_of(calibrated, extractor))
 
 
-def _added(without: float, with_albedo: float) -> float:
+def _add(without: float, with_albedo: float) -> float:
     return math.sqrt(max(with_albedo**2 - without**2, 0.0))

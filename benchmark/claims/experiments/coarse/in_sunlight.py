@@ -7,11 +7,11 @@ from typing import cast
 import numpy as np
 
 from algorithms.contract import Floats
-from benchmark.claims.benches import Seen
+from benchmark.claims.benches import ConditionView
 from benchmark.datasets.conditions.flight import FlightPreset
 
 
-def orbits_since(seen: Seen) -> Floats:
+def orbits_since(seen: ConditionView) -> Floats:
     """Orbits (N,) from the first sample of the test split; NaN in eclipse."""
     flight = cast("FlightPreset", seen.preset).flight
     context = seen.samples("test").context or {}

@@ -20,11 +20,11 @@ from algorithms.models.geometric.pinhole import BuiltPinhole
 from algorithms.models.lut.lookup_table import ErrorTable
 from algorithms.models.non_physical.polynomial import SurfacePolynomial
 from algorithms.pipeline import Pipeline
-from benchmark.claims.benches import Seen, exponent, ratio, rms, times_s
+from benchmark.claims.benches import ConditionView, exponent, ratio, rms, times_s
 from benchmark.claims.experiment import Line, Sketch, Trial
 from benchmark.claims.experiments.fits.means import geometric
 from benchmark.claims.experiments.fits.poses import many
-from benchmark.claims.truth import told_truly
+from benchmark.claims.truth import with_true_directions
 from benchmark.datasets.standard import cmos_single_aperture, qpd_single_aperture
 
 PUBLISHED_DEG = 1.0
@@ -38,9 +38,15 @@ def trial(number: int) -> Trial:
     lines: dict[str, Line] = {}
     values = [
         _sensor(
-            Seen(told_truly(cmos_single_aperture.PRESET), unit=number), ThresholdedCentroid, lines
+            ConditionView(with_true_directions(cmos_single_aperture.PRESET), unit=number),
+            ThresholdedCentroid,
+            lines,
         ),
-        _sensor(Seen(told_truly(qpd_single_aperture.PRESET), unit=number), VoltageBalance, lines),
+        _sensor(
+            ConditionView(with_true_directions(qpd_single_aperture.PRESET), unit=number),
+            VoltageBalance,
+            lines,
+        ),
     ]
     faster, limited, size = zip(*values, strict=True)
     return Trial(
@@ -54,18 +60,18 @@ def trial(number: int) -> Trial:
 
 
 def _sensor(
-    seen: Seen, extractor: type[Extractor], lines: dict[str, Line]
+    seen: ConditionView, extractor: type[Extractor], lines: dict[str, Line]
 ) -> tuple[float, float, float]:
     """Speed and error of the published table beside the others, and how its size grows."""
     nominal = ErrorTable.for_sensor(seen.preset.geometry, extractor.about.kind)
     tables = [
-        seen.calibrated(extractor, replace(nominal, interval_deg=step)) for step in INTERVALS_DEG
+        seen.calibrate(extractor, replace(nominal, interval_deg=step)) for step in INTERVALS_DEG
     ]
     found = [rms(seen.errors_of(table, extractor)) for table in tables]
     others = {
-        "polynomial-2d": seen.calibrated(extractor, SurfacePolynomial),
-        "lsq": seen.calibrated(extractor, LeastSquaresGeometry),
-        "pinhole": seen.calibrated(extractor, BuiltPinhole),
+        "polynomial-2d": seen.calibrate(extractor, SurfacePolynomial),
+        "lsq": seen.calibrate(extractor, LeastSquaresGeometry),
+        "pinhole": seen.calibrate(extractor, BuiltPinhole),
     }
     least = min(rms(seen.errors_of(other, extractor)) for other in others.values())
     lines[f"lut, {seen.preset.detector}"] = (INTERVALS_DEG, found)
@@ -88,7 +94,7 @@ def _entries(table: Pipeline) -> float:
 
 
 def _speed(
-    seen: Seen, extractor: type[Extractor], table: Pipeline, others: list[Pipeline]
+    seen: ConditionView, extractor: type[Extractor], table: Pipeline, others: list[Pipeline]
 ) -> float:
     """Run time of the fastest of the others over the table's."""
     rows = many(seen.features(extractor, "test"))

@@ -17,9 +17,9 @@ from typing import cast
 from algorithms.extractors.currents.photodiode import VoltageBalance
 from algorithms.models.lut.blended_polynomials import BlendedPolynomials
 from algorithms.models.lut.lookup_table import ErrorTable
-from benchmark.claims.benches import Seen, middles, ratio, rms, rms_within
+from benchmark.claims.benches import ConditionView, middles, ratio, rms, rms_within
 from benchmark.claims.experiment import Line, Trial
-from benchmark.claims.truth import told_truly
+from benchmark.claims.truth import with_true_directions
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.standard import qpd_single_aperture
@@ -36,7 +36,7 @@ EDGES_DEG = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 72.0)
 
 def trial(number: int) -> Trial:
     """Measure one unit."""
-    seen = Seen(told_truly(_wide()), unit=number)
+    seen = ConditionView(with_true_directions(_wide()), unit=number)
     kind = VoltageBalance.about.kind
     table = ErrorTable.for_sensor(seen.preset.geometry, kind)
     rows = BlendedPolynomials.for_sensor(seen.preset.geometry, kind)

@@ -15,7 +15,7 @@ from dataclasses import replace
 from algorithms.extractors.currents.photodiode import VoltageBalance
 from algorithms.models.non_physical.linear import LinearFit
 from algorithms.models.non_physical.polynomial import AxisPolynomial
-from benchmark.claims.benches import Seen, rank_correlation, ratio, rms
+from benchmark.claims.benches import ConditionView, rank_correlation, ratio, rms
 from benchmark.claims.experiment import Trial
 from benchmark.claims.experiments.fits.poses import Poses, errors
 from benchmark.datasets.fields import AngleField
@@ -29,7 +29,7 @@ HALF_FIELDS_DEG = (5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0)
 def trial(number: int) -> Trial:
     """Measure one unit."""
     dense = AngleField(SQUARE_DEG, steps=41, test_samples=2000)
-    seen = Seen(replace(qpd_single_aperture.PRESET, directions=dense), unit=number)
+    seen = ConditionView(replace(qpd_single_aperture.PRESET, directions=dense), unit=number)
     line = [_error(seen, half, LinearFit(extrapolation=math.inf)) for half in HALF_FIELDS_DEG]
     curve = [_error(seen, half, AxisPolynomial(extrapolation=math.inf)) for half in HALF_FIELDS_DEG]
     return Trial(
@@ -41,7 +41,7 @@ def trial(number: int) -> Trial:
     )
 
 
-def _error(seen: Seen, half_deg: float, model: LinearFit | AxisPolynomial) -> float:
+def _error(seen: ConditionView, half_deg: float, model: LinearFit | AxisPolynomial) -> float:
     known, asked = (
         Poses.of(seen, VoltageBalance, split).chosen(seen.incidence_deg(split) <= half_deg)
         for split in ("calibration", "test")

@@ -15,7 +15,7 @@ from algorithms.angles import angles_from_sun, sun_from_angles
 from algorithms.contract import Floats
 from algorithms.extractors.currents.photodiode import VoltageBalance
 from algorithms.models.non_physical.polynomial import AxisPolynomial
-from benchmark.claims.benches import Seen, ratio, rms, separation
+from benchmark.claims.benches import ConditionView, ratio, rms, separation
 from benchmark.claims.experiment import Trial
 from benchmark.datasets.standard import psd_single_aperture, qpd_single_aperture
 
@@ -24,7 +24,9 @@ ORDERS = range(1, 16)
 
 def trial(number: int) -> Trial:
     """Measure one unit of both sensors."""
-    seen = [Seen(m.PRESET, unit=number) for m in (qpd_single_aperture, psd_single_aperture)]
+    seen = [
+        ConditionView(m.PRESET, unit=number) for m in (qpd_single_aperture, psd_single_aperture)
+    ]
     ours = [math.sqrt(math.prod(_error(s, order) for s in seen)) for order in ORDERS]
     chebyshev = [math.sqrt(math.prod(_chebyshev(s, order) for s in seen)) for order in ORDERS]
     lines = {"polynomial-1d": (tuple(ORDERS), ours), "numpy.polynomial": (tuple(ORDERS), chebyshev)}
@@ -37,11 +39,11 @@ def _statistics(errors: list[float]) -> dict[str, float]:
     return {"little": ratio(beyond, by_order[11]), "before": ratio(by_order[3], by_order[11])}
 
 
-def _error(seen: Seen, order: int) -> float:
+def _error(seen: ConditionView, order: int) -> float:
     return rms(seen.errors(VoltageBalance, AxisPolynomial(degree=order)))
 
 
-def _chebyshev(seen: Seen, order: int) -> float:
+def _chebyshev(seen: ConditionView, order: int) -> float:
     known, asked = (seen.features(VoltageBalance, split) for split in ("calibration", "test"))
     angles = angles_from_sun(seen.samples("calibration").sun)
     said: Floats = np.column_stack(

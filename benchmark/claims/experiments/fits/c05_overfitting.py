@@ -14,11 +14,11 @@ import numpy as np
 
 from algorithms.extractors.currents.photodiode import VoltageBalance
 from algorithms.models.non_physical.polynomial import MAX_DEGREE, AxisPolynomial
-from benchmark.claims.benches import Seen, drawn, ratio, rms
+from benchmark.claims.benches import ConditionView, draw, ratio, rms
 from benchmark.claims.experiment import Trial
 from benchmark.claims.experiments.fits.means import geometric
 from benchmark.claims.experiments.fits.poses import Poses, errors
-from benchmark.claims.truth import told_truly
+from benchmark.claims.truth import with_true_directions
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.standard import psd_single_aperture, qpd_single_aperture
 from benchmark.seeds import generator
@@ -54,10 +54,10 @@ def worse(known: Poses, asked: Poses) -> float:
 
 def _sensor(preset: Preset, unit: int) -> tuple[float, float, list[list[float]]]:
     """Ratio with all poses, the mean one with few, and errors by order."""
-    seen = Seen(told_truly(preset), unit=unit)
+    seen = ConditionView(with_true_directions(preset), unit=unit)
     known, asked = (Poses.of(seen, VoltageBalance, split) for split in ("calibration", "test"))
     rng, rows = generator("claims", "C05", preset.name, unit), np.arange(len(known.sun))
-    few = [known.chosen(drawn(rows, FEW, rng)) for _ in range(DRAWS)]
+    few = [known.chosen(draw(rows, FEW, rng)) for _ in range(DRAWS)]
     return (
         worse(known, asked),
         geometric([worse(poses, asked) for poses in few]),

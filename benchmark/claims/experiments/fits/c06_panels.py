@@ -15,7 +15,7 @@ import numpy as np
 from algorithms.extractors.currents.photodiode import DirectSignals
 from algorithms.models.non_physical.panel_curves import AveragedPanelCurves
 from algorithms.models.non_physical.trigonometric import TrigonometricPanels
-from benchmark.claims.benches import Seen, middles, ratio, rms, rms_within
+from benchmark.claims.benches import ConditionView, middles, ratio, rms, rms_within
 from benchmark.claims.experiment import Line, Trial
 from benchmark.datasets.standard import pva_maskless_panels
 
@@ -27,7 +27,7 @@ def trial(number: int) -> Trial:
     """Measure one unit."""
     direct, averaged, lines = math.nan, math.nan, dict[str, Line]()
     for condition in ("nominal", "cosine"):
-        seen = Seen(pva_maskless_panels.PRESET, condition, unit=number)
+        seen = ConditionView(pva_maskless_panels.PRESET, condition, unit=number)
         nearest = np.degrees(np.arccos(np.abs(seen.samples("test").sun).max(axis=1)))
         one = seen.errors(DirectSignals, AveragedPanelCurves)
         other = seen.errors(DirectSignals, TrigonometricPanels)

@@ -19,11 +19,11 @@ from algorithms.contract import Floats
 from algorithms.extractors.currents.photodiode import VoltageBalance
 from algorithms.models.non_physical.fourier_balance import FourierBalance
 from algorithms.models.non_physical.polynomial import AxisPolynomial
-from benchmark.claims.benches import Seen, ratio, rms, times_s
+from benchmark.claims.benches import ConditionView, ratio, rms, times_s
 from benchmark.claims.experiment import Sketch, Trial
 from benchmark.claims.experiments.fits.means import geometric
 from benchmark.claims.experiments.fits.poses import Poses, errors, many
-from benchmark.claims.truth import told_truly
+from benchmark.claims.truth import with_true_directions
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.standard import psd_single_aperture, qpd_single_aperture
 from benchmark.seeds import generator
@@ -36,7 +36,7 @@ SHOWN = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
 
 
 @dataclass(frozen=True)
-class Measured:
+class WaveResult:
     """Of one sensor and wave: shares captured, the polynomial's error over the series', times."""
 
     series: float
@@ -64,7 +64,7 @@ def trial(number: int) -> Trial:
     )
 
 
-def captured(waved: float, plain: float, unknowing: float) -> float:
+def capture(waved: float, plain: float, unknowing: float) -> float:
     """Share of a wave's mean squared error that a fit takes up.
 
     From the error with the wave fitted, the error with no wave at all, and that of a wave which
@@ -79,14 +79,14 @@ class _Sensor:
     def __init__(self, preset: Preset, unit: int) -> None:
         rng = generator("claims", "C07", preset.name, unit)
         self.waves, self.phases = float(rng.uniform(*WAVES)), rng.uniform(0.0, 2.0 * np.pi, 2)
-        seen = Seen(told_truly(preset), unit=unit)
+        seen = ConditionView(with_true_directions(preset), unit=unit)
         splits = (Poses.of(seen, VoltageBalance, split) for split in ("calibration", "test"))
         self.known, self.asked = splits
         self.field = float(np.nanmax(self.known.features) - np.nanmin(self.known.features))
         self.plain = rms(errors(FourierBalance(), self.known, self.asked))
         self.plain_polynomial = rms(errors(AxisPolynomial(), self.known, self.asked))
 
-    def measured(self, waves: float, timed: bool = False) -> Measured:
+    def measured(self, waves: float, timed: bool = False) -> WaveResult:
         """Measure both models under so many waves over the field; run times where timed."""
         known, asked = (
             poses.moved(self._wave(poses.features, waves)) for poses in (self.known, self.asked)
@@ -101,9 +101,9 @@ class _Sensor:
                 fourier=lambda: fourier.predict(rows), polynomial=lambda: polynomial.predict(rows)
             )
             slower = ratio(*taken.values())
-        return Measured(
-            captured(series, self.plain, unknowing),
-            captured(powers, self.plain_polynomial, unknowing),
+        return WaveResult(
+            capture(series, self.plain, unknowing),
+            capture(powers, self.plain_polynomial, unknowing),
             ratio(powers, series),
             slower,
         )

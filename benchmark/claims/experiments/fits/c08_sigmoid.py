@@ -11,7 +11,7 @@ from __future__ import annotations
 from algorithms.extractors.currents.photodiode import VoltageBalance
 from algorithms.models.non_physical.polynomial import AxisPolynomial
 from algorithms.models.non_physical.sigmoid import SigmoidBalance
-from benchmark.claims.benches import Seen, ratio, rms, times_s
+from benchmark.claims.benches import ConditionView, ratio, rms, times_s
 from benchmark.claims.experiment import Trial
 from benchmark.claims.experiments.fits.means import geometric
 from benchmark.claims.experiments.fits.poses import many
@@ -38,9 +38,9 @@ def trial(number: int) -> Trial:
 
 def _aperture(condition: str, number: int) -> tuple[float, float, float]:
     """Both errors, and the sigmoid's run time over the polynomial's."""
-    seen = Seen(qpd_single_aperture.PRESET, condition, unit=number)
-    sigmoid = seen.calibrated(VoltageBalance, SigmoidBalance)
-    curve = seen.calibrated(VoltageBalance, AxisPolynomial(degree=ORDER))
+    seen = ConditionView(qpd_single_aperture.PRESET, condition, unit=number)
+    sigmoid = seen.calibrate(VoltageBalance, SigmoidBalance)
+    curve = seen.calibrate(VoltageBalance, AxisPolynomial(degree=ORDER))
     rows = many(seen.features(VoltageBalance, "test"))
     taken = times_s(
         sigmoid=lambda: sigmoid.model.predict(rows), polynomial=lambda: curve.model.predict(rows)

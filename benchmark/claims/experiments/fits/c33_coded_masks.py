@@ -17,7 +17,7 @@ from algorithms.contract import Floats
 from algorithms.extractors.frames.multi_spot.spot_list import SpotList
 from algorithms.models.multiplex.coded_correlation import CodedCorrelation
 from algorithms.models.multiplex.coded_spacing import CodedSpacing
-from benchmark.claims.benches import Seen, middles, rms, rms_within
+from benchmark.claims.benches import ConditionView, middles, rms, rms_within
 from benchmark.claims.experiment import Line, Trial
 from benchmark.claims.experiments.fits.means import geometric
 from benchmark.datasets.calibration import IDEAL
@@ -46,7 +46,7 @@ def _sensor(preset: Preset, number: int, lines: dict[str, Line]) -> tuple[float,
         ("nominal", preset.name),
         (IDEAL, f"{preset.name}, calibrated ideally"),
     ):
-        seen = Seen(preset.with_ideal_calibration(), condition, unit=number)
+        seen = ConditionView(preset.with_ideal_calibration(), condition, unit=number)
         least = min(
             (seen.errors(SpotList, model) for model in (CodedCorrelation, CodedSpacing)), key=rms
         )

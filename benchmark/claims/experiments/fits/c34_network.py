@@ -14,7 +14,7 @@ from algorithms.contract import Floats
 from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
 from algorithms.models.geometric.least_squares import LeastSquaresGeometry
 from algorithms.models.neural_network.axis_networks import AxisNetworks
-from benchmark.claims.benches import Seen, ratio, rms
+from benchmark.claims.benches import ConditionView, ratio, rms
 from benchmark.claims.experiment import Trial
 from benchmark.claims.experiments.fits.poses import Poses, errors
 from benchmark.datasets.standard import cmos_multi_aperture
@@ -27,7 +27,7 @@ ADDED_PX = 1.0
 
 def trial(number: int) -> Trial:
     """Measure one unit."""
-    seen = Seen(cmos_multi_aperture.PRESET, unit=number)
+    seen = ConditionView(cmos_multi_aperture.PRESET, unit=number)
     known, asked = (Poses.of(seen, MultipleCentroids, s) for s in ("calibration", "test"))
     phases = generator("claims", "C34", number).uniform(0.0, 2.0 * np.pi, (2, 2))
     low, high = (end(known.features, axis=0) for end in (np.nanmin, np.nanmax))

@@ -24,10 +24,10 @@ from algorithms.extractors.frames.multi_spot.multiple_centroids import (
     mean_displacement,
 )
 from algorithms.models.neural_network.axis_networks import AxisNetworks
-from benchmark.claims.benches import Seen, ratio, rms
+from benchmark.claims.benches import ConditionView, ratio, rms
 from benchmark.claims.experiment import Trial
 from benchmark.claims.experiments.fits.poses import Poses, errors
-from benchmark.claims.truth import told_truly
+from benchmark.claims.truth import with_true_directions
 from benchmark.datasets.fields import AngleField
 from benchmark.datasets.standard import cmos_multi_aperture
 
@@ -46,7 +46,10 @@ class _Frames:
 def trial(number: int) -> Trial:
     """Measure one unit."""
     directions = AngleField(60.0, steps=13, test_samples=100)
-    seen = Seen(told_truly(replace(cmos_multi_aperture.PRESET, directions=directions)), unit=number)
+    seen = ConditionView(
+        with_true_directions(replace(cmos_multi_aperture.PRESET, directions=directions)),
+        unit=number,
+    )
     known, asked = (_read(seen, split) for split in ("calibration", "test"))
     narrow = np.full(len(asked.whole), math.nan)
     narrow[asked.whole] = errors(
@@ -70,7 +73,7 @@ def trial(number: int) -> Trial:
     )
 
 
-def _read(seen: Seen, split: str) -> _Frames:
+def _read(seen: ConditionView, split: str) -> _Frames:
     method = replace(MultipleCentroids.for_sensor(seen.preset.geometry), faulty_lines=0)
     samples = seen.samples(split)
     spots = method.spots(samples.observations)

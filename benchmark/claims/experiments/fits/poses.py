@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Extractor, Floats, Model
-from benchmark.claims.benches import Seen, separation
+from benchmark.claims.benches import ConditionView, separation
 
 #: Rows that run times are taken over: many enough that a call's own cost is none.
 TIMED_ROWS = 20_000
@@ -23,7 +23,7 @@ class Poses:
     sun: Floats
 
     @classmethod
-    def of(cls, seen: Seen, extractor: type[Extractor], split: str) -> Self:
+    def of(cls, seen: ConditionView, extractor: type[Extractor], split: str) -> Self:
         """Return a split as this extractor reads it."""
         return cls(seen.features(extractor, split), seen.samples(split).sun)
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from algorithms.contract import Floats
 from algorithms.extractors.currents.photodiode import VoltageBalance
-from benchmark.claims.benches import Seen, middles
+from benchmark.claims.benches import ConditionView, middles
 from benchmark.claims.experiment import Sketch, Trial
 from benchmark.datasets.standard.qpd_single_aperture import PRESET
 
@@ -29,7 +29,7 @@ _WIDTH, _HEIGHT, _HALF, _GAP = 2.0, 1.0, 1.8, 0.05
 
 def trial(number: int) -> Trial:
     """Measure one unit."""
-    seen = Seen(PRESET, unit=number)
+    seen = ConditionView(PRESET, unit=number)
     sun = seen.samples("test").sun
     # the balance along x goes with tan(beta) = s_x / s_z
     tangents = sun[:, :2] / sun[:, 2:]

@@ -21,7 +21,7 @@ from algorithms.extractors.frames.template import TemplateMatch
 from algorithms.extractors.frames.threshold_average import MultipleThresholdCentroid
 from benchmark.claims.benches import ratio
 from benchmark.claims.experiment import Sketch, Trial
-from benchmark.claims.experiments.frames.single_discs import NOISES, errors_px, shipped, single
+from benchmark.claims.experiments.frames.single_discs import NOISES, errors_px, ship, single
 
 SKETCH = Sketch(log_across=True)
 
@@ -40,7 +40,7 @@ SHARES = NOISES[:6]
 def trial(number: int) -> Trial:
     """Measure one draw of discs and noise."""
     drawn = single("C37", number)
-    errors = errors_px(drawn, {name: shipped(m) for name, m in METHODS.items()}, SHARES)
+    errors = errors_px(drawn, {name: ship(m) for name, m in METHODS.items()}, SHARES)
     growth = {name: ratio(along[-1], along[0]) for name, along in errors.items()}
     others = float(np.nanmax([value for name, value in growth.items() if name != "bcm"]))
     values = {"sub-pixel": errors["bcm"][0], "sensitive": ratio(growth["bcm"], others)}

@@ -12,7 +12,7 @@ import numpy as np
 from algorithms.extractors.frames.centroid import BasicCentroid, ThresholdedCentroid
 from benchmark.claims.benches import ratio
 from benchmark.claims.experiment import Sketch, Trial
-from benchmark.claims.experiments.frames.single_discs import NOISES, errors_px, shipped, single
+from benchmark.claims.experiments.frames.single_discs import NOISES, errors_px, ship, single
 
 SKETCH = Sketch(log_across=True)
 
@@ -22,7 +22,7 @@ FRACTIONS = (0.1, 0.3, 0.5)
 def trial(number: int) -> Trial:
     """Measure one draw of discs and noise."""
     drawn = single("C38", number)
-    methods = {"bcm": shipped(BasicCentroid), "bctm": shipped(ThresholdedCentroid)}
+    methods = {"bcm": ship(BasicCentroid), "bctm": ship(ThresholdedCentroid)}
     methods |= {f"bctm at {f:g}": ThresholdedCentroid(threshold=f) for f in FRACTIONS}
     errors = errors_px(drawn, methods, NOISES)
     bound = [drawn.bound_px(share) for share in NOISES]

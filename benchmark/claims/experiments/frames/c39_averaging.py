@@ -24,7 +24,7 @@ from benchmark.claims.experiments.frames.spot_grids import (
     present,
 )
 from benchmark.seeds import generator
-from benchmark.synthetic_features.light import BACKGROUND_E, READ_NOISE_E, detected, peak_e, spots
+from benchmark.synthetic_features.light import BACKGROUND_E, READ_NOISE_E, detect, peak_e, spots
 from benchmark.synthetic_features.series import REFERENCE_SNR
 
 SKETCH = Sketch(log_across=True)
@@ -62,8 +62,8 @@ def _apart(number: int) -> list[float]:
     most = NUMBERS[-1]
     truth = (_CROP_PX - 1) / 2.0 + rng.uniform(-0.5, 0.5, (_APART * most, 2))
     peak = peak_e(REFERENCE_SNR)
-    frames = detected(BACKGROUND_E + peak * _discs(truth), peak, 0.0, rng).astype(np.float64)
-    away = (_fitted(frames) - truth).reshape(_APART, most, 2)
+    frames = detect(BACKGROUND_E + peak * _discs(truth), peak, 0.0, rng).astype(np.float64)
+    away = (_fit(frames) - truth).reshape(_APART, most, 2)
     return [math.sqrt(float(np.mean(np.mean(away[:, :n], axis=1) ** 2))) for n in NUMBERS]
 
 
@@ -71,7 +71,7 @@ def _discs(places: Floats) -> Floats:
     return spots(_CROP_PX, places[:, None], RADIUS_PX, "flat")
 
 
-def _fitted(frames: Floats) -> Floats:
+def _fit(frames: Floats) -> Floats:
     """Places (N, 2) by Gauss-Newton from the middle, with height and background unknown."""
     found = np.full((len(frames), 2), (_CROP_PX - 1) / 2.0)
     weight = 1.0 / np.sqrt(np.maximum(frames, 0.0) + READ_NOISE_E**2)

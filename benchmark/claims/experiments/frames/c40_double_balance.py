@@ -14,7 +14,7 @@ from benchmark.claims.experiment import Sketch, Trial
 from benchmark.claims.experiments.frames.single_discs import (
     DETECTOR_PX,
     NOISES,
-    shipped,
+    ship,
     single,
 )
 
@@ -27,7 +27,7 @@ NOISE = 0.01
 def trial(number: int) -> Trial:
     """Measure one draw of discs and noise."""
     drawn = single("C40", number)
-    dbcm, bctm = shipped(DoubleBalance), shipped(ThresholdedCentroid)
+    dbcm, bctm = ship(DoubleBalance), ship(ThresholdedCentroid)
     lines = {
         name: (SHARES, [drawn.error_px(method.extract(drawn.digital(s))) for s in SHARES])
         for name, method in (("dbcm", dbcm), ("bctm", bctm))

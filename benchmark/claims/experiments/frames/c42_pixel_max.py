@@ -15,7 +15,7 @@ from benchmark.claims.experiment import Sketch, Trial
 from benchmark.claims.experiments.frames.single_discs import (
     DETECTOR_PX,
     NOISES,
-    shipped,
+    ship,
     single,
 )
 
@@ -28,8 +28,8 @@ NOISE = 0.01
 def trial(number: int) -> Trial:
     """Measure one draw of discs and noise."""
     drawn = single("C42", number)
-    pm, bctm = shipped(PixelMax), shipped(ThresholdedCentroid)
-    dbcm, mtacm = shipped(DoubleBalance), shipped(MultipleThresholdCentroid)
+    pm, bctm = ship(PixelMax), ship(ThresholdedCentroid)
+    dbcm, mtacm = ship(DoubleBalance), ship(MultipleThresholdCentroid)
     methods = {"pm": pm, "bctm": bctm, "dbcm": dbcm, "mt-acm": mtacm}
     lines = {
         name: (SHARES, [drawn.error_px(method.extract(drawn.digital(s))) for s in SHARES])

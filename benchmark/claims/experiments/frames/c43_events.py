@@ -19,7 +19,7 @@ from algorithms.contract import Floats
 from algorithms.extractors.events.centroid import EventCentroid, EventWinner
 from algorithms.extractors.frames.centroid import ThresholdedCentroid
 from algorithms.models.geometric.pinhole import BuiltPinhole
-from benchmark.claims.benches import Seen, ratio, rms, times_s
+from benchmark.claims.benches import ConditionView, ratio, rms, times_s
 from benchmark.claims.experiment import Sketch, Trial
 from benchmark.claims.experiments.frames.single_discs import error_px
 from benchmark.datasets.fields import AngleField
@@ -42,7 +42,7 @@ _LIT_US, _STRAY, _JITTER = 100.0, 0.002, 0.01
 
 def trial(number: int) -> Trial:
     """Measure one unit of the sensor and one draw of spots."""
-    seen = Seen(PRESET, unit=number)
+    seen = ConditionView(PRESET, unit=number)
     mean, winner = (m.for_sensor(PRESET.geometry) for m in (EventCentroid, EventWinner))
     unit = ratio(*(rms(seen.errors(m, BuiltPinhole)) for m in (EventWinner, EventCentroid)))
     rng = generator("claims", "C43", number)

@@ -18,7 +18,7 @@ from benchmark.claims.benches import ratio
 from benchmark.claims.experiment import Sketch, Trial
 from benchmark.claims.experiments.frames.single_discs import error_px
 from benchmark.seeds import generator
-from benchmark.synthetic_features.shapes import EDGE_PX, Shape, rendered
+from benchmark.synthetic_features.shapes import EDGE_PX, Shape, render
 
 SKETCH = Sketch()
 
@@ -35,7 +35,7 @@ def trial(number: int) -> Trial:
     """Measure one draw of crosses, noise and missing pixels."""
     rng = generator("claims", "C45", number)
     centres = (_SIZE_PX - 1) / 2.0 + rng.uniform(-_RANGE_PX, _RANGE_PX, (_FRAMES, 2))
-    light = rendered(_CROSS, centres, rng.uniform(-_TURN, _TURN, _FRAMES), _SIZE_PX)
+    light = render(_CROSS, centres, rng.uniform(-_TURN, _TURN, _FRAMES), _SIZE_PX)
     light = np.minimum(_OVEREXPOSED * light, 1.0)
     noise, lot = rng.standard_normal(light.shape), rng.random(light.shape)
 

@@ -23,7 +23,7 @@ from benchmark.claims.experiments.frames.single_discs import (
     SIZE_PX,
     Spots,
     errors_px,
-    shipped,
+    ship,
     single,
 )
 from benchmark.seeds import generator
@@ -42,12 +42,12 @@ def trial(number: int) -> Trial:
     drawn = single("C46", number)
     methods = {
         "hough-circle": HoughCircle(smallest_px=6.0, largest_px=10.0),
-        "hough-circle, any radius": shipped(HoughCircle),
-        "bctm": shipped(ThresholdedCentroid),
+        "hough-circle, any radius": ship(HoughCircle),
+        "bctm": ship(ThresholdedCentroid),
     }
     lines: dict[str, list[float]] = {name: [] for name in methods}
     for share in SHARES:
-        seen = corrupted(drawn, share, generator("claims", "C46", number, "corruption"))
+        seen = corrupt(drawn, share, generator("claims", "C46", number, "corruption"))
         for name, errors in errors_px(seen, methods, (NOISE,)).items():
             lines[name] += errors
     at = SHARES.index(CORRUPTED)
@@ -56,7 +56,7 @@ def trial(number: int) -> Trial:
     return Trial(values, {name: (SHARES, along) for name, along in lines.items()})
 
 
-def corrupted(drawn: Spots, share: float, rng: np.random.Generator) -> Spots:
+def corrupt(drawn: Spots, share: float, rng: np.random.Generator) -> Spots:
     """Discs of whose area a share is corrupted; the same gaps and pixels grow with the share."""
     count = len(drawn.light)
     part = RADIUS_PX * math.sqrt(share / 3.0)

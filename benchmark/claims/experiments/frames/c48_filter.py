@@ -10,7 +10,7 @@ from __future__ import annotations
 from algorithms.extractors.frames.centroid import BasicCentroid, FilteredCentroid
 from benchmark.claims.benches import ratio
 from benchmark.claims.experiment import Sketch, Trial
-from benchmark.claims.experiments.frames.single_discs import NOISES, errors_px, shipped, single
+from benchmark.claims.experiments.frames.single_discs import NOISES, errors_px, ship, single
 
 SKETCH = Sketch(log_across=True)
 
@@ -21,8 +21,8 @@ def trial(number: int) -> Trial:
     """Measure one draw of discs and noise."""
     drawn = single("C48", number)
     methods = {
-        "bcm": shipped(BasicCentroid),
-        "ifm": shipped(FilteredCentroid),
+        "bcm": ship(BasicCentroid),
+        "ifm": ship(FilteredCentroid),
         "bcm in a window": BasicCentroid(window_px=WINDOW_PX),
         "ifm in a window": FilteredCentroid(window_px=WINDOW_PX),
     }

@@ -16,7 +16,7 @@ from benchmark.claims.experiments.frames.single_discs import (
     NOISES,
     RADIUS_PX,
     errors_px,
-    shipped,
+    ship,
     single,
 )
 
@@ -29,9 +29,9 @@ def trial(number: int) -> Trial:
     """Measure one draw of discs and noise."""
     drawn = single("C49", number)
     methods = {
-        "tm": shipped(TemplateMatch),
-        "bctm": shipped(ThresholdedCentroid),
-        "ifm": shipped(FilteredCentroid),
+        "tm": ship(TemplateMatch),
+        "bctm": ship(ThresholdedCentroid),
+        "ifm": ship(FilteredCentroid),
         "tm, grey frame": TemplateMatch(width_px=2.0 * RADIUS_PX, binarise=False),
     }
     errors = errors_px(drawn, methods, SHARES)

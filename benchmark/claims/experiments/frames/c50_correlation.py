@@ -59,9 +59,11 @@ def trial(number: int) -> Trial:
     windows = [error_px(replace(method, correlations=n).extract(whole), middles) for n in WINDOWS]
     last, places = whole[:PAIRS], middles[:PAIRS]
     centres = [
-        error_px(_tracked(number, method, last, places - [away, 0.0]), places) for away in CENTRES
+        error_px(_track(number, method, last, places - [away, 0.0]), places) for away in CENTRES
     ]
-    printed = [error_px(_printed(method, last, places - [away, 0.0]), places) for away in CENTRES]
+    printed = [
+        error_px(_print_text(method, last, places - [away, 0.0]), places) for away in CENTRES
+    ]
     values = {
         "survives": ratio(errors[at], errors[0]),
         "found": found[at],
@@ -77,7 +79,7 @@ def trial(number: int) -> Trial:
     return Trial(values, lines)
 
 
-def _tracked(
+def _track(
     number: int, method: ImageCorrelation, frames: NDArray[Any], predicted: Floats
 ) -> Floats:
     """Answers (N, 2) to frames whose windows stand where a frame before had its spots."""
@@ -88,7 +90,7 @@ def _tracked(
     return np.array([method.track(pair)[1] for pair in pairs])
 
 
-def _printed(method: ImageCorrelation, frames: NDArray[Any], predicted: Floats) -> Floats:
+def _print_text(method: ImageCorrelation, frames: NDArray[Any], predicted: Floats) -> Floats:
     """``Dx + sum C_s (m - N_c / 2) / sum C_s`` with windows at ``int(Dx + x_s + 0.5)``."""
     apertures = np.array(method.apertures_px)
     template = drawn_templates((float(apertures[0, 2]),), method.blur_px, square=False)[0]

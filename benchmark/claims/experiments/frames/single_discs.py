@@ -102,7 +102,7 @@ def single(
     return Spots(light, noise, centres, scale_px, profile)
 
 
-def shipped(method: type[Extractor]) -> Extractor:
+def ship(method: type[Extractor]) -> Extractor:
     """Return the method as it ships for a sensor whose round aperture casts these discs."""
     return method.for_sensor(disc_geometry())
 

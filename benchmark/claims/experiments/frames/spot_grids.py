@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats, SensorGeometry
 from benchmark.seeds import generator
-from benchmark.synthetic_features.light import BACKGROUND_E, detected, peak_e, spots
-from benchmark.synthetic_features.series import REFERENCE_SNR, Setting
+from benchmark.synthetic_features.light import BACKGROUND_E, detect, peak_e, spots
+from benchmark.synthetic_features.series import REFERENCE_SNR, SeriesPoint
 from benchmark.synthetic_features.spots import GridSeries
 
 SIZE_PX: Final = 192
@@ -38,7 +38,7 @@ def offsets_px(side: int) -> Floats:
 
 def grid_geometry(side: int = SIDE) -> SensorGeometry:
     """Return the design of a sensor whose round apertures cast such a grid."""
-    return SERIES.geometry(Setting("", "", None, 0, size_px=RADIUS_PX, features=side))
+    return SERIES.geometry(SeriesPoint("", "", None, 0, size_px=RADIUS_PX, features=side))
 
 
 def middles_px(claim: str, number: int, frames: int) -> Floats:
@@ -65,4 +65,4 @@ def grid_frames(
     each = middles[:, None] + offsets_px(side)[None]
     peak = peak_e(REFERENCE_SNR)
     light = BACKGROUND_E + peak * spots(SIZE_PX, each, RADIUS_PX, "flat", there)
-    return detected(light, peak, 0.0, generator("claims", claim, number, name))
+    return detect(light, peak, 0.0, generator("claims", claim, number, name))

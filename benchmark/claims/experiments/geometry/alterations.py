@@ -11,7 +11,7 @@ from benchmark.datasets.preset import Preset
 from benchmark.simulator.optics.assembly import Assembly
 
 
-def altered(
+def alter(
     preset: Preset,
     change: Callable[[Any], Any],
     geometry: SensorGeometry | None = None,
@@ -28,10 +28,10 @@ def altered(
     return replace(preset, setups={condition: other})
 
 
-def assembled(
+def assemble(
     preset: Preset, change: Callable[[Assembly], Assembly], condition: str = "nominal"
 ) -> Preset:
-    """`altered` in its errors of assembly alone.
+    """`alter` in its errors of assembly alone.
 
     Errors of other units are drawn within tolerances of those of unit 0, so that what is scaled or
     left out here is so in every unit.
@@ -41,10 +41,10 @@ def assembled(
         camera = sensor.camera
         return replace(sensor, camera=replace(camera, assembly=change(camera.assembly)))
 
-    return altered(preset, rebuilt, condition=condition)
+    return alter(preset, rebuilt, condition=condition)
 
 
-def misaligned(assembly: Assembly, times: float) -> Assembly:
+def misalign(assembly: Assembly, times: float) -> Assembly:
     """Tilts, rotation and offsets so many times as large; the focal length's error stays."""
     return replace(
         assembly,
@@ -58,4 +58,4 @@ def misaligned(assembly: Assembly, times: float) -> Assembly:
 
 def sensor_of(preset: Preset, unit: int = 0, condition: str = "nominal") -> Any:
     """Return the sensor of a unit under a condition."""
-    return cast("Any", preset.as_unit(unit).condition(condition).sensor)
+    return cast("Any", preset.for_unit(unit).condition(condition).sensor)

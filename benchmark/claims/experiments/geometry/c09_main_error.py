@@ -19,10 +19,10 @@ from algorithms.contract import FeatureKind
 from algorithms.extractors.frames.centroid import ThresholdedCentroid
 from algorithms.models.geometric.standard_projection import StandardProjection
 from algorithms.models.lut.lookup_table import ErrorTable
-from benchmark.claims.benches import Seen, ratio, rms, separation
+from benchmark.claims.benches import ConditionView, ratio, rms, separation
 from benchmark.claims.experiment import Trial
-from benchmark.claims.experiments.geometry.alterations import assembled, misaligned
-from benchmark.claims.truth import told_truly
+from benchmark.claims.experiments.geometry.alterations import assemble, misalign
+from benchmark.claims.truth import with_true_directions
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.standard import (
     ccd_single_aperture,
@@ -55,7 +55,7 @@ class Parts:
 
 def trial(number: int) -> Trial:
     """Measure one unit of each sensor."""
-    parts = {one.PRESET.name: _parts(told_truly(one.PRESET), number) for one in SENSORS}
+    parts = {one.PRESET.name: _parts(with_true_directions(one.PRESET), number) for one in SENSORS}
     return Trial(
         values([statistics(one) for one in parts.values()]),
         {name: (PARTS, list(astuple(one))) for name, one in parts.items()},
@@ -81,13 +81,13 @@ def statistics(parts: Parts) -> dict[str, float]:
 
 
 def _parts(preset: Preset, unit: int) -> Parts:
-    seen = _seen(preset, unit, _aligned)
+    seen = _seen(preset, unit, _align)
     return Parts(
         misalignment=_drawing(_seen(preset, unit, _as_long_as_drawn)),
-        focal_length=_drawing(_seen(preset, unit, partial(misaligned, times=0.0))),
+        focal_length=_drawing(_seen(preset, unit, partial(misalign, times=0.0))),
         neither=_drawing(seen),
         table=rms(seen.errors(ThresholdedCentroid, ErrorTable)),
-        dark=_drawing(_seen(preset, unit, _aligned, "hot")),
+        dark=_drawing(_seen(preset, unit, _align, "hot")),
         expansion=_drawing(_seen(preset, unit, partial(_longer, preset), "hot")),
     )
 
@@ -97,25 +97,25 @@ def _seen(
     unit: int,
     change: Callable[[Assembly], Assembly],
     condition: str = "nominal",
-) -> Seen:
+) -> ConditionView:
     """Return the unit with other errors of assembly than it was built with."""
-    return Seen(assembled(preset.as_unit(unit), change, condition), condition)
+    return ConditionView(assemble(preset.for_unit(unit), change, condition), condition)
 
 
 def _as_long_as_drawn(assembly: Assembly) -> Assembly:
     return replace(assembly, focal_length_error_mm=0.0)
 
 
-def _aligned(assembly: Assembly) -> Assembly:
-    return _as_long_as_drawn(misaligned(assembly, times=0.0))
+def _align(assembly: Assembly) -> Assembly:
+    return _as_long_as_drawn(misalign(assembly, times=0.0))
 
 
 def _longer(preset: Preset, assembly: Assembly) -> Assembly:
     longer_mm = _LENGTHENS * (preset.geometry.focal_length_mm or math.nan)
-    return replace(_aligned(assembly), focal_length_error_mm=longer_mm)
+    return replace(_align(assembly), focal_length_error_mm=longer_mm)
 
 
-def _drawing(seen: Seen) -> float:
+def _drawing(seen: ConditionView) -> float:
     """RMS error of the model by the drawing, which learns nothing from what it is fitted to."""
     tested, found = seen.samples("test"), seen.features(ThresholdedCentroid, "test")
     geometry = seen.preset.geometry_for(seen.condition)

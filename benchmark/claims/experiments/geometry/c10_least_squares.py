@@ -20,9 +20,9 @@ from algorithms.contract import Floats
 from algorithms.extractors.frames.centroid import ThresholdedCentroid
 from algorithms.models.geometric.least_squares import LeastSquaresGeometry
 from algorithms.models.geometric.standard_projection import StandardProjection
-from benchmark.claims.benches import Seen, ratio, rms, separation
+from benchmark.claims.benches import ConditionView, ratio, rms, separation
 from benchmark.claims.experiment import Trial
-from benchmark.claims.experiments.geometry.alterations import assembled
+from benchmark.claims.experiments.geometry.alterations import assemble
 from benchmark.datasets.standard import cmos_single_aperture
 from benchmark.simulator.optics.assembly import Assembly
 
@@ -33,8 +33,8 @@ def trial(number: int) -> Trial:
     """Measure one unit with each size of error."""
     drawn, fitted, again = [], [], []
     for times in TIMES:
-        preset = assembled(cmos_single_aperture.PRESET, partial(_tilted, times=times))
-        seen = Seen(preset, unit=number)
+        preset = assemble(cmos_single_aperture.PRESET, partial(_tilt, times=times))
+        seen = ConditionView(preset, unit=number)
         drawn.append(rms(seen.errors(ThresholdedCentroid, StandardProjection)))
         fitted.append(rms(seen.errors(ThresholdedCentroid, LeastSquaresGeometry)))
         again.append(rms(_by_scipy(seen)))
@@ -46,7 +46,7 @@ def _statistics(drawn: list[float], fitted: list[float]) -> dict[str, float]:
     return {"removes": ratio(drawn[-1], fitted[-1]), "whole": ratio(fitted[-1], fitted[0])}
 
 
-def _tilted(assembly: Assembly, times: float) -> Assembly:
+def _tilt(assembly: Assembly, times: float) -> Assembly:
     return replace(
         assembly,
         tilt_x_deg=times * assembly.tilt_x_deg,
@@ -55,7 +55,7 @@ def _tilted(assembly: Assembly, times: float) -> Assembly:
     )
 
 
-def _by_scipy(seen: Seen) -> Floats:
+def _by_scipy(seen: ConditionView) -> Floats:
     """Errors (N,) of eq:lsq fitted by SciPy; (Delta F, alpha_0, beta_0, x_zp, y_zp), mm and rad."""
     geometry = seen.preset.geometry
     focal, pitch = geometry.focal_length_mm or 0.0, geometry.pixel_pitch_mm or 0.0

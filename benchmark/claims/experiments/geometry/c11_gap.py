@@ -16,10 +16,10 @@ from typing import Any
 
 from algorithms.extractors.currents.photodiode import VoltageBalance
 from algorithms.models.geometric.quadrant_gap import QuadrantGap
-from benchmark.claims.benches import Seen, ratio, rms
+from benchmark.claims.benches import ConditionView, ratio, rms
 from benchmark.claims.experiment import Sketch, Trial
-from benchmark.claims.experiments.geometry.alterations import altered
-from benchmark.claims.experiments.geometry.held import Held
+from benchmark.claims.experiments.geometry.alterations import alter
+from benchmark.claims.experiments.geometry.partly_fixed import PartlyFixedModel
 from benchmark.datasets.standard import qpd_single_aperture
 
 #: The nominal gap, mm, and that of the condition ``wide-gap``.
@@ -47,13 +47,13 @@ def _errors(gap_mm: float, condition: str, unit: int) -> tuple[float, float]:
     """RMS errors without the gap in the model and with it."""
     preset = qpd_single_aperture.PRESET
     drawn = replace(preset.geometry_for(condition), gap_mm=gap_mm)
-    wide = altered(preset, partial(_apart, gap_mm=gap_mm), drawn, condition)
-    seen = Seen(wide, condition, unit)
+    wide = alter(preset, partial(_apart, gap_mm=gap_mm), drawn, condition)
+    seen = ConditionView(wide, condition, unit)
     kind = VoltageBalance.about.kind
     gapless = QuadrantGap.for_sensor(replace(drawn, gap_mm=0.0), kind)
     others = tuple(name for name, _ in gapless.names() if name != "gap")
     return (
-        rms(seen.errors(VoltageBalance, Held(gapless, others))),
+        rms(seen.errors(VoltageBalance, PartlyFixedModel(gapless, others))),
         rms(seen.errors(VoltageBalance, QuadrantGap.for_sensor(drawn, kind))),
     )
 

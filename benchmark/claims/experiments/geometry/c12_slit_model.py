@@ -13,7 +13,7 @@ import math
 from algorithms.extractors.profiles.eigen_analysis import EigenAnalysis
 from algorithms.models.geometric.single_slit import DeflectedSlits
 from algorithms.models.geometric.standard_projection import StandardProjection
-from benchmark.claims.benches import Seen, middles, ratio, rms, rms_within
+from benchmark.claims.benches import ConditionView, middles, ratio, rms, rms_within
 from benchmark.claims.experiment import Trial
 from benchmark.datasets.standard import ccd_slit, pda_slit
 
@@ -24,7 +24,7 @@ def trial(number: int) -> Trial:
     """Measure one unit of both sensors."""
     ratios, lines = [], {}
     for module in (ccd_slit, pda_slit):
-        seen = Seen(module.PRESET, "misaligned", number)
+        seen = ConditionView(module.PRESET, "misaligned", number)
         incidence = seen.incidence_deg()
         errors = {m: seen.errors(EigenAnalysis, m) for m in (StandardProjection, DeflectedSlits)}
         ratios.append(ratio(*(rms(found) for found in errors.values())))

@@ -18,9 +18,9 @@ from typing import Any
 from algorithms.extractors.profiles.eigen_analysis import EigenAnalysis
 from algorithms.models.geometric.multi_slit import MultiSlit
 from algorithms.models.geometric.single_slit import DeflectedSlits
-from benchmark.claims.benches import Seen, middles, ratio, rms, rms_within
+from benchmark.claims.benches import ConditionView, middles, ratio, rms, rms_within
 from benchmark.claims.experiment import Trial
-from benchmark.claims.experiments.geometry.alterations import altered
+from benchmark.claims.experiments.geometry.alterations import alter
 from benchmark.datasets.conditions.line_arrays import design
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.standard import pda_multi_slit
@@ -35,8 +35,8 @@ _UNEVEN_MM = (-1.11, -0.58, 0.0, 0.72, 1.54)
 def trial(number: int) -> Trial:
     """Measure one unit with both masks."""
     many, one, uneven = (
-        Seen(preset, unit=number)
-        for preset in (pda_multi_slit.PRESET, _behind(_closed), _behind(_unevenly_spaced))
+        ConditionView(preset, unit=number)
+        for preset in (pda_multi_slit.PRESET, _behind(_close), _behind(_unevenly_spaced))
     )
     incidence = many.incidence_deg()
     single = one.errors(EigenAnalysis, DeflectedSlits)
@@ -61,10 +61,10 @@ def _behind(change: Callable[[Any], Any]) -> Preset:
     """Return the data set behind another mask, which its drawing shows."""
     preset = pda_multi_slit.PRESET
     built = change(preset.condition("nominal").sensor)
-    return altered(preset, change, design(built, preset.geometry.half_fov_deg or 0.0))
+    return alter(preset, change, design(built, preset.geometry.half_fov_deg or 0.0))
 
 
-def _closed(sensor: Any) -> Any:
+def _close(sensor: Any) -> Any:
     """Return the sensor with its auxiliary slits closed."""
     camera = sensor.camera
     auxiliary = [n for n, slit in enumerate(camera.mask.apertures) if slit.x_mm != 0.0]

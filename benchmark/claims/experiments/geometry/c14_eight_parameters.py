@@ -17,9 +17,9 @@ import math
 
 from algorithms.extractors.profiles.centroid import ProfileThresholdAverage
 from algorithms.models.geometric.v_slit import VSlit
-from benchmark.claims.benches import Seen, ratio, rms
+from benchmark.claims.benches import ConditionView, ratio, rms
 from benchmark.claims.experiment import Trial
-from benchmark.claims.experiments.geometry.held import Held
+from benchmark.claims.experiments.geometry.partly_fixed import PartlyFixedModel
 from benchmark.datasets.standard import ccd_v_slit
 
 STRUCTURE = ("focal_length", "shift_along", "shift_across", "deflection", "slope", "tilt_y")
@@ -35,13 +35,14 @@ FITTED = {
 
 def trial(number: int) -> Trial:
     """Measure one unit with each set of parameters fitted."""
-    seen = Seen(ccd_v_slit.PRESET, unit=number)
+    seen = ConditionView(ccd_v_slit.PRESET, unit=number)
     kind = ProfileThresholdAverage.about.kind
     model = VSlit.for_sensor(seen.preset.geometry, kind)
     none, refraction, structure, eight, ten = (
-        rms(seen.errors(ProfileThresholdAverage, Held(model, free))) for free in FITTED.values()
+        rms(seen.errors(ProfileThresholdAverage, PartlyFixedModel(model, free)))
+        for free in FITTED.values()
     )
-    unit = ccd_v_slit.PRESET.as_unit(number)
+    unit = ccd_v_slit.PRESET.for_unit(number)
     limit = math.hypot(unit.bound("nominal").rms_deg, unit.reference_error_deg("nominal"))
     values = {
         "needed": ratio(none, eight),

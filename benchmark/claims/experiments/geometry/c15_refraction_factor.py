@@ -12,9 +12,9 @@ from dataclasses import replace
 
 from algorithms.extractors.profiles.eigen_analysis import EigenAnalysis
 from algorithms.models.geometric.n_slit import NSlit
-from benchmark.claims.benches import Seen, middles, ratio, rms, rms_within
+from benchmark.claims.benches import ConditionView, middles, ratio, rms, rms_within
 from benchmark.claims.experiment import Trial
-from benchmark.claims.experiments.geometry.held import Held
+from benchmark.claims.experiments.geometry.partly_fixed import PartlyFixedModel
 from benchmark.datasets.standard import pda_n_slit
 
 EDGES_DEG = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 62.0)
@@ -22,13 +22,13 @@ EDGES_DEG = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 62.0)
 
 def trial(number: int) -> Trial:
     """Measure one unit."""
-    seen = Seen(pda_n_slit.PRESET, "glass", number)
+    seen = ConditionView(pda_n_slit.PRESET, "glass", number)
     incidence, kind = seen.incidence_deg(), EigenAnalysis.about.kind
     glass = seen.preset.geometry_for("glass")
     printed = NSlit.for_sensor(replace(glass, cover_glass=None), kind)
     others = tuple(name for name, _ in printed.names() if name != "K")
     errors = {
-        "K = 1": seen.errors(EigenAnalysis, Held(printed, others)),
+        "K = 1": seen.errors(EigenAnalysis, PartlyFixedModel(printed, others)),
         "K fitted": seen.errors(EigenAnalysis, printed),
         "K and Snell's law": seen.errors(EigenAnalysis, NSlit.for_sensor(glass, kind)),
     }

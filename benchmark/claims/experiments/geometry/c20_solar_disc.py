@@ -19,9 +19,9 @@ from algorithms.compensations.environment.solar_disc import SolarDiscBias
 from algorithms.contract import Extractor, Floats
 from algorithms.extractors.frames.centroid import ThresholdedCentroid
 from algorithms.extractors.frames.threshold_average import MultipleThresholdCentroid
-from benchmark.claims.benches import Seen, middles, ratio
+from benchmark.claims.benches import ConditionView, middles, ratio
 from benchmark.claims.experiment import Sketch, Trial
-from benchmark.claims.experiments.geometry.alterations import altered
+from benchmark.claims.experiments.geometry.alterations import alter
 from benchmark.datasets.standard import cmos_single_aperture
 
 EDGES_DEG = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0)
@@ -30,8 +30,8 @@ SKETCH = Sketch(log_up=False)
 
 def trial(number: int) -> Trial:
     """Measure one unit."""
-    disc = Seen(cmos_single_aperture.PRESET, unit=number)
-    point = Seen(altered(cmos_single_aperture.PRESET, _point), unit=number)
+    disc = ConditionView(cmos_single_aperture.PRESET, unit=number)
+    point = ConditionView(alter(cmos_single_aperture.PRESET, _point), unit=number)
     incidence, lines = disc.incidence_deg(), {}
     bias = {}
     for extractor in (MultipleThresholdCentroid, ThresholdedCentroid):
@@ -44,7 +44,9 @@ def trial(number: int) -> Trial:
     return Trial({"biased": biased, "removed": ratio(biased, left)}, lines)
 
 
-def _shifts(disc: Seen, point: Seen, extractor: type[Extractor]) -> tuple[Floats, Floats]:
+def _shifts(
+    disc: ConditionView, point: ConditionView, extractor: type[Extractor]
+) -> tuple[Floats, Floats]:
     """(N,) px outwards from the point's spot to the disc's, as found and compensated."""
     geometry = disc.preset.geometry
     found, parallel = disc.features(extractor, "test"), point.features(extractor, "test")

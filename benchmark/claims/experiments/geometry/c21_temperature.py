@@ -34,7 +34,7 @@ from algorithms.models.geometric.pyramidal import RegularPyramid
 from algorithms.models.physics_informed.assembled_faces import AssembledFaces
 from benchmark.claims.benches import ratio, rms, separation
 from benchmark.claims.experiment import Trial
-from benchmark.claims.experiments.geometry.alterations import altered
+from benchmark.claims.experiments.geometry.alterations import alter
 from benchmark.datasets.conditions.orbits import PHOTODIODES
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.standard import pd_maskless_cube, pd_maskless_pyramid, pva_maskless_panels
@@ -61,7 +61,7 @@ def trial(number: int) -> Trial:
         (True, pva_maskless_panels.PRESET, _same, _panels, SixFaces),
         (False, pd_maskless_cube.PRESET, _without_dark, _photodiodes, AssembledFaces),
     ):
-        without, with_it = _errors(altered(ground, aloft), ground, number, read, model)
+        without, with_it = _errors(alter(ground, aloft), ground, number, read, model)
         if judged:
             ratios.append(ratio(without[-1], with_it[-1]))
         if read is _photodiodes:
@@ -76,10 +76,10 @@ def _errors(
     preset: Preset, bench: Preset, unit: int, read: Reading, model: type[Model]
 ) -> tuple[Sequence[float], Sequence[float]]:
     """RMS errors by temperature without the coefficients and with them."""
-    told = bench.as_unit(unit).generate("nominal", "calibration").sun
+    told = bench.for_unit(unit).generate("nominal", "calibration").sun
     rng = generator("claims", "C21", preset.name, unit)
     mixed = rng.choice(TEMPERATURES_K, size=len(told))
-    take = partial(_signals, preset.as_unit(unit), read)
+    take = partial(_signals, preset.for_unit(unit), read)
     known = take("calibration", mixed)
     tested = preset.scene("nominal", "test", _TESTED).sun
     kinds = model, Chain((TemperatureDrift,), model)

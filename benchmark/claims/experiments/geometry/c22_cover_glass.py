@@ -21,9 +21,9 @@ from algorithms.compensations.optics.refraction import Refraction
 from algorithms.contract import Floats
 from algorithms.extractors.frames.centroid import ThresholdedCentroid
 from algorithms.models.geometric.standard_projection import StandardProjection
-from benchmark.claims.benches import Seen, middles, ratio, rms, rms_within, separation
+from benchmark.claims.benches import ConditionView, middles, ratio, rms, rms_within, separation
 from benchmark.claims.experiment import Trial
-from benchmark.claims.experiments.geometry.alterations import altered, sensor_of
+from benchmark.claims.experiments.geometry.alterations import alter, sensor_of
 from benchmark.datasets.standard import cmos_single_aperture
 
 OBLIQUE_DEG = 30.0
@@ -35,8 +35,8 @@ _MOST = 100
 def trial(number: int) -> Trial:
     """Measure one unit with and without glass."""
     bare = cmos_single_aperture.PRESET
-    glazed = altered(bare, _same, _drawn_glass(), "glass")
-    under, free = Seen(glazed, "glass", number), Seen(bare, unit=number)
+    glazed = alter(bare, _same, _drawn_glass(), "glass")
+    under, free = ConditionView(glazed, "glass", number), ConditionView(bare, unit=number)
     incidence = under.incidence_deg()
     errors = (
         under.errors(ThresholdedCentroid, StandardProjection),

@@ -12,7 +12,7 @@ import numpy as np
 
 from algorithms.compensations.electronics.angular_loss import KELLY
 from algorithms.contract import Floats
-from algorithms.models.physics_informed.assembled_faces import inverted
+from algorithms.models.physics_informed.assembled_faces import invert
 from benchmark.claims.benches import middles, ratio, rms, rms_within
 from benchmark.claims.experiment import Trial
 from benchmark.datasets.standard import ltf_maskless_cube
@@ -45,7 +45,7 @@ def trial(number: int) -> Trial:
     signal = readings[_NORMAL:, _FACE] / readings[:_NORMAL, _FACE].mean()
     seen = incidence[_NORMAL:]
     cosine = np.degrees(np.arccos(np.clip(signal, 0.0, 1.0))) - seen
-    kelly = np.degrees(np.arccos(np.clip(inverted(signal, _UNIT), 0.0, 1.0))) - seen
+    kelly = np.degrees(np.arccos(np.clip(invert(signal, _UNIT), 0.0, 1.0))) - seen
     lines = {
         name: (middles(EDGES_DEG), rms_within(off, seen, EDGES_DEG))
         for name, off in (("cosine law", cosine), ("Kelly cosine", kelly))

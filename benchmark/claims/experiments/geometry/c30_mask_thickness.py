@@ -22,9 +22,9 @@ from algorithms.compensations.interference.shadow import MaskShadow
 from algorithms.contract import Floats
 from algorithms.extractors.currents.photodiode import VoltageBalance
 from algorithms.models.geometric.standard_projection import StandardProjection
-from benchmark.claims.benches import Seen, rank_correlation, ratio, rms
+from benchmark.claims.benches import ConditionView, rank_correlation, ratio, rms
 from benchmark.claims.experiment import Trial
-from benchmark.claims.experiments.geometry.alterations import altered, sensor_of
+from benchmark.claims.experiments.geometry.alterations import alter, sensor_of
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.standard import pd_slit, qpd_single_aperture
 
@@ -37,12 +37,12 @@ def trial(number: int) -> Trial:
     lines, correlations, ratios = {}, [], []
     for module in (pd_slit, qpd_single_aperture):
         name = module.PRESET.name
-        seen = [Seen(_thick(module.PRESET, share), unit=number) for share in SHARES]
+        seen = [ConditionView(_thick(module.PRESET, share), unit=number) for share in SHARES]
         thin, bare, corrected = _places(seen[0]), [], []
         shifts = [float(np.nanmean(_outwards(_places(one), thin))) for one in seen]
         for one, share in zip(seen, SHARES, strict=True):
             bare.append(rms(one.errors(VoltageBalance, StandardProjection)))
-            corrected.append(rms(one.errors(VoltageBalance, _shadowed(module.PRESET, share))))
+            corrected.append(rms(one.errors(VoltageBalance, _shadow(module.PRESET, share))))
         correlations.append(rank_correlation(SHARES, shifts))
         ratios.append(ratio(bare[-1], corrected[-1]))
         lines[f"{name}, spm"] = (SHARES, bare)
@@ -57,7 +57,7 @@ def _thick(preset: Preset, share: float) -> Preset:
     thickness = share * mask.apertures[0].width_mm
     low = (preset.geometry.focal_length_mm or 0.0) - mask.thickness_mm / 2.0
     drawn = replace(preset.geometry, focal_length_mm=low)
-    return altered(preset, partial(_thicker, low_mm=low, thickness_mm=thickness), drawn)
+    return alter(preset, partial(_thicker, low_mm=low, thickness_mm=thickness), drawn)
 
 
 def _thicker(sensor: Any, low_mm: float, thickness_mm: float) -> Any:
@@ -67,7 +67,7 @@ def _thicker(sensor: Any, low_mm: float, thickness_mm: float) -> Any:
     return replace(sensor, camera=replace(camera, mask=mask, focal_length_mm=middle))
 
 
-def _shadowed(preset: Preset, share: float) -> Any:
+def _shadow(preset: Preset, share: float) -> Any:
     """Return `shadow + spm`, which both count h from the lower face."""
     model = StandardProjection.for_sensor(
         _thick(preset, share).geometry_for("nominal"), VoltageBalance.about.kind
@@ -82,7 +82,7 @@ def _shadowed(preset: Preset, share: float) -> Any:
     return Chained(Chain((MaskShadow,), StandardProjection).about, (shadow,), model)
 
 
-def _places(seen: Seen) -> Floats:
+def _places(seen: ConditionView) -> Floats:
     """Places (N, 2) of the light by its balances, in balances."""
     return seen.features(VoltageBalance, "test")
 

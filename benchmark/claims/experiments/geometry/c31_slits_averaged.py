@@ -19,9 +19,9 @@ import numpy as np
 
 from algorithms.contract import Floats
 from algorithms.extractors.profiles.linear_phase import LinearPhase
-from benchmark.claims.benches import Seen, exponent, rms
+from benchmark.claims.benches import ConditionView, exponent, rms
 from benchmark.claims.experiment import Sketch, Trial
-from benchmark.claims.experiments.geometry.alterations import altered
+from benchmark.claims.experiments.geometry.alterations import alter
 from benchmark.datasets.conditions.line_arrays import design
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.standard import ccd_periodic
@@ -38,7 +38,7 @@ def trial(number: int) -> Trial:
     found, whole, bounds = [], [], []
     for count in SLITS:
         preset = _with_slits(count)
-        seen, unit = Seen(preset, unit=number), preset.as_unit(number)
+        seen, unit = ConditionView(preset, unit=number), preset.for_unit(number)
         spots = seen.features(LinearPhase, "test")
         found.append(rms(spots - _without_noise(unit)))
         whole.append(rms(spots - _true_px(unit, seen.samples("test").sun)))
@@ -56,12 +56,12 @@ def trial(number: int) -> Trial:
 def _with_slits(count: int) -> Preset:
     """Return ccd-periodic with its middle slits alone open, so many of them."""
     preset = ccd_periodic.PRESET
-    built = _opened(preset.condition("nominal").sensor, count)
+    built = _open_record(preset.condition("nominal").sensor, count)
     drawn = design(built, preset.geometry.half_fov_deg or 0.0)
-    return altered(preset, partial(_opened, count=count), drawn)
+    return alter(preset, partial(_open_record, count=count), drawn)
 
 
-def _opened(sensor: Any, count: int) -> Any:
+def _open_record(sensor: Any, count: int) -> Any:
     camera = sensor.camera
     slits, thickness = camera.mask.apertures, camera.mask.thickness_mm
     first = (len(slits) - count) // 2

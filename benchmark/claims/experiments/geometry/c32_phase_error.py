@@ -19,7 +19,7 @@ from algorithms.extractors.currents.dial_tracks import DialTracks
 from algorithms.models.multiplex.dial_code import DialCode, dial_code, sun_from_fractions
 from algorithms.models.multiplex.periodic import PeriodicCode
 from algorithms.models.non_physical.fourier_phase import FourierPhase
-from benchmark.claims.benches import Seen, middles, ratio, rms, rms_within, separation
+from benchmark.claims.benches import ConditionView, middles, ratio, rms, rms_within, separation
 from benchmark.claims.experiment import Trial
 from benchmark.datasets.standard import pd_code_dial
 
@@ -30,7 +30,7 @@ HARMONICS = 4
 
 def trial(number: int) -> Trial:
     """Measure one unit."""
-    seen = Seen(pd_code_dial.PRESET, unit=number)
+    seen = ConditionView(pd_code_dial.PRESET, unit=number)
     kind, sun = DialTracks.about.kind, seen.samples("test").sun
     signals = seen.features(DialTracks, "test")
     about = PeriodicCode.about
@@ -39,7 +39,7 @@ def trial(number: int) -> Trial:
     places, phases = DialCode(**design, smallest_contrast=contrast).read(signals)
     said = {"drawing": sun_from_fractions(places, np.ones_like(places))}
     for model in (PeriodicCode, FourierPhase):
-        fitted = seen.calibrated(DialTracks, model)
+        fitted = seen.calibrate(DialTracks, model)
         said[model.about.name] = fitted.predict_features(signals, None)
     errors = {name: rms(separation(one, sun)) for name, one in said.items()}
     off = {

@@ -18,7 +18,7 @@ from algorithms.contract import Floats
 from benchmark.claims.benches import ratio
 from benchmark.claims.experiment import Sketch, Trial
 from benchmark.claims.experiments.profiles.methods import EIGEN, LINEAR, METHODS
-from benchmark.claims.experiments.profiles.slit_images import DESIGN_PITCH_MM, SlitImages, moved
+from benchmark.claims.experiments.profiles.slit_images import DESIGN_PITCH_MM, SlitImages, move
 from benchmark.seeds import generator
 
 PITCHES = (0.25, 0.5, 1.0, 2.0, 4.0)
@@ -32,7 +32,7 @@ SKETCH = Sketch(log_across=True)
 def trial(number: int) -> Trial:
     """Measure one draw of places and noise."""
     rng = generator("claims", "C53", number)
-    places = moved(PROFILES, rng)
+    places = move(PROFILES, rng)
     phase, eigen, bounds = zip(*(_errors(pitch, places, rng) for pitch in PITCHES), strict=True)
     both = [math.sqrt(one * other) for one, other in zip(phase, eigen, strict=True)]
     return Trial(

@@ -15,7 +15,7 @@ from algorithms.contract import Floats
 from benchmark.claims.benches import ratio
 from benchmark.claims.experiment import Trial
 from benchmark.claims.experiments.profiles.methods import EIGEN, LINEAR, METHODS
-from benchmark.claims.experiments.profiles.slit_images import HALF_PX, SlitImages, moved
+from benchmark.claims.experiments.profiles.slit_images import HALF_PX, SlitImages, move
 from benchmark.seeds import generator
 
 #: Between the middles, in widths of an image.
@@ -27,7 +27,7 @@ PROFILES, BOUND_PROFILES = 400, 32
 def trial(number: int) -> Trial:
     """Measure one draw of places and noise."""
     rng = generator("claims", "C55", number)
-    places = moved(PROFILES, rng)
+    places = move(PROFILES, rng)
     phase, eigen, bounds = zip(*(_errors(s, places, rng) for s in SEPARATIONS), strict=True)
     return Trial(
         {"suffers": ratio(phase[0], phase[-1])},

@@ -12,7 +12,7 @@ from algorithms.extractors.profiles.eigen_analysis import EigenAnalysis
 from algorithms.extractors.profiles.linear_phase import LinearPhase
 from algorithms.extractors.profiles.peak_detection import PeakDetection
 from benchmark.claims.benches import times_s
-from benchmark.claims.experiments.profiles.slit_images import SlitImages, moved
+from benchmark.claims.experiments.profiles.slit_images import SlitImages, move
 
 BCTM, PD, LINEAR, EIGEN = "bctm-profile", "pd", "linear-phase", "eigen-analysis"
 METHODS: Mapping[str, type[Extractor]] = {
@@ -37,7 +37,7 @@ def errors_by_noise(rng: np.random.Generator) -> tuple[dict[str, list[float]], l
     All methods see the same profiles, and all noises the same displacements.
     """
     images = SlitImages()
-    places = moved(_PROFILES, rng)
+    places = move(_PROFILES, rng)
     light = images.light(places)
     found: dict[str, list[float]] = {name: [] for name in METHODS}
     bounds = []
@@ -53,7 +53,7 @@ def times_of(
     images: SlitImages, names: Sequence[str], rng: np.random.Generator
 ) -> Mapping[str, float]:
     """Run times of methods on a batch of 100 profiles, s."""
-    light = images.light(moved(_TIMED_PROFILES, rng))
+    light = images.light(move(_TIMED_PROFILES, rng))
     profiles = light + TIMED_NOISE * rng.standard_normal(light.shape)
     made = {name: METHODS[name].for_sensor(images.geometry()) for name in names}
     return times_s(**{name: _call(method, profiles) for name, method in made.items()})

@@ -112,6 +112,6 @@ class SlitImages:
         )
 
 
-def moved(count: int, rng: np.random.Generator) -> Floats:
+def move(count: int, rng: np.random.Generator) -> Floats:
     """Draw displacements (N, 2) of the shadow."""
     return rng.uniform(-_REACH_PX, _REACH_PX, (count, 2))

@@ -11,8 +11,8 @@ from scipy.special import ndtr
 from algorithms.contract import FeatureKind, Observation, SensorGeometry
 from algorithms.discovery import discover_extractors
 from algorithms.extractors.frames.gaussian import GaussianFit
-from algorithms.extractors.frames.one_light import judge, light_of, refused
-from algorithms.measurement import Doubt
+from algorithms.extractors.frames.single_light import judge, light_of, refused_flags
+from algorithms.measurement import QualityFlag
 
 SIZE, RADIUS = 64, 8.0
 #: A hole of 16 px, as wide as the spots are.
@@ -100,8 +100,8 @@ def test_an_answer_to_something_else_than_the_light_is_none():
     centres[1] += 0.8
     centres[2] = np.nan
     doubts = judge(frames, centres).doubts
-    assert doubts.tolist() == [0, int(Doubt.NO_SPOT), int(Doubt.NO_SPOT), 0]
-    assert refused(doubts).tolist() == [False, True, True, False]
+    assert doubts.tolist() == [0, int(QualityFlag.NO_SPOT), int(QualityFlag.NO_SPOT), 0]
+    assert refused_flags(doubts).tolist() == [False, True, True, False]
 
 
 def test_designs_without_a_hole_take_any_light_but_no_hot_pixel():

@@ -16,7 +16,7 @@ from benchmark.simulator.light.sun_disc import from_angles
 from benchmark.simulator.optics.ghosts import Ghost
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensors.lines import LineSensor
+from benchmark.simulator.sensors.line_sensor import LineSensor
 from benchmark.simulator.sensors.quadrants import QuadrantSensor
 
 FLIGHTS = {

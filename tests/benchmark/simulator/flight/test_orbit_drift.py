@@ -159,7 +159,7 @@ def test_every_sample_is_projected_with_its_own_assembly() -> None:
     rng = np.random.default_rng(3)
     sun = from_angles(rng.uniform(-45, 45, 6), rng.uniform(-45, 45, 6))
     scene = scene_at(sun, rng.uniform(250, 340, 6), rng.uniform(0, 3, 6))
-    light = sensor.projected(scene)
+    light = sensor.project(scene)
     for n, moved in enumerate(sensor.moved(scene)):
         assembly = assembly_at(sensor, moved)
         alone = replace(sensor.camera, assembly=assembly).project(sun[n : n + 1])
@@ -231,7 +231,7 @@ def test_exact_geometry_inverts_the_drifting_assembly() -> None:
     rng = np.random.default_rng(4)
     sun = from_angles(rng.uniform(-45, 45, 50), rng.uniform(-45, 45, 50))
     scene = scene_at(sun, rng.uniform(250, 340, 50), rng.uniform(0, 3, 50))
-    spot = sensor.projected(scene).rims_mm[0, :, 0]
+    spot = sensor.project(scene).rims_mm[0, :, 0]
     for n, moved in enumerate(sensor.moved(scene)):
         assembly = assembly_at(sensor, moved)
         height = camera.focal_length_mm + assembly.focal_length_error_mm

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from benchmark.simulator.flight.attitude import NadirPointing, Tumble, rotated, turned
+from benchmark.simulator.flight.attitude import NadirPointing, Tumble, rotate, turn_frame
 from benchmark.simulator.flight.magnetic_field import TiltedDipole
 from benchmark.simulator.flight.orbit import CircularOrbit, sun_direction, sunlight
 
@@ -118,7 +118,7 @@ def test_nadir_pointing_keeps_earth_below() -> None:
     orbit = CircularOrbit(inclination_deg=60.0)
     time_s = np.linspace(0, 9000, 30)
     turn = NadirPointing().matrices(orbit, sun_direction(10.0), time_s)
-    assert turned(turn, -orbit.position(time_s)) == pytest.approx(
+    assert turn_frame(turn, -orbit.position(time_s)) == pytest.approx(
         np.tile([0.0, 0.0, -1.0], (30, 1)), abs=1e-14
     )
     assert np.linalg.det(turn) == pytest.approx(1.0)
@@ -167,8 +167,8 @@ def test_rotations_keep_lengths() -> None:
     time_s = np.linspace(0, 500, 20)
     turn = TUMBLE.matrices(CircularOrbit(), sun_direction(3.0), time_s)
     vectors = np.random.default_rng(1).normal(size=(20, 3))
-    assert unit(rotated(turn, vectors)) == pytest.approx(unit(vectors))
-    assert rotated(turn, vectors) == pytest.approx(np.einsum("nij,nj->ni", turn, vectors))
+    assert unit(rotate(turn, vectors)) == pytest.approx(unit(vectors))
+    assert rotate(turn, vectors) == pytest.approx(np.einsum("nij,nj->ni", turn, vectors))
 
 
 def test_dipole_is_that_of_igrf_13_for_2020() -> None:

@@ -27,9 +27,9 @@ def light(seed, lit=0.2):
 @pytest.mark.parametrize("lit", [0.0, 0.2, 1.0])
 def test_kept_light_comes_back_to_the_last_bit_as_the_callers_own(lit):
     kept = LightMemory()
-    kept.remember("dataset")
+    kept.cache_for("dataset")
     for _ in range(3):
-        given = kept.rendered("key", lambda: light(1, lit))
+        given = kept.render("key", lambda: light(1, lit))
         np.testing.assert_array_equal(given, light(1, lit))
         given += 1.0  # what a caller does to it stays its own affair
     assert kept.hits == 2
@@ -40,17 +40,17 @@ def test_nothing_is_kept_unasked_or_for_another_owner_or_beyond_the_limit():
     calls = []
 
     def render(key):
-        return kept.rendered(key, lambda: calls.append(key) or light(key, 1.0))
+        return kept.render(key, lambda: calls.append(key) or light(key, 1.0))
 
     render(1), render(1)
     assert calls == [1, 1]
-    kept.remember("one")
+    kept.cache_for("one")
     render(1), render(1)
     assert calls == [1, 1, 1]
     render(2), render(2), render(1)  # the first stays, the second found no room
     assert calls == [1, 1, 1, 2, 2]
     assert kept.kept_bytes == kept.limit_bytes
-    kept.remember("another")
+    kept.cache_for("another")
     assert kept.kept_bytes == 0
     render(1)
     assert calls[-1] == 1
@@ -64,7 +64,7 @@ def test_runs_are_kept_alike():
         found = np.array([[0, count]], dtype=np.int32), np.ones(count)
         return kept.runs(key, lambda: calls.append(key) or found)
 
-    kept.remember("dataset")
+    kept.cache_for("dataset")
     runs("small", 5), runs("large", 9), runs("small", 5), runs("large", 9)
     assert calls == ["small", "large", "large"]
     assert kept.kept_bytes == 48
@@ -82,7 +82,7 @@ def test_the_latest_runs_are_kept_beyond_the_limit():
         found = np.array([[0, count]], dtype=np.int32), np.ones(count, dtype=np.float32)
         return kept.runs(key, lambda: calls.append(key) or found)
 
-    kept.remember("dataset")
+    kept.cache_for("dataset")
     runs("first", 150)
     for _ in range(3):
         runs("one", 5), runs("other", 5)
@@ -116,7 +116,7 @@ def test_conditions_that_share_light_give_what_each_gives_alone(name, forgetful)
             yield samples_hash(preset.generate(condition, "test", 3)), bound.angle_deg.tolist()
 
     alone = list(everything())
-    forgetful.remember(name)
+    forgetful.cache_for(name)
     shared = list(everything())
     assert shared == alone
     assert forgetful.hits > 0

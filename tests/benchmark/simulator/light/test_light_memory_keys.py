@@ -93,7 +93,7 @@ CHANGES = {
 @pytest.fixture
 def remembering():
     memory.forget()
-    yield lambda: memory.remember("test")
+    yield lambda: memory.cache_for("test")
     memory.forget()
 
 

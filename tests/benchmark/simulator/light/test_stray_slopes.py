@@ -12,7 +12,7 @@ from bare_pixels import bare
 
 from benchmark import datasets
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensors.stray_slope import UnevenScene, sloping
+from benchmark.simulator.sensors.stray_slope import UnevenScene, slope
 
 SLOPE = (0.003, -0.002)
 
@@ -25,7 +25,7 @@ def scenes() -> tuple[Scene, UnevenScene]:
 
 def change(sensor: Any) -> np.ndarray:
     even, uneven = scenes()
-    difference = sensor.received(uneven) - sensor.received(even)
+    difference = sensor.receive(uneven) - sensor.receive(even)
     assert difference[0] == pytest.approx(difference[1])  # wherever the Sun is
     return np.asarray(difference[0])
 
@@ -75,7 +75,7 @@ def test_profiles_rise_along_each_array_by_its_own_slope() -> None:
 
 def test_an_even_scene_has_its_stray_light_everywhere() -> None:
     even, _ = scenes()
-    assert sloping(even, np.ones((3, 2))).tolist() == [[0.01] * 3, [0.02] * 3]
+    assert slope(even, np.ones((3, 2))).tolist() == [[0.01] * 3, [0.02] * 3]
 
 
 def test_the_quadrant_sensor_has_a_condition_of_it() -> None:

@@ -15,7 +15,7 @@ from benchmark import datasets
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
-from benchmark.simulator.optics.edge_light import crossing, light_below
+from benchmark.simulator.optics.edge_light import light_across_edge, light_below
 from benchmark.simulator.scene import Scene
 
 #: That of the oracle.
@@ -42,7 +42,7 @@ def test_at_the_shadows_edge_a_half_pi_th_of_the_unit_is_past_it() -> None:
 
 
 def test_the_table_holds_the_light_of_all_wavelengths() -> None:
-    table, steps = crossing(SUNLIT_SILICON)
+    table, steps = light_across_edge(SUNLIT_SILICON)
     middle = len(table) // 2
     scales = [math.sqrt(w / 550.0) for w in SUNLIT_SILICON.wavelengths_nm]
     expected = sum(s * w for s, w in zip(scales, SUNLIT_SILICON.weights, strict=True))

@@ -18,7 +18,7 @@ from benchmark.simulator.optics.diffraction import (
     propagation,
     round_intensity,
 )
-from benchmark.simulator.optics.diffraction_tables import fresnel_table, landing, layers
+from benchmark.simulator.optics.diffraction_tables import fresnel_table, landing_points, layers
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 
 
@@ -122,14 +122,16 @@ def test_landing_point_moves_by_its_derivatives() -> None:
     glass = CoverGlass((Plate(0.5, 1.52), Plate(0.2, 1.9)))
     stack = layers(3.0, glass)
     sine, step = np.array([0.0, 0.3, 0.7]), 1e-6
-    found = landing(sine, stack)
+    found = landing_points(sine, stack)
     direction = np.stack([sine, np.zeros(3), np.sqrt(1.0 - sine**2)], axis=1)
     assert found[:, 0] == pytest.approx(glass.displacement(direction, 3.0)[:, 0], abs=1e-14)
-    slope = (landing(sine + step, stack)[:, 0] - landing(sine - step, stack)[:, 0]) / (2.0 * step)
+    slope = (
+        landing_points(sine + step, stack)[:, 0] - landing_points(sine - step, stack)[:, 0]
+    ) / (2.0 * step)
     assert found[:, 1] == pytest.approx(slope, rel=1e-8)
     assert found[:, 2] * sine == pytest.approx(found[:, 0], abs=1e-14)
     cosine = np.sqrt(1.0 - sine**2)
-    empty = landing(sine, layers(3.0, CoverGlass()))
+    empty = landing_points(sine, layers(3.0, CoverGlass()))
     assert empty[:, 1] == pytest.approx(3.0 / cosine**3)
     assert empty[:, 2] == pytest.approx(3.0 / cosine)
 

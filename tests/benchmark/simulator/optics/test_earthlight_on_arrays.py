@@ -154,7 +154,7 @@ def test_events_come_as_much_earlier_as_the_earth_adds_to_the_current(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """One over the time to fire is proportional to photo and dark current; here without a Sun."""
-    monkeypatch.setattr(EventSensor, "_rendered", lambda _, sun: np.zeros((len(sun), 64, 64)))
+    monkeypatch.setattr(EventSensor, "_render", lambda _, sun: np.zeros((len(sun), 64, 64)))
     sensor = nominal("event-single-aperture")
     sun = np.array([[0.1, -0.2, 0.97]]) / math.sqrt(0.1**2 + 0.2**2 + 0.97**2)
     scene, pattern = lit_by(sun), sensor.fixed_pattern("test")

@@ -19,7 +19,7 @@ from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.code_dial import CodeDialSensor
-from benchmark.simulator.sensors.lines import LineSensor
+from benchmark.simulator.sensors.line_sensor import LineSensor
 from benchmark.simulator.sensors.position_sensitive import PositionSensor, common_rule
 
 POINT = SolarDisc(diameter_deg=0.0)

@@ -23,7 +23,7 @@ from benchmark.simulator.optics.diffraction import (
     round_intensity,
     round_skew,
 )
-from benchmark.simulator.optics.diffraction_tables import RoundPattern, landing
+from benchmark.simulator.optics.diffraction_tables import RoundPattern, landing_points
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.optics.table_grids import turned_cell
@@ -182,7 +182,7 @@ def test_incidences_between_those_tabulated_are_interpolated(thickness: float) -
         place = 0.5 + 3.0 * k
         exact = pattern._table(math.sin(math.radians(60.0 * place / last)), reach)
         found = np.empty(tables.shape[1:])
-        diffraction._blended(found, tables, place, 0.0)
+        diffraction._blend(found, tables, place, 0.0)
         assert np.abs(found - exact).max() < 5e-3 * exact.max(), (place, units)
 
 
@@ -305,12 +305,12 @@ def test_far_patterns_are_seen_where_light_has_turned(
     steps, _ = pattern.scales(sine)
     numbers = np.concatenate([[1.0, 0.0], 1.0 / steps[0], pattern.seen(sine)[0]])
     way = diffraction._way(np.array([sine[0], 0.0, math.sqrt(1.0 - sine[0] ** 2)]), numbers, stack)
-    [chief] = landing(sine, stack)[:, 0]
+    [chief] = landing_points(sine, stack)[:, 0]
     for turn in np.radians([0.0, 70.0, 130.0, 180.0]):
         x, y = 0.02 * math.cos(turn), 0.02 * math.sin(turn)
         out = math.hypot(chief + x, y)
         arriving = optimize.brentq(
-            lambda s, r=out: landing(np.array([s]), stack)[0, 0] - r, 0, 0.99
+            lambda s, r=out: landing_points(np.array([s]), stack)[0, 0] - r, 0, 0.99
         )
         turned = math.hypot(arriving * (chief + x) / out - sine[0], arriving * y / out)
         row, column = looked_up_at(chief + x, y, way)

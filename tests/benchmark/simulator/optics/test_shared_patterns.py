@@ -134,11 +134,11 @@ def test_tables_are_let_go_of_with_their_data_set() -> None:
         made.append(size)
         return size
 
-    memory.remember(("one", 0), "one")
+    memory.cache_for(("one", 0), "one")
     assert (table(3), table(3)) == (3, 3)
-    memory.remember(("one", 1), "one")  # another unit looks up the same ones
+    memory.cache_for(("one", 1), "one")  # another unit looks up the same ones
     assert table(3) == 3
     assert made == [3]
-    memory.remember(("other", 0), "other")
+    memory.cache_for(("other", 0), "other")
     assert table(3) == 3
     assert made == [3, 3]

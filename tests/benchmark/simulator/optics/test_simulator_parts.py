@@ -21,7 +21,7 @@ from benchmark.simulator.readout.detectors import (
     cosine_response,
     kelly_response,
 )
-from benchmark.simulator.readout.noise import NoiseStreams, counted
+from benchmark.simulator.readout.noise import NoiseStreams, draw_counts
 
 angles = st.floats(-70.0, 70.0)
 
@@ -139,13 +139,13 @@ def test_quadrants_lie_where_the_voltage_balance_expects_them() -> None:
 @pytest.mark.parametrize("mean", [0.5, 5.0, 19.9, 20.0, 400.0])
 def test_shot_noise_has_variance_equal_to_the_mean(mean: float) -> None:
     streams = NoiseStreams.named("test", "shot", str(mean))
-    electrons = counted(np.full(200_000, mean), 0.0, streams)
+    electrons = draw_counts(np.full(200_000, mean), 0.0, streams)
     assert electrons.mean() == pytest.approx(mean, abs=5 * math.sqrt(mean / 2e5))
     assert electrons.var() == pytest.approx(mean, rel=0.02)
 
 
 def test_small_counts_are_poisson() -> None:
-    electrons = counted(np.full(100_000, 3.0), 0.0, NoiseStreams.named("test", "poisson"))
+    electrons = draw_counts(np.full(100_000, 3.0), 0.0, NoiseStreams.named("test", "poisson"))
     seen = np.bincount(np.rint(electrons).astype(int), minlength=12)[:12]
     assert np.abs(electrons - np.rint(electrons)).max() < 1e-6
     expected = stats.poisson.pmf(np.arange(12), 3.0) * 100_000
@@ -153,7 +153,7 @@ def test_small_counts_are_poisson() -> None:
 
 
 def test_read_noise_adds_its_variance() -> None:
-    electrons = counted(np.full(200_000, 100.0), 30.0, NoiseStreams.named("test", "read"))
+    electrons = draw_counts(np.full(200_000, 100.0), 30.0, NoiseStreams.named("test", "read"))
     assert electrons.var() == pytest.approx(100 + 900, rel=0.02)
 
 

@@ -20,7 +20,7 @@ from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensors.lines import LineAxis, LineSensor
+from benchmark.simulator.sensors.line_sensor import LineAxis, LineSensor
 
 POINT = SolarDisc(diameter_deg=0.0)
 NAMES = (

@@ -22,19 +22,19 @@ def frames(seed: int = 1) -> np.ndarray:
 def test_a_pixel_gives_a_quarter_of_its_share_to_each_neighbour() -> None:
     light = np.zeros((1, 5, 5))
     light[0, 2, 2] = 1.0
-    seen = PixelErrors(crosstalk=0.08).gathered(light)[0]
+    seen = PixelErrors(crosstalk=0.08).gather(light)[0]
     kernel = np.array([[0, 0.02, 0], [0.02, 0.92, 0.02], [0, 0.02, 0]])
     assert seen[1:4, 1:4] == pytest.approx(kernel)
     assert seen.sum() == pytest.approx(1.0)
     whole = frames()
-    spilled = PixelErrors(crosstalk=0.08).gathered(whole)
+    spilled = PixelErrors(crosstalk=0.08).gather(whole)
     assert spilled == pytest.approx(
         np.stack([ndimage.convolve(one, kernel, mode="nearest") for one in whole])
     )
 
 
 def test_a_line_s_pixel_has_two_neighbours() -> None:
-    seen = PixelErrors(crosstalk=0.1).gathered(np.array([[0.0, 1.0, 0.0, 0.0]]))
+    seen = PixelErrors(crosstalk=0.1).gather(np.array([[0.0, 1.0, 0.0, 0.0]]))
     assert seen == pytest.approx(np.array([[0.05, 0.9, 0.05, 0.0]]))
 
 
@@ -42,7 +42,7 @@ def test_crosstalk_leaves_the_centroid_and_widens_the_spot_by_its_variance() -> 
     """A step of one pixel with the chance c / 2 an axis: a variance of c / 2 px^2 more."""
     y, x = np.mgrid[:41, :41]
     spot = np.exp(-((x - 20.3) ** 2 + (y - 19.8) ** 2) / 18.0)[None]
-    seen = PixelErrors(crosstalk=0.12).gathered(spot)
+    seen = PixelErrors(crosstalk=0.12).gather(spot)
 
     def moments(image: np.ndarray) -> tuple[float, float]:
         mean = (image * x).sum() / image.sum()
@@ -55,17 +55,17 @@ def test_crosstalk_leaves_the_centroid_and_widens_the_spot_by_its_variance() -> 
 
 def test_smear_adds_the_column_s_light_to_every_pixel_of_it() -> None:
     light = frames()
-    seen = PixelErrors(smear=1e-3).gathered(light)
+    seen = PixelErrors(smear=1e-3).gather(light)
     assert seen - light == pytest.approx(
         np.broadcast_to(1e-3 * light.sum(axis=1, keepdims=True), light.shape)
     )
     line = light[:, 0]
-    assert PixelErrors(smear=1e-3).gathered(line) is line
+    assert PixelErrors(smear=1e-3).gather(line) is line
 
 
 def test_without_errors_nothing_changes() -> None:
     light, none = frames(), PixelErrors()
-    assert none.gathered(light) is light
+    assert none.gather(light) is light
     assert none.read(light, FULL_E) is light
     assert np.all(none.dark_factor((50, 60), "unit") == 1.0)
     assert np.all(none.column_offsets(60, "unit") == 0.0)

@@ -150,7 +150,7 @@ def test_full_frames_gather_charge_as_windows_do() -> None:
     light = np.random.default_rng(3).uniform(size=(9, 11))
     out = np.empty_like(light)
     gather(out, light, (0.2, 0.06, 1e-3))
-    assert out == pytest.approx(ALL.gathered((light + 0.2)[None])[0], rel=1e-12)
+    assert out == pytest.approx(ALL.gather((light + 0.2)[None])[0], rel=1e-12)
 
 
 def test_full_frames_read_what_is_expected() -> None:

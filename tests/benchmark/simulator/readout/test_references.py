@@ -176,7 +176,7 @@ def test_flats_show_each_element_s_own_gain(name: str) -> None:
 def test_another_unit_has_other_references_and_a_sensor_without_elements_none() -> None:
     preset = datasets.get("ccd-slit")
     condition = preset.conditions[0]
-    own, other = (preset.as_unit(n).references(condition)["flat_dn"] for n in (0, 1))
+    own, other = (preset.for_unit(n).references(condition)["flat_dn"] for n in (0, 1))
     assert own.shape == other.shape == (2 * 1024,)
     assert (own != other).mean() > 0.9
     assert datasets.get("event-single-aperture").references("nominal") == {}

@@ -16,7 +16,7 @@ from algorithms.extractors.currents.photodiode import VoltageBalance
 from benchmark import datasets
 from benchmark.datasets.conditions.cone import ConeField
 from benchmark.plan import combinations as plan
-from benchmark.plan.parts import installed
+from benchmark.plan.parts import installed_parts
 from benchmark.seeds import generator
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.sun_disc import SolarDisc
@@ -26,7 +26,7 @@ from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.face_layouts import lattice, pyramid, sphere
 from benchmark.simulator.sensors.faces import CUBE, Faces
 from benchmark.simulator.sensors.light_to_frequency import FrequencySensor
-from benchmark.simulator.sensors.opto_isolator import OptoIsolatorSensor, collected
+from benchmark.simulator.sensors.opto_isolator import OptoIsolatorSensor, collect
 from benchmark.simulator.sensors.solar_cells import SolarCells, SolarCellSensor
 
 IDEAL = CurrentReadout(100.0, 0.0, 0.0, full_scale_ua=400.0, bits=24)
@@ -115,7 +115,7 @@ def undone(sensor: Any, signals: np.ndarray, pattern: Any) -> np.ndarray:
         return straight / sensor.readout.sunlit_hz
     relative = signals / sensor.readout.sunlit_ua
     if isinstance(sensor, OptoIsolatorSensor):
-        current = relative * collected(np.ones(1), sensor.knee)
+        current = relative * collect(np.ones(1), sensor.knee)
         return current + np.sqrt(sensor.knee / 2.0 * current)
     if isinstance(sensor, SolarCellSensor):
         # i = light (1 + c (T - 25 + h light)), a quadratic in the light
@@ -270,12 +270,12 @@ def test_opto_isolators_gain_with_the_light_and_are_far_apart() -> None:
 
 
 def test_a_phototransistor_s_gain_is_half_at_the_knee_and_goes_with_the_light_below() -> None:
-    assert collected(np.array([0.2]), 0.2)[0] / 0.2 == pytest.approx(0.5)
-    small = collected(np.array([1e-6, 2e-6]), 0.2)
+    assert collect(np.array([0.2]), 0.2)[0] / 0.2 == pytest.approx(0.5)
+    small = collect(np.array([1e-6, 2e-6]), 0.2)
     assert small[1] / small[0] == pytest.approx(4.0, rel=1e-4)
-    much = collected(np.array([1e4, 2e4]), 0.2)
+    much = collect(np.array([1e4, 2e4]), 0.2)
     assert much[1] / much[0] == pytest.approx(2.0, rel=2e-3)
-    assert collected(np.array([-1.0, 0.0, 0.7]), 0.0) == pytest.approx([0.0, 0.0, 0.7])
+    assert collect(np.array([-1.0, 0.0, 0.7]), 0.0) == pytest.approx([0.0, 0.0, 0.7])
     with pytest.raises(ValueError, match="knee must not be negative; got -1"):
         OptoIsolatorSensor(CUBE, IDEAL, knee=-1.0)
 
@@ -292,7 +292,7 @@ def test_earthlight_reaches_each_face_by_its_own_normal(name: str) -> None:
     pattern = preset.fixed_pattern("albedo")
     assert scene.albedo.shape == (20, len(sensor.normals))
     assert 0.05 < scene.albedo.max() < 0.4
-    assert sensor.received(scene, pattern) == pytest.approx(
+    assert sensor.receive(scene, pattern) == pytest.approx(
         sensor.lit(scene, pattern) + scene.stray[:, None] + scene.albedo
     )
     sun, nadir = np.array([[0.0, 0, 1.0]]), np.array([[0.0, 0.6, -0.8]])
@@ -331,8 +331,10 @@ def test_no_planned_pair_fails_on_the_analog_datasets(name: str) -> None:
     preset = datasets.get(name)
     samples = preset.generate("nominal", "calibration")
     for cell in plan.cells(name, "nominal"):
-        extractor = installed().extractor(cell.extractor)
-        model = installed().model(cell.model).for_sensor(preset.geometry, extractor.about.kind)
+        extractor = installed_parts().extractor(cell.extractor)
+        model = (
+            installed_parts().model(cell.model).for_sensor(preset.geometry, extractor.about.kind)
+        )
         features = extractor.for_sensor(preset.geometry).extract(samples.observations)
         found = model.fit(features, samples.sun).predict(features)
         # within a degree of a cube's axes, faces at grazing incidence say nothing of a direction;

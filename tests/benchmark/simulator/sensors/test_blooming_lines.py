@@ -13,7 +13,7 @@ from benchmark.simulator.light.sun_disc import from_angles
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.blooming_lines import BloomingLineSensor
-from benchmark.simulator.sensors.lines import LineSensor
+from benchmark.simulator.sensors.line_sensor import LineSensor
 
 PRESET = datasets.get("ccd-slit")
 FULL, GAIN, OFFSET = 100_000.0, 25.0, 16.0

@@ -22,7 +22,7 @@ from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensors.lines import LineSensor
+from benchmark.simulator.sensors.line_sensor import LineSensor
 
 H_MM, PITCH_MM, HEIGHT_MM, COLUMNS = 2.5, 0.014, 0.2, 1024
 NAMES = (

@@ -250,7 +250,7 @@ def test_light_at_rest_is_kept_as_that_of_the_sensor_at_rest_and_no_other() -> N
     moving = scene_of(still, [(12.0, -7.0)], (40.0, 0.0, 0.0))
     alone = sensor.lit(moving)
     memory.forget()
-    memory.remember("test")
+    memory.cache_for("test")
     try:
         still.lit(scene)
         hits = memory.hits

@@ -176,9 +176,9 @@ def test_a_thick_square_mask_dims_by_the_overlap_of_its_rims() -> None:
 
 def test_converter_rounds_to_codes_and_clips() -> None:
     readout = CurrentReadout(100.0, 0.0, 0.0, full_scale_ua=8.0, bits=4)
-    from benchmark.simulator.readout.currents import converted
+    from benchmark.simulator.readout.currents import convert
 
-    out = converted(readout, np.array([[-9.0, -0.4, 0.6, 3.4, 99.0]]), NoiseStreams.named("test"))
+    out = convert(readout, np.array([[-9.0, -0.4, 0.6, 3.4, 99.0]]), NoiseStreams.named("test"))
     assert out.tolist() == [[-8.0, 0.0, 1.0, 3.0, 7.0]]
     assert not np.signbit(out[0, 1])
 
@@ -187,10 +187,10 @@ def test_photodiode_noise_is_shot_plus_amplifier() -> None:
     readout = CurrentReadout(
         100.0, 0.0, noise_ua=0.003, full_scale_ua=200.0, bits=30, integration_s=1e-12
     )
-    from benchmark.simulator.readout.currents import converted, variance
+    from benchmark.simulator.readout.currents import convert, variance
 
     mean = np.full((100_000, 1), 50.0)
-    seen = converted(readout, mean, NoiseStreams.named("test", "currents"))
+    seen = convert(readout, mean, NoiseStreams.named("test", "currents"))
     shot = 1.602176634e-19 * 50e-6 / 1e-12 * 1e12  # q I / T, square microamperes
     assert seen.var() == pytest.approx(shot + 0.003**2, rel=0.02)
     assert variance(readout, mean)[0, 0] == pytest.approx(shot + 0.003**2, rel=1e-6)

@@ -13,7 +13,7 @@ from algorithms.extractors.frames.mirror import fit_kernel
 from algorithms.extractors.frames.mirror import taps as filters
 from algorithms.extractors.frames.mirror.extractor import MirrorRegistration
 from algorithms.extractors.frames.mirror.registration import register
-from algorithms.measurement import Doubt
+from algorithms.measurement import QualityFlag
 
 PEAK, DARK, READ = 2000.0, 20.0, 10.0
 #: Sigma of the rims, px, and points across a pixel over which light is averaged.
@@ -162,7 +162,7 @@ def test_two_lights_are_no_answer(second, apart):
     """Overlapping ones too: two equal ones are symmetric about their middle."""
     found = MirrorRegistration().measure(lights(second, apart, 37, 15))
     assert np.isnan(found.features).all()
-    two = int(Doubt.SEVERAL_SPOTS | Doubt.NOT_SYMMETRIC | Doubt.CUT)
+    two = int(QualityFlag.SEVERAL_SPOTS | QualityFlag.NOT_SYMMETRIC | QualityFlag.CUT)
     assert (found.doubts & two != 0).all()
 
 
@@ -177,7 +177,7 @@ def test_a_weaker_light_upon_a_spot_without_outlines_makes_it_skew():
     ]
     found = register(noisy(np.stack(light), rng))
     assert np.isnan(found.features).all()
-    assert (found.doubts & int(Doubt.NOT_SYMMETRIC) != 0).mean() > 0.9
+    assert (found.doubts & int(QualityFlag.NOT_SYMMETRIC) != 0).mean() > 0.9
 
 
 def test_what_the_weighting_and_the_slopes_have_in_common_is_known_at_every_displacement():
@@ -214,11 +214,16 @@ def test_every_missing_answer_says_why():
         [one, 0 * one, one + PEAK * render(disc, (12.0, 12.0)), PEAK * render(disc, (2.0, 30.0))]
     )
     found = MirrorRegistration().measure(noisy(light, rng))
-    assert [Doubt(d) for d in found.doubts] == [0, Doubt.NO_SPOT, Doubt.SEVERAL_SPOTS, Doubt.CUT]
+    assert [QualityFlag(d) for d in found.doubts] == [
+        0,
+        QualityFlag.NO_SPOT,
+        QualityFlag.SEVERAL_SPOTS,
+        QualityFlag.CUT,
+    ]
     half = np.where(np.arange(SIZE)[:, None] > 30, one, 0.0)
     half[31:40] *= np.linspace(0.4, 1.0, SIZE)
     found = MirrorRegistration().measure(noisy(DARK + half, rng))
-    assert found.doubts[0] & int(Doubt.NOT_SYMMETRIC | Doubt.SEVERAL_SPOTS)
+    assert found.doubts[0] & int(QualityFlag.NOT_SYMMETRIC | QualityFlag.SEVERAL_SPOTS)
 
 
 @pytest.mark.parametrize("value", [4095, 0])
@@ -315,7 +320,7 @@ def test_saturation_leaves_a_symmetric_spot_where_it_is_and_is_said():
     assert (frames == 4095).sum(axis=(1, 2)).min() > 20
     found = MirrorRegistration().measure(frames)
     assert rms(found.features, centres) < 0.02
-    assert (found.doubts == int(Doubt.SATURATED)).all()
+    assert (found.doubts == int(QualityFlag.SATURATED)).all()
 
 
 def test_frames_too_small_for_a_spot_are_no_answer():

@@ -1,0 +1,116 @@
+"""What recommendations need of the measurements, kept between calls of the command line.
+
+To make it, every implementation and data set is imported and every score read, which takes longer
+than to answer. It is kept in the working store with a digest of all it is made from - code, scores,
+times - and is made anew where that has changed. It may be deleted at any time.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+from api.cli.working import working_directory
+from files.atomic import replace_file
+from registry.measured_pipelines import MeasuredPipeline, Measurements, Score
+
+FILE = "prepared-measurements.json"
+
+_ROOT = Path(__file__).resolve().parents[2]
+_PUBLISHED = _ROOT / "benchmark" / "published"
+#: Python files that make it, and what they read beside the times.
+_CODE = ("algorithms", "benchmark", "files", "registry", "survey_data")
+_MAKERS = ("api/http/measurements.py", "api/cli/prepared_measurements.py")
+_READ = ("components.json", "pins.csv", "scores/*.csv")
+_TIMES = "times.csv"
+
+_SCORE = tuple(field.name for field in fields(Score))
+_MEASURED = tuple(field.name for field in fields(MeasuredPipeline))
+
+
+def measure() -> Measurements:
+    """Return what is measured of every pipeline, times of this machine included."""
+    directory = working_directory()
+    path, key = directory / FILE, digest(directory)
+    rows = _keep(path, key)
+    if rows is None:
+        rows = _made(directory)
+        with suppress(OSError):  # no room, or not ours to write: then it is made at every call
+            text = json.dumps({"key": key, "rows": list(map(_plain, rows))})
+            replace_file(path, text)
+    return Measurements(rows)
+
+
+def digest(directory: Path) -> str:
+    """Return the digest of all that it is made from.
+
+    Parameters
+    ----------
+    directory : the working store, which has the times
+    """
+    found = hashlib.blake2b(digest_size=16)
+    for path in _sources(directory):
+        try:
+            content = path.read_bytes()
+        except (FileNotFoundError, NotADirectoryError):  # of times, where nothing was timed
+            content = b""
+        found.update(f"{path.name} {len(content)}\n".encode())
+        found.update(content)
+    return found.hexdigest()
+
+
+def _sources(directory: Path) -> Iterator[Path]:
+    for package in _CODE:
+        yield from sorted((_ROOT / package).rglob("*.py"))
+    yield from (_ROOT / name for name in _MAKERS)
+    for pattern in _READ:
+        yield from sorted(_PUBLISHED.glob(pattern))
+    yield directory / _TIMES
+
+
+def _made(directory: Path) -> list[MeasuredPipeline]:
+    from api.http.measurements import Measurements as Published  # noqa: PLC0415 - slow, see above
+
+    return Published(times_directory=directory).pipelines
+
+
+def _keep(path: Path, key: str) -> list[MeasuredPipeline] | None:
+    try:
+        document = json.loads(path.read_bytes())
+        return [_row(row) for row in document["rows"]] if document["key"] == key else None
+    except (OSError, ValueError, TypeError, KeyError):
+        return None  # none yet, or not what was written
+
+
+def _plain(row: MeasuredPipeline) -> dict[str, Any]:
+    return {
+        **{name: getattr(row, name) for name in _MEASURED},
+        "nominal": _numbers(row.nominal),
+        "hazards": {name: list(map(_numbers, scores)) for name, scores in row.hazards.items()},
+    }
+
+
+def _numbers(score: Score) -> list[Any]:
+    return [getattr(score, name) for name in _SCORE]
+
+
+def _row(row: Mapping[str, Any]) -> MeasuredPipeline:
+    return MeasuredPipeline(
+        **{
+            **row,
+            "stages": tuple(row["stages"]),
+            **{name: tuple(row[name]) for name in ("unit_own_deg", "unit_ratios", "needs")},
+            "nominal": _score(row["nominal"]),
+            "hazards": {name: tuple(map(_score, found)) for name, found in row["hazards"].items()},
+        }
+    )
+
+
+def _score(numbers: list[Any]) -> Score:
+    named = dict(zip(_SCORE, numbers, strict=True))
+    return Score(**{**named, "cones": tuple(map(tuple, named["cones"]))})

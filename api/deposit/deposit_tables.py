@@ -1,0 +1,333 @@
+"""The measured tables of the bundle: algorithms, data sets, scores and leaderboard, as CSV."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from api.cells import cell
+from api.deposit import claim_tables, derived_tables
+from api.deposit.fields import schema
+from benchmark import datasets
+from benchmark.claims.ledger import Entry, ledger
+from benchmark.leaderboard.board import build
+from benchmark.learning_curves import record as curves
+from benchmark.results.store import Store
+from benchmark.sweeps import record as sweeps
+from files.csv_writing import csv_text
+from registry.catalogue import catalogue
+from registry.taxonomy import taxonomy_rows
+
+#: Columns of sweeps that stand in the bundle under another name or value.
+_RENAMED = frozenset({"series", "sweep", "point", "unit"})
+_PLACE = ("detector", "mask")
+_PIPELINE = ("dataset", "condition", "extractor", "model")
+_RANKED = (
+    *("rank", "group", "tied", *_PIPELINE, "own_deg", "own_se", "on_bench_deg", "on_bench_basis"),
+    *("twin_of", "folded", "rms_deg", "low_deg", "high_deg", "unit_rms_deg"),
+)
+
+
+class NothingPublishedError(FileNotFoundError):
+    """There are no published results to deposit."""
+
+
+class DescriptorError(ValueError):
+    """A file is no descriptor of a data package; the message names it."""
+
+
+@dataclass(frozen=True)
+class MeasuredTable:
+    """A table with its description.
+
+    Attributes
+    ----------
+    name : of the resource; the file is benchmark/<name>.csv
+    title, description : for people
+    text : the CSV, UTF-8, lines ended by a line feed
+    schema : Table Schema v2
+    """
+
+    name: str
+    title: str
+    description: str
+    text: str
+    schema: Mapping[str, Any]
+
+
+def measured_tables(published: Path) -> list[MeasuredTable]:
+    """Make the measured tables from a directory of published results.
+
+    Raises
+    ------
+    NothingPublishedError
+        Where it holds no scores.
+    ValueError
+        Where a file cannot be read, or has a column nothing is known of.
+    """
+    store = Store(published)
+    scores = store.rows(unit=None)
+    if not scores:
+        raise NothingPublishedError(
+            f"{store.scores_directory} is missing or empty; run `sunatlas leaderboard update`"
+        )
+    names = {"extractor": ("algorithms", "name"), "model": ("algorithms", "name")}
+    foreign = {"dataset": ("datasets", "name"), **names}
+    swept = sweeps.swept(published)
+    return [
+        _algorithms(),
+        _datasets(),
+        _table(
+            "scores",
+            "Scores",
+            "One row a pipeline on a data set in a condition and a unit of the sensor; a pure "
+            "function of code and data.",
+            scores,
+            primary=(*_PIPELINE, "unit"),
+            foreign=foreign,
+        ),
+        _leaderboard(scores, foreign),
+        _pins(store),
+        *([_sweeps(swept)] if swept else []),
+        *_curves(curves.published_curves(published), foreign),
+        *_told(foreign),
+        *_claims(ledger(published)),
+    ]
+
+
+def frames_table(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
+    """Make the table of the samples that go along, a row a file of arrays."""
+    return _table(
+        "frames",
+        "Samples in this bundle",
+        "Which samples of the standard data sets lie in frames/: the first so many of each split, "
+        "or all, in the nominal condition. The code makes the others.",
+        rows,
+        primary=("dataset", "condition", "split"),
+        foreign={"dataset": ("datasets", "name")},
+    )
+
+
+def _told(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
+    """Make the tables that follow from facts and plan, with the numbers of none."""
+    return [
+        _table(
+            "resolution",
+            "Resolution of the studies",
+            "What runs for each study, with its grade: a row a pipeline and a data set under a "
+            "condition that stand for it, what each part rests on, and by what rule it stands "
+            "there where the study does not state it.",
+            derived_tables.resolution(),
+            primary=("study", *_PLACE, "dataset", "condition", "extractor", "model"),
+            foreign={**foreign, "study": ("all_studies", "study")},
+        ),
+        _table(
+            "all_studies",
+            "Studies of both editions",
+            "The survey's studies and those after it, told apart by their edition.",
+            derived_tables.all_studies(),
+            primary=("study",),
+            foreign={"edition": ("editions", "edition")},
+        ),
+        _table(
+            "editions",
+            "Editions of the studies",
+            "The survey's studies, and those after it: each with the version to cite.",
+            derived_tables.edition_rows(),
+            primary=("edition",),
+        ),
+        _table(
+            "verdicts",
+            "Verdicts of the findings",
+            "Each clause of the survey's checkable statements, judged strictly by the tables, with "
+            "the counts and the evidence that would turn it, and the verdict of the whole.",
+            derived_tables.verdicts(),
+            primary=("finding", "clause"),
+            foreign={"finding": ("findings", "id")},
+        ),
+        _table(
+            "publications",
+            "Publications per year and per venue",
+            "Mapped studies of each year, and of each venue that is known.",
+            derived_tables.publication_counts(),
+            primary=("per", "year_or_venue"),
+        ),
+    ]
+
+
+def _claims(entries: Sequence[Entry]) -> list[MeasuredTable]:
+    """Make the tables of the survey's claims, as they came out."""
+    claimed = {"claim": ("claims", "id")}
+    return [
+        _table(
+            "claim_verdicts",
+            "Verdicts of the claims",
+            "Each of the survey's statements about algorithms, put to the test.",
+            claim_tables.verdicts(entries),
+            primary=("claim",),
+            foreign=claimed,
+        ),
+        _table(
+            "claim_rules",
+            "Rules of the claims",
+            "What has to hold for each claim, and what the trials say of it.",
+            claim_tables.rules(entries),
+            primary=("claim", "rule"),
+            foreign=claimed,
+        ),
+        _table(
+            "claim_trials",
+            "Trials of the claims",
+            "The statistic of every rule in every trial.",
+            claim_tables.trials(entries),
+            primary=("claim", "rule", "trial"),
+            foreign=claimed,
+        ),
+    ]
+
+
+def _leaderboard(
+    scores: Sequence[Mapping[str, Any]], foreign: Mapping[str, tuple[str, str]]
+) -> MeasuredTable:
+    board = build(scores)
+    rows = [
+        {name: row[name] for name in _RANKED}
+        for dataset in board["datasets"]
+        for row in dataset["rows"]
+    ]
+    return _table(
+        "leaderboard",
+        "Leaderboard",
+        "Pipelines ranked in each data set and condition; numbers of every row stand in scores.",
+        rows,
+        primary=_PIPELINE,
+        foreign=foreign,
+    )
+
+
+def _pins(store: Store) -> MeasuredTable:
+    return _table(
+        "data",
+        "Generated data",
+        "Hash of every generated split of every data set, and its Cramer-Rao bound.",
+        [dataclasses.asdict(pin) for _, pin in sorted(store.pins().items())],
+        primary=("dataset", "condition", "split"),
+        foreign={"dataset": ("datasets", "name")},
+    )
+
+
+def _sweeps(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
+    # An empty cell is a missing value, which a key may not be: a refused series says so in words.
+    named = [
+        {
+            **{name: row[name] or "none" for name in ("series", "sweep", "point")},
+            **{name: value for name, value in row.items() if name not in _RENAMED},
+            "measured_in": row["unit"],
+        }
+        for row in rows
+    ]
+    return _table(
+        "sweeps",
+        "Sweeps",
+        "Error of every extractor on features in closed form, with the Cramer-Rao bound.",
+        named,
+        primary=("series", "sweep", "point", "extractor"),
+        foreign={"extractor": ("algorithms", "name")},
+    )
+
+
+def _curves(
+    rows: Sequence[Mapping[str, Any]], foreign: Mapping[str, tuple[str, str]]
+) -> list[MeasuredTable]:
+    """Make the table of learning curves and that of their points; none where there are none."""
+    if not rows:
+        return []
+    points = [
+        {**{name: row[name] for name in _PIPELINE}, **point}
+        for row in rows
+        for point in row["points"]
+    ]
+    return [
+        _table(
+            "curves",
+            "Learning curves",
+            "How many calibration poses the leaders of each data set need to be within 10 % of "
+            "their floor.",
+            [{name: row[name] for name in row if name != "points"} for row in rows],
+            primary=_PIPELINE,
+            foreign=foreign,
+        ),
+        _table(
+            "curve_points",
+            "Points of the learning curves",
+            "Errors after so many calibration poses, over draws of poses and units of the sensor.",
+            points,
+            primary=(*_PIPELINE, "poses"),
+            foreign=foreign,
+        ),
+    ]
+
+
+def _algorithms() -> MeasuredTable:
+    return _table(
+        "algorithms",
+        "Algorithms",
+        "Every implementation of an extractor or a model.",
+        [implementation.to_dict() for implementation in catalogue().implementations()],
+        primary=("name",),
+    )
+
+
+def _datasets() -> MeasuredTable:
+    rows = [
+        {
+            "name": preset.name,
+            "version": preset.version,
+            "detector": preset.detector,
+            "mask": preset.mask,
+            "observation": str(preset.observation),
+            "half_fov_deg": preset.geometry.half_fov_deg,
+            "conditions": preset.conditions,
+            "description": preset.description,
+            "follows": preset.follows,
+        }
+        for preset in map(datasets.get, datasets.names())
+    ]
+    return _table(
+        "datasets",
+        "Standard data sets",
+        "The simulated sensors that pipelines are scored on.",
+        rows,
+        primary=("name",),
+    )
+
+
+def _table(
+    name: str,
+    title: str,
+    description: str,
+    rows: Sequence[Mapping[str, Any]],
+    *,
+    primary: Sequence[str],
+    foreign: Mapping[str, tuple[str, str]] | None = None,
+) -> MeasuredTable:
+    columns = list(dict.fromkeys(column for row in rows for column in row))
+    cells = ([cell(taxonomy_rows(name, row.get(name))) for name in columns] for row in rows)
+    text = csv_text(columns, cells)
+    described = schema(columns, f"{name}.csv", primary=primary, foreign=foreign)
+    return MeasuredTable(name, title, description, text, described)
+
+
+def read_descriptor(path: Path) -> dict[str, Any]:
+    """Read a datapackage.json; DescriptorError naming the file where it is none."""
+    try:
+        found = json.loads(path.read_text("utf-8"))
+    except ValueError as error:
+        raise DescriptorError(f"{path}: not JSON ({error})") from error
+    if isinstance(found, dict) and isinstance(found.get("resources"), list):
+        return found
+    raise DescriptorError(f"{path}: expected an object with a list of resources")

@@ -1,0 +1,89 @@
+"""Tables of the bundle that are told from facts and plan: resolution, verdicts, publications."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import survey_data
+from benchmark.plan.combinations import scorable
+from benchmark.plan.shown import data_sets
+from registry.fidelity.runnable import ESSENTIAL
+from registry.resolution import resolve_all, resolve_later
+from registry.studies import facts
+from survey_data.editions import editions
+from survey_data.findings.publications import publications
+
+
+def resolution() -> list[Mapping[str, Any]]:
+    """Return a row for each study, pipeline and setting (data set, condition) used for the study.
+
+    Of both editions, each study's own beside it.
+    """
+    plan, shown, known, every = scorable(), data_sets(), facts(), facts("all")
+    resolved = resolve_all(plan, data_sets=shown, facts=known)
+    resolved |= resolve_later(plan, known, every, data_sets=shown)
+    return [
+        {
+            "study": key,
+            "edition": every.studies[key].edition,
+            "grade": found.fidelity.grade,
+            "state": found.state,
+            **{name: getattr(pipeline, name) for name in ESSENTIAL},
+            "dataset": setting.dataset,
+            "condition": setting.condition,
+            **{f"{name}_basis": pipeline.basis[name] for name in ESSENTIAL},
+            "assumed": [f"{name}: {rule}" for name, rule in pipeline.assumed.items()],
+        }
+        for key, found in resolved.items()
+        for pipeline in found.pipelines
+        for setting in pipeline.settings
+    ]
+
+
+def all_studies() -> list[Mapping[str, Any]]:
+    """Return a row for each study of both editions."""
+    columns = ("key", "edition", "title", "authors", "year", "venue", "type", "doi")
+    rows = survey_data.load().edition("all").studies[list(columns)]
+    filled = rows.astype(object).where(rows.notna(), None).to_dict("records")
+    return [{"study" if name == "key" else name: row[name] for name in columns} for row in filled]
+
+
+def edition_rows() -> list[Mapping[str, Any]]:
+    """Return a row for each edition, as it is cited."""
+    return [
+        {
+            "edition": one.name,
+            "edition_title": one.title,
+            "edition_studies": one.studies,
+            "edition_version": one.version,
+        }
+        for one in editions()
+    ]
+
+
+def verdicts() -> list[Mapping[str, Any]]:
+    """Return a row for each clause of the survey's findings, with its counts."""
+    return [
+        {
+            "finding": found.id,
+            "clause": clause.clause,
+            "finding_verdict": found.verdict,
+            "verdict": clause.verdict,
+            "matching": clause.matching,
+            "counted": clause.counted,
+            "named": [f"{value} {count}" for value, count in clause.named],
+            "ranking": [f"{value} {count}" for value, count in clause.ranking],
+            "settled_by": clause.settled_by,
+        }
+        for found in survey_data.fidelity(survey_data.load()).findings
+        for clause in found.clauses
+    ]
+
+
+def publication_counts() -> list[Mapping[str, Any]]:
+    """Return the studies per year and per venue."""
+    return [
+        {"per": row.kind, "year_or_venue": row.value, "studies_count": row.studies}
+        for row in publications(survey_data.load())
+    ]

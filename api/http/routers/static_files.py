@@ -1,0 +1,17 @@
+"""Static files of the pages."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Request, Response
+
+from api.http.answers import StrictRoute
+from api.http.dependencies import NO_PARAMETERS
+from api.http.static_files import page_file
+
+router = APIRouter(route_class=StrictRoute, include_in_schema=False)
+
+
+@router.get("/page/{name:path}", dependencies=[NO_PARAMETERS])
+async def static(request: Request, name: str) -> Response:
+    """Give a file of the page."""
+    return page_file(name).respond(request)

@@ -1,0 +1,77 @@
+"""A record held against its `files.manifest`: what no command wrote so is named."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from benchmark.results.csv_tables import StoreError
+from files import manifest
+from files.problems import Problem
+from files.reading import FileRefusedError, path_exists
+
+#: Takes over what was changed by hand, in the record and in the facts.
+COMMAND = "python -m benchmark.suites.manifest_renewal"
+
+#: Suffixes of the files that a record is made of.
+_KINDS = frozenset({".csv", ".json", ".md", ".parquet"})
+#: Running times are of a machine, and may stand in its working store.
+_OF_A_MACHINE = "times.csv"
+
+
+def names(folder: Path) -> tuple[str, ...]:
+    """Return the files of a record, relative and POSIX.
+
+    A runner's own, the manifest and what no reader takes for a part of the record are left aside.
+    """
+    found = (path for path in folder.rglob("*") if path.is_symlink() or not path.is_dir())
+    relative = (path.relative_to(folder) for path in found)
+    return tuple(
+        sorted(
+            path.as_posix()
+            for path in relative
+            if path.suffix in _KINDS
+            and path.as_posix() not in {manifest.FILE, _OF_A_MACHINE}
+            and not any(part.startswith(".") for part in path.parts)
+        )
+    )
+
+
+def changes(folder: Path, *, required: bool = False) -> list[Problem]:
+    """Say what of a record no command wrote so, by file, row and column; nothing where all holds.
+
+    Parameters
+    ----------
+    folder
+        Of the record.
+    required
+        Whether it must have a manifest; else one without has nothing to be held against.
+    """
+    if not (required or (folder / manifest.FILE).is_file()):
+        return []
+    return manifest.differences(folder, names(folder), required=required)
+
+
+def require_unchanged(folder: Path, *, required: bool = False) -> None:
+    """Raise StoreError, naming the first place, where a record is not as commands wrote it."""
+    if problems := changes(folder, required=required):
+        more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+        raise StoreError(
+            f"{folder}: {problems[0]}{more}; restore it, or take it over with `{COMMAND}`"
+        )
+
+
+def write(folder: Path, contents: Mapping[str, str | bytes | None], *, start: bool = False) -> bool:
+    """Write files of a record and take them into its manifest, as `manifest.write_recorded`.
+
+    Raises
+    ------
+    StoreError
+        Where the manifest cannot be read; nothing has been written.
+    """
+    try:
+        if start and not path_exists(folder / manifest.FILE) and (there := names(folder)):
+            manifest.rewrite_manifest(folder, there)  # a record that is older than manifests
+        return manifest.write_recorded(folder, contents, start=start)
+    except FileRefusedError as error:
+        raise StoreError(str(error)) from error

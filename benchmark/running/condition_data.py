@@ -1,0 +1,236 @@
+"""The data of a data set under one condition, generated once and kept while a worker needs them."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass, field, replace
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from algorithms.contract import Extractor, Floats
+from algorithms.pipeline import extract_features
+from algorithms.references import ReferenceCorrection
+from benchmark.canonical import digest
+from benchmark.contract import SPLITS, Bound, Preset, Samples
+from benchmark.datasets.controls import board_facts
+from benchmark.datasets.corrected import correct, correction
+from benchmark.datasets.pins import Pin
+from benchmark.datasets.samples import HEAD, head_hash, samples_hash
+from benchmark.metrics.score import store
+from benchmark.simulator.light.memory import memory
+
+#: Datasets under one condition kept per process: the plan hands out a dataset's tasks in a row.
+_KEPT = 2
+#: Bytes of kept observations from which on only one dataset is: a worker stays below 1.5 GB.
+_KEPT_BYTES = 128 * 2**20
+#: Bytes from which on corrected observations are not kept but made again for each extractor, some
+#: samples at a time.
+_CORRECTED_BYTES = 256 * 2**20
+_BATCH_BYTES = 32 * 2**20
+
+
+@dataclass(frozen=True)
+class ConditionData:
+    """Samples of every split of a data set under one condition, and what bounds them.
+
+    Attributes
+    ----------
+    preset
+        Of unit 0.
+    splits
+        Samples by split; another unit than the standard one has no split ``repeat``. They are
+        corrected by the unit's references already where there is no `correction`.
+    bound_deg, bound_unit_deg
+        Cramer-Rao bounds (N,) of the test split, with the unit known and unknown; None for another
+        unit, and the second where there is none.
+    observable
+        Test samples (N,) whose direction is observable.
+    pins
+        Of the standard unit, of the data before correction; none for another.
+    bound
+        As a whole, of the standard unit; None for another.
+    correction
+        By the unit's references, of samples that would take too much memory corrected.
+    features
+        What extractors found, by their classes and splits: for who asks for the same again.
+    """
+
+    preset: Preset
+    splits: dict[str, Samples]
+    bound_deg: Floats | None
+    bound_unit_deg: Floats | None
+    observable: NDArray[np.bool_]
+    pins: tuple[Pin, ...]
+    bound: Bound | None = None
+    correction: ReferenceCorrection | None = None
+    features: dict[tuple[type[Extractor], str], Floats] = field(default_factory=dict)
+
+
+_Place = tuple[str, str, int, str]  # dataset, condition, unit, digest of the parameters
+_kept: OrderedDict[_Place, ConditionData] = OrderedDict()
+#: Which test samples can be observed, of data whose other units asked; a unit is asked of each.
+_observable: dict[_Place, NDArray[np.bool_]] = {}
+
+
+def generate(
+    preset: Preset, condition: str, unit: int = 0, *, all_observable: bool = False
+) -> ConditionData:
+    """Return the data of a data set under one condition, as a unit of its sensor sees them.
+
+    Parameters
+    ----------
+    preset
+        Of unit 0.
+    condition
+        Of the data set.
+    unit
+        Of the sensor.
+    all_observable
+        Whether every test sample is known to be observable, so that another unit than the
+        standard one needs no bound.
+    """
+    place = _place_of(preset, condition, unit)
+    if place not in _kept:
+        _make_room()
+        # the conditions of a dataset see the same Suns, its units look up the same tables
+        memory.cache_for((preset.name, unit), preset.name)
+        seen_by = preset.for_unit(unit) if unit else preset
+        wanted = SPLITS if not unit else ("calibration", "test")
+        splits = {split: seen_by.generate(condition, split) for split in wanted}
+        if unit:
+            data = _of_another_unit(preset, condition, splits, all_observable)
+        else:  # its bound, which scores need, tells what is observable
+            data = _of_unit_zero(preset, condition, splits)
+        left = _corrected_once(data.splits, correction(seen_by, condition))
+        _kept[place] = replace(data, correction=left)
+    _kept.move_to_end(place)
+    return _kept[place]
+
+
+def found_features(data: ConditionData, extractor: Extractor, split: str) -> Floats:
+    """Return what an extractor finds in a split (N, F), found once for all who ask."""
+    place = type(extractor), split
+    if place not in data.features:
+        samples = data.splits[split]
+        step = len(samples.sun)
+        if data.correction is not None:
+            step = max(1, _BATCH_BYTES // (8 * int(np.prod(samples.observations.shape[1:]))))
+        parts = (_part(samples, start, start + step) for start in range(0, len(samples.sun), step))
+        ready = (correct(data.correction, part) for part in parts)
+        found = [extract_features(extractor, one.observations, one.origin_px) for one in ready]
+        data.features[place] = found[0] if len(found) == 1 else np.concatenate(found)
+    return data.features[place]
+
+
+def _part(samples: Samples, start: int, stop: int) -> Samples:
+    """Return some of the samples, as extractors look at them."""
+    rows = slice(start, stop)
+    origin = samples.origin_px
+    return cast(
+        "Samples",
+        replace(
+            cast("Any", samples),
+            observations=samples.observations[rows],
+            sun=samples.sun[rows],
+            origin_px=None if origin is None else origin[rows],
+            context=None,
+            true_sun=None,
+        ),
+    )
+
+
+def _corrected_once(
+    splits: dict[str, Samples], by: ReferenceCorrection | None
+) -> ReferenceCorrection | None:
+    """Put corrected samples in the place of those read; return what is left to correct by."""
+    size = 8 * sum(np.asarray(samples.observations).size for samples in splits.values())
+    later = by if size > _CORRECTED_BYTES else None
+    for split, samples in splits.items():
+        if later is None:
+            splits[split] = correct(by, samples)
+        # methods share them, and what they find in them
+        np.asarray(splits[split].observations).flags.writeable = False
+    return later
+
+
+def forget() -> None:
+    """Let go of everything that is kept."""
+    _kept.clear()
+    _observable.clear()
+
+
+def generated_pins(preset: Preset, condition: str) -> tuple[Pin, ...]:
+    """Pins of a dataset's splits as this machine generates them."""
+    return generate(preset, condition).pins
+
+
+def _place_of(preset: Preset, condition: str, unit: int) -> _Place:
+    """Name data by what they depend on; known without a digest for what is kept of this object."""
+    for place, data in _kept.items():
+        if data.preset is preset and place[:3] == (preset.name, condition, unit):
+            return place
+    return preset.name, condition, unit, digest(preset.parameters(condition))
+
+
+def _of_unit_zero(preset: Preset, condition: str, splits: dict[str, Samples]) -> ConditionData:
+    bound = preset.bound(condition, "test")
+    angle, observable = np.asarray(bound.angle_deg), np.asarray(bound.observable, dtype=np.bool_)
+    pins = tuple(_pin(preset, condition, split, splits[split], bound) for split in SPLITS)
+    unit = bound.unit_angle_deg
+    unit_angle = None if unit is None else np.asarray(unit)
+    return ConditionData(preset, splits, angle, unit_angle, observable, pins, bound)
+
+
+def _of_another_unit(
+    preset: Preset, condition: str, splits: dict[str, Samples], all_observable: bool
+) -> ConditionData:
+    """Without bounds; what is observable is taken from the standard unit's."""
+    if all_observable:
+        everything = np.ones(len(splits["test"].sun), dtype=np.bool_)
+        return ConditionData(preset, splits, None, None, everything, ())
+    place = _place_of(preset, condition, 0)
+    if place not in _observable:
+        bound = preset.bound(condition, "test")
+        _observable[place] = np.asarray(bound.observable, dtype=np.bool_)
+    return ConditionData(preset, splits, None, None, _observable[place], ())
+
+
+def _pin(preset: Preset, condition: str, split: str, samples: Samples, bound: Bound) -> Pin:
+    told: dict[str, Any] = {}
+    if split == "test":
+        told = {
+            "observable": int(np.asarray(bound.observable, dtype=np.bool_).sum()),
+            "bound_deg": rms_bound(bound),
+            "head_bound_deg": rms_bound(bound, HEAD),
+            **board_facts(preset, condition, np.asarray(samples.sun), bound),
+        }
+    return Pin(
+        preset.name,
+        condition,
+        split,
+        preset.version,
+        len(samples.sun),
+        samples_hash(samples),
+        head_hash(samples),
+        **told,
+    )
+
+
+def rms_bound(bound: Bound, first: int | None = None) -> float | None:
+    """Return the bound over the (first) observable samples as pins keep it; None for none."""
+    seen = np.asarray(bound.observable, dtype=np.bool_)[:first]
+    angle = np.asarray(bound.angle_deg)[:first][seen]
+    return store(float(np.sqrt(np.mean(angle**2)))) if len(angle) else None
+
+
+def _make_room() -> None:
+    """Let go of what was used longest ago, before more is generated."""
+    while _kept and (len(_kept) >= _KEPT or _kept_bytes() > _KEPT_BYTES):
+        _kept.popitem(last=False)
+
+
+def _kept_bytes() -> int:
+    splits = [split for data in _kept.values() for split in data.splits.values()]
+    return sum(np.asarray(split.observations).nbytes for split in splits)
