@@ -64,7 +64,7 @@ _HOMES = {
     "load": "tables",
     "match_columns": "importing.columns",
     "plan_import": "importing.plan",
-    "read_table": "importing.reading",
+    "read_table": "importing.table_reader",
     "validate": "validation.validate",
 }
 

@@ -12,7 +12,8 @@ from benchmark.results.row_file import Row
 from benchmark.running.experiment import Recorded
 from benchmark.sweeps.measure import Task, measure
 from benchmark.sweeps.plan import SERIES, SweepPlan, plan_points
-from benchmark.sweeps.record import RECORD, Point, point_of
+from benchmark.sweeps.points import Point
+from benchmark.sweeps.record import RECORD, point_of
 
 #: Modules between series and methods.
 _CODE = ("algorithms.pipeline", "benchmark.metrics.score", "benchmark.sweeps.measure")

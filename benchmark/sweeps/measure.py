@@ -13,7 +13,8 @@ from benchmark.metrics.score import store
 from benchmark.results.row_file import Row
 from benchmark.running.threads import one_thread
 from benchmark.sweeps.plan import SERIES
-from benchmark.sweeps.record import NUMBERS, Point
+from benchmark.sweeps.points import Point
+from benchmark.sweeps.record import NUMBERS
 from benchmark.synthetic_features.series import KEPT_PX, WRONG_PX, Sample, Series, SeriesPoint
 
 

@@ -11,7 +11,7 @@ from benchmark.datasets import Preset
 from benchmark.datasets.standard import ccd_lens, cmos_lens
 from benchmark.simulator.sensors.black_sun import BlackSunSensor
 from benchmark.simulator.sensors.blooming import BloomingSensor
-from benchmark.sweeps.record import Point
+from benchmark.sweeps.points import Point
 from benchmark.synthetic_features.cameras import CameraSeries
 from benchmark.synthetic_features.events import EVENTS
 from benchmark.synthetic_features.frame_series import FramesSeries

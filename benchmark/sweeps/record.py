@@ -4,27 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from benchmark.results.csv_tables import Reader, count, number, one_of, share, size, word
 from benchmark.results.row_file import Row, TableFile
 from benchmark.results.store import PUBLISHED, STATUSES
-
-
-@dataclass(frozen=True, order=True)
-class Point:
-    """One extractor at one point of a series, by names; sweep and point empty for all of them."""
-
-    series: str
-    sweep: str
-    point: str
-    extractor: str
-
-    def __str__(self) -> str:
-        return f"{self.series}/{self.sweep}/{self.point}/{self.extractor}"
-
+from benchmark.sweeps.points import Point
 
 #: Numbers of a row.
 NUMBERS = (

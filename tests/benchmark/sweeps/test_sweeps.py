@@ -23,7 +23,8 @@ from benchmark.sweeps import plan as sweep_plan
 from benchmark.sweeps import plots as sweep_pictures
 from benchmark.sweeps import sweep_tables
 from benchmark.sweeps.differences import differences
-from benchmark.sweeps.record import RECORD, Point, point_of, swept
+from benchmark.sweeps.points import Point
+from benchmark.sweeps.record import RECORD, point_of, swept
 from benchmark.synthetic_features.series import SWEEPS
 
 

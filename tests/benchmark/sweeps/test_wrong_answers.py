@@ -8,7 +8,7 @@ import pytest
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Observation
 from benchmark.sweeps.measure import Task, measure
 from benchmark.sweeps.plan import SERIES, plan_points
-from benchmark.sweeps.record import Point
+from benchmark.sweeps.points import Point
 from benchmark.synthetic_features.frame_sets import FRAME_SETS
 from benchmark.synthetic_features.series import WRONG_PX
 
