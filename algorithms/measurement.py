@@ -15,6 +15,9 @@ _BATCH_DIMENSIONS = {"frames": 3, "profiles": 2, "currents": 2, "events": 3}
 #: Observations whose elements have neighbours that can stand in for them.
 _WITH_NEIGHBOURS = frozenset({"frames", "profiles"})
 
+#: Channels that a picture in colour has, as its last dimension.
+_COLOURS = 3, 4
+
 
 class QualityFlag(enum.IntFlag):
     """Why an answer is missing or may be wrong; several at once are joined by ``|``.
@@ -107,6 +110,11 @@ def as_batch(observations: ArrayLike, observation: str) -> Any:
     array_like
         The batch; whatever has another number of dimensions comes back for `extract` to refuse.
 
+    Raises
+    ------
+    ValueError
+        If it is a colour picture, which would pass for a batch of frames 3 or 4 px wide.
+
     Examples
     --------
     >>> as_batch(np.zeros((4, 5)), "frames").shape
@@ -117,7 +125,16 @@ def as_batch(observations: ArrayLike, observation: str) -> Any:
     except ValueError:  # ragged: `extract` says what it expected
         return observations
     single = array.ndim == _BATCH_DIMENSIONS[observation] - 1 and array.size > 0
+    if observation == "frames" and _in_colour(array.shape):
+        raise ValueError(
+            f"an array of shape {array.shape} is a picture in colour: frames are grey, (H, W) or "
+            "(N, H, W); take its luminance, as cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY) does"
+        )
     return array[None] if single else observations
+
+
+def _in_colour(shape: tuple[int, ...]) -> bool:
+    return len(shape) == 3 and shape[2] in _COLOURS and min(shape[:2]) > shape[2]
 
 
 def as_bad(bad: ArrayLike, shape: tuple[int, ...], by: str) -> NDArray[np.bool_]:

@@ -33,6 +33,9 @@ PLANAR = 2
 #: Share of the directions' own spread that residuals may have: a model that leaves more has not
 #: found how its features go with the Sun, as with swapped or mirrored axes.
 WORST_RESIDUAL = 0.5
+#: Residual up to which a drawing, which needs no spread of directions, is not refused (with more it
+#: points into another octant), and samples from which it may be.
+_LOST_DEG, _FEWEST_LOST = 45.0, 10
 
 
 @dataclass
@@ -154,8 +157,11 @@ class CalibratedModel(Model):
         answered = error[np.isfinite(error)]
         residual = float(np.sqrt(np.mean(answered**2))) if len(answered) else np.inf
         left_out = self.validation_rms_deg()
-        if self.bounded and np.isfinite(self.extrapolation):
-            _require_explained(residual if left_out is None else left_out, sun, self.about.name)
+        # a drawing needs no samples, so that only many say that it has nothing to do with them
+        if np.isfinite(self.extrapolation) and (self.bounded or len(sun) >= _FEWEST_LOST):
+            least = 0.0 if self.bounded else _LOST_DEG
+            size = residual if left_out is None else left_out
+            _require_explained(size, sun, self.about.name, least)
         self.quality_ = FitQuality(
             samples=len(features),
             residual_rms_deg=residual,
@@ -209,11 +215,14 @@ class CalibratedModel(Model):
         return np.asarray(np.degrees(np.sqrt(variance)))
 
 
-def _require_explained(residual_deg: float, sun: Floats, by: str) -> None:
-    """Raise UnusableDataError where residuals are as large as the directions' own spread."""
+def _require_explained(residual_deg: float, sun: Floats, by: str, least_deg: float) -> None:
+    """Raise UnusableDataError where residuals are as large as the directions' own spread.
+
+    Residuals up to `least_deg` are never too large.
+    """
     middle = sun.mean(axis=0)
     spread = float(np.degrees(np.sqrt(np.mean(((sun - middle) ** 2).sum(axis=1)))))
-    if not residual_deg <= WORST_RESIDUAL * spread:
+    if not residual_deg <= max(WORST_RESIDUAL * spread, least_deg):
         raise UnusableDataError(
             f"{by}: the fit leaves residuals of {residual_deg:.3g} deg where the Sun spread over "
             f"{spread:.3g} deg: features and Suns do not belong together as the model has it; are "

@@ -9,7 +9,7 @@ import numpy as np
 
 from algorithms.calibration.blocks import between_poses, folds_along
 from algorithms.calibration.orders import choose_order, errors_of_orders
-from algorithms.contract import Floats
+from algorithms.contract import Floats, UnusableDataError
 from algorithms.models.non_physical.regression_axes import (
     Target,
     feature_scaling,
@@ -18,6 +18,8 @@ from algorithms.models.non_physical.regression_axes import (
     target_from_sun,
 )
 
+#: Range of one angle, over the other's, below which only one axis was swept.
+_ONE_AXIS = 1e-3
 #: Of each axis of the target, (alpha, beta), the feature that it is fitted to, (x, y).
 AXES = ((0, 1), (1, 0))
 
@@ -80,6 +82,7 @@ def fit_axes(
     middle, half = feature_scaling(features, by)
     scaled = (features - middle) / half
     wanted = target_from_sun(sun, target)
+    _require_both_axes(wanted, by)
     size, validated = sizes[0], None
     if len(sizes) > 1:
         middles = (between_poses(sun, features) - middle) / half
@@ -101,3 +104,12 @@ def fit_axes(
         coefficients[axis] = solve_regression(design, wanted[:, axis], by)
         whitening[axis] = np.linalg.inv(np.linalg.qr(design, mode="r"))
     return AxisFit(middle, half, coefficients, whitening, validated)
+
+
+def _require_both_axes(wanted: Floats, by: str) -> None:
+    """Raise UnusableDataError where the light moved along one axis alone."""
+    ranges = np.ptp(wanted, axis=0)
+    if not ranges.min() > _ONE_AXIS * ranges.max():
+        raise UnusableDataError(
+            f"{by} fits each Sun angle: the light moved along one axis alone; sweep the other too"
+        )
