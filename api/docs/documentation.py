@@ -39,11 +39,7 @@ DIRECTORY = Path(__file__).resolve().parents[2] / "docs"
 
 Make = Callable[[], str]
 PAGES: Mapping[str, Mapping[str, Make]] = {
-    "../README.md": {
-        "findings": front.findings,
-        "tallies": front.tallies,
-        "architectures": front.table,
-    },
+    "../README.md": {"findings": front.findings, "tallies": front.tallies},
     "algorithms.md": {
         "extractors": extractors,
         "model-pages": model_pages.index,

@@ -1,10 +1,9 @@
-"""What the README tells first: the answer as a picture, findings with their numbers, tallies."""
+"""Generated parts of the README: picture of the best calibrations, findings and tallies."""
 
 from __future__ import annotations
 
 import math
 import statistics
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -12,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 from api.docs.knowledge import knowledge
 from benchmark.claims.ledger import Entry, ledger, tally
 from benchmark.error_budget.record import RECORD as ERROR_BUDGET
-from benchmark.error_budget.sentences import NEAR, PARTS, verdict
-from benchmark.leaderboard import summaries
+from benchmark.error_budget.sentences import NEAR, bound_of, verdict
 from benchmark.leaderboard.architectures import architectures, first_boards
 from benchmark.metrics.score import is_available
 from benchmark.plot_style import svg
@@ -71,49 +69,37 @@ def figure() -> Figure:
 
 
 def findings() -> str:
-    """Say what the measurements show, in five sentences made of their numbers."""
+    """Write five findings, each with its number and an interval."""
     said = (_distance(), _methods(), _advice(), _light_of_the_earth(), _poses())
     return "\n".join(f"{number}. {sentence}" for number, sentence in enumerate(said, start=1))
 
 
 def tallies() -> str:
-    """Count the claims by verdict, and the studies by how near to them what runs is."""
+    """Count claims by verdict and studies by grade of their run."""
     entries = _ledger()
     counted = ", ".join(f"{number} {name}" for name, number in tally(entries).items() if number)
     resolved = knowledge().resolutions
     grades = [resolution.fidelity.grade for resolution in resolved.values()]
     measured = sum(_is_measured(resolution) for resolution in resolved.values())
     return (
-        f"**Claims tried**: of the {len(entries)} statements that the survey's text makes about "
-        f"algorithms, {counted} ([docs/claims.md](docs/claims.md)).\n\n"
-        f"**Studies run**: {tally_text(grades)}, of {len(resolved)}. A run is faithful where "
-        "its sensor, condition, methods and compensations are the study's own, stated or inferred "
-        "with a reason; close where one of these departs from the study, a stand-in where more do. "
-        f"{measured} are measured where they stand for the study. What departs, and what would "
-        "settle it: [docs/survey.md](docs/survey.md), `sunatlas studies KEY`."
+        f"- **Claims.** {len(entries)} statements of the survey about algorithms, tested: "
+        f"{counted} ([docs/claims.md](docs/claims.md)).\n"
+        f"- **Studies.** {len(resolved)} studies, run here: {tally_text(grades)}. Faithful: "
+        "sensor, condition and methods are the study's own, stated or inferred with a reason. "
+        "Close: one of these differs. Stand-in: more differ. "
+        f"{measured} have a measured score ([docs/survey.md](docs/survey.md), `sunatlas studies "
+        "KEY`)."
     )
 
 
 def _is_measured(resolution: Resolution) -> bool:
-    """Say whether one of the pipelines that rest on most has a score in its first setting."""
+    """Return whether one of the nearest pipelines has a score in its first setting."""
     scored = knowledge().measurements.score_of
     return any(
         scored.get((at.dataset, at.condition, pipeline.extractor, pipeline.model), {}).get("status")
         == "ok"
         for pipeline in resolution.nearest
         for at in pipeline.settings[:1]
-    )
-
-
-def table() -> str:
-    """Write the best pipeline of each architecture against its bound."""
-    rows = _architectures()
-    return "\n\n".join(
-        (
-            summaries.tally(rows),
-            summaries.best_per_architecture_table(rows),
-            summaries.ARCHITECTURES,
-        )
     )
 
 
@@ -169,14 +155,15 @@ def _best_used(dataset: str) -> float | None:
 
 
 def _distance() -> str:
-    judged = [verdict(row) for row in ERROR_BUDGET.read().values()]
-    near = sum(one.near for one in judged)
-    held = Counter(PARTS[one.leading] for one in judged if not one.near)
-    (most, count), *_ = held.most_common()
+    rows = list(ERROR_BUDGET.read().values())
+    ratios = [row["rms_deg"] / bound_of(row) for row in rows]
+    low, middle, high = statistics.quantiles(ratios, n=4)
+    near = sum(verdict(row).near for row in rows)
     return (
-        f"**What light allows.** On {near} of {len(judged)} data sets the own error of the best "
-        f"pipeline is within {NEAR:g} times the Cramer-Rao bound for a unit known by its dark and "
-        f"flat readings; of the other {len(judged) - near}, {count} are held back by {most} "
+        "**Best pipelines are close to the physical limit.** Their error is "
+        f"{middle:.1f} times the Cramer-Rao bound (median of {len(rows)} data sets; middle half "
+        f"{low:.1f} to {high:.1f}); {near} are within {NEAR:g} times. The bound is for an "
+        "estimator that knows the sensor unit only through its dark and flat frames "
         "([docs/limits.md](docs/limits.md))."
     )
 
@@ -201,9 +188,9 @@ def _methods() -> str:
             factors.append(min(ratios))
     low, middle, high = statistics.quantiles(factors, n=4)
     return (
-        f"**What studies used and what measures best.** The best pipeline of each of "
-        f"{len(factors)} studies has {middle:.1f} times the own error of the best one on the same "
-        f"data set (median; middle half of the studies {low:.1f} to {high:.1f}; "
+        "**Better methods exist than those of most studies.** On the same data set the best "
+        f"method that a study used has {middle:.1f} times the error of the best method measured "
+        f"(median of {len(factors)} studies; middle half {low:.1f} to {high:.1f}; "
         "`sunatlas leaderboard`)."
     )
 
@@ -228,36 +215,40 @@ def _advice() -> str:
         ratios.append(min(known, default=math.inf))
     alike = sum(ratio < _ALIKE for ratio in ratios)
     return (
-        f"**Advice and measurement often disagree.** For {alike} of the survey's {len(ratios)} "
-        "tasks the best calibration that its text advises or a study used is within 3 % of the "
-        "best one measured on the same data set of the first architecture; for the others its own "
-        f"error is up to {max(ratios):.2g} times as large (`sunatlas recommend --task Volume`)."
+        f"**Advice agrees with measurement on {alike} of the survey's {len(ratios)} tasks.** "
+        "There the best calibration that the survey advises or a study used is within 3 % of the "
+        f"best one measured for the same sensor; over all tasks its error is {min(ratios):.1f} to "
+        f"{max(ratios):.1f} times as large (`sunatlas recommend --task Volume`)."
     )
 
 
 def _light_of_the_earth() -> str:
     lines = {entry.claim.id: entry for entry in _ledger()}["C29"].outcome
     if lines is None:
-        return "**Light from the Earth** was not measured on digital and analog sensors."
+        return "**Earth albedo** was not measured on digital and analog sensors."
     dark, lit = (lines.lines[name] for name in ("black Earth", "sunlit Earth"))
     change = abs(lit.median[0] - dark.median[0])
     return (
-        "**Earth albedo ruins analog sensors and leaves digital ones alone.** It raises the RMS "
-        f"error of a photodiode cube from {dark.median[1]:.2g} ({dark.low[1]:.2g} to "
-        f"{dark.high[1]:.2g} over units) to {lit.median[1]:.2g} deg ({lit.low[1]:.2g} to "
-        f"{lit.high[1]:.2g}); that of a CMOS pinhole camera changes by {change:.1g} deg "
-        "([C29](docs/claims.md#c29))."
+        "**Earth albedo degrades analog sensors, not digital ones.** It raises the RMS error of a "
+        f"photodiode cube from {dark.median[1]:.2g} deg to {lit.median[1]:.2g} deg (range over "
+        f"sensor units {lit.low[1]:.2g} to {lit.high[1]:.2g}); a CMOS pinhole camera changes by "
+        f"less than {_ceiling(change):g} deg ([C29](docs/claims.md#c29))."
     )
+
+
+def _ceiling(value: float) -> float:
+    """Return the next power of ten above a value."""
+    return float(10.0 ** math.ceil(math.log10(value)))
 
 
 def _poses() -> str:
     rows = [row for row in knowledge().measurements.curves if not row["in_order"]]
-    few, given = 50, [row["needed_poses"] for row in rows]
-    enough = sum(needed is not None and needed <= few for needed in given)
-    never = sum(needed is None for needed in given)
+    poses = [row["needed_poses"] or math.inf for row in rows]
+    low, middle, high = statistics.quantiles(poses, n=4)
+    never = sum(number == math.inf for number in poses)
     return (
-        f"**How many calibration poses are enough.** With {few} random poses {enough} of "
-        f"{len(rows)} leading calibrations are within 10 % of the own error that more poses do not "
-        f"improve; {never} {'is' if never == 1 else 'are'} not within 10 % with all poses of "
-        "their data set ([docs/learning-curves.md](docs/learning-curves.md))."
+        f"**About {middle:.0f} calibration poses are enough for half of the leading pipelines.** "
+        "With that many random poses the error is within 10 % of its floor (median of "
+        f"{len(rows)} pipelines; middle half {low:.0f} to {high:.0f}). {never} of them need more "
+        "poses than their data set has ([docs/learning-curves.md](docs/learning-curves.md))."
     )
