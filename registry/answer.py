@@ -84,7 +84,7 @@ class Answer:
         self.question = question
         self.sort = sort
         self.best = question.best
-        self._at = np.flatnonzero(question.meeting)
+        self._at = np.flatnonzero(question.matching_designs)
         self._of = question.arrays.place_of[self._at]
         self.designs: Positions = self._ranked()
         self._starts = np.flatnonzero(begins(self._of)) if len(self._of) else self._of

@@ -134,7 +134,7 @@ class DesignArrays(PipelineTable):
             )
 
     @cached_property
-    def _having(self) -> Mapping[tuple[str, str], Flags]:
+    def _designs_with(self) -> Mapping[tuple[str, str], Flags]:
         """Designs with each value of detector, mask, extractor and model."""
         found: dict[tuple[str, str], Flags] = {}
         for at, design in enumerate(self.designs):
@@ -156,9 +156,9 @@ class DesignArrays(PipelineTable):
                 found.setdefault(key, np.zeros(len(self.places), bool))[at] = True
         return found
 
-    def having(self, attribute: str, values: Iterable[str]) -> Flags:
+    def designs_with(self, attribute: str, values: Iterable[str]) -> Flags:
         """Return the designs with one of some values of detector, mask, extractor, model."""
-        return _one_of(self._having, attribute, values, len(self.designs))
+        return _one_of(self._designs_with, attribute, values, len(self.designs))
 
     def advised_for(self, requirement: str, values: Iterable[str]) -> Flags:
         """Return the architectures that the survey advises for one of some values."""
@@ -202,13 +202,13 @@ class DesignArrays(PipelineTable):
             return Candidate(self.designs[design], None, NOTHING)
         return Candidate(self.designs[design], self.rows[row], errors.of(row))
 
-    def broken(self, having: Mapping[int, Flags]) -> Positions:
+    def broken(self, designs_with: Mapping[int, Flags]) -> Positions:
         """Return, of each design, the requirements (bits) that it breaks.
 
-        `having` maps a requirement's bit to the designs that meet it.
+        `designs_with` maps a requirement's bit to the designs that meet it.
         """
         found = np.zeros(len(self.designs), np.int64)
-        for bit, designs in having.items():
+        for bit, designs in designs_with.items():
             found[~designs] |= bit
         return found
 
@@ -238,11 +238,11 @@ class DesignArrays(PipelineTable):
 
 
 def _one_of(
-    having: Mapping[tuple[str, str], Flags], name: str, values: Iterable[str], size: int
+    designs_with: Mapping[tuple[str, str], Flags], name: str, values: Iterable[str], size: int
 ) -> Flags:
     found = np.zeros(size, bool)
     for value in values:
-        flags = having.get((name, value))
+        flags = designs_with.get((name, value))
         if flags is not None:
             found |= flags
     return found

@@ -110,7 +110,7 @@ class DesignTable:
 
     def __init__(self, facts: Facts, measurements: Measurements) -> None:
         self.facts = facts
-        self.having = _having(facts)
+        self.designs_with = _designs_with(facts)
         self.stated = {
             attribute: tuple(
                 (at, number)
@@ -201,7 +201,7 @@ class DesignTable:
             {
                 task: both
                 for task in taxonomy.values("task")
-                if (both := everyone & self.having.get(("task", task), 0))
+                if (both := everyone & self.designs_with.get(("task", task), 0))
             },
         )
 
@@ -267,14 +267,14 @@ def _stated(study: Study, attribute: str) -> float | None:
     return None if found is None else found.rms_deg
 
 
-def _having(facts: Facts) -> dict[tuple[str, str], int]:
+def _designs_with(facts: Facts) -> dict[tuple[str, str], int]:
     """Return the studies (bits) that have each value of what is asked of studies alone."""
-    having: dict[tuple[str, str], int] = {}
+    designs_with: dict[tuple[str, str], int] = {}
     for at, study in enumerate(facts.studies.values()):
         for attribute in ("task", "error", "accuracy"):
             for value in study.of(attribute):
-                having[attribute, value] = having.get((attribute, value), 0) | 1 << at
-    return having
+                designs_with[attribute, value] = designs_with.get((attribute, value), 0) | 1 << at
+    return designs_with
 
 
 _TABLES: weakref.WeakKeyDictionary[Facts, weakref.WeakKeyDictionary[Measurements, DesignTable]] = (

@@ -91,7 +91,7 @@ class Evidence:
         self._taxonomy = catalogue.taxonomy
         self._possibility = Possibility(catalogue)
         self._measured: dict[PipelineRun, MeasuredPipeline] = {}
-        self._having: dict[Value, set[PipelineRun]] = {}
+        self._designs_with: dict[Value, set[PipelineRun]] = {}
         self._found: dict[Value, set[PipelineRun]] = {}
         for one in measured:
             run = PipelineRun(one.dataset, one.extractor, one.model)
@@ -109,7 +109,7 @@ class Evidence:
     ) -> None:
         values = (("detector", sensor[0]), ("mask", sensor[1]), ("extractor", extractor))
         for value in (*values, *(("model", model) for model in models)):
-            self._having.setdefault(value, set()).add(run)
+            self._designs_with.setdefault(value, set()).add(run)
 
     def _runs(self, level: str, value: str) -> set[PipelineRun]:
         """Return the pipelines with a value; a parent's are those of its kinds."""
@@ -120,7 +120,7 @@ class Evidence:
         for one in self._taxonomy.values(base):
             if self._taxonomy.derived_values(level, one) == value:
                 for kind in self._taxonomy.kinds(base, one):
-                    found |= self._having.get((base, kind), set())
+                    found |= self._designs_with.get((base, kind), set())
         return found
 
     def of(

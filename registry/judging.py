@@ -82,14 +82,14 @@ class Question:
         return self.best.errors
 
     @cached_property
-    def meeting(self) -> Flags:
+    def matching_designs(self) -> Flags:
         """The designs that meet the requirements."""
         arrays, best, largest = self.arrays, self.best, self.asked.largest_deg
         found: Flags = best.row >= 0
         if largest is not None:
             found &= best.error <= largest
         found |= arrays.stated(self.all_stated)
-        for designs in self.having.values():
+        for designs in self.designs_with.values():
             found &= designs
         if any(
             name in side for side in (self.asked.include, self.asked.exclude) for name in OF_STUDIES
@@ -113,7 +113,7 @@ class Question:
         return found
 
     @cached_property
-    def having(self) -> Mapping[str, Flags]:
+    def designs_with(self) -> Mapping[str, Flags]:
         """The designs that meet each requirement on detector, mask, extractor and so on."""
         arrays, facts = self.arrays, self.table.facts
         kinds = facts.taxonomy.kinds
@@ -121,18 +121,20 @@ class Question:
         for prefix, side in (("", self.asked.include), (EXCLUDE, self.asked.exclude)):
             for attribute, values in side.items():
                 if attribute not in OF_STUDIES:
-                    has = arrays.having(attribute, [k for v in values for k in kinds(attribute, v)])
+                    has = arrays.designs_with(
+                        attribute, [k for v in values for k in kinds(attribute, v)]
+                    )
                     found[prefix + attribute] = ~has if prefix else has
         if self.asked.properties:
             marks = [facts.properties[name] for name in self.asked.properties]
             extractors = {design.extractor for design in arrays.designs}
             marked = [e for e in extractors if all(of.get(e, 0) for of in marks)]
-            found["properties"] = arrays.having("extractor", marked)
+            found["properties"] = arrays.designs_with("extractor", marked)
         return found
 
     def count(self) -> int:
         """Return how many architectures meet the requirements."""
-        return len(set(self.arrays.place_of[self.meeting].tolist()))
+        return len(set(self.arrays.place_of[self.matching_designs].tolist()))
 
     @cached_property
     def finer(self) -> Mapping[int, int]:
@@ -142,8 +144,8 @@ class Question:
         """
         allowed = self.arrays.numbers >= 0
         for name in ("model", "exclude_model", "extractor", "exclude_extractor", "properties"):
-            if name in self.having:
-                allowed &= self.having[name]
+            if name in self.designs_with:
+                allowed &= self.designs_with[name]
         return self.errors.finest(self.best.limits, allowed)
 
     @property
@@ -186,21 +188,21 @@ class Question:
         kept = everyone = (1 << len(table.facts.keys)) - 1
         for attribute, values in self.asked.include.items():
             if attribute in OF_STUDIES:
-                kept &= self._having(attribute, values)
+                kept &= self._designs_with(attribute, values)
         for attribute, values in self.asked.exclude.items():
             if attribute == "task":
-                tasks = {v for a, v in table.having if a == "task"}
+                tasks = {v for a, v in table.designs_with if a == "task"}
                 others = tasks - set(values)
                 others &= set(self.asked.include.get("task", others))
-                kept &= self._having("task", others) | (everyone & ~self._having("task", tasks))
+                kept &= self._designs_with("task", others) | (everyone & ~self._designs_with("task", tasks))
             elif attribute in OF_STUDIES:
-                kept &= ~self._having(attribute, values)
+                kept &= ~self._designs_with(attribute, values)
         return kept
 
-    def _having(self, attribute: str, values: Iterable[str]) -> int:
+    def _designs_with(self, attribute: str, values: Iterable[str]) -> int:
         found = 0
         for value in values:
-            found |= self.table.having.get((attribute, value), 0)
+            found |= self.table.designs_with.get((attribute, value), 0)
         return found
 
     def _stated_within(self, limit: str) -> int:

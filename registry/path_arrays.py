@@ -82,11 +82,11 @@ class PathArrays:
         question, measured = answer.question, self.arrays.measured
         among = self._of_tasks(question.asked.include, question.asked.exclude)
         if question.studies == question.all_stated:
-            parts = [(question.meeting, question.studies)]
+            parts = [(question.matching_designs, question.studies)]
         else:
             parts = [
-                (question.meeting & measured, question.studies),
-                (question.meeting & ~measured, question.all_stated),
+                (question.matching_designs & measured, question.studies),
+                (question.matching_designs & ~measured, question.all_stated),
             ]
         led = [((self._led_to(designs) & among).tobytes(), of) for designs, of in parts]
         return self._sets(tuple(led))

@@ -93,17 +93,17 @@ class PipelineTable:
     @cached_property
     def cone_edges(self) -> tuple[tuple[float, Flags], ...]:
         """Half fields over which a pipeline has a nominal error, widest first, and which do."""
-        having: dict[float, list[int]] = {}
+        designs_with: dict[float, list[int]] = {}
         for at, row in enumerate(self.rows):
             halves = {half for half, error in row.nominal.cones if error is not None}
             if row.half_fov_deg is not None:
                 halves.add(row.half_fov_deg)
             for half in halves:
-                having.setdefault(half, []).append(at)
+                designs_with.setdefault(half, []).append(at)
         found = []
-        for half in sorted(having, reverse=True):
+        for half in sorted(designs_with, reverse=True):
             flags = np.zeros(len(self.rows), bool)
-            flags[having[half]] = True
+            flags[designs_with[half]] = True
             found.append((half, flags))
         return tuple(found)
 

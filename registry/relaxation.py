@@ -173,7 +173,7 @@ def _broken(question: Question, names: tuple[str, ...]) -> frozenset[int]:
     bit = {name: 1 << at for at, name in enumerate(names)}
     arrays = question.arrays
     by_study = _broken_by_studies(question, names, bit)
-    by_design = arrays.broken({bit[name]: has for name, has in question.having.items()})
+    by_design = arrays.broken({bit[name]: has for name, has in question.designs_with.items()})
     by_row = arrays.broken_by_place(by_design, _broken_by_rows(question, bit))
     by_limit = [
         sum(bit[n] for n in question.limits if not question.stated(n) >> at & 1)
@@ -298,7 +298,7 @@ def _nearest_limit(table: DesignTable, requirements: Requirements, limit: str) -
         return _widest(table, requirements)
     question = Question(table, requirements)
     arrays = question.arrays
-    rows = question.meeting[arrays.design_of] & _keeping(arrays, requirements)
+    rows = question.matching_designs[arrays.design_of] & _keeping(arrays, requirements)
     values = {
         "max_error_deg": question.errors.error_deg,
         "min_availability": question.errors.availability,
@@ -317,7 +317,7 @@ def _stated(question: Question, attribute: str) -> list[float]:
     designs = question.arrays.designs
     bits = 0
     for at in question.arrays.unmeasured.tolist():
-        if not question.meeting[at]:
+        if not question.matching_designs[at]:
             continue
         bits |= designs[at].taken
     bits &= question.all_stated
@@ -329,7 +329,7 @@ def _widest(table: DesignTable, requirements: Requirements) -> float | None:
     # What is judged over the field is left to the rows.
     rest = Question(table, requirements.without(*_TOGETHER))
     arrays = rest.arrays
-    rows = rest.meeting[arrays.design_of]
+    rows = rest.matching_designs[arrays.design_of]
     widest = 0.0
     for half, having in arrays.cone_edges:
         over = requirements.changed("min_fov_deg", 2.0 * half)
@@ -349,7 +349,7 @@ def _bench_that_would_do(table: DesignTable, requirements: Requirements) -> floa
     from registry.draws import bench_for  # noqa: PLC0415 - NumPy
 
     question = Question(table, replace(requirements, bench_deg=0.0))
-    rows = question.meeting[question.arrays.design_of]
+    rows = question.matching_designs[question.arrays.design_of]
     rows &= _keeping(question.arrays, question.asked)
     own = question.errors.own_deg
     return max(

@@ -125,7 +125,7 @@ def judge(
     >>> disc = 900 / (1 + np.exp(2 * (np.hypot(x - 21.3, y - 18.8) - 7)))
     >>> frames = np.random.default_rng(1).normal(50 + disc + 1500 * (y < 6), 5.0)[None]
     >>> QualityFlag(judge(frames, np.array([[20.5, 12.1]])).doubts[0])
-    <Doubt.CUT: 4>
+    <QualityFlag.CUT: 4>
     """
     doubts = np.full(len(frames), int(QualityFlag.NO_SPOT), dtype=np.int64)
     noise, registered = np.full((2, len(frames), 2), np.nan)
