@@ -194,7 +194,8 @@ class Question:
                 tasks = {v for a, v in table.designs_with if a == "task"}
                 others = tasks - set(values)
                 others &= set(self.asked.include.get("task", others))
-                kept &= self._designs_with("task", others) | (everyone & ~self._designs_with("task", tasks))
+                without = everyone & ~self._designs_with("task", tasks)
+                kept &= self._designs_with("task", others) | without
             elif attribute in OF_STUDIES:
                 kept &= ~self._designs_with(attribute, values)
         return kept
