@@ -115,7 +115,7 @@ class Diodes:
     def geometry_for(self, condition: str) -> SensorGeometry:
         return self.geometry
 
-    def as_unit(self, number: int) -> Diodes:
+    def for_unit(self, number: int) -> Diodes:
         return replace(self, unit=number)
 
     def noise(self, condition: str) -> float:

@@ -58,7 +58,7 @@ class Plane:
     def geometry_for(self, condition: str) -> SensorGeometry:
         return self.geometry
 
-    def as_unit(self, number: int) -> Plane:
+    def for_unit(self, number: int) -> Plane:
         return replace(self, unit=number)
 
     def parameters(self, condition: str) -> dict[str, Any]:
