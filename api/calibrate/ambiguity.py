@@ -16,6 +16,8 @@ _LEAST_SHARE = 0.1
 #: Samples from which folds are looked for, and the smallest share of samples that is one.
 _FEWEST, _SHARE = 150, 0.01
 _APART_DEG = 5.0
+#: Samples whose neighbours are held at once.
+_AT_ONCE = 20_000
 
 
 def folded(features: Floats, sun: Floats) -> NDArray[np.bool_]:
@@ -40,7 +42,12 @@ def folded(features: Floats, sun: Floats) -> NDArray[np.bool_]:
     if features.shape[1] != 2 or len(sun) < _FEWEST:
         return nothing
     near = np.asarray(cKDTree(sun).query(sun, k=_NEIGHBOURS + 1)[1])
-    slope = np.linalg.det(_slopes(features, sun, near))
+    slope = np.concatenate(
+        [
+            np.linalg.det(_slopes(features, sun, near[start : start + _AT_ONCE]))
+            for start in range(0, len(near), _AT_ONCE)
+        ]
+    )
     middle = separation_deg(sun, np.broadcast_to(_middle(sun), sun.shape))
     usual = float(np.median(slope[middle <= np.percentile(middle, 25)]))
     flat = slope / usual < _LEAST_SHARE
@@ -65,7 +72,8 @@ def _middle(sun: Floats) -> Floats:
 def _slopes(features: Floats, sun: Floats, near: NDArray[np.int64]) -> Floats:
     """Change (N, 2, 2) of readings with direction cosines over tangents, by the nearest poses."""
     tangents = sun[:, :2] / sun[:, [2]]
-    design = np.concatenate([np.ones((*near.shape, 1)), tangents[near] - tangents[:, None]], axis=2)
+    middle = tangents[near[:, :1]]  # each is its own nearest
+    design = np.concatenate([np.ones((*near.shape, 1)), tangents[near] - middle], axis=2)
     aims = features[near]
     weight = np.ones(near.shape)
     fit = np.zeros((len(near), 3, 2))

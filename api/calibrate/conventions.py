@@ -32,6 +32,8 @@ _MUCH_BETTER = 0.5
 _WITHIN_DEG = 60.0
 #: Azimuths of a field span more.
 _WIDE_AZIMUTH_DEG = 200.0
+#: Samples that hypotheses are judged by; more are thinned evenly.
+_MOST_JUDGED = 20_000
 _SHIFTS = (-3, -2, -1, 1, 2, 3)
 #: Correlation of all quadrants' sum with the cosine of incidence that says they are inverted.
 _FALLING = 0.5
@@ -93,7 +95,9 @@ def findings(readings: Readings, settings: Settings) -> list[Finding]:
     list of Finding
         The most certain first; empty where nothing speaks against the settings.
     """
-    found = list(_of_rows(readings)) + list(_of_runs(readings))
+    found = list(_of_rows(readings))
+    readings = readings.thinned(_MOST_JUDGED)
+    found += _of_runs(readings)
     if readings.kind is FeatureKind.SIGNALS:
         found += _of_faces(readings, settings)
     else:
@@ -230,18 +234,13 @@ def _shifted_left(readings: Readings, shift: int) -> tuple[float, float] | None:
 
     None where fewer than half of the poses have such a row in their run.
     """
-    place = {
-        (run, row): at
-        for at, (run, row) in enumerate(zip(readings.run, readings.rows, strict=True))
-    }
-    pairs = [
-        (at, later)
-        for (run, row), at in place.items()
-        if (later := place.get((run, row + shift))) is not None
-    ]
-    if len(pairs) < max(40, len(readings) // 2):
+    keys = readings.run * (int(readings.rows.max()) + 100) + readings.rows
+    order = np.argsort(keys)
+    at = np.searchsorted(keys[order], keys + shift).clip(max=len(keys) - 1)
+    there = keys[order][at] == keys + shift
+    pose, reading = np.flatnonzero(there), order[at[there]]
+    if len(pose) < max(40, len(readings) // 2):
         return None
-    pose, reading = np.array(pairs).T
     step = max(len(pose) // 4000, 1)
     sun, features = readings.sun[pose][::step], readings.features
     own, other = (robust_map(features[at][::step], sun)[1] for at in (pose, reading))

@@ -10,9 +10,12 @@ import numpy as np
 from algorithms.angles import separation_deg
 from algorithms.contract import Floats
 from api.calibrate.calibration import Calibration
+from api.calibrate.readings import Readings
 from api.calibrate.uncertainty import tangent_offsets
 
 _SIZE = (5.2, 4.4)
+#: Samples that are drawn one by one; more are thinned evenly.
+_MOST_DRAWN = 1500
 
 
 def pictures(found: Calibration) -> dict[str, str]:
@@ -22,11 +25,13 @@ def pictures(found: Calibration) -> dict[str, str]:
     offsets = predicted - readings.sun
     errors = separation_deg(predicted, readings.sun)
     along = tangent_offsets(offsets, readings.sun)
-    off_axis = _flat(readings.sun)
+    few = readings.thinned(_MOST_DRAWN)
+    off_axis = _flat(few.sun)
+    step = max(-(-len(readings) // _MOST_DRAWN), 1)
     made = {
-        "Residuals over the field": _residuals(off_axis, along, errors),
+        "Residuals over the field": _residuals(off_axis, along[::step], errors[::step]),
         "Size of residuals": _histogram(errors, found),
-        "1-sigma uncertainty over the field": _uncertainty(found, off_axis),
+        "1-sigma uncertainty over the field": _uncertainty(found, few, off_axis),
         "Poses, and the next twenty to take": _poses(found, off_axis),
     }
     if len(np.unique(readings.run)) > 1:
@@ -64,8 +69,7 @@ def _svg(figure) -> str:  # type: ignore[no-untyped-def]
 
 def _residuals(places: Floats, along: Floats, errors: Floats) -> str:
     figure, axes = _axes()
-    chosen = np.arange(0, len(places), max(len(places) // 1500, 1))
-    known = chosen[np.isfinite(errors[chosen])]
+    known = np.flatnonzero(np.isfinite(errors))
     size = float(np.sqrt(np.mean(errors[known] ** 2))) or 1.0
     reach = float(np.ptp(places)) / 25.0
     points = axes.scatter(*places[known].T, c=errors[known], s=9, cmap="viridis")
@@ -90,9 +94,9 @@ def _histogram(errors: Floats, found: Calibration) -> str:
     return _svg(figure)
 
 
-def _uncertainty(found: Calibration, places: Floats) -> str:
+def _uncertainty(found: Calibration, few: Readings, places: Floats) -> str:
     figure, axes = _axes()
-    sigma = found.deviation_deg(found.readings.features, dict(found.readings.context))
+    sigma = found.deviation_deg(few.features, dict(few.context))
     points = axes.scatter(*places.T, c=sigma, s=12, cmap="magma")
     figure.colorbar(points, label="1-sigma of an axis, deg")
     return _svg(figure)

@@ -82,6 +82,11 @@ class Readings:
             angles=None if self.angles is None else self.angles[kept],
         )
 
+    def thinned(self, most: int) -> Readings:
+        """Return at most so many samples, evenly."""
+        step = max(-(-len(self) // most), 1)
+        return self if step == 1 else self.only(np.arange(0, len(self), step))
+
 
 def readings_of(table: Table, settings: Settings) -> Readings:
     """Return the samples of a table.

@@ -21,6 +21,8 @@ WRONG = 6.0
 _ROUNDS = 60
 _NEIGHBOURS = 12
 _MOST_WRONG = 0.25
+#: Samples that a map is fitted to, and whose neighbours are held at once.
+_MOST_MAPPED = 40_000
 _MAD = 1.4826
 
 
@@ -160,19 +162,22 @@ def wrong_poses(features: Floats, sun: Floats, least_deg: float = 0.0) -> NDArra
     """
     from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
 
-    fitted, size = robust_map(features, sun)
-    left = residuals(fitted, features, sun)
+    step = max(-(-len(sun) // _MOST_MAPPED), 1)
+    left = residuals(robust_map(features[::step], sun[::step])[0], features, sun)
+    size = np.degrees(np.linalg.norm(left, axis=1))
     count = min(_NEIGHBOURS + 1, len(left))
     used = normalised(features)
-    spread = np.maximum(used.std(axis=0), 1e-12)
-    near = np.asarray(cKDTree(used / spread).query(used / spread, k=count)[1])[:, 1:]
-    around = np.median(left[near], axis=1)
-    departure = np.degrees(np.linalg.norm(left - around, axis=1))
+    used = used / np.maximum(used.std(axis=0), 1e-12)
+    near = np.asarray(cKDTree(used).query(used, k=count)[1])[:, 1:]
+    departure, locally = np.empty(len(left)), np.empty(len(left))
+    for start in range(0, len(left), _MOST_MAPPED):  # what neighbours leave is large
+        part = slice(start, start + _MOST_MAPPED)
+        around = np.median(left[near[part]], axis=1)
+        departure[part] = np.degrees(np.linalg.norm(left[part] - around, axis=1))
+        # where neighbours differ among themselves, a sample may
+        apart = np.linalg.norm(left[near[part]] - around[:, None], axis=2)
+        locally[part] = 3.0 * np.median(np.degrees(apart), axis=1)
     usual = _MAD * np.median(departure)
-    # where neighbours differ among themselves, a sample may
-    locally = 3.0 * np.median(
-        np.degrees(np.linalg.norm(left[near] - around[:, None], axis=2)), axis=1
-    )
     wrong = departure > np.maximum(WRONG * np.maximum(usual, locally / 2.0), max(least_deg, 1e-9))
     wrong &= size > np.maximum(WRONG * usual, least_deg)
     if wrong.mean() > _MOST_WRONG:

@@ -17,6 +17,8 @@ from files.reading import FileRefusedError, read_bytes
 
 #: Largest file, and most rows and columns that are read of one.
 LARGEST, MOST_ROWS, MOST_COLUMNS = 256 * 1024 * 1024, 2_000_000, 500
+#: Bytes that an archive may unpack to, and cells of a table.
+_MOST_UNPACKED, _MOST_CELLS = 1024 * 1024 * 1024, 60_000_000
 _DELIMITERS = ",;\t|"
 
 
@@ -119,7 +121,10 @@ def _read_text(data: bytes, source: str) -> Table:
         )
     header, _, rest = text.partition("\n")
     delimiter = max(_DELIMITERS, key=header.count)
-    names = [name.strip() for name in next(csv.reader([header], delimiter=delimiter), [])]
+    try:
+        names = [name.strip() for name in next(csv.reader([header], delimiter=delimiter), [])]
+    except csv.Error as error:
+        raise TableError(f"{source}, row 1: expected a header ({error})") from None
     _require_names(names, source)
     wrong = _ragged(rest, len(names), delimiter)
     if wrong:
@@ -182,7 +187,13 @@ def _of_frame(frame: pd.DataFrame, source: str, decimal: str = ".") -> Table:
 
 def _read_parquet(data: bytes, source: str) -> Table:
     try:
+        from pyarrow.parquet import read_metadata  # noqa: PLC0415 - for such files only
+
+        stated = read_metadata(io.BytesIO(data))
+        _require_cells(stated.num_rows, stated.num_columns, source)
         frame = pd.read_parquet(io.BytesIO(data))
+    except TableError:
+        raise
     except Exception as error:  # noqa: BLE001 - pyarrow raises many kinds for damaged files
         raise TableError(f"{source}: expected a Parquet file ({str(error)[:80]})") from None
     _require_names([str(name) for name in frame.columns], source)
@@ -191,6 +202,7 @@ def _read_parquet(data: bytes, source: str) -> Table:
 
 
 def _read_excel(data: bytes, source: str) -> Table:
+    _require_unpacked(data, source)
     try:
         frame = pd.read_excel(io.BytesIO(data), nrows=MOST_ROWS)
     except Exception as error:  # noqa: BLE001 - openpyxl raises many kinds for damaged files
@@ -201,6 +213,8 @@ def _read_excel(data: bytes, source: str) -> Table:
 
 
 def _read_numpy(data: bytes, source: str) -> Table:
+    if zipfile.is_zipfile(io.BytesIO(data)):
+        _require_unpacked(data, source)
     try:
         loaded = np.load(io.BytesIO(data), allow_pickle=False)
         arrays = (
@@ -208,8 +222,9 @@ def _read_numpy(data: bytes, source: str) -> Table:
             if isinstance(loaded, np.lib.npyio.NpzFile)
             else {name: loaded[name] for name in loaded.dtype.names or ()}
         )
-    except (ValueError, OSError, zipfile.BadZipFile, EOFError, KeyError) as error:
-        raise TableError(f"{source}: expected NumPy arrays without pickles ({error})") from None
+    except Exception as error:  # noqa: BLE001 - NumPy raises many kinds for damaged files
+        said = str(error)[:80]
+        raise TableError(f"{source}: expected NumPy arrays without pickles ({said})") from None
     columns: dict[str, NDArray[np.generic]] = {}
     for name, array in arrays.items():
         if array.ndim == 1:
@@ -222,6 +237,27 @@ def _read_numpy(data: bytes, source: str) -> Table:
     if len(lengths) != 1:
         raise TableError(f"{source}: expected arrays of one length by name; got {sorted(lengths)}")
     return _of_frame(pd.DataFrame(columns), source)
+
+
+def _require_unpacked(data: bytes, source: str) -> None:
+    """Refuse an archive whose members say that they unpack to more; no member gives more."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            size = sum(member.file_size for member in archive.infolist())
+    except (zipfile.BadZipFile, ValueError, NotImplementedError) as error:
+        raise TableError(f"{source}: expected a ZIP archive ({error})") from None
+    if size > _MOST_UNPACKED:
+        raise TableError(
+            f"{source}: expected an archive of at most {_MOST_UNPACKED} bytes unpacked; got {size}"
+        )
+
+
+def _require_cells(rows: int, columns: int, source: str) -> None:
+    if rows > MOST_ROWS or columns > MOST_COLUMNS or rows * columns > _MOST_CELLS:
+        raise TableError(
+            f"{source}: expected at most {MOST_ROWS} rows, {MOST_COLUMNS} columns and "
+            f"{_MOST_CELLS} cells; got {rows} rows of {columns} columns"
+        )
 
 
 def _require_names(names: list[str], source: str) -> None:

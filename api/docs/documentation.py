@@ -102,7 +102,10 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
 #: Pages whose blocks are run, and what they print renewed.
 RUN = tuple(
     f"guide/{page}.md"
-    for page in ("tutorial", "scores", "add-an-algorithm", "add-a-data-set", "add-a-study")
+    for page in (
+        *("tutorial", "calibrate", "scores"),
+        *("add-an-algorithm", "add-a-data-set", "add-a-study"),
+    )
 )
 
 _PART = re.compile(

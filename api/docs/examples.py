@@ -19,6 +19,7 @@ LONGEST_TEXT = 160
 DEEPEST = 4
 TIMES = ("latency_us", "time_ratio")
 REFUSED = "/v1/studies?detectr=CMOS"
+_SERVED = "http://127.0.0.1:8000"
 
 
 def command_line() -> str:
@@ -54,6 +55,9 @@ def http_examples() -> str:
 
 
 def _operation(service: Any, path: str, method: str, operation: Mapping[str, Any]) -> str:
+    form = operation.get("requestBody", {}).get("content", {}).get("multipart/form-data")
+    if form is not None:
+        return _form(method, path, operation, form)
     address, body = target(path, operation)
     answer = _ask(service, method.upper(), address, body)
     lines = [f"## {method.upper()} {path}", "", operation.get("summary", "") + ".", ""]
@@ -69,6 +73,23 @@ def _operation(service: Any, path: str, method: str, operation: Mapping[str, Any
     if said := columns(operation):
         lines += [f"CSV, columns: {said.removeprefix('Columns: ')}", ""]
     lines.append(_exchange(f"{method.upper()} {address}", body, answer))
+    return "\n".join(lines)
+
+
+def _form(method: str, path: str, operation: Mapping[str, Any], form: Mapping[str, Any]) -> str:
+    """Return an endpoint that takes a form with files: its fields, and a command that sends one."""
+    lines = [f"## {method.upper()} {path}", "", f"{operation['summary']}.", ""]
+    lines += [operation["description"], "", "| field | what it does |", "|---|---|"]
+    fields = form["schema"]["properties"].items()
+    lines += [f"| `{name}` | {field['description']} |" for name, field in fields]
+    answers = ", ".join(f"`{kind}`" for kind in operation["responses"]["200"]["content"])
+    lines += ["", f"Answers: {answers}.", ""]
+    lines += ["<!-- not run: needs a file; tests/api/http/test_http_calibrations.py sends one -->"]
+    lines += [
+        "```sh",
+        f"curl -F file=@bench.csv -F answer=zip -o sensor.zip {_SERVED}{path}",
+        "```",
+    ]
     return "\n".join(lines)
 
 

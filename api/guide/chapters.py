@@ -20,7 +20,7 @@ def _decisions() -> tuple[str, ...]:
 
 #: Caption of the sidebar, and its pages in docs/ without their suffix.
 CHAPTERS: dict[str, tuple[str, ...]] = {
-    "Start": ("guide/found", "guide/tutorial", "guide/glossary"),
+    "Start": ("guide/found", "guide/tutorial", "guide/calibrate", "guide/glossary"),
     "Results": (
         "leaderboard",
         "guide/scores",

@@ -6,6 +6,7 @@ from api.pages import (
     algorithm,
     answer,
     bibliography,
+    calibrate,
     claim,
     compare,
     dataset,
@@ -22,7 +23,7 @@ ROUTERS = (
         kind.router
         for kind in (
             *(answer, study, algorithm, dataset, sensors, claim, compare, search),
-            *(glossary_page, leaderboard, bibliography),
+            *(glossary_page, leaderboard, bibliography, calibrate),
         )
     ),
     *figures.ROUTERS,

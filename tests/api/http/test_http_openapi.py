@@ -46,6 +46,7 @@ def test_every_endpoint_of_the_contract_is_documented(document):
         ("/v1/figures/{figure}", "get"),
         ("/v1/recommendations", "get"),
         ("/v1/recommendations", "post"),
+        ("/v1/calibrations", "post"),
         ("/v1/algorithms", "get"),
         ("/v1/datasets", "get"),
         ("/v1/datasets/{name}", "get"),

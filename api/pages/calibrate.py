@@ -1,0 +1,31 @@
+"""/calibrate: a form that takes a turntable file, and the report that comes of it."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Request, Response
+
+from api.calibrate.uploaded import LARGEST, LONGEST_S, MOST_ROWS
+from api.http.answers import StrictRoute
+from api.http.problems import Problem
+from api.http.routers.calibrations import HTML, calibrated
+from api.pages.rendering import render
+from api.pages.serving import page_bytes, refusal_page
+
+router = APIRouter(route_class=StrictRoute, include_in_schema=False)
+
+
+@router.get("/calibrate")
+async def form(request: Request) -> Response:
+    """Give the form."""
+    context = {"path": "/calibrate", "query": "", "megabytes": LARGEST // 1_000_000}
+    told = render("calibrate/form.html", {**context, "rows": MOST_ROWS, "seconds": int(LONGEST_S)})
+    return page_bytes(told).respond(request)
+
+
+@router.post("/calibrate")
+async def report(request: Request) -> Response:
+    """Give the report of a calibration, or a page that says why there is none."""
+    try:
+        return await calibrated(request, HTML)
+    except Problem as problem:
+        return refusal_page(request, problem)

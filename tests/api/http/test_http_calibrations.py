@@ -1,0 +1,167 @@
+"""Files that are sent are calibrated, or refused within bounds; nothing of them is kept."""
+
+from __future__ import annotations
+
+import gzip
+import io
+import json
+import tempfile
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from api.calibrate import uploaded
+from api.calibrate.uploaded import Upload, UploadRefusedError, calibrate_uploads
+
+BAD = b"x_px,y_px,alpha,beta\n1,b,3,4\n"
+ADDRESS = "/v1/calibrations"
+
+
+def turntable() -> bytes:
+    """A small camera behind a pinhole."""
+    line = np.linspace(-40, 40, 15)
+    beta, alpha = (grid.ravel() for grid in np.meshgrid(line, line))
+    a, b = np.radians(alpha), np.radians(beta)
+    sun = np.column_stack([np.sin(b) * np.cos(a), np.sin(a), np.cos(b) * np.cos(a)])
+    noise = np.random.default_rng(1).normal(0.0, 0.05, (len(sun), 2))
+    rows = np.column_stack([512 + 350 * sun[:, :2] / sun[:, 2:] + noise, alpha, beta])
+    text = io.StringIO()
+    header = "x_px,y_px,theta_x_deg,theta_y_deg"
+    np.savetxt(text, rows, "%.4f", ",", header=header, comments="")
+    return text.getvalue().encode()
+
+
+@pytest.fixture(scope="module")
+def zipped(atlas):
+    """All files of a calibration."""
+    answer = atlas.post(
+        ADDRESS, files={"file": ("../../bench.csv", turntable())}, data={"answer": "zip"}
+    )
+    assert answer.status_code == 200, answer.text
+    assert answer.headers["content-type"] == "application/zip"
+    assert answer.headers["cache-control"] == "no-store"
+    with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
+        return {name: archive.read(name).decode() for name in archive.namelist()}
+
+
+def test_a_file_becomes_report_json_and_code(zipped):
+    assert {name.rpartition(".")[2] for name in zipped} == {"json", "html", "py", "c", "h"}
+    document = json.loads(zipped["sun_sensor.json"])
+    assert document["verdict"]["verdict"] == "good"
+    assert document["made"]["files"] == ["bench.csv"]
+    assert zipped["sun_sensor_report.html"].count("<svg") == 4
+
+
+def test_the_page_takes_a_form_without_a_script(atlas):
+    page = atlas.get("/calibrate")
+    assert page.status_code == 200
+    assert 'enctype="multipart/form-data"' in page.text
+    refused = atlas.post(
+        "/calibrate", files={"file": ("b.csv", BAD)}, headers={"Accept": "text/html"}
+    )
+    assert refused.status_code == 422
+    assert "row 2, column y_px: expected a number" in refused.text
+    assert refused.headers["content-type"].startswith("text/html")
+
+
+def test_nothing_is_kept(atlas):
+    there = set(Path(tempfile.gettempdir()).iterdir())
+    answer = atlas.post(ADDRESS, files={"file": ("b.csv", BAD)})
+    assert answer.status_code == 422
+    assert not set(Path(tempfile.gettempdir()).iterdir()) - there
+
+
+@pytest.mark.parametrize(
+    ("options", "status", "said"),
+    [
+        ({"json": {}}, 415, "multipart/form-data"),
+        ({"files": {"file": ("b.csv", BAD)}, "data": {"aply": "true"}}, 400, "apply"),
+        ({"files": {"file": ("b.csv", BAD)}, "data": {"apply": "yes"}}, 422, "true, false"),
+        ({"files": {"config": (None, "")}}, 422, "a file"),
+        ({"files": {"file": ("b.csv", BAD)}, "data": {"config": "x = ["}}, 422, "Invalid"),
+        ({"files": {"file": ("b.csv", b"x" * 10_200_000)}}, 413, "at most"),
+        ({"files": {"file": ("b.csv", BAD)}, "headers": {"Accept": "image/png"}}, 406, "Accept"),
+        (
+            {
+                "content": b"--a\r\nno head",
+                "headers": {"Content-Type": "multipart/form-data; boundary=a"},
+            },
+            400,
+            "RFC 7578",
+        ),
+    ],
+)
+def test_what_is_no_such_form_is_refused_with_a_reason(atlas, options, status, said):
+    answer = atlas.post(ADDRESS, **options)
+    assert answer.status_code == status
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert said in answer.json()["detail"]
+
+
+def packed(name: str, size: int) -> bytes:
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as archive, archive.open(name, "w") as f:
+        for _ in range(size // 2**20):
+            f.write(bytes(2**20))
+    return made.getvalue()
+
+
+def npy(header: str) -> bytes:
+    text = header.encode().ljust(117) + b"\n"
+    return b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text
+
+
+def pickled() -> bytes:
+    made = io.BytesIO()
+    np.save(made, np.array([{"a": 1}], dtype=object), allow_pickle=True)
+    return made.getvalue()
+
+
+def columns(count: int) -> bytes:
+    return b",".join(b"c%d" % n for n in range(count)) + b"\n" + b",".join([b"1"] * count)
+
+
+HOSTILE = {
+    "million-columns.csv": lambda: columns(1_000_000),
+    "formulas.csv": lambda: b'x_px,y_px,alpha,beta\n=cmd|"/c calc"!A1,2,3,4\n',
+    "nan.csv": lambda: b"x_px,y_px,alpha,beta\n" + b"nan,nan,nan,nan\n" * 1000,
+    "bomb.npz": lambda: packed("x_px.npy", 3 * 2**29),
+    "bomb.xlsx": lambda: packed("xl/worksheets/sheet1.xml", 3 * 2**29),
+    "gzip.csv": lambda: gzip.compress(bytes(50_000_000)),
+    "pickle.npy": pickled,
+    "huge.npy": lambda: npy(
+        "{'descr': [('x_px', '<f8')], 'fortran_order': False, 'shape': (1000000000000,), }"
+    ),
+    "deep.npy": lambda: npy("[" * 100),
+    "deep.json": lambda: b"[" * 200_000,
+    "not.parquet": lambda: b"PAR1" + bytes(1000) + b"PAR1",
+    "quoted.csv": lambda: b'"' + b"a" * 1_000_000 + b"\n1,2\n",
+    "no-ending": lambda: BAD,
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_hostile_files_are_refused_within_time_and_memory(name):
+    import resource
+
+    with pytest.raises(UploadRefusedError) as refused:
+        calibrate_uploads([Upload(name, HOSTILE[name]())], longest_s=20.0)
+    assert "over 20 s" not in str(refused.value)
+    assert "ended early" not in str(refused.value)
+    assert len(str(refused.value)) < 1000
+    largest = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+    assert largest < 1_000_000  # kB
+
+
+def test_a_name_leads_nowhere_else(monkeypatch):
+    for name in ("../../etc/passwd", "/etc/passwd", "C:\\x\\..\\b.csv", "..", "", "a/../../b"):
+        made = Path("/there") / uploaded._safe(name, 0)
+        assert made.parent == Path("/there/0")
+        assert made.name not in {"", ".", ".."}
+
+
+def test_what_takes_too_long_is_ended():
+    with pytest.raises(UploadRefusedError, match="took over"):
+        calibrate_uploads([Upload("b.csv", turntable())], longest_s=0.3)
