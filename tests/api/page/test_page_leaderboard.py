@@ -20,7 +20,7 @@ def test_ranks_that_units_do_not_tell_apart_are_shown_as_ties(wide: Visit) -> No
         mark = "=" if row["tied"] else ""
         assert text.split()[0] == f"{row['rank']}{mark}"
         assert ("–" in text) == (row["low_deg"] is not None)
-        assert ("false Suns" in text) == bool(row["false_sun"])
+        assert ("false detections" in text) == bool(row["false_sun"])
     assert page.locator(".key-units").count() == 1
     page.select_option("#board-condition", "stable")
     wide.settle()
