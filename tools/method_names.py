@@ -43,7 +43,7 @@ def second_names(texts: Mapping[str, str], names: Iterable[str]) -> Iterator[tup
     """
     word = "|".join(sorted(map(re.escape, names), key=len, reverse=True))
     named = re.compile(
-        rf"(?<![\w-])(?:{word}|extractor['\"\]]*\s*}}+)`?\s*{SEPARATORS}\s*`?[\w${{]", re.I
+        rf"(?<![\w-])(?:{word}|extractor['\"\]]*\s*}}+)`?\s*{SEPARATORS}\s*`?[\w${{]", re.IGNORECASE
     )
     for place, text in texts.items():
         for number, line in enumerate(text.splitlines(), start=1):
