@@ -1,4 +1,4 @@
-"""Where measurement contradicts advice or literature: sentences, with the numbers."""
+"""Names of calibrations, and sentences where measurement contradicts advice or literature."""
 
 from __future__ import annotations
 
@@ -16,32 +16,51 @@ if TYPE_CHECKING:
     from registry.pipelines import Numbers
 
 LEAST_RATIO = 1.1
-"""Errors nearer to each other than this contradict nothing."""
-
-#: How methods begin that take signals as they are, and what that is called.
-_DIRECT, _AS_READ = "direct", "no extraction"
+"""Smaller ratios of errors do not count as a contradiction."""
 
 
-def calibration_words(extractor: str, stages: Sequence[str], run_by: str | None) -> str:
-    """Return a calibration in words: extractor, stages.
+def calibration_name(
+    extractor: str, stages: Sequence[str], measured: tuple[str, str] | None
+) -> str:
+    """Return the one name of a calibration.
 
-    What the survey has no extractor for is named by the method `run_by` that measured it: one of
-    ours, or signals taken as they are.
+    Parameters
+    ----------
+    extractor, stages
+        The survey's labels of its extractor and of its compensations and model.
+    measured
+        Names of the extractor and model that were measured, if any.
+
+    Returns
+    -------
+    str
+        The measured pipeline, such as ``bctm + pinhole``; without one the survey's labels, marked.
     """
-    if extractor == NONE:
-        extractor = f"{run_by} (ours)" if run_by and not run_by.startswith(_DIRECT) else _AS_READ
-    return " > ".join((extractor, *("no model" if stage == NONE else stage for stage in stages)))
+    if measured is not None:
+        return pipeline_name(*measured)
+    return f"{labels(extractor, stages)} (survey labels)"
+
+
+def pipeline_name(extractor: str, model: str) -> str:
+    """Return the name of a pipeline, such as ``bctm + optical + lut``."""
+    return f"{extractor} + {model}"
+
+
+def labels(extractor: str, stages: Sequence[str]) -> str:
+    """Return the survey's labels of a calibration, such as ``BCTM + LSQ``."""
+    first = "no extraction" if extractor == NONE else extractor
+    return " + ".join((first, *("no model" if stage == NONE else stage for stage in stages)))
 
 
 def design_words(candidate: Candidate) -> str:
-    """Return a calibration in words."""
-    run_by = None if candidate.row is None else candidate.row.extractor
-    design = candidate.design
-    return calibration_words(design.extractor, design.stages, run_by)
+    """Return the name of a calibration."""
+    row, design = candidate.row, candidate.design
+    measured = None if row is None else (row.extractor, row.model)
+    return calibration_name(design.extractor, design.stages, measured)
 
 
 def against_literature(usual: Candidate, used: int, best: Candidate, tried: int) -> str | None:
-    """Say that the calibration that most studies used is not the one with the smallest error.
+    """Compare the calibration that most studies used with the one that has the smallest error.
 
     Parameters
     ----------
@@ -52,16 +71,15 @@ def against_literature(usual: Candidate, used: int, best: Candidate, tried: int)
     """
     if not math.isfinite(best.error_deg) or usual.error_deg < LEAST_RATIO * best.error_deg:
         return None
-    who = f"{used} {'studies stand' if used > 1 else 'study stands'} for {design_words(usual)}"
     others = f"{tried} {'studies' if tried > 1 else 'study'}" if tried else "no study"
     return (
-        f"{who}, measured {_error(usual)}; {design_words(best)}, which {others} stands for, "
-        f"reaches {_error(best)}{_times(usual, best)}"
+        f"{used} {'studies' if used > 1 else 'study'} used {design_words(usual)}: {_error(usual)}; "
+        f"{design_words(best)}, used by {others}, reaches {_error(best)}{_times(usual, best)}"
     )
 
 
 def against_advice(answer: Answer, tasks: Sequence[str]) -> tuple[str, ...]:
-    """Say where an architecture that is not advised does better at a task than those advised.
+    """Name tasks at which an architecture that is not advised is better than the advised ones.
 
     Of the tasks, accuracy, precision and field of view are measured here: by the error over the
     field and conditions asked for, by the repeatability, by the field itself.
@@ -92,27 +110,26 @@ def against_advice(answer: Answer, tasks: Sequence[str]) -> tuple[str, ...]:
             continue
         named = ", ".join(_words(places[at]) for at in advised if math.isfinite(reached[at]))
         found.append(
-            f"The survey advises {named} for {task}; the best of them measured here, "
+            f"For {task} the survey advises {named}. The best of these, "
             f"{_where(answer, places[first], values)}, reaches {abs(mine):.3g} {unit}; "
-            f"{_where(answer, places[other], values)}, which it does not advise for that, "
-            f"{abs(theirs):.3g}"
+            f"{_where(answer, places[other], values)}, not advised, reaches {abs(theirs):.3g} "
+            f"{unit}"
         )
     return tuple(found)
 
 
 def regret_words(regret: Regret) -> str:
-    """Say by how much the first calibration named errs more than the best one measured."""
+    """Compare the first calibration of the ranking with the most accurate one measured."""
     first, best = regret.first, regret.best
     if first is best:
-        return "the first calibration named is the best one measured that meets the requirements"
+        return "the first calibration is the most accurate one measured that meets the requirements"
     named = f"{design_words(best)} on {' + '.join(best.design.architecture)}"
     if not math.isfinite(first.error_deg):
-        why = "is not measured" if first.row is None else "answers too seldom to be judged"
-        beside = f"the best one measured, {named}, errs {_error(best)}"
-        return f"the first calibration named {why}; {beside}"
+        why = "is not measured" if first.row is None else "has too low an availability"
+        return f"the first calibration {why}; the most accurate one, {named}, has {_error(best)}"
     return (
-        f"the first calibration named errs {_error(first)}; the best one measured that meets the "
-        f"requirements, {named}, {_error(best)}{_times(first, best)}"
+        f"the first calibration has {_error(first)}; the most accurate one measured that meets the "
+        f"requirements, {named}, has {_error(best)}{_times(first, best)}"
     )
 
 
@@ -122,7 +139,7 @@ def _words(place: RankedPlace) -> str:
 
 def _where(answer: Answer, place: RankedPlace, values: Numbers) -> str:
     row = answer.best.pipeline(answer.reached_by(place, values))
-    pipeline = "" if row is None else f"{row.extractor} > {row.model} on {row.dataset}"
+    pipeline = "" if row is None else f"{pipeline_name(row.extractor, row.model)} on {row.dataset}"
     return f"{_words(place)} ({pipeline})"
 
 
@@ -131,19 +148,19 @@ def _error(candidate: Candidate) -> str:
     if not math.isfinite(judged.error_deg):
         nominal = None if candidate.row is None else candidate.row.nominal
         if nominal is None or nominal.rms_deg is None or nominal.availability is None:
-            return "without an error over the field and conditions asked for"
+            return "no error over the required field of view and conditions"
         return (
-            f"{nominal.rms_deg:.3g} deg where it answers, {100 * nominal.availability:.0f} % of "
-            "the samples: too seldom"
+            f"{nominal.rms_deg:.3g} deg RMS at {100 * nominal.availability:.0f} % availability, "
+            "which is too low"
         )
     over = "" if judged.field_deg is None else f" over {judged.field_deg:g} deg"
-    return f"{judged.error_deg:.3g} deg{over}"
+    return f"{judged.error_deg:.3g} deg RMS{over}"
 
 
 def _times(worse: Candidate, better: Candidate) -> str:
     if not math.isfinite(worse.error_deg):
         return ""
-    return f", {worse.error_deg / better.error_deg:.3g} times less"
+    return f", {worse.error_deg / better.error_deg:.3g} times smaller"
 
 
 _MEASURED: tuple[tuple[str, Callable[[Answer], Numbers], float, str], ...] = (

@@ -7,16 +7,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from api.cli.table_output import prose, table
-from registry.contradiction import calibration_words
+from registry.contradiction import calibration_name, labels, pipeline_name
 
 ORDERS = {
-    "advice": "what the survey advises or studies used first, by the task's measure or by error",
-    "support": "what most studies proposed first",
-    "measured": "what errs least first",
+    "advice": "ranked by advice of the survey and use in studies, then by error",
+    "support": "ranked by number of studies",
+    "measured": "ranked by measured error",
 }
 _NARROW = 30
 _LABEL = 13  # columns before the text of a labelled paragraph
-_HEADINGS = ("", "calibration", "advised", "studies", "measured, deg")
+_HEADINGS = ("", "calibration", "survey labels", "advised", "studies", "measured, deg")
 _INDENT = "    "
 
 
@@ -26,8 +26,12 @@ def text(document: Mapping[str, Any], width: int) -> str:
 
 
 def explanation(blocked: Mapping[str, Any], width: int) -> str:
-    """Return why nothing is left, and what would leave something, as lines."""
-    lines = prose(f"nothing is left: {blocked['constraint']}: {blocked['detail']}", width, "  ")
+    """Return which requirement excludes all architectures, and changes that would help."""
+    lines = prose(
+        f"no architecture meets the requirements: {blocked['constraint']}: {blocked['detail']}",
+        width,
+        "  ",
+    )
     for relaxation in blocked["relaxations"]:
         found = _many(relaxation["architectures"], "architecture")
         lines += prose(f"{relaxation['words']}: {found}", width, "    ", "  - ")
@@ -43,24 +47,26 @@ def _head(document: Mapping[str, Any], width: int) -> Iterator[str]:
         width,
     )
     for sentence in document["contradictions"]:
-        yield from _paragraph("against", sentence, width)
+        yield from _paragraph("contrary", sentence, width)
     if document["regret"] is not None:
-        yield from _paragraph("this order", document["regret"]["sentence"], width)
+        yield from _paragraph("accuracy", document["regret"]["sentence"], width)
     if document["untimed"]:
-        said = f"{_many(document['untimed'], 'pipeline')}, which a limit on latency leaves out"
-        yield from _paragraph(
-            "not timed", f"{said}: `sunatlas leaderboard times` times them", width
-        )
+        said = f"{_many(document['untimed'], 'pipeline')}, excluded by the latency limit"
+        yield from _paragraph("not timed", f"{said}; run `sunatlas leaderboard times`", width)
     for hazard, pairs in document["untried"].items():
         if pairs:
             named = ", ".join(f"{pair['detector']} + {pair['mask']}" for pair in pairs)
-            yield from _paragraph("not tried", f"{hazard}, by no data set of {named}", width)
+            yield from _paragraph("not tested", f"{hazard}: no data set of {named}", width)
 
 
 def _body(document: Mapping[str, Any], width: int) -> Iterator[str]:
     for architecture in document["architectures"]:
         yield ""
-        pareto = ", which none beats in both studies and error" if architecture["pareto"] else ""
+        pareto = (
+            " (Pareto: no other has more studies and a lower error)"
+            if architecture["pareto"]
+            else ""
+        )
         name = f"{architecture['detector']} + {architecture['mask']}"
         yield from prose(f"{name}{pareto}", width, _INDENT, f"{architecture['rank']:<3} ")
         yield from _architecture(architecture, width)
@@ -74,16 +80,16 @@ def _architecture(architecture: Mapping[str, Any], width: int) -> Iterator[str]:
     if tasks:
         yield from _paragraph("tasks", ", ".join(tasks), width)
     yield from _paragraph("advised", _advise(architecture["advice"]), width)
-    yield from _paragraph("proposed", _propose(architecture["studies"]), width)
+    yield from _paragraph("used", _propose(architecture["studies"]), width)
     yield from _paragraph("measured", _measure(architecture["best"]), width)
     for measure in architecture["measures"]:
         if measure["task"] != "Accuracy":
             yield from _paragraph("by task", measure["words"], width)
     finer = (architecture["best"]["measured"] or {}).get("finer")
     if finer is not None:
-        yield from _paragraph("finer", _finer(finer), width)
+        yield from _paragraph("or", _finer(finer), width)
     if architecture["contradiction"]:
-        yield from _paragraph("against", architecture["contradiction"], width)
+        yield from _paragraph("contrary", architecture["contradiction"], width)
     calibrations = architecture["calibrations"]
     rows = [_calibration(calibration, architecture["advice"]) for calibration in calibrations]
     yield table(rows, _HEADINGS, width, _INDENT, rule=False)
@@ -93,9 +99,9 @@ def _architecture(architecture: Mapping[str, Any], width: int) -> Iterator[str]:
 
 
 def _advise(advice: Sequence[Mapping[str, Any]]) -> str:
-    """Return what the survey advises an architecture for, how calibrated, and in which section."""
+    """Return the advice of the survey for an architecture, with its section."""
     if not advice:
-        return "no, not for what is asked"
+        return "not for these requirements"
     found: dict[str, list[str]] = {}
     for one in advice:
         kind = "" if one["requirement"] == "task" else "class "
@@ -113,7 +119,7 @@ def _propose(studies: Sequence[str]) -> str:
 
 
 def _measure(best: Mapping[str, Any]) -> str:
-    """Return what the best calibration of an architecture achieves, and where."""
+    """Return the error of the best calibration of an architecture, with its data set."""
     measured = best["measured"]
     if measured is None:
         return "no"
@@ -126,12 +132,12 @@ def _measure(best: Mapping[str, Any]) -> str:
         times = f"{ratio:.0f}" if ratio >= 1000 else f"{ratio:.3g}"
         parts.append(f"{times} times the bound {nominal['bound_deg']:.3g} deg")
     if measured["availability"] is not None:
-        parts.append(f"answers {100 * measured['availability']:.4g} %")
+        parts.append(f"availability {100 * measured['availability']:.4g} %")
     if units is not None and units["meeting"] is not None:
         parts.append(f"{units['meeting']} of {units['of']} units meet it")
         parts.append(f"own error {measured['own_deg']:.3g} deg")
     if measured["needs"]:
-        parts.append(f"also reads {', '.join(measured['needs'])}")
+        parts.append(f"also needs {', '.join(measured['needs'])}")
     if units is not None and units["count"] > 1:
         spread = f"{units['least_deg']:.3g} to {units['largest_deg']:.3g} deg"
         parts.append(f"{units['count']} units {spread}")
@@ -139,10 +145,10 @@ def _measure(best: Mapping[str, Any]) -> str:
 
 
 def _finer(finer: Mapping[str, Any]) -> str:
-    """Return what errs far less on the part of the samples that it answers."""
+    """Return the pipeline with a lower error at lower availability."""
     return (
-        f"far finer on the part it answers, {100 * finer['availability']:.4g} %: "
-        f"{finer['extractor']} > {finer['model']}, {finer['error_deg']:.3g} deg "
+        f"lower error at {100 * finer['availability']:.4g} % availability: "
+        f"{pipeline_name(finer['extractor'], finer['model'])}, {finer['error_deg']:.3g} deg "
         f"({finer['dataset']})"
     )
 
@@ -158,6 +164,7 @@ def _calibration(
     cells = (
         str(calibration["rank"]),
         _way(calibration),
+        labels(calibration["extractor"], _stages(calibration)),
         "yes" if for_what else "no",
         str(len(calibration["studies"])) if calibration["studies"] else "none",
         where,
@@ -166,18 +173,22 @@ def _calibration(
 
 
 def _over(measured: Mapping[str, Any], unit: str) -> str:
-    """Return the error a pipeline is judged by, with the field it holds over."""
+    """Return the error that a pipeline is ranked by, with its field of view."""
     if measured["error_deg"] is None:
-        return "answers too seldom"
+        return "availability below 95 %"
     field = measured["field_deg"]
     over = "all directions" if field in (None, 360.0) else f"{field:g}{unit}"
     return f"{measured['error_deg']:.3g}{unit} over {over}"
 
 
 def _way(calibration: Mapping[str, Any]) -> str:
-    stages = (*calibration["compensations"], calibration["model"])
-    run_by = (calibration["measured"] or {}).get("extractor")
-    return calibration_words(calibration["extractor"], stages, run_by)
+    measured = calibration["measured"]
+    name = None if measured is None else (measured["extractor"], measured["model"])
+    return calibration_name(calibration["extractor"], _stages(calibration), name)
+
+
+def _stages(calibration: Mapping[str, Any]) -> tuple[str, ...]:
+    return (*calibration["compensations"], calibration["model"])
 
 
 def _many(number: int, one: str, several: str | None = None) -> str:

@@ -12,12 +12,12 @@ from registry.taxonomy import NO_IMPLEMENTATION_STATED, NONE_STATED
 
 
 def _option(attribute: str) -> typer.models.OptionInfo:
-    text = f"Only with this {attribute}; may be repeated."
+    text = f"Only this {attribute}; may be repeated."
     return _values(f"--{attribute}", attribute, text)
 
 
 def _exclude(attribute: str) -> typer.models.OptionInfo:
-    text = f"Never this {attribute}; may be repeated."
+    text = f"Exclude this {attribute}; may be repeated."
     return _values(f"--exclude-{attribute}", attribute, text)
 
 
@@ -47,7 +47,7 @@ class Edition(StrEnum):
 
 
 EditionOption = Annotated[
-    Edition, typer.Option("--edition", help="Studies of the survey, or all: later ones, too.")
+    Edition, typer.Option("--edition", help="Studies of the survey, or all, including added ones.")
 ]
 
 Task = Annotated[list[str] | None, _option("task")]

@@ -27,11 +27,11 @@ def architectures_text(rows: Sequence[Row], width: int = WIDTH) -> str:
     room = min(width, WIDTH)
     lines = [
         *prose(
-            "The best pipeline of each architecture (detector, mask): nominal condition, of its "
-            "data sets the one with the smallest own error (geometric mean over sensor units, true "
-            "directions in the calibration). ±: its standard error. bounds: RMS error over the "
-            "Cramer-Rao bound. bench: error expected on the standard calibration bench. =: a tie, "
-            f"a paired test over the units does not tell the runner-up apart. {tally(rows)}",
+            "The best pipeline of each architecture (detector, mask) under nominal conditions, on "
+            "its data set with the smallest own error (true directions in the calibration, "
+            "geometric mean over sensor units). ±: standard error. bounds: RMS error divided by "
+            "the Cramer-Rao bound. bench: error expected with the standard calibration bench. =: "
+            f"a tie with the runner-up in a paired test over the units. {tally(rows)}",
             room,
         ),
         "",
@@ -65,7 +65,7 @@ def _architecture(row: Row) -> tuple[str, ...]:
     name = f"{row['detector']} {row['mask']}"
     if row["extractor"] is None:
         return (name, "none has an error", "-", "", "-", "", "-")
-    pipeline = f"{row['extractor']}+{row['model'].replace(' + ', '+')}"
+    pipeline = f"{row['extractor']} + {row['model']}"
     return (
         name,
         pipeline,
@@ -110,29 +110,33 @@ def _percent(error: float | None) -> str:
 def _several(rows: Sequence[Row]) -> str:
     """Name the data set shown where there are several."""
     named = [f"{row['dataset']} {len(row['datasets'])}" for row in rows if len(row["datasets"]) > 1]
-    return f"Data sets shown where there are several: {', '.join(named)}." if named else ""
+    return (
+        f"Architectures with several data sets, the one shown and their number: {', '.join(named)}."
+        if named
+        else ""
+    )
 
 
 def _seldom(rows: Sequence[Row]) -> str:
-    """Name what answers too seldom and stands here for want of anything better."""
+    """Name pipelines below 95 % availability, shown where no other has an error."""
     named = [
         f"{row['detector']} {row['mask']} {100 * row['availability']:.0f} %"
         for row in rows
         if row["availability"] is not None and row["availability"] < AVAILABLE
     ]
-    return f"Answers too seldom: {'; '.join(named)}." if named else ""
+    return f"Below 95 % availability: {'; '.join(named)}." if named else ""
 
 
 def _finer(rows: Sequence[Row]) -> str:
-    """Name what errs far less than the best on the part of the samples that it answers."""
+    """Name pipelines with a lower error at lower availability."""
     named = [
         f"{row['detector']} {row['mask']} {digits(row['finer_rms_deg'])} deg "
-        f"({row['finer_extractor']}+{row['finer_model']}, "
-        f"{100 * row['finer_availability']:.0f} % answered)"
+        f"({row['finer_extractor']} + {row['finer_model']}, "
+        f"{100 * row['finer_availability']:.0f} %)"
         for row in rows
         if row["finer_extractor"] is not None
     ]
-    return f"Far finer where it answers: {'; '.join(named)}." if named else ""
+    return f"Lower error at lower availability: {'; '.join(named)}." if named else ""
 
 
 def _part(part: Row) -> dict[str, str | int]:

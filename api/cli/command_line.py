@@ -35,27 +35,27 @@ from benchmark.processes import (
 
 # name -> its line in `sunatlas --help`; the module is api.cli.commands.<name>.
 COMMANDS: dict[str, str] = {
-    "serve": "Serve the page, the guide and the HTTP interface.",
+    "serve": "Serve the web pages, the guide and the HTTP API.",
     "survey": "Check the survey's tables, import or add studies.",
     "studies": "List studies with the grade of each run, or show one.",
-    "recommend": "Rank the sensors and calibrations that meet requirements.",
-    "plan": "Tell what of a suite is to be measured, and why.",
-    "run": "Run a study's pipelines, or a suite.",
-    "verify": "Measure published cells drawn at random again, and compare.",
-    "gc": "Drop from the working store what no cell refers to.",
-    "benchmark": "Score pipelines on the standard datasets.",
-    "rank": "Check one algorithm, measure it and show it on a board.",
-    "leaderboard": "Show the leaderboard, bring it up to date or check it.",
-    "curves": "Show how many calibration poses the leaders need.",
-    "assess": "Show the survey's scores of extractors beside measured ones.",
-    "claims": "Show the survey's claims about algorithms, with verdicts.",
+    "recommend": "Rank sensors and calibrations that meet your requirements.",
+    "plan": "List the cells that need measuring, with reasons.",
+    "run": "Run the pipelines of a study, or a suite.",
+    "verify": "Measure a random sample of published cells again.",
+    "gc": "Delete unused results from the local store.",
+    "benchmark": "Score pipelines on the standard data sets.",
+    "rank": "Check and measure an algorithm, and show its rank.",
+    "leaderboard": "Show the leaderboard, update it or check it.",
+    "curves": "Show how many calibration poses pipelines need.",
+    "assess": "Compare the survey's scores of extractors with ours.",
+    "claims": "Show claims of the survey, with verdicts.",
     "calibrate": "Calibrate your own sensor from a turntable file.",
-    "dataset": "List, describe, export or verify the standard datasets.",
-    "deposit": "Build, verify, upload or publish the bundle an archive takes.",
-    "guide": "Build the guide, the site that the service has at /guide.",
-    "get": "Answer an address of the HTTP interface without a server.",
-    "completion": "Print what lets a shell complete commands and names.",
-    "compile": "Compile every kernel now instead of at its first call.",
+    "dataset": "List, describe, export or verify the standard data sets.",
+    "deposit": "Build, verify, upload or publish the archive bundle.",
+    "guide": "Build the guide, served at /guide.",
+    "get": "Answer an address of the HTTP API without a server.",
+    "completion": "Print the shell completion script.",
+    "compile": "Compile all numerical kernels now.",
 }
 DEBUG = "SUNATLAS_DEBUG"
 _NO_ROOM = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF})
@@ -137,7 +137,7 @@ def _refuse(error: Any) -> None:
 
 
 def _open_streams() -> None:
-    """Let a stream that is closed refuse what is written to it, and one of few letters replace.
+    """Make writes to a closed stream raise, and replace characters a stream cannot encode.
 
     Python leaves None where a closed stream was (`sunatlas studies >&-`).
     """

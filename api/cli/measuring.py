@@ -36,20 +36,22 @@ def _available_workers() -> int:
 AVAILABLE_WORKERS = _available_workers()
 
 WorkersOption = Annotated[
-    int, typer.Option(min=1, help="Processes; the numbers do not depend on it.")
+    int, typer.Option(min=1, help="Number of processes; does not change the results.")
 ]
 ManyWorkersOption = Annotated[
     int,
     typer.Option(
         min=1,
-        help="Processes; the numbers do not depend on it.",
-        show_default="the processors there are",
+        help="Number of processes; does not change the results.",
+        show_default="number of processors",
     ),
 ]
 StoreOption = Annotated[
     Path | None,
     typer.Option(
-        help="Where new results go; by default $SUNATLAS_STORE, else the user's cache directory.",
+        help=(
+            "Local store for new results; by default $SUNATLAS_STORE or the user's cache directory."
+        ),
         file_okay=False,
         show_default=False,
     ),
@@ -57,8 +59,10 @@ StoreOption = Annotated[
 SchedulerOption = Annotated[
     str | None,
     typer.Option(
-        help="Address of a Dask scheduler to measure on instead, such as tcp://127.0.0.1:8786; "
-        "needs the extra 'distributed'.",
+        help=(
+            "Address of a Dask scheduler, such as tcp://127.0.0.1:8786; needs the extra "
+            "'distributed'."
+        ),
         show_default=False,
     ),
 ]

@@ -13,10 +13,7 @@ from typer.core import TyperCommand, TyperGroup
 from api.cli.wrong_call import WrongCallError
 from files.csv_writing import escape_formulas
 
-HELP = (
-    "With --format csv: let no spreadsheet run a cell as a formula. A cell that starts with =, +, "
-    "- or @, a tab or a line break gets an apostrophe before it; numbers stay."
-)
+HELP = "With --format csv: escape cells that a spreadsheet would run as formulas."
 
 _WANTED: ContextVar[bool] = ContextVar("safe", default=False)
 
@@ -63,7 +60,7 @@ def _of_csv_alone(run: Callable[..., Any]) -> Callable[..., Any]:
     def checked(*given: Any, **options: Any) -> Any:
         file = options.get("out")
         if _WANTED.get() and options["form"] != "csv" and getattr(file, "suffix", "") != ".csv":
-            raise WrongCallError("--safe is of CSV alone; it goes with --format csv")
+            raise WrongCallError("--safe needs --format csv")
         return run(*given, **options)
 
     return checked

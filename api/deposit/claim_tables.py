@@ -1,4 +1,4 @@
-"""Tables of the bundle that tell how the survey's claims came out: verdicts, rules, trials."""
+"""Tables of the bundle on the survey's claims: verdicts, criteria, trials."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ def _field(name: str, kind: str, description: str, **constraints: Any) -> dict[s
 ERRORS: Fields = (
     _field("extractor", "string", "Extractor, by its name.", required=True),
     _field("model", "string", "Model, by its name.", required=True),
-    _field("unit", "integer", "Unit of the sensor; 0 is the standard one.", required=True),
+    _field("unit", "integer", "Sensor unit; 0 is the standard unit.", required=True),
     _field("sample", "integer", "Number of the test sample, from 0.", required=True),
     _field(
         "error_deg",
@@ -44,7 +44,7 @@ DIRECTIONS: Fields = (
         _field(f"sun_{axis}", "number", f"True unit vector to the Sun, {axis}.", required=True)
         for axis in "xyz"
     ),
-    _field("observable", "boolean", "Whether the direction can be told at all.", required=True),
+    _field("observable", "boolean", "Whether the readings contain the direction.", required=True),
     _field("bound_deg", "number", "Cramer-Rao bound in degrees, of unit 0; NaN: none."),
 )
 

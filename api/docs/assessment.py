@@ -84,30 +84,6 @@ def first_outcomes() -> str:
     return _table(("method", *_numbers()), rows)
 
 
-def values() -> str:
-    """List what was measured, property by property."""
-    parts = []
-    for number, (name, definition) in enumerate(DEFINITIONS.items(), start=1):
-        if not definition.measured:
-            continue
-        rows = [
-            (
-                method["method"],
-                str(verdict["survey"]),
-                _score(verdict),
-                verdict["agreement"],
-                _value(verdict),
-                " on ".join(filter(None, (verdict["extractor"], verdict["measured_on"]))),
-            )
-            for method in _document()["methods"]
-            for verdict in method["properties"]
-            if verdict["property"] == name
-        ]
-        table = _table(("method", "survey", "measured", "", definition.unit or "value", "by"), rows)
-        parts.append(f"### {number}. {name}\n\n{table}")
-    return "\n\n".join(parts)
-
-
 def features() -> str:
     """List the reference series."""
     rows = [
@@ -179,14 +155,3 @@ def _numbers() -> list[str]:
 
 def _cell(survey: int, agreement: str, measured: int | None) -> str:
     return f"{survey}{_MARKS[agreement]}{'' if measured is None else measured}"
-
-
-def _score(verdict: Mapping[str, Any]) -> str:
-    return "–" if verdict["measured"] is None else str(verdict["measured"])
-
-
-def _value(verdict: Mapping[str, Any]) -> str:
-    if verdict["value"] is not None:
-        return f"{verdict['value']:.3g}"
-    # why a column is not judged stands once, in the definitions
-    return "" if verdict["agreement"] == assessment.NOT_JUDGED else str(verdict["reason"])

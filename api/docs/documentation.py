@@ -74,7 +74,6 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
         "outcomes": assessment.outcomes,
         "versions": assessment.versions,
         "first-outcomes": assessment.first_outcomes,
-        "values": assessment.values,
     },
     "claims.md": {
         "counts": claim_pages.counts,

@@ -1,4 +1,4 @@
-"""Examples in the docs that are what really comes out: HTTP answers and the commands' help."""
+"""Examples in the docs, made by running them: HTTP answers and the help of commands."""
 
 from __future__ import annotations
 
@@ -16,8 +16,10 @@ from api.http.service import create_app
 
 LONGEST_LIST = 1
 LONGEST_TEXT = 160
-DEEPEST = 4
+DEEPEST = 3
 TIMES = ("latency_us", "time_ratio")
+#: Parameters of every table or list, described once at the head of the page.
+COMMON_PARAMETERS = frozenset({"format", "safe", "limit", "cursor", "sort", "fields"})
 REFUSED = "/v1/studies?detectr=CMOS"
 _SERVED = "http://127.0.0.1:8000"
 
@@ -33,9 +35,28 @@ def command_line() -> str:
     parts = []
     for title, arguments in shown:
         text = runner.invoke(app, arguments, prog_name="sunatlas").stdout
-        trimmed = "\n".join(line.rstrip() for line in text.strip().splitlines())
+        trimmed = "\n".join(line.rstrip() for line in _own_options(text).strip().splitlines())
         parts.append(f"## {title}\n\n```text\n{trimmed}\n```")
     return "\n\n".join(parts)
+
+
+#: Options of most commands, described once at the head of the page.
+COMMON = ("--safe", "-h, --help", "--format <table|json|csv>", "--store <dir>", "--scheduler")
+
+
+def _own_options(text: str) -> str:
+    """Return a help without the options that most commands have."""
+    kept: list[str] = []
+    left_out = False
+    for line in text.splitlines():
+        option = line.strip()
+        if line.startswith("  ") and option.startswith("-"):
+            left_out = option.startswith(COMMON)
+        elif not line.startswith("    "):
+            left_out = False
+        if not left_out:
+            kept.append(line)
+    return "\n".join(kept).replace("Options:\n\n", "").removesuffix("Options:")
 
 
 def http_examples() -> str:
@@ -48,7 +69,7 @@ def http_examples() -> str:
             parts.append(_operation(service, path, method, operation))
     refused = _ask(service, "GET", REFUSED)
     parts.append(
-        "## What is refused\n\nAs a problem document (RFC 9457), with the nearest valid word:\n\n"
+        "## Errors\n\nProblem documents (RFC 9457) with the nearest valid value:\n\n"
         + _exchange(f"GET {REFUSED}", None, refused)
     )
     return "\n\n".join(parts)
@@ -63,7 +84,11 @@ def _operation(service: Any, path: str, method: str, operation: Mapping[str, Any
     lines = [f"## {method.upper()} {path}", "", operation.get("summary", "") + ".", ""]
     if operation.get("description"):
         lines += [operation["description"], ""]
-    rows = [p for p in operation.get("parameters", ()) if p["in"] in {"path", "query"}]
+    rows = [
+        parameter
+        for parameter in operation.get("parameters", ())
+        if parameter["in"] in {"path", "query"} and parameter["name"] not in COMMON_PARAMETERS
+    ]
     if rows:
         lines += ["| parameter | takes | what it does |", "|---|---|---|"]
         lines += [

@@ -81,7 +81,7 @@ def missing_implementations() -> str:
 
 
 def datasets() -> str:
-    """Write a card for each standard data set, with the published bounds."""
+    """Describe each data set, with the published bound of each condition."""
     return "\n\n".join(_card(card) for card in knowledge().measurements.cards)
 
 
@@ -249,17 +249,14 @@ def _rank(ranking: Sequence[tuple[str, int]]) -> str:
 
 
 def _card(card: Any) -> str:
-    rows = [
-        (condition, _number(card["bounds"].get(condition)), labels.label_of(setup["description"]))
-        for condition, setup in card["setups"].items()
-    ]
-    follows = ", ".join(card["follows"]) or "no study"
+    bounds = "; ".join(f"{name} {_number(card['bounds'].get(name))}" for name in card["setups"])
+    based = f"; based on {', '.join(card['follows'])}" if card["follows"] else ""
     return (
         f"### {card['name']}\n\n"
         f"{labels.label_of(card['description'])}\n\n"
-        f"Version {card['version']}; {card['detector']}, {card['mask']}; gives "
-        f"{card['observation']}; follows {follows}.\n\n"
-        + _table(("condition", "bound (rms, deg)", "what differs"), rows)
+        f"{card['detector']}, {card['mask']}; readings: {card['observation']}; version "
+        f"{card['version']}{based}.\n\n"
+        f"Bounds by condition (RMS, deg): {bounds}."
     )
 
 

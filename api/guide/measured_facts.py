@@ -10,7 +10,7 @@ from benchmark.claims.ledger import Entry, ledger
 from benchmark.error_budget.record import RECORD as ERROR_BUDGET
 from benchmark.error_budget.sentences import NEAR, PARTS, verdict
 
-#: Claims that came out and that change what one builds; a choice, the others stand on their page.
+#: A selection of reproduced claims that affect a design.
 USEFUL = ("C04", "C15", "C24", "C29", "C32", "C34", "C45", "C46", "C47", "C51", "C53")
 
 
@@ -25,7 +25,7 @@ def tallies() -> str:
 
 
 def refuted_claims() -> str:
-    """List the claims that did not come out, with what was found instead."""
+    """List refuted claims with our results."""
     return "\n".join(
         f"- **“{entry.claim.statement}”** ({_where(entry)}). {entry.explanation}"
         for entry in ledger()
@@ -34,7 +34,7 @@ def refuted_claims() -> str:
 
 
 def useful() -> str:
-    """List claims that came out, each with the statistic that decides it first.
+    """List reproduced claims, each with its first criterion.
 
     Raises
     ------
@@ -50,18 +50,19 @@ def useful() -> str:
         first = entry.rules[0]
         number = f"{first.estimate:.3g} [{first.low:.3g}, {first.high:.3g}]"
         rows.append((entry.claim.statement, first.rule.statistic, number, _where(entry)))
-    return table(("what the survey says", "what decides it", "mean [95 %]", "claim"), rows)
+    return table(("claim", "criterion", "result [95 % interval]", "page"), rows)
 
 
 def error_budget() -> str:
-    """Count by which part of the chain the best pipelines are held back."""
+    """Count the largest error sources of the best pipelines."""
     judged = [verdict(row) for row in ERROR_BUDGET.read().values()]
     near = sum(one.near for one in judged)
     counted = Counter(PARTS[one.leading] for one in judged if not one.near)
     rows = [(part, str(number)) for part, number in sorted(counted.items(), key=_most_first)]
     return (
-        f"The own error of {near} of {len(judged)} best pipelines is within {NEAR:g} times the "
-        "bound. The others are held back by:\n\n" + table(("part of the chain", "data sets"), rows)
+        f"The error of the best pipeline is within {NEAR:g} times the bound on {near} of "
+        f"{len(judged)} data sets. Largest error source on the others:\n\n"
+        + table(("error source", "data sets"), rows)
     )
 
 

@@ -24,18 +24,17 @@ from files.csv_writing import csv_text
 
 LONGEST_TEXT = 160  # characters of a text in an example
 REFUSALS = {
-    400: "A parameter that is not declared, parameters that do not go together, or a request that "
-    "cannot be read.",
-    404: "No such thing; the nearest is named.",
-    405: "The path does not offer this method.",
-    406: "None of the accepted media types is offered.",
-    413: "The body is too long.",
-    415: "The body is not said to be JSON.",
-    422: "A value that is not valid; the nearest is named.",
+    400: "Unknown parameter, contradictory parameters, or malformed request.",
+    404: "Not found; the nearest name is given.",
+    405: "Method not allowed.",
+    406: "None of the accepted media types is available.",
+    413: "Request body too long.",
+    415: "Content-Type is not JSON.",
+    422: "Invalid value; the nearest valid value is given.",
 }
 ETAG = {"schema": {"type": "string"}, "description": "Strong validator of the bytes."}
-LINK = {"schema": {"type": "string"}, "description": "The next page, where there is one."}
-NOT_MODIFIED = {"description": "The bytes of the ETag in If-None-Match are still the answer."}
+LINK = {"schema": {"type": "string"}, "description": "Link to the next page."}
+NOT_MODIFIED = {"description": "Not modified: the ETag in If-None-Match is current."}
 
 
 def describe(app: FastAPI, routes: Sequence[APIRoute]) -> dict[str, Any]:

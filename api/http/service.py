@@ -25,14 +25,12 @@ from api.http.routers import recommendations
 from api.pages.routers import ROUTERS as PAGES
 
 DESCRIPTION = (
-    "Which sun sensor to build and how to calibrate it: the literature as data, its algorithms "
-    "as code, and both measured against the physical limit. Lists are paged (`limit`, `cursor`, "
-    "`Link`), tables come as CSV for `Accept: text/csv` or `format=csv`, every answer has a "
-    "strong `ETag`, and every refusal is a problem document (RFC 9457) that names the nearest "
-    "valid word. Spreadsheets run a cell that starts with `=`, `+`, `-` or `@` as a formula: with "
-    "`safe=true` such cells of a CSV, and those that start with a tab or a line break, get an "
-    "apostrophe before them; numbers stay. In CSV an empty cell says that nothing is known, and "
-    "`none stated` is the survey's value `None`, as JSON and queries call it."
+    "Which sun sensor to build and how to calibrate it: published studies, their algorithms, and "
+    "measurements against the physical limit. Read-only, no authentication. Lists are paged "
+    "(`limit`, `cursor`, `Link`). `format=csv` or `Accept: text/csv` returns tables as CSV; "
+    "`safe=true` escapes cells that a spreadsheet would run as formulas. Every response has a "
+    "strong `ETag`. Errors are problem documents (RFC 9457) with the nearest valid value. In CSV "
+    "an empty cell is an unknown value, and `none stated` is the survey's value `None`."
 )
 ROUTERS = (*SERVICE, *PAGES)
 ROUTES = [route for router in ROUTERS for route in router.routes if isinstance(route, APIRoute)]

@@ -28,7 +28,7 @@ RANKED: Mapping[str, tuple[str, str]] = {
         "number",
         "Extraction and prediction of one sample on the machine that serves, microseconds.",
     ),
-    "time_ratio": ("number", "The same over the time of a reference."),
+    "time_ratio": ("number", "Time divided by that of a reference method."),
     "field_deg": ("number", "Angle of the boresight that the error is over; empty: not asked."),
     "field_rms_deg": ("number", "Root mean square error over that field; empty: not asked."),
     "widest_field_deg": ("number", "Widest field that keeps an error; empty: not asked."),

@@ -1,4 +1,4 @@
-"""Where things are told: addresses of pages and of their twins."""
+"""URLs of pages and of their JSON and CSV versions."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def architecture_page(detector: str, mask: str) -> str:
 
 
 def value_page(attribute: str, value: str) -> str:
-    """Return where a value of an attribute is told of: its page, or the studies that have it."""
+    """Return the page of a value of an attribute, or the list of studies with it."""
     if attribute in KINDS:
         return f"{KINDS[attribute]}/{quote(value, safe='')}"
     if attribute in {"model", "extractor"}:

@@ -1,4 +1,4 @@
-"""/: which sensor, which calibration; and /scatter, the picture of it by itself."""
+"""/: ranked sensors and calibrations; and /scatter, the plot alone."""
 
 from __future__ import annotations
 
@@ -37,33 +37,33 @@ SHOWN = (
 #: Names that the service takes and the page settles itself.
 PAGED = ("limit", "calibrations", "format", "fields")
 #: What errors are drawn against, and whether more of it is better.
-ACROSS = {"field": ("field of view, °", True), "poses": ("poses that its calibration needs", False)}
+ACROSS = {"field": ("field of view, °", True), "poses": ("calibration poses needed", False)}
 FIRST, MOST = 10, 500
 BOARD_ROWS = 8
 SORTS = (("advice", "Advice"), ("support", "Studies"), ("measured", "Measurement"))
 KINDS = (
-    ("advised", "The survey advises it"),
-    ("proposed", "Studies proposed it"),
+    ("advised", "Advised by the survey"),
+    ("proposed", "Used in studies"),
     ("measured", "Measured here"),
 )
 LIMIT_WORDS = {
     "max_error_deg": ("error at most", "°"),
     "min_fov_deg": ("field of view at least", "°"),
-    "min_availability": ("answered share at least", ""),
+    "min_availability": ("availability at least", ""),
     "max_latency_us": ("latency at most", " µs"),
-    "bench_deg": ("calibration bench good to", "°"),
-    "confidence": ("share of units and benches", ""),
+    "bench_deg": ("calibration bench error", "°"),
+    "confidence": ("confidence over units and benches", ""),
 }
 LIST_WORDS = {
-    "survive": "shall survive",
-    "properties": "extractor assessed as",
+    "survive": "must tolerate",
+    "properties": "extractor property",
     "exclude_needs": "without",
 }
 
 
 @router.page("/", twin="/answer")
 async def answer(known: Known, request: Request) -> View:
-    """Answer what the address asks, so that it reads without the page's script."""
+    """Render the answer to the requirements in the address, readable without JavaScript."""
     fields = request.query_params.multi_items()
     shown = {name: value for name, value in fields if name in SHOWN}
     try:
@@ -100,7 +100,7 @@ async def answer(known: Known, request: Request) -> View:
 
 @router.page("/scatter")
 async def scatter(known: Known, request: Request) -> View:
-    """Draw the scatter alone, for the page's script."""
+    """Render the scatter plot alone, for the page's script."""
     fields = request.query_params.multi_items()
     across = dict(fields).get("across", "field")
     told = await service.recommendations(known, _ask(fields))
@@ -139,7 +139,7 @@ def _nothing() -> Answer:
 
 
 def _parts(known: Knowledge) -> dict[str, Any]:
-    """Return what the page shows whatever is asked."""
+    """Return the parts of the page that do not depend on the requirements."""
     taxonomy = known.taxonomy.to_dict()
     return {
         "mapped": len(known.facts.studies),
@@ -154,7 +154,7 @@ def _parts(known: Knowledge) -> dict[str, Any]:
 
 
 def _clauses(asked: RequirementsQuery) -> list[str]:
-    """Return what is asked, in words."""
+    """Return the requirements in words."""
     given = asked.model_dump(exclude_defaults=True)
     clauses = []
     for name in ATTRIBUTES:
@@ -183,7 +183,7 @@ def _in_words(constraint: str) -> str:
 
 
 def _best_measured(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
-    """Return the architecture whose best calibration errs least over its field."""
+    """Return the architecture with the lowest measured error."""
     judged = [
         a
         for a in document["architectures"]

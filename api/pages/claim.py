@@ -1,4 +1,4 @@
-"""/claims and /claims/{id}: the survey's statements about algorithms, each with its trial."""
+"""/claims and /claims/{id}: statements of the survey about algorithms, each with its test."""
 
 from __future__ import annotations
 
@@ -19,18 +19,22 @@ router = PageRouter()
 
 EVERY = 500
 VERDICTS = {
-    "reproduced": "Measured, and it came out as said.",
-    "partly": "Some of what is said came out, some did not.",
-    "refuted": "Measured, and it came out otherwise: a finding, not a failure.",
-    "not testable here": "What it speaks of cannot be measured on simulated sensors.",
-    "not measured": "No trial has been run yet.",
+    "reproduced": "Reproduced: our measurement agrees with the statement.",
+    "partly": "Partly reproduced: some criteria hold, others do not.",
+    "refuted": "Refuted: our measurement contradicts the statement.",
+    "not testable here": "Not testable on simulated sensors.",
+    "not measured": "Not measured yet.",
 }
-STANDINGS = {"holds": "holds", "fails": "fails", "open": "open: the interval holds both"}
+STANDINGS = {
+    "holds": "holds",
+    "fails": "fails",
+    "open": "undecided: the interval includes the threshold",
+}
 
 
 @router.page("/claims")
 async def claims(known: Known, query: Annotated[ClaimsQuery, Query()]) -> View:
-    """Every claim that is wanted, with its verdict, and how many there are of each."""
+    """List the claims with their verdicts and the number of each verdict."""
     answer = await service.claims(known, query.model_copy(update={"limit": EVERY}))
     every = tally(known.measurements.claims.values())
     return View("claims.html", answer, asked=query, verdicts=VERDICTS, every=every)
@@ -38,7 +42,7 @@ async def claims(known: Known, query: Annotated[ClaimsQuery, Query()]) -> View:
 
 @router.page("/claims/{id}")
 async def claim(known: Known, id: Annotated[ClaimId, Path()]) -> View:  # noqa: A002 - as the service
-    """One claim: what was said, what decides, what came out, and its plot."""
+    """Show a claim: statement, criteria, results and plot."""
     answer = await service.claim(known, id)
     entries = known.measurements.claims
     ids = list(entries)
@@ -85,6 +89,6 @@ def _chart(document: Mapping[str, Any]) -> LineChart:
     spread = [x for line in drawn for x, _ in line.points]
     wide = bool(spread) and min(spread) > 0 and max(spread) / min(spread) > 20
     return LineChart(
-        drawn, across, document["up"] or "", f"What was measured for claim {document['id']}",
+        drawn, across, document["up"] or "", f"Measurements for claim {document['id']}",
         log_across=wide,
     )  # fmt: skip

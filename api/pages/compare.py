@@ -51,7 +51,7 @@ async def compare(known: Known, query: Annotated[CompareQuery, Query()], request
     items: list[Mapping[str, Any]] = document["items"]
     pipelines = bool(query.dataset)
     names = [
-        f"{i['extractor']} → {i['model']}" if pipelines else f"{i['detector']} + {i['mask']}"
+        f"{i['extractor']} + {i['model']}" if pipelines else f"{i['detector']} + {i['mask']}"
         for i in items
     ]
     built = [f"{row['detector']}{SEPARATOR}{row['mask']}" for row in best_built(known)]

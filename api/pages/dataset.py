@@ -1,4 +1,4 @@
-"""/datasets and /datasets/{name}: frames, card, board, error over the field, heat map."""
+"""/datasets and /datasets/{name}: readings, leaderboard, error over the field, description."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ async def dataset(
 
 def _field(board: Sequence[Mapping[str, Any]]) -> LineChart:
     best = [row for row in board if row["best_of_extractor"]][: boards.MOST_LINES]
-    named = [{**row, "name": f"{row['extractor']} → {row['model']}"} for row in best]
+    named = [{**row, "name": f"{row['extractor']} + {row['model']}"} for row in best]
     return boards.field_chart(named, "name")
 
 
@@ -121,7 +121,7 @@ def _curve(known: Knowledge, name: str) -> LineChart:
     rows = [row for row in known.measurements.curves if row["dataset"] == name]
     lines = [
         Line(
-            f"{row['extractor']} → {row['model']}",
+            f"{row['extractor']} + {row['model']}",
             [(point["poses"], point["middle_deg"]) for point in row["points"]],
             [
                 (p["poses"], p["least_deg"], p["largest_deg"])
@@ -133,7 +133,7 @@ def _curve(known: Knowledge, name: str) -> LineChart:
     ]
     return LineChart(
         lines,
-        "poses of the calibration",
+        "calibration poses",
         "RMS error, °",
         f"Error of the leaders on {name} against the number of calibration poses",
         log_across=True,

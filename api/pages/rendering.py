@@ -41,7 +41,7 @@ def environment() -> Environment:
     made.globals.update(
         navigation=NAVIGATION, sensor=sensor, glossary=terms.glossary(), **vars_of(addresses.GIVEN)
     )
-    made.filters.update(marked=mark_up, **vars_of(numbers.GIVEN), **vars_of(terms.GIVEN))
+    made.filters.update(mark_up=mark_up, **vars_of(numbers.GIVEN), **vars_of(terms.GIVEN))
     return made
 
 

@@ -1,4 +1,4 @@
-"""/search: everything that is told, by words."""
+"""/search: full-text search over all pages."""
 
 from __future__ import annotations
 

@@ -168,7 +168,7 @@ async def architecture(
     studies = [s.key for s in every if (detector, mask) in s.architectures]
     cards = [c for c in known.measurements.cards if (c["detector"], c["mask"]) == (detector, mask)]
     leaders = [
-        dict(row, name=f"{row['extractor']} → {row['model']}, {row['dataset']}")
+        dict(row, name=f"{row['extractor']} + {row['model']}, {row['dataset']}")
         for card in cards
         for row in boards.first_rows(known, card["name"])[:1]
     ]

@@ -1,12 +1,14 @@
-"""/studies and /studies/{key}: what the survey maps, and what of it runs here."""
+"""/studies and /studies/{key}: attributes of the studies and their implementation here."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from fastapi import Path, Query, Request
+from pydantic import Field
 
 from api.http.dependencies import Known
+from api.http.models.parameters import GIVEN
 from api.http.models.studies import StudiesQuery
 from api.http.models.words import StudyKey
 from api.http.routers import studies as told
@@ -22,7 +24,7 @@ router = PageRouter()
 
 NAMES = {
     "task": "Task",
-    "accuracy": "Class of accuracy",
+    "accuracy": "Accuracy class",
     "error": "Error addressed",
     "detector": "Detector",
     "mask": "Mask",
@@ -41,33 +43,46 @@ BASES = {
     "full-text": "the study's own text",
     "abstract": "the study's abstract or record",
     "title": "the study's title",
-    "inferred": "inferred from what else is known of the study",
-    "recalled": "recalled, not seen on a page",
+    "inferred": "inferred from other facts about the study",
+    "recalled": "recalled, not checked against a source",
     "unknown": "not known",
 }
 GRADES = {grade: f"{TALLIED[grade]}: {words}" for grade, words in IN_WORDS.items()}
 IDENTITIES = {
     "confirmed": "author, year and topic confirmed on a public page",
-    "recalled": "bibliographic data recalled, not seen on a page",
+    "recalled": "bibliographic data recalled, not checked against a source",
     "ambiguous": "more than one publication fits the key",
     "unknown": "no publication identified for the key",
 }
 FILTERS = ("detector", "mask", "model", "extractor", "task")
 EVERY = 500  # studies of one page
+FIRST = 15  # rows shown at first
+
+
+STEPS = ("format", "fields", "limit", "cursor", "sort", "safe")
+
+
+class StudiesPage(StudiesQuery):
+    """Filters of the list, and whether all rows are shown."""
+
+    rows: Annotated[Literal["first", "all"] | None, GIVEN] = Field(
+        None, description="The first rows of the list, or all."
+    )
 
 
 @router.page("/studies")
-async def studies(known: Known, query: Annotated[StudiesQuery, Query()], request: Request) -> View:
-    """Every study that meets the filters, with what it maps to and how near its run is to it."""
-    every = query.model_copy(update={"limit": EVERY})
+async def studies(known: Known, query: Annotated[StudiesPage, Query()], request: Request) -> View:
+    """List the studies that match the filters, with attributes and grade."""
+    every = StudiesQuery.model_validate(
+        {**query.model_dump(exclude={"rows"}, exclude_defaults=True), "limit": EVERY}
+    )
     answer = await told.studies(known, every)
     return View(
         "studies.html",
         answer,
         asked=query,
-        selection=query.model_dump(
-            exclude_defaults=True, exclude={"format", "fields", "limit", "cursor", "sort", "safe"}
-        ),
+        shown=answer.document["items"][: EVERY if query.rows == "all" else FIRST],
+        selection=query.model_dump(exclude_defaults=True, exclude={*STEPS, "rows"}),
         untitled=sum(not item["title"] for item in answer.document["items"]),
         filters={name: known.taxonomy.to_dict()[name] for name in FILTERS},
         names=NAMES,
@@ -80,7 +95,7 @@ async def studies(known: Known, query: Annotated[StudiesQuery, Query()], request
 
 @router.page("/studies/{key}")
 async def study(known: Known, key: Annotated[StudyKey, Path()]) -> View:
-    """One study: attributes with their basis, what it runs, reported beside measured."""
+    """Show a study: attributes with basis, implementation, reported and measured accuracy."""
     answer = await told.study(known, key)
     claims = [e.claim for e in known.measurements.claims.values() if key in e.claim.study]
     landing = landing_of_study(key, answer.document["doi"])

@@ -1,4 +1,4 @@
-/* What is asked, in one sentence whose parts can be taken out again, and what came of it. */
+/* The requirements as one sentence with removable parts, and a summary of the answer. */
 
 import { byId, copyable, h } from "./dom.js";
 import { address, saveCsv } from "./service.js";
@@ -51,18 +51,18 @@ export function showQuestion(vocabulary) {
       chip(value, `${words} ${value}`, () => setListed(list, value, false))), "and")]);
   }
   byId("question").replaceChildren(clauses.length
-    ? h("p", { class: "question" }, "Asked for: ", clauses.map((clause, i) => [clause, i < clauses.length - 1 ? ", " : "."]))
-    : h("p", { class: "muted" }, "Nothing is required yet: every architecture is shown. Choose requirements, or select a value in the flow."));
+    ? h("p", { class: "question" }, "Requirements: ", clauses.map((clause, i) => [clause, i < clauses.length - 1 ? ", " : "."]))
+    : h("p", { class: "muted" }, "No requirements yet: all architectures are shown. Choose requirements, or select a value in the decision flow."));
 }
 
 /** studies: how many are mapped in all. */
 export function showSummary(answer, studies) {
   const backing = new Set(answer.architectures.flatMap((a) => a.studies));
   const measured = answer.architectures.filter((a) => a.best.measured).length;
-  byId("summary").replaceChildren(...(answer.count === 0 ? [h("strong", {}, "0 architectures"), " meet all that is asked."] : [
+  byId("summary").replaceChildren(...(answer.count === 0 ? [h("strong", {}, "0 architectures"), " meet all requirements."] : [
     h("strong", {}, plural(answer.count, "architecture")), " with ",
-    h("strong", {}, plural(answer.designs, "calibration")), ", proposed by ",
-    h("strong", {}, studiesCount(backing.size)), ` of ${studies} mapped; `,
+    h("strong", {}, plural(answer.designs, "calibration")), ", used in ",
+    h("strong", {}, studiesCount(backing.size)), ` of ${studies}; `,
     h("strong", {}, String(measured)), " of the architectures measured here."]));
   const url = address("/v1/recommendations", { ...question(), ...MOST });
   byId("answer-links").replaceChildren(
@@ -79,18 +79,18 @@ export function commandLine(asked) {
   return ["sunatlas recommend", ...options].join(" ");
 }
 
-/** Where the kinds of evidence disagree, what the order costs, and what nobody has tried. */
+/** Contradictions between kinds of evidence, accuracy lost by the ranking, and untested conditions. */
 export function showFindings(answer) {
   const { contradictions, regret, untimed, untried } = answer;
   const best = regret?.ratio === 1;
   byId("findings").replaceChildren(...[
-    ...contradictions.map((text) => finding("Measurement against advice", sentence(text))),
-    regret && finding(best ? "What this order costs: nothing" : "What this order costs", sentence(regret.sentence),
+    ...contradictions.map((text) => finding("Measurement contradicts advice", sentence(text))),
+    regret && finding(`Accuracy lost by this ranking${best ? ": none" : ""}`, sentence(regret.sentence),
       !best && h("button", { type: "button", onclick: () => {
         show({ sort: "measured" });
         byId("architectures").focus();
-      } }, "Order by measurement")),
-    untimed > 0 && finding("Not timed", `${plural(untimed, "pipeline")} not timed on this machine; a limit on latency leaves them out. To time them run \`sunatlas leaderboard times\`, then start the service again.`),
+      } }, "Rank by measurement")),
+    untimed > 0 && finding("Not timed", `${plural(untimed, "pipeline")} without a time on this machine; the latency limit excludes them. Run \`sunatlas leaderboard times\`, then restart the service.`),
     ...Object.entries(untried).filter(([, pairs]) => pairs.length).map(([hazard, pairs]) => notTried(hazard, pairs)),
   ].filter(Boolean));
 }
@@ -99,26 +99,26 @@ const finding = (title, ...content) => h("div", { class: "finding" }, h("h2", {}
 
 function notTried(hazard, pairs) {
   const named = pairs.map(({ detector, mask }) => `${detector} + ${mask}`).join(", ");
-  const title = `Not tried: ${hazard}`;
-  const lead = `No data set tries ${hazard} on `;
-  if (pairs.length <= 4) return finding(title, `${lead}${named}; they are left out.`);
+  const title = `Not tested: ${hazard}`;
+  const lead = `No data set tests ${hazard} on `;
+  if (pairs.length <= 4) return finding(title, `${lead}${named}; the answer excludes them.`);
   return h("div", { class: "finding" }, h("h2", {}, title),
-    h("details", { class: "flow-links" }, h("summary", {}, `${lead}${plural(pairs.length, "architecture")}; they are left out.`), h("p", {}, `${named}.`)));
+    h("details", { class: "flow-links" }, h("summary", {}, `${lead}${plural(pairs.length, "architecture")}; the answer excludes them.`), h("p", {}, `${named}.`)));
 }
 
 /** Requirements as the form names them, where the service has their parameters. */
 function constraintWords(constraint) {
   const name = (key) => (key.startsWith("exclude_") ? `not that ${ATTRIBUTE_NAMES[key.slice(8)].toLowerCase()}`
     : (LIMIT_NAMES[key] ?? LIST_NAMES[key])?.words ?? ATTRIBUTE_NAMES[key]?.toLowerCase() ?? key);
-  return constraint ? constraint.split(/(\W+)/).map((part) => (/^\w+$/.test(part) ? name(part) : part)).join("") : "there are no designs at all";
+  return constraint ? constraint.split(/(\W+)/).map((part) => (/^\w+$/.test(part) ? name(part) : part)).join("") : "there are no designs";
 }
 
-/** Why nothing is left, and what would leave something. */
+/** Why no architecture meets the requirements, and which changes would help. */
 export function showBlocked(blocked, relax) {
   byId("blocked").replaceChildren(...(blocked ? [h("div", { class: "notice" },
     h("p", {}, h("strong", {}, "No architecture meets these requirements. "), sentence(blocked.detail)),
-    h("p", {}, "What leaves nothing: ", h("strong", { class: "culprit" }, constraintWords(blocked.constraint))),
-    blocked.relaxations.length > 0 && h("p", { id: "relax-title" }, "What would leave something:"),
+    h("p", {}, "Requirement that excludes all: ", h("strong", { class: "culprit" }, constraintWords(blocked.constraint))),
+    blocked.relaxations.length > 0 && h("p", { id: "relax-title" }, "Changes that give results:"),
     blocked.relaxations.length > 0 && h("div", { class: "relaxations", role: "group", "aria-labelledby": "relax-title" },
       blocked.relaxations.map((r) => h("button", {
         type: "button", class: "relaxation",

@@ -1,6 +1,6 @@
 /* The first level of the answer: architectures, each with its three kinds of evidence. */
 
-import { openedRow, pathway } from "./calibrations.js";
+import { openedRow, method } from "./calibrations.js";
 import { byId, h, segmented } from "./dom.js";
 import { sensor } from "./drawings.js";
 import { advisedContent, below, evidenceCell, finerContent, KINDS, measuredContent, notProposed, proposedContent } from "./evidence.js";
@@ -13,13 +13,13 @@ const NAMED = 2; // studies that a row names
 let all = false; // whether rows beyond the first are shown
 
 export function showSort() {
-  byId("sort-controls").replaceChildren(h("span", { class: "muted note" }, "Order by"),
-    segmented("Order by", "sort", SORTS, state.sort, (sort) => show({ sort })));
+  byId("sort-controls").replaceChildren(h("span", { class: "muted note" }, "Rank by"),
+    segmented("Rank by", "sort", SORTS, state.sort, (sort) => show({ sort })));
 }
 
 function tag({ task, studies, advised }) {
   const asked = standing("task", task) === "include";
-  const spoken = `${task}: ${studiesCount(studies)}${advised ? ", and the survey advises it" : ""}`;
+  const spoken = `${task}: ${studiesCount(studies)}${advised ? ", advised by the survey" : ""}`;
   return h("li", { class: `tag${advised ? " advised" : ""}${asked ? " asked" : ""}`, title: spoken },
     advised && h("span", { class: "mark", "aria-hidden": true }, "✓"), task,
     h("span", { class: "count", "aria-hidden": true }, String(studies)),
@@ -41,7 +41,7 @@ function row(architecture, known) {
       expand.setAttribute("aria-expanded", String(!detail.hidden));
     },
   }, plural(architecture.count, "calibration"));
-  const page = h("a", { class: "note", href: `/architectures/${encodeURIComponent(detector)}/${encodeURIComponent(mask)}` }, "All of it");
+  const page = h("a", { class: "note", href: `/architectures/${encodeURIComponent(detector)}/${encodeURIComponent(mask)}` }, "Details");
   return [h("tr", { role: "row", class: "architecture" },
     h("td", { role: "cell", class: "rank" }, String(rank)),
     h("td", { role: "cell", class: "design" },
@@ -49,12 +49,12 @@ function row(architecture, known) {
         h("strong", {}, value("detector", detector), " + ", value("mask", mask))),
       h("ul", { class: "tags" }, tasks.map(tag)),
       h("div", { class: "marks" }, expand, page, " ", architecture.contradiction && h("span", { class: "against", title: architecture.contradiction }, "literature contradicted"),
-      architecture.pareto && h("span", { class: "pareto-mark", title: "None has more studies and a smaller error" }, "Pareto")),
+      architecture.pareto && h("span", { class: "pareto-mark", title: "No other has both more studies and a lower error" }, "Pareto")),
       measures.filter(({ task }) => task !== "Accuracy").map(({ words }) => below(words))),
     evidenceCell("advised", advisedContent(advice)),
     evidenceCell("proposed", proposedContent(studies, NAMED)),
     evidenceCell("measured", measuredContent(best.measured), finerContent(best.measured),
-      best.measured && below(pathway(best), !best.studies.length && notProposed()))), detail];
+      best.measured && below(method(best), !best.studies.length && notProposed()))), detail];
 }
 
 export function showArchitectures(answer, known, fresh) {
@@ -62,7 +62,7 @@ export function showArchitectures(answer, known, fresh) {
   const body = byId("architectures-body");
   body.removeAttribute("aria-busy");
   if (answer.architectures.length === 0) {
-    body.replaceChildren(h("p", { class: "notice" }, "No architecture to rank: see above what would leave something."));
+    body.replaceChildren(h("p", { class: "notice" }, "No architecture to rank. Change a requirement."));
     return;
   }
   const shown = all ? answer.architectures : answer.architectures.slice(0, FIRST);

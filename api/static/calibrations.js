@@ -1,4 +1,4 @@
-/* The second level of the answer: how to calibrate an architecture, and the evidence of each way. */
+/* Calibrations of an architecture with their evidence. */
 
 import { byId, copyable, h, problemNotice } from "./dom.js";
 import { advisedContent, below, evidenceCell, KINDS, measuredContent, proposedContent, boardAddress } from "./evidence.js";
@@ -9,32 +9,29 @@ import { ATTRIBUTE_NAMES, degrees, JUDGED_ON, LIMIT_NAMES, LIST_NAMES, plural, q
 
 const NAMED = 4; // studies that a row names
 
-/** Extractor, compensations, model. */
-export function pathway({ extractor, compensations, model, measured }) {
-  // What the survey has no name for is ours, unless signals are taken as they are.
-  const ours = extractor === "None" && measured && !measured.extractor.startsWith("direct");
-  const first = ours
-    ? [h("a", { href: `/algorithms/${encodeURIComponent(measured.extractor)}` }, measured.extractor), " (ours)"]
-    : worded("extractor", extractor);
+/** Name of the method that was measured, and the survey's labels of its parts. */
+export function method({ extractor, compensations, model, measured }) {
+  const link = (name) => h("a", { href: `/algorithms/${encodeURIComponent(name)}` }, name);
   const asked = (attribute, name) => standing(attribute, name) === "include" && "asked";
-  return h("ol", { class: "pathway" },
-    h("li", {}, h("span", { class: asked("extractor", extractor) }, first)),
-    [...compensations, model].map((stage) => h("li", {}, h("span", { class: asked("model", stage) }, worded("model", stage)))));
+  return [measured && h("div", { class: "method" }, link(measured.extractor), " + ", link(measured.model)),
+    h("div", { class: measured ? "below" : "" }, "survey: ", h("ol", { class: "labels" },
+      h("li", { class: asked("extractor", extractor) }, worded("extractor", extractor)),
+      [...compensations, model].map((stage) => h("li", { class: asked("model", stage) }, worded("model", stage)))))];
 }
 
-/** On what each requirement was judged: "error, field of view on what is measured here". */
+/** Evidence of each requirement: "error, field of view by our measurements". */
 function judgedOn(basis) {
   const names = { ...LIMIT_NAMES, ...LIST_NAMES };
   const by = new Map();
   for (const [name, on] of Object.entries(basis)) {
     by.set(on, [...by.get(on) ?? [], names[name]?.subject ?? ATTRIBUTE_NAMES[name].toLowerCase()]);
   }
-  return [...by].map(([on, subjects]) => `${subjects.join(", ")} on ${JUDGED_ON[on]}`).join("; ");
+  return [...by].map(([on, subjects]) => `${subjects.join(", ")} by ${JUDGED_ON[on]}`).join("; ");
 }
 
 function elsewhere(others) {
   return others.length > 0 && below("also ", others.map((m, i) => [i > 0 && "; ", `${m.dataset} `,
-    h("a", { href: boardAddress(m) }, m.error_deg === null ? "answers too seldom" : degrees(m.error_deg)),
+    h("a", { href: boardAddress(m) }, m.error_deg === null ? "availability below 95 %" : degrees(m.error_deg)),
     m.error_deg !== null && m.field_deg !== null && ` over ${wide(m.field_deg)}`]));
 }
 
@@ -43,10 +40,9 @@ function calibrationRow(calibration, architecture, judged) {
   const advice = architecture.advice.filter((a) => advised.includes(a.id));
   return h("tr", { role: "row", class: "calibration" },
     h("td", { role: "cell", class: "rank" }, String(rank)),
-    h("td", { role: "cell", class: "design" }, pathway(calibration),
-      measured && below(`${measured.extractor} → ${measured.model}`),
-      rank === architecture.best.rank && measured && h("span", { class: "pareto-mark" }, "errs least"),
-      judged && below(`judged: ${judged}`)),
+    h("td", { role: "cell", class: "design" }, method(calibration),
+      rank === architecture.best.rank && measured && h("span", { class: "pareto-mark" }, "lowest error"),
+      judged && below(`checked: ${judged}`)),
     evidenceCell("advised", advisedContent(advice)),
     evidenceCell("proposed", proposedContent(studies, NAMED)),
     evidenceCell("measured", measuredContent(measured), elsewhere(calibration.other_datasets)));
@@ -57,15 +53,15 @@ function calibrationTable(architecture) {
   const listed = calibrations.some((c) => c.rank === best.rank) ? calibrations : [...calibrations, best];
   const judged = listed.map((c) => judgedOn(c.basis));
   const alike = judged.every((words) => words === judged[0]);
-  return [alike && judged[0] && h("p", { class: "muted note" }, `Judged: ${judged[0]}.`),
+  return [alike && judged[0] && h("p", { class: "muted note" }, `Requirements checked: ${judged[0]}.`),
     h("table", { class: "stacks calibrations", role: "table", "aria-label": `Calibrations of ${architecture.detector} + ${architecture.mask}` },
       h("thead", { role: "rowgroup" }, h("tr", { role: "row" },
-        [["rank", "Rank"], ["design", "Extractor → model"], ...KINDS.map(([kind, label]) => [`kind ${kind}`, label])].map(([kind, label]) =>
+        [["rank", "Rank"], ["design", "Method (survey labels)"], ...KINDS.map(([kind, label]) => [`kind ${kind}`, label])].map(([kind, label]) =>
           h("th", { scope: "col", role: "columnheader", class: kind }, label)))),
       h("tbody", { role: "rowgroup" }, listed.map((c, i) => calibrationRow(c, architecture, !alike && judged[i]))))];
 }
 
-/** The calibrations at hand, and a way to all of them. */
+/** First calibrations, with a button that loads all. */
 function calibrations(architecture) {
   const { detector, mask, count } = architecture;
   const place = h("div", { class: "calibrations-body" }, calibrationTable(architecture));
@@ -89,12 +85,12 @@ function calibrations(architecture) {
   return place;
 }
 
-/** What the survey's text advises in full: models and extractors by name. */
+/** Advice of the survey: models and extractors by name. */
 function adviceList(advice) {
   const by = new Map();
   for (const a of advice) {
     const what = `${a.requirement === "task" ? a.value : `class ${a.value}`}`;
-    const how = [a.model_category && `${a.model_category} model`, a.extractor].filter(Boolean).join(", ") || "whatever the calibration";
+    const how = [a.model_category && `${a.model_category} model`, a.extractor].filter(Boolean).join(", ") || "any calibration";
     const known = by.get(what) ?? { how: [], notes: new Set() };
     known.how.push(how);
     if (a.note) known.notes.add(a.note);
@@ -105,7 +101,7 @@ function adviceList(advice) {
 }
 
 function studyList(keys, studies) {
-  const disclosure = h("details", { class: "flow-links" }, h("summary", {}, `${studiesCount(keys.length)} proposed it, with the basis of each value`));
+  const disclosure = h("details", { class: "flow-links" }, h("summary", {}, `${studiesCount(keys.length)} used it, with the basis of each value`));
   disclosure.addEventListener("toggle", () => disclosure.append(
     h("ul", { class: "study-list" }, keys.map((key) => studyEntry(key, studies.get(key))))), { once: true });
   return disclosure;
@@ -120,17 +116,17 @@ function measureAgain({ measured }, studies, keys) {
         show({ dataset: measured.dataset, board_condition: measured.condition });
         byId("leaderboard").focus();
         byId("leaderboard").scrollIntoView();
-      } }, "Show in the leaderboard")),
+      } }, "Show in leaderboard")),
     key && h("p", {}, "Run a study: ", copyable(`sunatlas run ${key} --format json`, `the command that runs ${key}`)));
 }
 
-/** What a row of an architecture opens to. */
+/** Details of an architecture, shown when its row is opened. */
 export function openedRow(architecture, studies) {
   const { advice, contradiction, best, count, detector, mask, studies: keys } = architecture;
   return h("div", { class: "evidence" },
-    contradiction && h("p", { class: "contradiction" }, h("strong", {}, "Measurement against literature: "), sentence(contradiction)),
+    contradiction && h("p", { class: "contradiction" }, h("strong", {}, "Measurement contradicts literature: "), sentence(contradiction)),
     h("div", {}, h("h3", {}, `${plural(count, "calibration")} of ${detector} + ${mask}`), calibrations(architecture)),
-    advice.length > 0 && h("div", {}, h("h3", {}, "What the survey advises it for, and how calibrated"), adviceList(advice)),
+    advice.length > 0 && h("div", {}, h("h3", {}, "Advice of the survey"), adviceList(advice)),
     keys.length > 0 && studyList(keys, studies),
     measureAgain(best, studies, keys));
 }

@@ -1,4 +1,4 @@
-/* What pages gain with JavaScript: commands that copy at a press, terms that open at a tap. */
+/* With JavaScript: commands can be copied, terms open at a tap, links open the fold that holds their target. */
 
 import { copyable } from "./dom.js";
 import { tips } from "./terms.js";
@@ -7,6 +7,16 @@ for (const code of document.querySelectorAll(".copyable > code")) {
   code.parentElement.replaceWith(copyable(code.textContent, "this command"));
 }
 tips(document);
+
+/** Open the folded table that holds the row of the address. */
+function unfold() {
+  const fold = location.hash.length > 1 && document.getElementById(decodeURIComponent(location.hash.slice(1)))?.closest("details:not([open])");
+  if (!fold) return;
+  fold.open = true;
+  document.getElementById(decodeURIComponent(location.hash.slice(1))).scrollIntoView();
+}
+addEventListener("hashchange", unfold);
+unfold();
 
 // On a narrow screen the parts are a row that scrolls: the one that is open is in sight.
 document.querySelector(".masthead [aria-current]")?.scrollIntoView({ block: "nearest", inline: "center" });

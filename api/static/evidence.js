@@ -1,4 +1,4 @@
-/* Three kinds of evidence, each in a cell of its own: advised, proposed, measured. */
+/* Three kinds of evidence, a cell each: advised, used in studies, measured. */
 
 import { h } from "./dom.js";
 import { address } from "./service.js";
@@ -6,7 +6,7 @@ import { ATTRIBUTES, state } from "./state.js";
 import { degrees, number, percent, studiesCount, times, wide } from "./wording.js";
 
 export const KINDS = [
-  ["advised", "The survey advises it"], ["proposed", "Studies proposed it"], ["measured", "Measured here"],
+  ["advised", "Advised by the survey"], ["proposed", "Used in studies"], ["measured", "Measured here"],
 ];
 
 const OF_STUDIES = ["task", "error", "accuracy"];
@@ -31,7 +31,7 @@ export function advisedFor(advice) {
 }
 
 export function advisedContent(advice) {
-  if (!advice.length) return none(ATTRIBUTES.some((a) => ["task", "accuracy"].includes(a) && state.include[a].length) ? "not for what is asked" : "not advised");
+  if (!advice.length) return none(ATTRIBUTES.some((a) => ["task", "accuracy"].includes(a) && state.include[a].length) ? "not for these requirements" : "not advised");
   return [h("strong", {}, `for ${advisedFor(advice)}`), below("in ", [...new Set(advice.map((a) => a.section))].map((s, i) => [i > 0 && ", ", section(s)]))];
 }
 
@@ -44,43 +44,43 @@ export function proposedContent(keys, most) {
     below(keys.slice(0, most).map((key, i) => [i > 0 && ", ", studyLink(key)]), keys.length > most && ` and ${keys.length - most} more`)];
 }
 
-/** Said of what no study stands for; where studies are asked for, only of those. */
+/** Shown where no study, or no study that meets the requirements, used it. */
 export function notProposed() {
   return OF_STUDIES.some((a) => state.include[a].length || state.exclude[a].length)
-    ? h("span", { class: "novel", title: "No study that meets the requirements stands for it" }, "in no such study")
-    : h("span", { class: "novel", title: "No study stands for it" }, "not in the literature");
+    ? h("span", { class: "novel", title: "No study that meets the requirements used it" }, "in no study that meets the requirements")
+    : h("span", { class: "novel", title: "No study used it" }, "not in the literature");
 }
 
-/** Page of the board that a score stands on. */
+/** Page of the leaderboard of a score. */
 export function boardAddress({ dataset, condition }) {
   return `${address(`/datasets/${encodeURIComponent(dataset)}`, { condition })}#board`;
 }
 
-/** What errs far less on the part of the samples that it answers. */
+/** A pipeline below 95 % availability with less than a third of the error. */
 export function finerContent(m) {
   if (!m?.finer) return null;
   const { dataset, extractor, model, error_deg: error, availability } = m.finer;
   return h("div", { class: "below finer" }, h("strong", {},
-      h("a", { class: "term", href: "/glossary#term-finer", title: "far finer on the part it answers" }, "Far finer on the part it answers"), ": "),
-    h("a", { href: `/datasets/${encodeURIComponent(dataset)}#board`, title: "The board it stands on" }, degrees(error)),
-    ` on ${percent(availability)} of the samples (${extractor} → ${model})`);
+      h("a", { class: "term", href: "/glossary#term-finer", title: "lower error at lower availability" }, "Lower error at lower availability"), ": "),
+    h("a", { href: `/datasets/${encodeURIComponent(dataset)}#board`, title: "Leaderboard of this data set" }, degrees(error)),
+    ` at ${percent(availability)} (${extractor} + ${model})`);
 }
 
-/** The error, where it holds, and all that stands beside it. */
+/** RMS error with its field of view, data set, bound and availability. */
 export function measuredContent(m) {
   if (!m) return none("not measured");
   const { nominal, units } = m;
   const narrowed = m.error_deg !== nominal.rms_deg;
   return [
     m.error_deg === null
-      ? h("strong", {}, "answers too seldom")
-      : [h("strong", {}, h("a", { href: boardAddress(m), title: "The board it stands on" }, degrees(m.error_deg))),
-        h("span", {}, m.field_deg === null ? " over all its directions" : ` over ${wide(m.field_deg)}`)],
+      ? h("strong", {}, "availability below 95 %")
+      : [h("strong", {}, h("a", { href: boardAddress(m), title: "Leaderboard of this data set" }, degrees(m.error_deg))),
+        h("span", {}, m.field_deg === null ? " over all directions" : ` over ${wide(m.field_deg)}`)],
     below(`${m.dataset}, ${m.condition}`),
-    below(narrowed && (m.error_deg === null ? `nominal ${degrees(nominal.rms_deg)} where it answers, ` : `nominal ${degrees(nominal.rms_deg)}, `),
-      h("span", { title: `Nominal error over the whole field, over the Cramér–Rao bound of ${degrees(nominal.bound_deg)}` }, `${times(nominal.over_bound)} the bound`)),
-    below(`answers ${percent(m.availability)}`, units && units.count > 1 && `; ${units.count} units ${number(units.least_deg)}–${degrees(units.largest_deg)}`),
-    units && units.meeting !== null && below(`${units.meeting} of ${units.of} units meet it on a bench of ${degrees(m.bench_deg)}; own error ${degrees(m.own_deg)}`),
-    m.needs.length > 0 && below(`also reads ${m.needs.join(", ")}`),
+    below(narrowed && (m.error_deg === null ? `nominal ${degrees(nominal.rms_deg)} at that availability, ` : `nominal ${degrees(nominal.rms_deg)}, `),
+      h("span", { title: `Nominal error over the whole field, divided by the Cramér–Rao bound of ${degrees(nominal.bound_deg)}` }, `${times(nominal.over_bound)} the bound`)),
+    below(`availability ${percent(m.availability)}`, units && units.count > 1 && `; ${units.count} units ${number(units.least_deg)}–${degrees(units.largest_deg)}`),
+    units && units.meeting !== null && below(`${units.meeting} of ${units.of} units meet it with a calibration bench of ${degrees(m.bench_deg)}; own error ${degrees(m.own_deg)}`),
+    m.needs.length > 0 && below(`also needs ${m.needs.join(", ")}`),
   ];
 }

@@ -42,20 +42,20 @@ const wanting = (left) => left.map((l) => `${plural(l.count, "study", "studies")
 function noteOf(flow, answer, studies) {
   const parts = [];
   if (state.chart === "cross-analysis") {
-    parts.push("Studies behind the architectures of the answer, from task to feature extractor. Select a value to require it.");
+    parts.push("Studies of the architectures above, from task to feature extractor. Select a value to add it as a requirement.");
     if (answer.left_out?.length) {
-      parts.push(`On no path for want of a known value: ${wanting(answer.left_out)}.`);
+      parts.push(`Not shown, attribute unknown: ${wanting(answer.left_out)}.`);
     }
   } else {
     parts.push("Studies that have the required values.");
     const unheeded = ATTRIBUTES.some((a) => state.exclude[a].length) || LIMITS.some((l) => state.limits[l] !== "")
       || LISTS.some((l) => state.lists[l].length);
-    if (unheeded) parts.push("Excluded values, limits and what it shall survive apply to the cross-analysis only, not to this chart.");
-    if (flow.left_out?.length) parts.push(`Not drawn for want of a known value: ${wanting(flow.left_out)}.`);
+    if (unheeded) parts.push("Excluded values, limits and conditions to tolerate apply to the cross-analysis only.");
+    if (flow.left_out?.length) parts.push(`Not shown, attribute unknown: ${wanting(flow.left_out)}.`);
   }
   parts.push(state.counting === "fractional"
-    ? "Fractional: a study with several values is shared out, so that inflow equals outflow."
-    : `Each study counts once a value; one with several values is on several links (${studies} studies mapped).`);
+    ? "Fractional: a study with several values is divided among them, so that inflow equals outflow."
+    : `Each study counts once per value; a study with several values is on several links (${studies} studies).`);
   return parts.join(" ");
 }
 
@@ -121,7 +121,7 @@ export async function showFlow(answer, vocabulary, studies, signal) {
     if (turn !== drawing) return;
     byId("flow-note").textContent = noteOf(flow, answer, studies);
     if (flow.links.length === 0) {
-      clear(body, h("p", { class: "notice" }, "No study has all the values asked for, so there is no flow to draw."));
+      clear(body, h("p", { class: "notice" }, "No study has all required values."));
       return;
     }
     if (state.view === "table") {
@@ -151,7 +151,7 @@ function clear(body, ...content) {
 
 function diagram(body, flow, vocabulary) {
   const round = state.chart === "model-sunburst";
-  const description = `${CHARTS.find(([c]) => c === state.chart)[1]}: ${flow.levels.map(nameOf).join(", ")}. The same values stand in the table form.`;
+  const description = `${CHARTS.find(([c]) => c === state.chart)[1]}: ${flow.levels.map(nameOf).join(", ")}. The table view has the same values.`;
   let picture = body.querySelector(round ? ".diagram.round" : ".diagram:not(.round)");
   if (!picture) {
     picture = h("div", { class: round ? "diagram round" : "diagram", role: "img" });

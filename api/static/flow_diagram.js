@@ -30,7 +30,7 @@ export function drawSankey(container, flow, required, choose) {
     svg("g", { transform: "translate(0 8)" },
       places.links.map(({ link, path, width: wide }) => svg("path", {
         class: sun(link.source) || sun(link.target) ? "sankey-link required" : "sankey-link", d: path, "stroke-width": wide,
-      }, svg("title", {}, `${known.get(link.source).value} → ${known.get(link.target).value}: ${amount(link.value)}, ${listed(link.studies)}`))),
+      }, svg("title", {}, `${known.get(link.source).value} to ${known.get(link.target).value}: ${amount(link.value)}, ${listed(link.studies)}`))),
       places.nodes.map(({ node, x, y, height: tall }) => svg("g", {
         class: required(node) ? "sankey-node required" : "sankey-node", onclick: () => choose(node),
       }, svg("title", {}, `${node.name}: ${told(node.studies)}`),

@@ -1,4 +1,4 @@
-/* How the board stands to what is asked: which limits its pipelines meet, which cannot be judged there. */
+/* Requirements checked on a leaderboard: which its pipelines meet, which cannot be checked there. */
 
 import { h } from "./dom.js";
 import { state } from "./state.js";
@@ -10,49 +10,49 @@ function error(rows, limit, card) {
   const asked = Number(state.limits.min_fov_deg) || null;
   const half = rows.find((r) => r.half_fov_deg !== null)?.half_fov_deg ?? null;
   const over = asked && half !== null && asked < 2 * half
-    ? " (over the whole field here; the answer judges the part that is asked for)" : "";
+    ? " (over the whole field here; the answer uses the required field of view)" : "";
   const scored = rows.filter((r) => r.rms_deg !== null);
-  if (!scored.length) return `cannot be judged: nothing has an error on ${card.name} under this condition`;
-  return `${share(rows, (r) => r.rms_deg !== null && r.rms_deg <= limit)} err no more${over}`;
+  if (!scored.length) return `cannot be checked: no pipeline is scored on ${card.name} under this condition`;
+  return `${share(rows, (r) => r.rms_deg !== null && r.rms_deg <= limit)} meet it${over}`;
 }
 
 function field(rows, limit) {
   const half = rows.find((r) => r.half_fov_deg !== null)?.half_fov_deg ?? null;
   if (half === null) return "met: this sensor sees all directions";
-  return 2 * half >= limit ? `met: this sensor’s field is ${wide(2 * half)}` : `not met: this sensor’s field is ${wide(2 * half)}`;
+  return 2 * half >= limit ? `met: its field of view is ${wide(2 * half)}` : `not met: its field of view is ${wide(2 * half)}`;
 }
 
 function availability(rows, limit) {
   const known = rows.filter((r) => r.availability !== null);
-  return known.length ? `${share(rows, (r) => r.availability !== null && r.availability >= limit)} answer that often`
-    : "cannot be judged: no pipeline has an answered share under this condition";
+  return known.length ? `${share(rows, (r) => r.availability !== null && r.availability >= limit)} meet it`
+    : "cannot be checked: no pipeline has an availability under this condition";
 }
 
 function latency(rows, limit) {
   const timed = rows.filter((r) => r.latency_us !== null && r.latency_us !== undefined);
-  return timed.length ? `${share(rows, (r) => timed.includes(r) && r.latency_us <= limit)} are that quick`
-    : "cannot be judged: no pipeline has been timed on this machine; run `sunatlas leaderboard times`, then start the service again";
+  return timed.length ? `${share(rows, (r) => timed.includes(r) && r.latency_us <= limit)} meet it`
+    : "cannot be checked: no times on this machine; run `sunatlas leaderboard times`, then restart the service";
 }
 
 const JUDGES = { max_error_deg: error, min_fov_deg: field, min_availability: availability, max_latency_us: latency };
 const WORDS = {
   max_error_deg: "Error at most", min_fov_deg: "Field of view at least",
-  min_availability: "Answered at least", max_latency_us: "Latency at most",
+  min_availability: "Availability at least", max_latency_us: "Latency at most",
 };
 
-/** A list of every limit asked for and how this board stands to it; nothing where none is. */
+/** List the requirements with the number of pipelines that meet each; empty without requirements. */
 export function judged({ rows, card, condition }) {
   const limits = Object.keys(JUDGES).filter((name) => state.limits[name] !== "");
   const hazards = state.lists.survive;
   if (!limits.length && !hazards.length) return "";
-  return h("div", { class: "finding judged" }, h("h3", {}, `What is asked, on ${card.name} under “${condition}”`),
+  return h("div", { class: "finding judged" }, h("h3", {}, `Requirements on ${card.name}, ${condition}`),
     h("ul", { class: "bullets" },
       limits.map((name) => h("li", {}, `${WORDS[name]} ${limitText(name, state.limits[name])}: ${JUDGES[name](rows, Number(state.limits[name]), card)}.`)),
-      hazards.map((hazard) => h("li", {}, `Shall survive ${hazard}: ${survived(hazard, condition, card)}.`))));
+      hazards.map((hazard) => h("li", {}, `Must tolerate ${hazard}: ${survived(hazard, condition, card)}.`))));
 }
 
 function survived(hazard, condition, card) {
-  if (condition.includes(hazard)) return "this is its condition";
+  if (condition.includes(hazard)) return "tested by this condition";
   const there = card.conditions.some((c) => c.includes(hazard));
-  return `cannot be judged under this condition, which does not try it; ${there ? "another condition of this data set does" : "of this data set no condition has its name"}`;
+  return `not tested by this condition; ${there ? "another condition of this data set tests it" : "no condition of this data set tests it"}`;
 }

@@ -1,4 +1,4 @@
-/* The leaderboard: every pipeline on a data set, against the physical bound. */
+/* Leaderboard of a data set: every pipeline, with the Cramér–Rao bound. */
 
 import { byId, choice, coded, copyable, h, problemNotice } from "./dom.js";
 import { judged } from "./judged.js";
@@ -6,37 +6,37 @@ import { address, getAll, getJson, saveCsv } from "./service.js";
 import { show, state } from "./state.js";
 import { degrees, number, percent, plural, studiesCount, times } from "./wording.js";
 
-const RANK = { field: "rank", name: "Rank", write: (rank, row) => (rank === null ? "–" : `${rank}${row.tied ? "=" : ""}`), title: "By own error; pipelines that answer less than 95 % come behind all others. 2= shares its rank: a paired test over sensor units does not tell them apart" };
+const RANK = { field: "rank", name: "Rank", write: (rank, row) => (rank === null ? "–" : `${rank}${row.tied ? "=" : ""}`), title: "By own error; pipelines below 95 % availability rank last. 2= is a tie: a paired test over sensor units cannot separate the pipelines" };
 const NAMES = [{ field: "extractor", name: "Extractor", text: true }, { field: "model", name: "Model", text: true, write: studies }];
 const ERROR = { field: "own_deg", name: "Own error", write: (value, row) => [degrees(value), units(row)], title: "RMS error calibrated with true directions, geometric mean over sensor units" };
 const BENCH = { field: "on_bench_deg", name: "On a bench", write: degrees, title: "Error expected when calibrated on the standard bench" };
 const BOUND = {
-  field: "over_bound", name: "× bound", title: "RMS error over the Cramér–Rao bound of the same samples, the unit known",
+  field: "over_bound", name: "× bound", title: "RMS error divided by the Cramér–Rao bound of the same samples for a known sensor unit",
   write: times,
 };
 const ANSWERED = {
-  field: "availability", name: "Answered", title: "Share of the samples whose direction is observable; false Suns: answered share of the others, such as those in eclipse",
-  write: (share, row) => [percent(share), row.false_sun > 0 && h("div", { class: "below" }, `${percent(row.false_sun)} false Suns`)],
+  field: "availability", name: "Availability", title: "Share of observable samples with an answer. False detections: share of the other samples with an answer, such as those in eclipse",
+  write: (share, row) => [percent(share), row.false_sun > 0 && h("div", { class: "below" }, `${percent(row.false_sun)} false detections`)],
 };
-const TIME = { field: "time_ratio", name: "Time", write: times, title: "Time of extraction and prediction on this machine over that of a reference on the same observations" };
+const TIME = { field: "time_ratio", name: "Time", write: times, title: "Time of extraction and prediction on this machine, divided by that of a reference method" };
 const WHOLE = "";
 const FIELDS = [10, 20, 30, 40, 50, 60, 70, 90, 180];
 
-/** How many mapped studies used a pipeline on such a sensor. */
+/** Number of studies that used a pipeline on such a sensor. */
 function studies(row) {
-  return row.studies.length > 0 && h("div", { class: "below", title: `Used on such a sensor by ${row.studies.join(", ")}, or standing in for what they used` }, studiesCount(row.studies.length));
+  return row.studies.length > 0 && h("div", { class: "below", title: `Used on such a sensor by ${row.studies.join(", ")}, or the nearest method to theirs` }, studiesCount(row.studies.length));
 }
 
-/** The columns that say something of what is shown. */
+/** Columns that have values in the rows shown. */
 function columns() {
   const { rows, field } = shown;
   const errors = field === WHOLE ? [ERROR, ...(rows.some((r) => r.on_bench_deg > 0) ? [BENCH] : []), BOUND]
-    : [{ field: "field_rms_deg", name: `RMS within ${field}°`, write: degrees, title: "Rings of the field count by their solid angle" }, ERROR];
+    : [{ field: "field_rms_deg", name: `RMS within ${field}°`, write: degrees, title: "Weighted by the solid angle of each ring of the field" }, ERROR];
   return [RANK, ...NAMES, ...errors, ANSWERED, ...(rows.some((r) => r.time_ratio > 0) ? [TIME] : [])];
 }
 
 /** Smallest and largest error of the units a pipeline was scored on. */
-const units = (row) => row.low_deg > 0 && h("div", { class: "below", title: `On ${row.unit_rms_deg.length} units built alike` },
+const units = (row) => row.low_deg > 0 && h("div", { class: "below", title: `On ${row.unit_rms_deg.length} sensor units` },
   `${number(row.low_deg)}–${degrees(row.high_deg)}`);
 const errorOf = (row) => (row.field_deg ? row.field_rms_deg : row.own_deg);
 
@@ -47,7 +47,7 @@ const MOST_ENTRIES = 8; // of a list of lists, such as the apertures of a mask
 let shown = null; // what the rows on screen belong to
 let turn = 0;
 
-/** What stands beside an error on the scale: over the whole field only. */
+/** Bound and range over units, for errors over the whole field. */
 const limits = (row) => (row.field_deg ? [] : [row.bound_deg, row.low_deg, row.high_deg]);
 
 /** A logarithmic scale that all rows share: position of a number from 0 to 1, and its ticks. */
@@ -162,7 +162,7 @@ function cardParts(card, condition, url) {
     h("img", { class: "preview", src: card.preview, width: 1000, alt: `Nominal samples of ${card.name}: ${card.observation}` }),
     h("dl", { class: "facts card-facts" }, facts.filter(([name]) => !name.endsWith(".type")).map(([name, value]) =>
       h("div", {}, h("dt", {}, name), h("dd", {}, value)))),
-    h("p", { class: "links" }, h("a", { href: url }, `Card of ${card.name} (JSON)`))];
+    h("p", { class: "links" }, h("a", { href: url }, `Description of ${card.name} (JSON)`))];
 }
 
 /** The whole card, asked for when it is opened. */
@@ -170,7 +170,7 @@ function cardOf(card, condition) {
   const url = `/v1/datasets/${encodeURIComponent(card.name)}`;
   const body = h("div", {});
   const load = async () => {
-    body.replaceChildren(h("p", { class: "loading" }, "Loading the card…"));
+    body.replaceChildren(h("p", { class: "loading" }, "Loading the description…"));
     try {
       body.replaceChildren(...cardParts(await getJson(url), condition, url));
     } catch (problem) {
@@ -180,7 +180,7 @@ function cardOf(card, condition) {
   return h("details", {
     class: "flow-links",
     ontoggle: (event) => { if (event.target.open && !body.firstChild) load(); },
-  }, h("summary", {}, `Card of ${card.name}: a picture, and everything its numbers depend on`), body);
+  }, h("summary", {}, `Description of ${card.name}: a picture and all parameters`), body);
 }
 
 function draw() {
@@ -193,32 +193,32 @@ function draw() {
   const url = address(`/v1/leaderboard/${encodeURIComponent(dataset)}`, { condition, field_deg: field || null, limit: 500 });
   byId("board-card").replaceChildren(h("div", { class: "dataset-card" },
     card && h("p", {}, coded(card.description)),
-    card?.stands_for?.idealisation && h("p", {}, h("strong", {}, "An idealisation"), `: ${card.stands_for.idealisation}`),
+    card?.stands_for?.idealisation && h("p", {}, h("strong", {}, "Idealised sensor"), `: ${card.stands_for.idealisation}`),
     card?.setups?.[condition]?.description && h("p", {}, h("strong", {}, condition), ": ", coded(card.setups[condition].description)),
     h("p", { class: "bound-line" }, "Cramér–Rao bound: ", h("strong", {}, degrees(bound)), " RMS",
-      unknown && [" · with the unit known by its flat and dark readings ", h("strong", {}, degrees(unknown.bound_unit_deg))],
-      card && [` · version ${card.version}`, card.follows?.length > 0 && [" · follows ", card.follows.map((k, i) => [i > 0 && ", ", h("a", { href: `/studies/${encodeURIComponent(k)}` }, k)])]]),
-    h("div", { class: "links" }, h("a", { href: `/datasets/${encodeURIComponent(dataset)}?condition=${encodeURIComponent(condition)}` }, "All of this data set"), h("a", { href: url }, "JSON"),
+      unknown && [" · for a unit known only through its dark and flat frames ", h("strong", {}, degrees(unknown.bound_unit_deg))],
+      card && [` · version ${card.version}`, card.follows?.length > 0 && [" · based on ", card.follows.map((k, i) => [i > 0 && ", ", h("a", { href: `/studies/${encodeURIComponent(k)}` }, k)])]]),
+    h("div", { class: "links" }, h("a", { href: `/datasets/${encodeURIComponent(dataset)}?condition=${encodeURIComponent(condition)}` }, "Data set page"), h("a", { href: url }, "JSON"),
       h("button", { type: "button", onclick: () => saveCsv(url, `${dataset}-${condition}.csv`) }, "CSV"),
-      card?.follows?.[0] && copyable(`sunatlas run ${card.follows[0]} --format json`, "the command that runs the study it follows")),
+      card?.follows?.[0] && copyable(`sunatlas run ${card.follows[0]} --format json`, "the command that runs the study it is based on")),
     card && cardOf(card, condition)));
   byId("board-judged").replaceChildren(judged(shown));
   const body = byId("board-body");
   const listed = sorted(rows).slice(0, shown.all ? rows.length : FIRST);
   if (!rows.length) {
-    body.replaceChildren(h("div", { class: "notice" }, h("p", {}, "No pipeline is scored on this data set in this condition yet. ",
-      h("code", {}, "sunatlas leaderboard update"), " computes what is missing.")));
+    body.replaceChildren(h("div", { class: "notice" }, h("p", {}, "No pipeline is scored on this data set under this condition yet. ",
+      h("code", {}, "sunatlas leaderboard update"), " measures the missing scores.")));
     return;
   }
   body.replaceChildren(
     h("div", { class: "legend" },
       h("span", {}, h("i", { class: "key-dot" }), field === WHOLE ? "RMS error, on a logarithmic scale" : `RMS error within ${field}° of the boresight, on a logarithmic scale`),
       field === WHOLE && h("span", {}, h("i", { class: "key-limit" }), "Cramér–Rao bound"),
-      field === WHOLE && ranged && h("span", {}, h("i", { class: "key-units" }), "range over sensor units; = marks a rank that a paired test over them does not tell apart"),
-      field !== WHOLE && rows[0].half_fov_deg !== null && rows[0].half_fov_deg < Number(field) && h("span", {}, `The sensor’s own field ends at ${degrees(rows[0].half_fov_deg)}`),
-      field === WHOLE && !ranged && h("span", {}, "Ranks of this condition rest on one unit of the sensor"),
-      asListed() && h("span", {}, "The best pipeline of each extractor first, the others behind"),
-      shownColumns.includes(TIME) && h("span", {}, "Time: over that of a reference on the same observations")),
+      field === WHOLE && ranged && h("span", {}, h("i", { class: "key-units" }), "range over sensor units; = marks a tie in a paired test over them"),
+      field !== WHOLE && rows[0].half_fov_deg !== null && rows[0].half_fov_deg < Number(field) && h("span", {}, `The field of view of this sensor ends at ${degrees(rows[0].half_fov_deg)}`),
+      field === WHOLE && !ranged && h("span", {}, "Ranks of this condition are from one sensor unit"),
+      asListed() && h("span", {}, "The best pipeline of each extractor first, then the others"),
+      shownColumns.includes(TIME) && h("span", {}, "Time: relative to a reference method")),
     h("div", { class: "sort-narrow" }, choice("Sort by", "sort-narrow", shownColumns.map((c) => [c.field, c.name]), state.board_sort, (field) => show({ board_sort: field, board_order: "ascending" }))),
     h("table", { class: "stacks board", role: "table", "aria-labelledby": "leaderboard-title" },
       h("thead", { role: "rowgroup" }, h("tr", { role: "row" }, shownColumns.map(heading),

@@ -72,7 +72,7 @@ async function ask() {
     for (const id of ["answer-links", "findings"]) byId(id).replaceChildren();
     byId("blocked").replaceChildren(problemNotice(problem, ask));
     for (const id of BODIES) {
-      byId(id).replaceChildren(h("p", { class: "muted" }, "Nothing to show: the question was not answered."));
+      byId(id).replaceChildren(h("p", { class: "muted" }, "No answer: the request failed."));
       byId(id).removeAttribute("aria-busy");
       byId(id).classList.remove("stale");
     }

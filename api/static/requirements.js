@@ -81,7 +81,7 @@ function listGroup(list, entries) {
   const chosen = h("span", { class: "chosen" });
   updates.push(() => {
     const asked = state.lists[list];
-    chosen.textContent = asked.length ? asked.join(", ") : "nothing asked";
+    chosen.textContent = asked.length ? asked.join(", ") : "any";
     chosen.classList.toggle("set", asked.length > 0);
   });
   const item = ([value, words]) => {

@@ -1,4 +1,4 @@
-/* A study as evidence: bibliography, how much of it runs here, and the basis of every value. */
+/* A study as evidence: bibliography, implementation, and the basis of every value. */
 
 import { copyable, h, problemNotice } from "./dom.js";
 import { getOnce } from "./service.js";
@@ -17,7 +17,7 @@ function links(study) {
   return h("p", { class: "links" },
     known(study.doi) && h("a", { href: `https://doi.org/${study.doi}`, rel: "noreferrer" }, `doi:${study.doi}`),
     !known(study.doi) && /^https?:/.test(study.url ?? "") && h("a", { href: study.url, rel: "noreferrer" }, "Record"),
-    h("a", { href: record }, "All of it"),
+    h("a", { href: record }, "Details"),
     h("span", { class: "state", title: IDENTITIES[study.identity] }, `identity ${study.identity}`),
     h("span", { class: "state", title: study.sentence }, study.grade === "none" ? "cannot run" : study.grade));
 }
@@ -28,11 +28,11 @@ function source(text) {
   return /^https?:\/\//.test(text) ? h("a", { href: text, rel: "noreferrer" }, new URL(text).hostname) : text;
 }
 
-/** "data set (condition) error", or why there is none. */
+/** "data set (condition) error", or the reason for none. */
 function measured(score) {
   const at = `${score.dataset} (${score.condition})`;
   if (score.rms_deg !== null) return `${at} ${Number(score.rms_deg.toPrecision(3))} deg`;
-  return `${at} ${score.status === null ? "not measured yet" : "without an error"}`;
+  return `${at} ${score.status === null ? "not measured yet" : "no error"}`;
 }
 
 function provenance(detail) {
@@ -42,7 +42,7 @@ function provenance(detail) {
   const cell = (label, ...content) => h("td", { role: "cell", "data-label": label }, h("span", {}, ...content));
   return h("div", { class: "provenance" },
     h("table", { class: "stacks", role: "table" },
-      h("caption", {}, `Where each value of ${detail.key} comes from`),
+      h("caption", {}, `Sources of the values of ${detail.key}`),
       h("thead", { role: "rowgroup" }, h("tr", { role: "row" }, ["Attribute", "Value", "Basis", "Source", "Note"].map((t) => h("th", { scope: "col", role: "columnheader" }, t)))),
       h("tbody", { role: "rowgroup" }, values.map((v) => h("tr", { role: "row" },
         cell("Attribute", ATTRIBUTE_NAMES[v.attribute] ?? v.attribute),
@@ -52,14 +52,14 @@ function provenance(detail) {
         cell("Note", v.note ?? ""))))),
     h("p", {}, reported.length
       ? `Reported by the study of its own sensor: ${reported.join(", ")}.`
-      : "No accuracy or precision is known that the study reports of its own sensor."),
-    detail.pipelines.length > 0 && h("div", {}, h("p", {}, "Runs here, with the error measured on each simulated sensor, as"),
+      : "No reported accuracy or precision known."),
+    detail.pipelines.length > 0 && h("div", {}, h("p", {}, "Implementation in the Atlas, with errors on simulated sensors:"),
       h("ul", {}, detail.pipelines.slice(0, 12).map((p) => h("li", {},
-        `${p.detector} · ${p.mask} · ${p.extractor} → ${p.model}: ${p.scores.map(measured).join(", ")}`,
+        `${p.detector} · ${p.mask} · ${p.extractor} + ${p.model}: ${p.scores.map(measured).join(", ")}`,
         ...Object.entries(p.assumed).map(([part, rule]) => h("p", { class: "note" },
           `${ATTRIBUTE_NAMES[part] ?? part} ${p.basis[part]}: ${rule}`))))),
       copyable(`sunatlas run ${detail.key} --format json`, `the command that runs ${detail.key}`)),
-    detail.gaps.length > 0 && h("div", {}, h("p", {}, "Not run here"),
+    detail.gaps.length > 0 && h("div", {}, h("p", {}, "Not implemented"),
       h("ul", {}, detail.gaps.map((g) => h("li", {}, `${ATTRIBUTE_NAMES[g.attribute] ?? g.attribute}${known(g.value) ? ` ${g.value}` : ""}: ${g.reason}`)))));
 }
 

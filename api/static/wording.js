@@ -12,35 +12,35 @@ export const ATTRIBUTE_NAMES = {
 export const LIMIT_NAMES = {
   max_error_deg: { name: "Error at most", unit: "°", words: "error at most", subject: "error" },
   min_fov_deg: { name: "Field of view at least", unit: "°", words: "field of view at least", subject: "field of view" },
-  min_availability: { name: "Answered at least", unit: "%", words: "answered at least", subject: "answered share", smaller: 100 },
+  min_availability: { name: "Availability at least", unit: "%", words: "availability at least", subject: "availability", smaller: 100 },
   max_latency_us: { name: "Latency at most", unit: "µs", words: "latency at most", subject: "latency" },
-  bench_deg: { name: "Calibration bench good to", unit: "°", words: "calibration bench good to", subject: "calibration bench" },
-  confidence: { name: "Share of units and benches", unit: "%", words: "share of units and benches", subject: "confidence", smaller: 100 },
+  bench_deg: { name: "Calibration bench error", unit: "°", words: "calibration bench error", subject: "calibration bench" },
+  confidence: { name: "Confidence", unit: "%", words: "confidence over units and benches", subject: "confidence", smaller: 100 },
 };
 
 export const LIST_NAMES = {
-  survive: { name: "Shall survive", words: "shall survive", subject: "surviving" },
-  properties: { name: "Extractor assessed", words: "extractor assessed as", subject: "properties of the extractor" },
-  exclude_needs: { name: "Without", words: "without", subject: "what a calibration reads beside the sensor" },
+  survive: { name: "Must tolerate", words: "must tolerate", subject: "conditions to tolerate" },
+  properties: { name: "Extractor property", words: "extractor property", subject: "extractor properties" },
+  exclude_needs: { name: "Without", words: "without", subject: "additional inputs" },
 };
 
-/** What a calibration may read beside the sensor. */
+/** Inputs that a calibration may need besides the sensor readings. */
 export const NEEDS = {
   rates: "body rates of a gyroscope", time: "time of each sample", temperature: "sensor temperature",
   nadir: "direction to the Earth", "magnetic-field": "magnetometer", almanac: "the Sun's direction in inertial space",
   eclipse: "whether it is in eclipse", "albedo-flag": "whether the Earth is lit",
 };
 
-/** What a sensor may have to survive, as the service names it, and in words. */
+/** Conditions that a sensor may have to tolerate: name in the API, and in words. */
 export const HAZARDS = {
   albedo: "Earth's albedo, with clouds",
   "missing-apertures": "closed or dirty apertures",
   ageing: "end of life, dead pixels",
   temperature: "hot and cold",
-  misalignment: "turned or shifted in its mount",
+  misalignment: "rotated or shifted in its mount",
   glare: "glare, ghosts, stray light",
   saturation: "over-exposure",
-  spin: "turning during the exposure",
+  spin: "rotation during the exposure",
   noise: "ten times the noise",
 };
 
@@ -53,12 +53,12 @@ export const PROPERTIES = [
   "Robust to noise", "Noise level agnostic", "Robust to missing features",
 ];
 
-/** What an answer is ordered by first. */
+/** Rankings of an answer. */
 export const SORTS = [["advice", "Advice"], ["support", "Studies"], ["measured", "Measurement"]];
 
-/** On what a requirement was judged. */
+/** Evidence by which a requirement was checked. */
 export const JUDGED_ON = {
-  measured: "what is measured here", stated: "what studies state", studies: "its studies",
+  measured: "our measurements", stated: "values stated in studies", studies: "its studies",
   advised: "the survey's advice", assessed: "the survey's assessment",
 };
 
@@ -69,14 +69,14 @@ export const BASES = {
   "full-text": "the study's own text",
   abstract: "the study's abstract or record",
   title: "the study's title",
-  inferred: "inferred from what else is known of the study",
-  recalled: "recalled, not seen on a page",
+  inferred: "inferred from other facts about the study",
+  recalled: "recalled, not checked against a source",
   unknown: "not known",
 };
 
 export const IDENTITIES = {
   confirmed: "author, year and topic confirmed on a public page",
-  recalled: "bibliographic data recalled, not seen on a page",
+  recalled: "bibliographic data recalled, not checked against a source",
   ambiguous: "more than one publication fits the key",
   unknown: "no publication identified for the key",
 };

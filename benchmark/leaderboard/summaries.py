@@ -11,14 +11,13 @@ Row = Mapping[str, Any]
 
 #: What the table of architectures shows, and how sure it is.
 ARCHITECTURES = (
-    "The best pipeline of each architecture (a detector and a mask) under the nominal condition, "
-    "of its data sets the one with the smallest error. Own error: calibrated with true directions, "
-    "the geometric mean over sensor units, ± its standard error. Quoted: the error on the odd "
-    "units of what errs least on the even ones. On a bench: expected when calibrated on the "
-    "standard bench. × bound: RMS error over the Cramer-Rao bound on the standard unit. = marks a "
-    "pipeline whose runner-up a paired test over the units does not tell apart; group is how many "
-    "it does not. Pipelines that err far less but answer fewer than 95 % of the samples stand in "
-    "brackets with the share that they answer."
+    "The best pipeline of each architecture (a detector and a mask) under nominal conditions, on "
+    "its data set with the smallest error. Own error: calibrated with true directions, geometric "
+    "mean over sensor units ± standard error. Quoted: the pipeline is chosen on even units, its "
+    "error given on odd ones. On a bench: expected with the standard calibration bench. × bound: "
+    "RMS error divided by the Cramer-Rao bound on the standard unit. = marks a tie with the "
+    "runner-up in a paired test over the units; group is the number of tied pipelines. Pipelines "
+    "with a lower error but below 95 % availability are listed in brackets."
 )
 
 _HEADINGS = {
@@ -40,13 +39,13 @@ def best_per_architecture_table(rows: Iterable[Row]) -> str:
 
 
 def tally(rows: Sequence[Row]) -> str:
-    """Say in a sentence how near the bound the best pipelines come, and how many are ties."""
+    """Count architectures whose best pipeline is near the bound, and ties."""
     near = (
         f"{sum((row['over_bound'] or limit + 1) <= limit for row in rows)} within {limit:g}"
         for limit in WITHIN
     )
     ties = sum(row["tie"] for row in rows)
-    return f"Of {len(rows)} architectures {', '.join(near)} times the bound; {ties} are ties."
+    return f"Of {len(rows)} architectures, {', '.join(near)} times the bound; {ties} are ties."
 
 
 def overview_tables(document: Mapping[str, Any]) -> str:
@@ -89,12 +88,12 @@ def _architecture(row: Row) -> Sequence[str]:
 
 
 def _finer(row: Row) -> str:
-    """Name what errs far less than the best on the part of the samples that it answers."""
+    """Name the pipeline with a lower error at lower availability."""
     if row["finer_extractor"] is None:
         return ""
     return (
-        f" ({row['finer_extractor']} + {row['finer_model']}: {digits(row['finer_rms_deg'])} deg on "
-        f"the {100 * row['finer_availability']:.0f} % it answers)"
+        f" ({row['finer_extractor']} + {row['finer_model']}: {digits(row['finer_rms_deg'])} deg at "
+        f"{100 * row['finer_availability']:.0f} % availability)"
     )
 
 

@@ -288,7 +288,7 @@ def _sentence(
     methods = f"Its {_list_items(stated)} run{'s' * (len(stated) == 1)}" if stated else "It runs"
     at = best.settings[0]
     more = len(pipelines) - 1
-    lead = f"{methods} as {best.extractor} → {best.model} on {at.dataset} ({at.condition})"
+    lead = f"{methods} as {best.extractor} + {best.model} on {at.dataset} ({at.condition})"
     if more:
         lead += f" and in {more} more pipeline{'s' * (more > 1)}"
     if departures:

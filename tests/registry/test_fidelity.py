@@ -74,7 +74,7 @@ def test_a_study_that_runs_as_it_states_is_faithful(facts_of: Build) -> None:
     assert (found.fidelity.grade, parts(found)) == ("faithful", [])
     assert found.fidelity.sentence == (
         "Its standard projection model, look-up table and basic centroid threshold method run as "
-        "bctm → spm on CMOS-Slit (nominal) and in 1 more pipeline."
+        "bctm + spm on CMOS-Slit (nominal) and in 1 more pipeline."
     )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 import pytest
 from scores import pipeline
 
-from registry.contradiction import calibration_words
+from registry.contradiction import calibration_name
 from registry.flows import chart
 from registry.judging import Question
 from registry.recommendation import recommend
@@ -210,15 +210,15 @@ def test_the_worst_question_is_explained_by_a_few_answers(
 
 
 @pytest.mark.parametrize(
-    ("extractor", "stages", "run_by", "words"),
+    ("extractor", "stages", "measured", "name"),
     [
-        ("BCTM", ("SPM",), "bctm", "BCTM > SPM"),
-        ("None", ("SECM/Solar", "Camera"), "mirror", "mirror (ours) > SECM/Solar > Camera"),
-        ("None", ("Polynomial",), "direct-currents", "no extraction > Polynomial"),
-        ("None", ("None",), None, "no extraction > no model"),
+        ("BCTM", ("SPM",), ("bctm", "spm"), "bctm + spm"),
+        ("None", ("SECM/Solar", "Camera"), ("mirror", "solar + camera"), "mirror + solar + camera"),
+        ("BCTM", ("OCM", "LUT"), None, "BCTM + OCM + LUT (survey labels)"),
+        ("None", ("None",), None, "no extraction + no model (survey labels)"),
     ],
 )
-def test_what_the_survey_has_no_name_for_is_never_called_none(
-    extractor: str, stages: tuple[str, ...], run_by: str | None, words: str
+def test_a_calibration_has_the_name_of_its_pipeline_or_else_the_survey_s_labels(
+    extractor: str, stages: tuple[str, ...], measured: tuple[str, str] | None, name: str
 ) -> None:
-    assert calibration_words(extractor, stages, run_by) == words
+    assert calibration_name(extractor, stages, measured) == name

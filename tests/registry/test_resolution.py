@@ -274,7 +274,7 @@ def test_an_answer_is_plain_data(facts_of: Build) -> None:
     assert answer == {
         "key": "S0",
         "grade": "stand-in",
-        "sentence": "Its basic centroid threshold method runs as bctm → spm on CMOS-Slit "
+        "sentence": "Its basic centroid threshold method runs as bctm + spm on CMOS-Slit "
         "(nominal); the survey states no model, so spm is chosen; its least-squares geometric "
         "model is missing.",
         "departures": [

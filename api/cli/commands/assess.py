@@ -30,18 +30,18 @@ def assess(
         list[str] | None,
         typer.Option(
             autocompletion=completion.methods,
-            help="Only this method of the table, a row a property; repeatable.",
+            help="Only this method, one row per property; may be repeated.",
         ),
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Show the survey's scores of extractors beside measured ones.
+    """Compare the survey's scores of extractors with measured scores.
 
-    19 methods in 21 properties, scored 2 (provides), 1 (partly) or 0 (does not). A cell shows the
-    survey's score, a mark and the measured one: = agrees, ~ one apart, x opposed; a dot where
-    nothing measured can contradict the survey, a dash where it is not measured. Read from the
-    published results, nothing is measured now; definitions and limits stand in docs/assessment.md.
-    CSV has a row a method and property.
+    19 methods and 21 properties, scored 2 (yes), 1 (partly) or 0 (no). A cell shows the survey's
+    score, a mark and the measured score: = agrees, ~ differs by one, x differs by two. A dot means
+    that the measurement cannot contradict the survey, a dash that it is missing. Values are from
+    the published results; definitions are in docs/assessment.md. CSV has a row per method and
+    property.
     """
     answer = ask(assessment, {"method": method})
     document = answer.document

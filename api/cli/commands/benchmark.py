@@ -68,11 +68,11 @@ def benchmark(
     store: StoreOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Score pipelines on the standard datasets.
+    """Score pipelines on the standard data sets.
 
-    Every compatible combination of the named things, or of all there are. Cells that the
-    published results hold are read there; others are measured into the working store (see
-    --store) and not measured again, also after the run was broken off.
+    Runs every compatible combination of the given data sets, conditions, extractors and models;
+    without options, all. Published results are reused if code and data are unchanged. New results
+    are kept in the local store (see --store), so that an interrupted run can be continued.
     """
     planned = cells(dataset or None, condition or None, extractor or None, model or None)
     if not planned:

@@ -17,36 +17,52 @@ def calibrate(
     *,
     files: Annotated[
         list[Path],
-        typer.Argument(help="CSV, Parquet, NumPy or Excel; several files are runs of one sensor."),
+        typer.Argument(
+            help="CSV, Parquet, NumPy or Excel file; several files are runs of one sensor."
+        ),
     ],
     config: Annotated[
-        Path | None, typer.Option(help="What the columns are; by default guessed from their names.")
+        Path | None,
+        typer.Option(
+            help=(
+                "Configuration with the meaning of the columns; by default guessed from "
+                "their names."
+            )
+        ),
     ] = None,
     init: Annotated[
         Path | None,
-        typer.Option(help="Write a commented config guessed from the header here, and stop."),
+        typer.Option(
+            help=(
+                "Write a commented configuration, guessed from the header, to this file and stop."
+            )
+        ),
     ] = None,
-    out: Annotated[
-        Path, typer.Option(help="Directory for report, JSON and code; made if need be.")
-    ] = Path("calibration"),
+    out: Annotated[Path, typer.Option(help="Output directory for report, JSON and code.")] = Path(
+        "calibration"
+    ),
     name: Annotated[
-        str, typer.Option(help="Prefix of the files and of names in C.")
+        str, typer.Option(help="Prefix of file names and C identifiers.")
     ] = "sun_sensor",
     apply: Annotated[
-        bool, typer.Option("--apply", help="Apply conventions that were found beyond doubt.")
+        bool,
+        typer.Option(
+            "--apply", help="Apply corrections of conventions that were clearly detected."
+        ),
     ] = False,
     thorough: Annotated[
-        bool, typer.Option("--thorough", help="Try networks too, which takes minutes.")
+        bool, typer.Option("--thorough", help="Include neural networks (takes minutes).")
     ] = False,
     model: Annotated[
-        list[str] | None, typer.Option(help="Only this model, such as polynomial-2d; repeatable.")
+        list[str] | None,
+        typer.Option(help="Only this model, such as polynomial-2d; may be repeated."),
     ] = None,
 ) -> int:
     """Calibrate a sensor from a turntable file.
 
-    Reads the file, finds its conventions and wrong poses, compares every model that applies on
-    samples left out, and writes a report (HTML), the calibration (JSON), a Python module and C99
-    code. The exit code is 0 for the verdict good, 3 otherwise.
+    Reads the file, detects its conventions and wrong poses, compares all applicable models by
+    cross-validation, and writes a report (HTML), the calibration (JSON), a Python module and C99
+    code. The exit code is 0 for the verdict "good", otherwise 3.
     """
     from api.calibrate.calibration import calibrate as run  # noqa: PLC0415 - SciPy
     from api.calibrate.products import write_products  # noqa: PLC0415 - as above

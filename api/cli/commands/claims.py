@@ -1,4 +1,4 @@
-"""`sunatlas claims`: what the survey says of algorithms, and what came out when it was tried."""
+"""`sunatlas claims`: claims of the survey about algorithms, with verdicts."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def claims(
         typer.Argument(
             autocompletion=completion.claims,
             metavar="[ID]",
-            help="Only this claim, in full.",
+            help="Claim to show in detail, such as C29.",
             show_default=False,
         ),
     ] = None,
@@ -36,21 +36,21 @@ def claims(
         list[str] | None,
         typer.Option(
             autocompletion=completion.one_of(*VERDICTS),
-            help="Only this verdict, such as refuted; repeatable.",
+            help="Only this verdict, such as refuted; may be repeated.",
         ),
     ] = None,
     search: Annotated[
         str | None,
-        typer.Option(help="Only claims that have these words.", show_default=False),
+        typer.Option(help="Only claims with these words.", show_default=False),
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Show the survey's claims about algorithms, with verdicts.
+    """Show claims of the survey about algorithms, with verdicts.
 
-    Each was tried on at least five units or seeds, by rules with limits: reproduced where all of
-    them hold with 95 % confidence, partly where some do, refuted where none does and one fails,
-    not testable here where these trials cannot tell. Nothing is measured now. With an ID: the
-    rules with their numbers; JSON has every trial. Method and plots: docs/claims.md.
+    Each claim was tested on at least five sensor units or seeds. Reproduced: every criterion holds
+    with 95 % confidence. Partly: some hold. Refuted: none holds and at least one fails. Not
+    testable here: the tests cannot decide. With an ID, its criteria and results are shown; JSON has
+    every trial. Methods and plots are in docs/claims.md.
     """
     if claim is not None:
         if verdict or search:

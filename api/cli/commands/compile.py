@@ -16,13 +16,12 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 def compile_command(
     *,
     workers: WorkersOption = 1,
-    quiet: Annotated[bool, typer.Option(help="Say nothing when done.")] = False,
+    quiet: Annotated[bool, typer.Option(help="No message at the end.")] = False,
 ) -> None:
-    """Compile every kernel now instead of at its first call.
+    """Compile all numerical kernels now instead of at their first call.
 
-    Numerical kernels are compiled at their first call and kept on disk, beside the source or in
-    the user's cache directory. Afterwards the first extraction and the first frame in any new
-    process take no longer than the later ones. What is compiled already is left as it is.
+    Compiled kernels are kept beside the source or in the user's cache. The first call in a new
+    process is then as fast as later ones.
     """
     from benchmark.running.compiling import compile_kernels  # noqa: PLC0415 - Numba on demand
 

@@ -22,14 +22,14 @@ class Shell(StrEnum):
 
 @app.command()
 def completion(
-    shell: Annotated[Shell, typer.Argument(help="Which shell.", show_default=False)],
+    shell: Annotated[Shell, typer.Argument(help="Shell.", show_default=False)],
 ) -> None:
-    """Print what lets a shell complete commands and names.
+    """Print the shell completion script.
 
-    Bash: `eval "$(sunatlas completion bash)"` in ~/.bashrc; zsh: the same with zsh in ~/.zshrc,
-    after compinit; fish: `sunatlas completion fish > ~/.config/fish/completions/sunatlas.fish`.
-    Completed are data sets, conditions, extractors, models, study keys, claims and the survey's
-    values.
+    Bash: `eval "$(sunatlas completion bash)"` in ~/.bashrc. Zsh: the same with zsh in ~/.zshrc,
+    after compinit. Fish: `sunatlas completion fish > ~/.config/fish/completions/sunatlas.fish`. It
+    completes commands and the names of data sets, conditions, extractors, models, studies and
+    claims.
     """
     from typer._completion_shared import get_completion_script  # noqa: PLC0415 - Typer has no public name for it
 

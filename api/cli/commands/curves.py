@@ -27,25 +27,28 @@ def curves(
     *,
     dataset: Annotated[
         list[str] | None,
-        typer.Option(autocompletion=completion.datasets, help="Only this data set; repeatable."),
+        typer.Option(
+            autocompletion=completion.datasets, help="Only this data set; may be repeated."
+        ),
     ] = None,
     extractor: Annotated[
         list[str] | None,
-        typer.Option(autocompletion=completion.extractors, help="Only this extractor; repeatable."),
+        typer.Option(
+            autocompletion=completion.extractors, help="Only this extractor; may be repeated."
+        ),
     ] = None,
     model: Annotated[
         list[str] | None,
-        typer.Option(autocompletion=completion.models, help="Only this model; repeatable."),
+        typer.Option(autocompletion=completion.models, help="Only this model; may be repeated."),
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Show how many calibration poses the leaders need.
+    """Show how many calibration poses the leading pipelines need.
 
-    To be within 10 % of the floor of their error.
-    needed: poses from which on half of the random draws err by at most 1.1 floors and answer 95 %
-    of the test split; range: the first and the last draw; error from, answers from: either alone;
-    of: poses that the data set gives, where a dash stands for more than these. Read from the
-    published results, nothing is measured now; docs/learning-curves.md says how it is measured.
+    needed: number of poses with which half of the random draws are within 10 % of the error floor
+    and have 95 % availability; range: first and last draw; error from, answers from: each criterion
+    alone; of: poses in the data set. A dash means more poses than the data set has. Values are from
+    the published results (docs/learning-curves.md).
     """
     asked = {"dataset": dataset, "extractor": extractor, "model": model, "limit": LARGEST_PAGE}
     answer = ask(endpoint, asked)

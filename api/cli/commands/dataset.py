@@ -30,7 +30,7 @@ from benchmark.running import pinning
 from files.atomic import replace_file
 
 app = typer.Typer(
-    help="List, describe, export or verify the standard datasets.",
+    help="List, describe, export or verify the standard data sets.",
     add_completion=False,
     rich_markup_mode=None,
 )
@@ -51,7 +51,7 @@ NameArgument = Annotated[
 
 @app.command("list")
 def listing(form: FormatOption = Format.TABLE) -> None:
-    """List the data sets: what sensor each simulates, under which conditions."""
+    """List the data sets with sensor and conditions."""
     cards = knowledge().measurements.cards
     emit(
         cards, COLUMNS if form is Format.TABLE else DATASETS, form, title=f"{len(cards)} data sets"
@@ -62,9 +62,9 @@ def listing(form: FormatOption = Format.TABLE) -> None:
 
 @app.command()
 def describe(name: NameArgument, form: FormatOption = Format.TABLE) -> None:
-    """Describe one data set: its card, with the published Cramer-Rao bound of each condition.
+    """Describe a data set, with the published Cramer-Rao bound of each condition.
 
-    As JSON with every parameter that its numbers depend on.
+    JSON has every parameter of the simulation.
     """
     datasets.get(name)  # refuses an unknown name with the nearest one
     card = knowledge().measurements.card(name)
@@ -87,7 +87,7 @@ def describe(name: NameArgument, form: FormatOption = Format.TABLE) -> None:
 def export(
     name: NameArgument,
     *,
-    out: Annotated[Path, typer.Option(help="Directory to make.", show_default=False)],
+    out: Annotated[Path, typer.Option(help="Output directory.", show_default=False)],
     condition: Annotated[
         list[str] | None,
         typer.Option(
@@ -107,11 +107,11 @@ def export(
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier export.")] = False,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Write a data set to files: arrays, a card that says what they are, checksums, a picture.
+    """Export a data set as files: arrays, description, checksums, picture.
 
-    A condition is a directory with preview.png and, for each split, an .npz that numpy.load
-    reads; where samples are a few numbers each also a .csv. card.json says what every array holds,
-    which study is followed, the bound and the hashes. Exporting twice gives the same bytes.
+    Each condition is a directory with preview.png and, for each split, an .npz file for numpy.load;
+    low-dimensional samples also as .csv. card.json describes every array, the studies the data set
+    is based on, the bound and the hashes. The same call gives the same bytes.
     """
     with told_progress("writing the data set") as progress:
         made = dataset_export.export(
@@ -156,22 +156,23 @@ def errors(
     ] = None,
     unit: Annotated[
         int | None,
-        typer.Option(help="Only this unit of the sensor; 0 is the standard one."),
+        typer.Option(help="Only this sensor unit; 0 is the standard unit."),
     ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
-            help="File to write them to, as CSV; a .parquet is the published file, of all "
-            "pipelines and units.",
+            help=(
+                "Output file: CSV, or .parquet for the published file with all pipelines and units."
+            ),
             show_default=False,
         ),
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Show the published errors of pipelines sample by sample, under the nominal condition.
+    """Show the published errors of each sample, nominal condition.
 
-    By extractor, model, unit and sample, with the direction of the Sun; `doubt` says why there is
-    no answer. A data set has up to a million: name a pipeline, or write them to a file.
+    By extractor, model, unit and sample, with the true Sun direction; `doubt` gives the reason for
+    a missing answer. A data set has up to a million rows: choose a pipeline, or write to a file.
     """
     query = {"extractor": extractor or [], "model": model or [], "unit": unit}
     ask(dataset_errors, {**query, "limit": 1}, name=name)  # refuses what does not fit
@@ -198,17 +199,16 @@ def verify(
     directory: Annotated[Path, typer.Argument(help="Directory of the export.", show_default=False)],
     *,
     quick: Annotated[
-        bool, typer.Option("--quick", help="Do not make the export again to compare it.")
+        bool, typer.Option("--quick", help="Do not generate the export again.")
     ] = False,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Verify an export: its checksums, and that it is what the data set makes.
+    """Verify an export against its checksums and the data set.
 
-    Checksums, card and arrays are held against each other, against the data set and the pins of the
-    published data, and then against the same export made again, which takes as long as making
-    it. With --quick the last is left out: of a shortened export only the first four samples are
-    then compared with published data. What does not hold is listed with its file, and the exit
-    code is 1.
+    Compares checksums, card and arrays with the data set and its published hashes, then generates
+    the export again and compares it, which takes as long as exporting. --quick skips this; of a
+    shortened export only the first four samples are then compared with published data. Differences
+    are listed with their file, and the exit code is 1.
     """
     pins = Store(PUBLISHED).pins()
     with terminal_progress() as progress:
@@ -227,9 +227,9 @@ def verify(
 
 @app.command()
 def coverage(form: FormatOption = Format.TABLE) -> None:
-    """Show which detector-mask pairs of the mapped studies are simulated, and why others are not.
+    """Show which detector-mask pairs of the studies are simulated.
 
-    With the pairs that a data set simulates though no mapped study uses them.
+    Gives the reason for each pair that is not simulated, and lists simulated pairs without a study.
     """
     found = covered.coverage()
     rows = [
@@ -254,11 +254,11 @@ def realism(
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Show each data set beside the nearest built sensors and their published figures.
+    """Compare each data set with built sensors and their published figures.
 
-    Our error is that of the best pipeline on the nominal condition, our precision its
-    repeatability; published accuracies are made root mean squares. A sentence explains what
-    differs by more than a factor of two; an idealisation says why it stands for no sensor.
+    Our accuracy is the RMS error of the best pipeline under nominal conditions, our precision its
+    repeatability. Published accuracies are converted to RMS. Differences of more than a factor of
+    two are explained; data sets without a built sensor are called idealised.
     """
     answer = ask(besides_built, {"dataset": dataset})
     shown = BUILT if form is Format.TABLE else REALISM
@@ -274,7 +274,7 @@ def preview(
         str | None,
         typer.Option(
             autocompletion=completion.conditions,
-            help="Under which condition; the first by default.",
+            help="Condition; by default the first.",
         ),
     ] = None,
     overlay: Annotated[
@@ -282,14 +282,14 @@ def preview(
         typer.Option(
             metavar="EXTRACTOR",
             autocompletion=completion.extractors,
-            help="Draw frames with the places that this extractor finds.",
+            help="Draw the positions found by this extractor.",
         ),
     ] = None,
 ) -> None:
-    """Draw a data set: some of its samples, as what they are.
+    """Draw samples of a data set.
 
-    With --overlay frames about the Sun, with a cross where the extractor finds it and a ring where
-    it is.
+    With --overlay: frames around the Sun spot, with a cross at the position found by the extractor
+    and a ring at the true position.
     """
     preset = datasets.get(name)
     chosen = condition or preset.conditions[0]
@@ -316,10 +316,11 @@ def albedo(
     ] = 100,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Say how far light from the sunlit Earth moves an estimate of the Sun, without noise.
+    """Show the error that Earth albedo causes, without noise.
 
-    Of a cube of bare photodiodes, or of one aperture above a pixel array whose window follows the
-    Sun; beside the Cramer-Rao bound. Most masked data sets leave this light out: this is why.
+    For a cube of bare photodiodes, or an aperture above a pixel array with a window that follows
+    the Sun, with the Cramer-Rao bound for comparison. Most masked data sets omit albedo for this
+    reason.
     """
     from benchmark.sweeps.albedo_influence import influence  # noqa: PLC0415 - renders, so on demand
 
@@ -343,22 +344,21 @@ def pin(
         typer.Argument(
             autocompletion=completion.datasets,
             metavar="[NAME]...",
-            help="Data sets; all by default.",
+            help="Data sets; by default all.",
             show_default=False,
         ),
     ] = None,
     *,
     check: Annotated[
         bool,
-        typer.Option("--check", help="Generate everything again and compare; renew nothing."),
+        typer.Option("--check", help="Generate the data again and compare; write nothing."),
     ] = False,
     workers: ManyWorkersOption = AVAILABLE_WORKERS,
 ) -> None:
-    """Pin the hashes and bounds of the data that changed code makes anew, or check the pins.
+    """Record the hashes and bounds of changed data, or check them.
 
-    `sunatlas leaderboard update` does it too. Data that changed while the version of their data
-    set did not are refused. With --check a pin that is missing or does not hold is named, and the
-    exit code is 1.
+    `sunatlas leaderboard update` does this too. Data that changed without a new version of their
+    data set are refused. With --check, missing or wrong hashes are named, and the exit code is 1.
     """
     store = Store(PUBLISHED)
     if check:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from api.deposit.archives.server import Server
 
 app = typer.Typer(
-    help="Build, verify, upload or publish the bundle an archive takes.",
+    help="Build, verify, upload or publish the bundle for an archive.",
     add_completion=False,
     rich_markup_mode=None,
 )
@@ -38,13 +38,13 @@ class Interface(StrEnum):
 
 BuiltBundle = Annotated[Path, typer.Option("--bundle", help="Directory of the bundle.")]
 InterfaceOption = Annotated[
-    Interface, typer.Option("--api", help="InvenioRDM's records interface, or the legacy one.")
+    Interface, typer.Option("--api", help="InvenioRDM records API, or the legacy API.")
 ]
 ProductionOption = Annotated[
-    bool, typer.Option("--production", help="zenodo.org instead of its sandbox.")
+    bool, typer.Option("--production", help="Use zenodo.org instead of its sandbox.")
 ]
 ServerOption = Annotated[
-    str | None, typer.Option("--server", help="Another archive that runs InvenioRDM.")
+    str | None, typer.Option("--server", help="Address of another InvenioRDM archive.")
 ]
 _BUILT = Path("out/deposit")
 
@@ -53,15 +53,15 @@ _BUILT = Path("out/deposit")
 def build(
     *,
     out: Annotated[
-        Path, typer.Option(help="Directory to make; an earlier bundle there is replaced.")
+        Path, typer.Option(help="Output directory; an earlier bundle is replaced.")
     ] = _BUILT,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Do not show how far it is.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Do not show progress.")] = False,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Build the bundle: the survey's tables and the published results, ready for an archive.
+    """Build the bundle for an archive: the survey's tables and the published results.
 
-    A Data Package with RO-Crate metadata, licences, CITATION.cff and checksums, as a directory
-    and as a zip beside it. The same sources give the same bytes.
+    A Data Package with RO-Crate metadata, licences, CITATION.cff and checksums, as a directory and
+    as a zip file. The same sources give the same bytes.
     """
     with told_progress("building the bundle", quiet=quiet) as progress:
         bundle = deposit.build(out, progress=progress)
@@ -82,23 +82,22 @@ def verify(
     directory: Annotated[Path, typer.Argument(help="Directory of the bundle.", show_default=False)],
     *,
     quick: Annotated[
-        bool, typer.Option("--quick", help="Do not make the samples again to compare them.")
+        bool, typer.Option("--quick", help="Do not generate the samples again.")
     ] = False,
     alone: Annotated[
         bool,
-        typer.Option("--alone", help="Hold it against itself alone, as one of another version."),
+        typer.Option("--alone", help="Check the bundle without this version's data."),
     ] = False,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Verify a bundle: that it is whole, and what the facts and the published record make.
+    """Verify a bundle against its checksums, the survey's tables and the published results.
 
-    Every checksum and every table against its description; then, unless --alone is given, all of it
-    against the bundle that this version builds, and its samples against the data sets, which takes
-    minutes (--quick holds them against the pins of the published data). Nothing is fetched. What
-    does not hold is listed with its file, and the exit code is 1.
+    Checks every checksum and every table, then compares the bundle with the one that this version
+    builds and its samples with the data sets, which takes minutes (--quick compares hashes
+    instead). Differences are listed with their file, and the exit code is 1. No network is needed.
 
-    With --alone Parquet files, the database and the licences are still held against the tables and
-    the terms of this project; a number that was changed in every form of its table is not seen.
+    --alone checks the bundle without this version's data: Parquet files, database and licences are
+    compared with the tables. It cannot detect a number that was changed in every form of its table.
     """
     wrong = verified(directory)
     if not (wrong or alone):
@@ -121,23 +120,22 @@ def upload(
     bundle: BuiltBundle = _BUILT,
     new_version: Annotated[
         str | None,
-        typer.Option(metavar="RECORD_ID", help="Published record to make the next version of."),
+        typer.Option(metavar="RECORD_ID", help="Published record of which this is a new version."),
     ] = None,
     draft: Annotated[
         str | None,
-        typer.Option(metavar="RECORD_ID", help="Draft to go on with, instead of the last one."),
+        typer.Option(metavar="RECORD_ID", help="Draft to continue; by default the last one."),
     ] = None,
     api: InterfaceOption = Interface.RECORDS,
     production: ProductionOption = False,
     server: ServerOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Upload a bundle into a draft; nothing becomes public.
+    """Upload a bundle as a draft; nothing becomes public.
 
-    To Zenodo's sandbox, unless --production is given. The token is read from the environment:
-    ZENODO_SANDBOX_TOKEN, with --production ZENODO_TOKEN, with --server ARCHIVE_TOKEN. An upload
-    that was broken off goes on where it was: files that are there with the right checksum are not
-    sent again.
+    The default is Zenodo's sandbox; --production selects zenodo.org. The token is read from
+    ZENODO_SANDBOX_TOKEN, with --production from ZENODO_TOKEN, with --server from ARCHIVE_TOKEN. An
+    interrupted upload continues; files with the right checksum are not sent again.
     """
     from api.deposit.archives import uploading  # noqa: PLC0415 - a tenth of a second: HTTP
 
@@ -177,7 +175,7 @@ def upload(
 @app.command()
 def publish(
     record_id: Annotated[
-        str, typer.Argument(help="Identifier of the draft, as upload told it.", show_default=False)
+        str, typer.Argument(help="Identifier of the draft, printed by upload.", show_default=False)
     ],
     *,
     bundle: BuiltBundle = _BUILT,
@@ -185,10 +183,10 @@ def publish(
     production: ProductionOption = False,
     server: ServerOption = None,
 ) -> None:
-    """Publish a draft, for good: a published record can be hidden by the archive only.
+    """Publish a draft. This cannot be undone.
 
-    Refused unless the authors in CITATION.cff and in the draft are people with valid ORCID iDs and
-    the draft holds exactly the files of the bundle. Server and token as with upload.
+    Requires authors with valid ORCID iDs in CITATION.cff and in the draft, and a draft with exactly
+    the files of the bundle. Server and token as for upload.
     """
     from api.deposit.archives import publishing  # noqa: PLC0415 - as above
 

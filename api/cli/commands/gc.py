@@ -21,16 +21,15 @@ COLUMNS = ("scores", "pins", "times", "kept", "freed")
 def gc(
     *,
     yes: Annotated[
-        bool, typer.Option("--yes", help="Do it; without, only tell what would be done.")
+        bool, typer.Option("--yes", help="Delete; otherwise only show what would be deleted.")
     ] = False,
     store: StoreOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Drop from the working store what no cell refers to.
+    """Delete unused results from the local store.
 
-    Scores, pins of data and times whose data set, extractor, model or harness has changed or is
-    gone: they are never read again. Scores of today's code stay (kept), and so does whatever else
-    lies in the directory. Without --yes nothing is changed. Freed is in bytes.
+    Unused: scores, hashes and times whose data set, extractor, model or measuring code has changed
+    or no longer exists. Nothing is deleted without --yes. `freed` is in bytes.
     """
     published, there = stores_of(store)
     if there.directory.resolve() == published.directory.resolve():

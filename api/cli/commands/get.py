@@ -26,15 +26,17 @@ _ACCEPT = {Format.TABLE: b"text/csv", Format.CSV: b"text/csv", Format.JSON: b"ap
 def get(
     address: Annotated[
         str,
-        typer.Argument(help="Such as '/v1/flows/error?task=Accuracy'.", show_default=False),
+        typer.Argument(
+            help="Address, such as '/v1/flows/error?task=Accuracy'.", show_default=False
+        ),
     ],
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Answer an address of the HTTP interface without a server.
+    """Answer an address of the HTTP API without a server.
 
-    JSON and CSV are byte for byte what the service answers; docs/http.md lists the addresses. For
-    what has no command of its own: /v1/taxonomy, /v1/algorithms, /v1/flows/error, /v1/sweeps,
-    /v1/search and others. A page of a long list says in its JSON where the next one is.
+    JSON and CSV are byte for byte those of the service; docs/http.md lists the addresses. Useful
+    for addresses without a command: /v1/taxonomy, /v1/algorithms, /v1/flows/error, /v1/sweeps,
+    /v1/search. The JSON of a long list has the address of its next page.
     """
     from api.cli.asking import knowledge  # noqa: PLC0415 - slow; the help does without it
     from api.http.service import create_app  # noqa: PLC0415

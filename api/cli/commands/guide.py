@@ -21,17 +21,18 @@ def guide() -> None:
 def build(
     out: Annotated[
         Path | None,
-        typer.Option(help="Directory to build into; an earlier guide there is replaced."),
+        typer.Option(help="Output directory; an earlier guide is replaced."),
     ] = None,
     *,
-    strict: Annotated[bool, typer.Option("--strict", help="Exit code 1 on a warning.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but warnings.")] = False,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Exit with code 1 on a warning.")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Show warnings only.")] = False,
 ) -> None:
     """Build the guide from the pages of docs/.
 
-    Without --out it goes to the user's cache, where `sunatlas serve` finds it; a guide of these
-    pages that is there already is left as it is. Nothing is fetched, neither now nor when it is
-    read. It needs the distribution's extra `guide`.
+    Without --out the guide is written to the user's cache, where `sunatlas serve` finds it; an
+    up-to-date guide is not built again. No network is needed. Requires the extra `guide`.
     """
     from api.guide import site  # noqa: PLC0415 - reads all pages
 

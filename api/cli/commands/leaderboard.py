@@ -70,14 +70,14 @@ def leaderboard(
     overview: Annotated[
         bool,
         typer.Option(
-            "--overview", help="How near the bound each extractor and model comes, over data sets."
+            "--overview", help="Count how often each extractor and model is near the bound."
         ),
     ] = False,
     detector: Annotated[
         list[str] | None,
         typer.Option(
             autocompletion=completion.values("detector"),
-            help="Only architectures of this detector, also of --overview; may be repeated.",
+            help="Only architectures with this detector; may be repeated.",
             show_default=False,
         ),
     ] = None,
@@ -85,19 +85,18 @@ def leaderboard(
         list[str] | None,
         typer.Option(
             autocompletion=completion.values("mask"),
-            help="Only architectures of this mask, also of --overview; may be repeated.",
+            help="Only architectures with this mask; may be repeated.",
             show_default=False,
         ),
     ] = None,
     each: Annotated[
-        bool, typer.Option("--each", help="The best pipelines of each data set.")
+        bool, typer.Option("--each", help="Show the best pipelines of each data set.")
     ] = False,
     dataset: Annotated[
         list[str] | None,
         typer.Option(
             autocompletion=completion.datasets,
-            help="All pipelines of this data set, the best of each extractor first; may be "
-            "repeated.",
+            help="Show all pipelines of this data set; may be repeated.",
             show_default=False,
         ),
     ] = None,
@@ -105,14 +104,14 @@ def leaderboard(
         list[str] | None,
         typer.Option(
             autocompletion=completion.conditions,
-            help="Only this condition, of --dataset or of each data set; may be repeated.",
+            help="Only this condition; may be repeated.",
             show_default=False,
         ),
     ] = None,
     field: Annotated[
         int | None,
         typer.Option(
-            help="Judge by the error within this angle of the boresight, degrees: one of "
+            help="Rank by the error within this angle of the boresight, degrees: one of "
             f"{', '.join(map(str, EDGES_DEG[1:]))}.",
             show_default=False,
         ),
@@ -121,8 +120,7 @@ def leaderboard(
         float | None,
         typer.Option(
             min=0.0,
-            help="Judge by the field about the boresight in whose every ring the error stays "
-            "within this, degrees.",
+            help="Rank by the field of view within which the error is at most this, degrees.",
             show_default=False,
         ),
     ] = None,
@@ -132,30 +130,28 @@ def leaderboard(
     ] = False,
     stored: Annotated[
         bool,
-        typer.Option("--stored", help="With --check: measure nothing, compare what is stored."),
+        typer.Option("--stored", help="With --check: compare stored results, measure nothing."),
     ] = False,
     kernels: Annotated[
         Kernels | None,
         typer.Option(
-            help="With --check: measure as this machine does, as an older processor would, or "
-            "first so and then so (both, the default).",
+            help=(
+                "With --check: kernels of this processor, of an older processor, or both (default)."
+            ),
             show_default=False,
         ),
     ] = None,
     workers: ManyWorkersOption = AVAILABLE_WORKERS,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Show the leaderboard, bring it up to date or check it.
+    """Show the leaderboard, update it or check it.
 
-    Without a command the published results are shown. Without options that is a screen: the best
-    pipeline of each architecture, how far it is from its bound, and how sure that is. --overview
-    says how near the bound each part of a pipeline comes across data sets, and how it aggregates.
-    --dataset lists all pipelines of a data set, --each the best of every data set, both in the
-    first condition or in those asked for. With --field an error is
-    that over a part of the field, where rings count by their solid angle: the best of each data
-    set then compare at an equal field. With --max-error they compare by the field they cover.
-    With --check every committed number is compared with what the code gives now; a difference is
-    printed with its file and cell, and the exit code is 1.
+    Without options: the best pipeline of each architecture with its error, its ratio to the
+    Cramer-Rao bound and its standard error. --overview counts how often each extractor and model is
+    near the bound. --dataset lists all pipelines of a data set; --each lists the best of every data
+    set. --field uses the error within an angle of the boresight, so that data sets with different
+    fields of view can be compared; --max-error compares them by field of view. --check measures all
+    published numbers again; a difference is printed with file and cell, and the exit code is 1.
     """
     if context.invoked_subcommand is not None:
         _require_no_options(context)
@@ -195,10 +191,9 @@ def _require_no_options(context: typer.Context) -> None:
 
 @app.command()
 def update(workers: ManyWorkersOption = AVAILABLE_WORKERS) -> None:
-    """Measure what code or data have changed of, and write the published results.
+    """Measure cells with changed code or data, and write the published results.
 
-    Only the cells whose code or data have changed are measured. Data that changed while the
-    version of their data set did not are refused, with the data sets named.
+    Data that changed without a new version of their data set are refused, with the data sets named.
     """
     with interruptible():
         summary = updating.update(PUBLISHED, workers)
@@ -216,18 +211,20 @@ def update(workers: ManyWorkersOption = AVAILABLE_WORKERS) -> None:
 @app.command()
 def render(
     out: Annotated[
-        Path, typer.Option(help="Directory to write to.", file_okay=False, show_default=False)
+        Path, typer.Option(help="Output directory.", file_okay=False, show_default=False)
     ],
     *,
     safe: Annotated[
         bool,
-        typer.Option("--safe", help="Let no spreadsheet run a cell of the CSV files as a formula."),
+        typer.Option(
+            "--safe", help="Escape cells of the CSV files that a spreadsheet would run as formulas."
+        ),
     ] = False,
 ) -> None:
-    """Write the whole leaderboard as leaderboard.{json,csv,md,html} and sweeps.csv.
+    """Write the leaderboard as leaderboard.{json,csv,md,html} and sweeps.csv.
 
-    Files of the same name are replaced. Nothing is measured; times of this machine are those that
-    `sunatlas leaderboard times` has kept.
+    Files of the same name are replaced. Nothing is measured; times are those kept by `sunatlas
+    leaderboard times`.
     """
     from api.cli.asking import knowledge  # noqa: PLC0415 - slow; measuring does without it
 
@@ -240,11 +237,11 @@ def render(
 
 @app.command()
 def times(store: StoreOption = None, form: FormatOption = Format.TABLE) -> None:
-    """Time every pipeline on this machine, where that is not done yet.
+    """Measure the time of every pipeline on this machine.
 
-    On the first condition of each data set, in one thread, the best of three beside a reference.
-    Times belong to a machine: they are kept in the working store and shown by the page, by
-    recommendations and by `sunatlas assess`, and are never published.
+    First condition of each data set, one thread, best of three, with a reference method. Times are
+    kept in the local store, shown by the pages and by `sunatlas recommend` and `sunatlas assess`,
+    and never published.
     """
     directory = working_directory(store)
     with interruptible():

@@ -36,13 +36,12 @@ def plan(
     store: StoreOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Tell what of a suite is to be measured, and why.
+    """List the cells that need measuring, with reasons.
 
-    What `sunatlas run --suite` would measure, of standard where no suite is named: the cells that
-    neither the published results nor the working store hold as code and data now are. Why: new,
-    failed before, or what has changed of data set, extractor, model and harness (the code between
-    data and numbers); a comment changes nothing. How long it takes is by what its like took on
-    this machine, as runs keep it. Nothing is measured. JSON and CSV list every cell.
+    A cell is a pipeline on a data set under a condition. Listed are the cells that `sunatlas run
+    --suite` would measure (by default suite standard): new ones, failed ones, and those whose data
+    set, extractor, model or measuring code has changed. The time is estimated from earlier runs on
+    this machine. Nothing is measured. JSON and CSV list every cell.
     """
     chosen = suite_named(str(suite))
     stores = stores_of(store)

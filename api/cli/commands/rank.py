@@ -38,19 +38,19 @@ def rank(
         str,
         typer.Argument(
             autocompletion=completion.extractors,
-            help="Its name, such as squared-centroid, or its file.",
+            help="Name, such as squared-centroid, or file of the algorithm.",
             show_default=False,
         ),
     ],
     *,
     dataset: Annotated[
         str,
-        typer.Option(autocompletion=completion.datasets, help="The data set.", show_default=False),
+        typer.Option(autocompletion=completion.datasets, help="Data set.", show_default=False),
     ],
     out: Annotated[
         Path | None,
         typer.Option(
-            help="The page to write; by default out/ALGORITHM-DATASET.html.",
+            help="HTML page to write; by default out/ALGORITHM-DATASET.html.",
             dir_okay=False,
             show_default=False,
         ),
@@ -59,14 +59,13 @@ def rank(
     store: StoreOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Check one algorithm, measure it and show it on a board.
+    """Check an algorithm, measure it and show it on the leaderboard of a data set.
 
-    An extractor, a model or a compensation is found by its name or its file and checked by the
-    common test suite; what fails is printed, and nothing is measured. Then its pipelines are
-    scored under the first condition, all on the standard unit, the best one also on the other
-    units and drawn benches that the board's rule gives it. Nothing else is measured: all other
-    rows are those of the published record. The board is printed with the rows of the algorithm
-    marked, and written as a page. New scores are kept in the working store (see --store).
+    The algorithm is an extractor, model or compensation, given by name or file. It must pass the
+    common tests; otherwise the failures are printed and nothing is measured. Its pipelines are then
+    scored under the nominal condition; all other rows come from the published record. The
+    leaderboard marks the new rows and is also written as an HTML page. New scores are kept in the
+    local store (see --store).
     """
     name = name_of(algorithm)
     result = checked(name)

@@ -47,37 +47,38 @@ def recommend(
     exclude_extractor: attributes.NoExtractor = None,
     exclude_error: attributes.NoError = None,
     exclude_accuracy: attributes.NoAccuracy = None,
-    max_error_deg: Annotated[float | None, typer.Option(help="Largest error, degrees.")] = None,
+    max_error_deg: Annotated[float | None, typer.Option(help="Maximum RMS error, degrees.")] = None,
     min_fov_deg: Annotated[
-        float | None, typer.Option(help="Smallest full field of view, degrees.")
+        float | None, typer.Option(help="Minimum full field of view, degrees.")
     ] = None,
     max_latency_us: Annotated[
-        float | None, typer.Option(help="Longest time a sample, microseconds.")
+        float | None, typer.Option(help="Maximum time per sample, microseconds.")
     ] = None,
     min_availability: Annotated[
-        float | None, typer.Option(help="Smallest answered share of the samples, above 0 to 1.")
+        float | None, typer.Option(help="Minimum availability, above 0 to 1.")
     ] = None,
     survive: Annotated[
         list[str] | None,
         typer.Option(
             autocompletion=completion.one_of(*HAZARDS),
-            help=f"Has to survive this: {', '.join(HAZARDS)}; may be repeated.",
+            help=f"Condition to tolerate: {', '.join(HAZARDS)}; may be repeated.",
         ),
     ] = None,
     properties: Annotated[
         list[str] | None,
         typer.Option(
             autocompletion=completion.properties,
-            help="Extractor has this property in the survey's assessment, such as 'Robust to "
-            "noise'; may be repeated.",
+            help=(
+                "Extractor property in the survey's assessment, such as 'Robust to noise'; "
+                "may be repeated."
+            ),
         ),
     ] = None,
     exclude_needs: Annotated[
         list[str] | None,
         typer.Option(
             autocompletion=completion.one_of(*NEEDS),
-            help=f"Calibration does not read this beside the sensor: {', '.join(NEEDS)}; may be "
-            "repeated.",
+            help=f"Exclude calibrations that need this input: {', '.join(NEEDS)}; may be repeated.",
         ),
     ] = None,
     bench_deg: Annotated[
@@ -90,28 +91,28 @@ def recommend(
     confidence: Annotated[
         float | None,
         typer.Option(
-            help="Share of units and benches that must keep the largest error.",
+            help="Share of sensor units and benches that must meet the maximum error.",
             show_default="0.9",
         ),
     ] = None,
     edition: attributes.EditionOption = attributes.Edition.SURVEY,
-    sort: Annotated[Sort, typer.Option(help="Which evidence comes first.")] = Sort.ADVICE,
+    sort: Annotated[Sort, typer.Option(help="Evidence to rank by.")] = Sort.ADVICE,
     limit: Annotated[
-        int, typer.Option(min=1, max=500, help="Architectures to print at most.")
+        int, typer.Option(min=1, max=500, help="Maximum number of architectures.")
     ] = 20,
     calibrations: Annotated[
-        int, typer.Option(min=1, max=500, help="Calibrations of each to print at most.")
+        int, typer.Option(min=1, max=500, help="Maximum number of calibrations per architecture.")
     ] = 5,
     form: FormatOption = Format.TABLE,
 ) -> None:
     """Rank the sensors and calibrations that meet requirements.
 
-    Architectures (detector + mask), and on each its calibrations (extractor > compensations >
-    model). Three kinds of evidence stay apart: what the survey's text advises, what studies
-    proposed, and what is measured here: the largest error, nominal and under all it shall survive,
-    with the full field it holds over. Said, too: where measurement is against advice or
-    literature, and what following the order costs. Where nothing is left, the requirement that
-    rules everything out is named with what would help, exit code 0.
+    Lists architectures (detector + mask) with their calibrations (extractor + compensations +
+    model) and three kinds of evidence: advised by the survey, used in studies, measured here. The
+    measured error is the RMS error over the required field of view, in the worst required
+    condition. Contradictions between the kinds of evidence are reported. If no architecture meets
+    the requirements, the requirement that excludes all is named, with changes that would help; the
+    exit code is 0.
     """
     document = _document(
         {

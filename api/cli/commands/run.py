@@ -72,19 +72,16 @@ def run(
     store: StoreOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Run a study's pipelines, or a suite.
+    """Run the pipelines of a study, or a suite.
 
-    Every pipeline that the study's mapping resolves to is scored on every data set of its detector
-    and mask that it fits; assumed says what the study does not state, and by what rule it stands
-    there; bound is the Cramer-Rao bound with the unit known, over bound the error
-    divided by it; bound unit and over bound unit are those with the unit unknown but for flat and
-    dark readings, and floor adds the systematic error of the calibration's reference: precision
-    and accuracy are two numbers. What does not run as the study states it is a gap: listed on
-    stderr, and in JSON under "gaps". Where nothing runs, the exit code is 1.
+    Each pipeline of the study is scored on every data set of its sensor. Columns: assumed lists
+    what the study does not state, with the rule that fills it; bound is the Cramer-Rao bound for a
+    known sensor unit; bound unit is the bound for a unit known only through its dark and flat
+    frames; over bound is error divided by bound. Parts of the study that are not implemented are
+    listed on stderr, and in JSON under "gaps". The exit code is 1 if nothing can run.
 
-    Cells that the published results hold are read there. Others are measured into the working
-    store (see --store) and not measured again, also after the run was broken off; `sunatlas plan`
-    tells which.
+    Published results are reused if code and data are unchanged. New results are kept in the local
+    store (see --store), so that an interrupted run can be continued.
     """
     if (study is None) == (suite is None):
         raise WrongCallError("one of a study's key and --suite is to be given")

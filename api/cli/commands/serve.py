@@ -26,22 +26,21 @@ _QUIET: dict[str, Any] = {"log_level": "warning", "access_log": False}
 def serve(
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
     port: Annotated[
-        int, typer.Option(min=0, max=65535, help="Port to listen on; 0 takes a free one.")
+        int, typer.Option(min=0, max=65535, help="Port to listen on; 0 selects a free port.")
     ] = 8000,
     workers: Annotated[
         int,
-        typer.Option(min=1, max=64, help="Processes that answer, each with all data loaded."),
+        typer.Option(min=1, max=64, help="Number of processes, each with all data loaded."),
     ] = 1,
     access_log: Annotated[
-        bool, typer.Option("--access-log", help="Print a JSON line a request.")
+        bool, typer.Option("--access-log", help="Print a JSON line per request.")
     ] = False,
 ) -> None:
-    """Serve the page, the guide and the HTTP interface.
+    """Serve the web pages, the guide and the HTTP API.
 
-    The page is at /, the guide at /guide, the API under /v1, its reference at /docs, its
-    description at /openapi.json, counts and times of requests for Prometheus at /metrics. Nothing
-    runs beside it: `sunatlas guide build` builds the guide, `sunatlas leaderboard times` times
-    pipelines on this machine. Ctrl-C stops.
+    Pages are at /, the guide at /guide, the API at /v1, its reference at /docs, its OpenAPI
+    description at /openapi.json, Prometheus metrics at /metrics. The guide must be built first
+    (`sunatlas guide build`). Stop with Ctrl-C.
     """
     os.environ[serving.TIMES] = str(working_directory())
     os.environ[serving.ACCESS_LOG] = "1" if access_log else ""

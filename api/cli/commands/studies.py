@@ -61,7 +61,7 @@ def studies(
         str | None,
         typer.Argument(
             autocompletion=completion.studies,
-            help="Show this study alone, with every value's basis.",
+            help="Study to show in detail, such as Chang2008.",
         ),
     ] = None,
     *,
@@ -74,33 +74,34 @@ def studies(
     extractor: attributes.Extractor = None,
     grade: Annotated[
         list[Grade] | None,
-        typer.Option(help="How near what runs is to the study; may be repeated."),
+        typer.Option(help="Only this grade; may be repeated."),
     ] = None,
     state: Annotated[
-        list[State] | None, typer.Option(help="Whether gaps are left; may be repeated.")
+        list[State] | None, typer.Option(help="Only this state of implementation; may be repeated.")
     ] = None,
     edition: attributes.EditionOption = attributes.Edition.SURVEY,
-    year_min: Annotated[int | None, typer.Option(help="This year or later.")] = None,
-    year_max: Annotated[int | None, typer.Option(help="This year or earlier.")] = None,
+    year_min: Annotated[int | None, typer.Option(help="Published this year or later.")] = None,
+    year_max: Annotated[int | None, typer.Option(help="Published this year or earlier.")] = None,
     q: Annotated[
-        str | None, typer.Option("--q", help="Words in key, title, authors or venue.")
+        str | None, typer.Option("--q", help="Search words in key, title, authors or venue.")
     ] = None,
     form: Annotated[
         StudyFormat,
         typer.Option(
             "--format",
-            help="How to print; bibtex, ris and csl (JSON) are references to the studies whose "
-            "title is known.",
+            help=(
+                "Output format; bibtex, ris and csl (JSON) are references to studies with a "
+                "known title."
+            ),
         ),
     ] = StudyFormat.TABLE,
 ) -> None:
     """List studies with the grade of each run, or show one.
 
-    A run is faithful where its sensor, condition, methods and compensations are the study's own,
-    stated or inferred with a reason; close where one part departs from the study, a stand-in where
-    more do, none where nothing runs. `sunatlas studies KEY` says which, what would settle it, and
-    of every value of a pipeline what it rests on; it finds studies after the survey, too, which the
-    list has with --edition all. The state is complete when no gap is left.
+    Grades: faithful (sensor, condition and methods are the study's own, stated or inferred with a
+    reason), close (one part differs), stand-in (more parts differ), none (not implemented).
+    `sunatlas studies KEY` shows the differences, the information that would remove them, and the
+    basis of each value. State is complete if every value of the study is implemented.
     """
     filters: dict[str, Any] = {
         "task": task,

@@ -42,16 +42,17 @@ def check(
     *,
     data: Annotated[
         Path | None,
-        typer.Option(help="Directory of the tables; our own by default.", show_default=False),
+        typer.Option(
+            help="Directory of the tables; by default those of the Atlas.", show_default=False
+        ),
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Validate the tables and report how faithful they are to the survey.
+    """Validate the tables of the survey and compare them with its findings.
 
-    Counts against the survey's own, completeness of every attribute by the basis of its values,
-    the classes that a study's number contradicts, and each of the survey's findings with a verdict,
-    its clauses and the counts behind them. CSV holds the clauses of the findings. Where a table has
-    problems, each is named on stderr with file, row and column, and the exit code is 1.
+    Reports counts, completeness of each attribute by basis, contradictions between a study's number
+    and its accuracy class, and a verdict for each finding of the survey. CSV has one row per clause
+    of a finding. Problems are named on stderr with file, row and column, and the exit code is 1.
     """
     problems = [*survey_data.validate(data), *facts_manifest.changes(data or DATA_DIRECTORY)]
     if problems:

@@ -25,16 +25,20 @@ _PIPELINES = ("detector", "mask", "extractor", "model", "datasets", "assumed")
 
 DataOption = Annotated[
     Path | None,
-    typer.Option(help="Directory of the tables; our own by default.", show_default=False),
+    typer.Option(
+        help="Directory of the tables; by default those of the Atlas.", show_default=False
+    ),
 ]
-ApplyOption = Annotated[bool, typer.Option("--apply", help="Write; without it nothing is written.")]
+ApplyOption = Annotated[
+    bool, typer.Option("--apply", help="Write the changes; otherwise only show them.")
+]
 
 
 def add(
     file: Annotated[
         Path | None,
         typer.Argument(
-            help="TOML template, or BibTeX, RIS or CSL JSON (.bib, .ris, .json).",
+            help="TOML template, or bibliography (.bib, .ris, .json).",
             show_default=False,
         ),
     ] = None,
@@ -44,33 +48,35 @@ def add(
         typer.Option(
             "--init",
             metavar="KEY",
-            help="Write an empty template for this key into FILE, or print it.",
+            help="Write an empty template for this key to FILE, or print it.",
             show_default=False,
         ),
     ] = None,
     attributes: Annotated[
         Path | None,
         typer.Option(
-            help="Template with the attributes beside a bibliography; by default the file of the "
-            "same name that ends in .toml.",
+            help=(
+                "Template with the attributes, if FILE is a bibliography; by default the "
+                "same name with .toml."
+            ),
             show_default=False,
         ),
     ] = None,
     key: Annotated[
         str | None,
-        typer.Option(help="Which publication of a bibliography.", show_default=False),
+        typer.Option(help="Key of the publication in the bibliography.", show_default=False),
     ] = None,
     apply: ApplyOption = False,
     data: DataOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Add a study that the survey does not have, with --apply.
+    """Add a study that is not in the survey, with --apply.
 
-    Shows its row, its cells and what of it would run here. The survey's tables stay as they are:
-    later studies stand apart, and lists and figures have them with --edition all. Every fault of
-    the file is named on stderr with its line and the nearest valid value, and the exit code is 1.
-    `--init KEY FILE.toml` writes a template with every allowed value; `--init KEY FILE.bib` prints
-    one with the publication filled in.
+    Shows its row, its values and which parts are implemented here. Added studies are kept apart
+    from the survey; lists and figures include them with --edition all. Errors in the file are named
+    on stderr with line and nearest valid value, and the exit code is 1. `--init KEY FILE.toml`
+    writes a template with all allowed values; `--init KEY FILE.bib` prints one with the publication
+    filled in.
     """
     folder = data or DATA_DIRECTORY
     if init is not None:
@@ -105,14 +111,14 @@ def add(
 
 
 def remove(
-    key: Annotated[str, typer.Argument(help="Key of a study that was added.")],
+    key: Annotated[str, typer.Argument(help="Key of an added study.")],
     *,
     apply: ApplyOption = False,
     data: DataOption = None,
 ) -> None:
-    """Take a study after the survey out again, with all that is said of it.
+    """Remove an added study and all its values.
 
-    The studies of the survey cannot be removed.
+    Studies of the survey cannot be removed.
     """
     changed = remove_study(key, data or DATA_DIRECTORY, apply=apply)
     what = f"{key}, from {len(changed)} tables"
@@ -120,20 +126,20 @@ def remove(
 
 
 def verify(
-    key: Annotated[str, typer.Argument(help="Key of a study, of the survey or after it.")],
+    key: Annotated[str, typer.Argument(help="Key of a study.")],
     *,
-    name: Annotated[str, typer.Option(help="Who confirmed it: an author of the study.")],
-    confirms: Annotated[str, typer.Option(help="What was confirmed, in words.")],
-    source: Annotated[
-        str, typer.Option(help="Where that can be seen: an address, or a letter and who has it.")
-    ],
-    date: Annotated[str | None, typer.Option(help="Day, YYYY-MM-DD.", show_default="today")] = None,
+    name: Annotated[str, typer.Option(help="Author of the study who confirmed the values.")],
+    confirms: Annotated[str, typer.Option(help="What the author confirmed.")],
+    source: Annotated[str, typer.Option(help="Evidence: an address, or a letter and its owner.")],
+    date: Annotated[
+        str | None, typer.Option(help="Date, YYYY-MM-DD.", show_default="today")
+    ] = None,
     apply: ApplyOption = False,
     data: DataOption = None,
 ) -> None:
-    """Note that an author confirmed what is said of a study.
+    """Record that an author confirmed the values of a study.
 
-    Shown beside its facts, on its page and in every list.
+    The confirmation is shown on the page of the study and in lists.
     """
     day = date or datetime.now(UTC).date().isoformat()
     row = {"study": key, "name": name, "date": day, "confirms": confirms, "source": source}

@@ -29,8 +29,7 @@ def import_(
     bibliography: Annotated[
         Path | None,
         typer.Option(
-            help="The survey's bibliography, BibTeX or .bbl, whatever its file is called: "
-            "completes what its keys are.",
+            help="Bibliography of the survey, BibTeX or .bbl, with any file name.",
             show_default=False,
         ),
     ] = None,
@@ -38,7 +37,7 @@ def import_(
         list[str] | None,
         typer.Option(
             metavar="KEY",
-            help="A study whose confirmed identity the bibliography may replace; may be repeated.",
+            help="Study whose confirmed identity may be replaced; may be repeated.",
         ),
     ] = None,
     mapped: Annotated[
@@ -46,29 +45,31 @@ def import_(
         typer.Option(
             "--map",
             metavar="COL=ATTRIBUTE",
-            help="What a column holds: study, title, authors, year or an attribute, or - to leave "
-            "it aside; may be repeated. Other columns are matched by similarity.",
+            help=(
+                "Attribute of a column: study, title, authors, year or another attribute; - "
+                "ignores it; may be repeated. Other columns are matched by similarity."
+            ),
         ),
     ] = None,
-    sheet: Annotated[str | None, typer.Option(help="Sheet of a workbook.")] = None,
+    sheet: Annotated[str | None, typer.Option(help="Sheet of the workbook.")] = None,
     apply: Annotated[
-        bool, typer.Option("--apply", help="Write; without it nothing is written.")
+        bool, typer.Option("--apply", help="Write the changes; otherwise only show them.")
     ] = False,
     data: Annotated[
         Path | None,
-        typer.Option(help="Directory of our tables; our own by default.", show_default=False),
+        typer.Option(
+            help="Directory of the tables; by default those of the Atlas.", show_default=False
+        ),
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Compare a table or a bibliography with ours, and take it over with --apply.
+    """Compare a table or bibliography with the Atlas, and import it with --apply.
 
-    Shows which column was taken for what, and every cell that differs: new (ours is unknown),
-    changed, confirmed (the same on better evidence), or conflict (the survey prints ours, which
-    stays). Roles, and pairs of detector and mask, that rest on a replaced value are listed and
-    removed with it. Cells that cannot be read are named on stderr with row and column, and the exit
-    code is 1. Of a bibliography: title, authors, venue, type, DOI and address of each key, which
-    are taken where the identity is not confirmed, and shown as a conflict where it is, unless
-    --replace names the study.
+    Shows how each column was read and every cell that differs: new (unknown here), changed,
+    confirmed (same value, better evidence) or conflict (the value here is printed in the survey and
+    stays). Values that depend on a replaced value are listed and removed. Unreadable cells are
+    named on stderr with row and column, and the exit code is 1. From a bibliography title, authors,
+    venue, type, DOI and address are taken; a confirmed identity is replaced only with --replace.
     """
     if (file is None) == (bibliography is None):
         raise WrongCallError("expected either a table or --bibliography FILE")

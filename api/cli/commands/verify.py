@@ -35,27 +35,24 @@ def verify(
         int | None,
         typer.Option(
             min=1,
-            help="How many cells to draw; by default 10, or all of a suite that is named.",
+            help="Number of cells; by default 10, or all cells of --suite.",
             show_default=False,
         ),
     ] = None,
     seed: Annotated[
         int | None,
-        typer.Option(
-            help="Draws the same cells again; by default another one.", show_default=False
-        ),
+        typer.Option(help="Seed of the random sample; by default a new one.", show_default=False),
     ] = None,
     suite: SuiteOption = None,
     workers: ManyWorkersOption = AVAILABLE_WORKERS,
     scheduler: SchedulerOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Measure published cells drawn at random again, and compare.
+    """Measure a random sample of published cells again, and compare.
 
-    Cells are measured from nothing and compared with the published results digit for digit. A
-    difference that another processor may make, as `sunatlas leaderboard --check` allows it, is
-    counted; any other is printed with its file and cell, and the exit code is 1. Nothing is
-    written.
+    Results must agree digit for digit with the published ones. Differences that another processor
+    may cause are counted; all others are printed with file and cell, and the exit code is 1.
+    Nothing is written.
     """
     record, _ = stores_of(None)
     published = record.scores()

@@ -32,7 +32,9 @@ class AdviceQuery(TableQuestion):
         json_schema_extra={"examples": [{"requirement": ["task"], "mask": ["Slit"], "limit": 1}]}
     )
 
-    requirement: Several[Requirement] = several("Only advice for tasks, accuracies or errors.")
+    requirement: Several[Requirement] = several(
+        "Only advice for tasks, accuracy classes or errors."
+    )
     detector: Several[Detector] = several("Only advice that names this detector.")
     mask: Several[Mask] = several("Only advice that names this mask.")
     sort: Annotated[str | None, sorting(columns.ADVICE), GIVEN] = SORT
@@ -42,19 +44,17 @@ class AdviceQuery(TableQuestion):
 
 
 class Advice(Shape):
-    """One piece of advice of the survey's text; what is empty it leaves open."""
+    """A piece of advice in the survey's text; empty members are open."""
 
     id: str
-    requirement: Requirement = Field(
-        description="Of what: a task, a class of accuracy, or an error that is met there."
-    )
-    value: str = Field(description="Which one.")
+    requirement: Requirement = Field(description="Kind: task, accuracy class or error.")
+    value: str = Field(description="Value.")
     detector: str
     mask: str
     model_category: str
     extractor: str = Field(description="An extractor or a family of them.")
     section: str = Field(description="Label in the survey's source.")
-    section_name: str = Field(description="What the label names, with its number in print.")
+    section_name: str = Field(description="Name of the section, with printed number.")
     note: str
 
 
@@ -65,7 +65,7 @@ class Advices(Listing):
 
 
 class Statement(Shape):
-    """One sentence of a protocol."""
+    """A sentence of a protocol."""
 
     about: Literal["survey", "scores"]
     kind: str
@@ -74,11 +74,11 @@ class Statement(Shape):
     section: str = Field(
         description="Label in the survey's source; empty for what is measured here."
     )
-    section_name: str = Field(description="What the label names, with its number in print.")
+    section_name: str = Field(description="Name of the section, with printed number.")
 
 
 class Protocol(Shape):
-    """How studies were found and chosen by the survey, and how scores come about here."""
+    """Selection of studies by the survey, and rules of the scores here."""
 
     survey: list[Statement]
     scores: list[Statement]

@@ -29,7 +29,7 @@ class AlgorithmsQuery(TableQuestion):
     model_config = ConfigDict(json_schema_extra={"examples": [{"role": "extractor", "limit": 1}]})
 
     role: Annotated[Role | None, GIVEN] = Field(
-        None, description="Only extractors, or only models."
+        None, description="Only implementations with this role."
     )
     sort: Annotated[str | None, sorting(columns.ALGORITHMS), GIVEN] = SORT
     fields: Several[Annotated[str, columns_of(columns.ALGORITHMS)]] = FIELDS
@@ -44,11 +44,11 @@ class Algorithm(Shape):
     role: Role
     taxonomy: str
     category: str | None
-    observation: str | None = Field(description="What an extractor reads.")
-    kind: str | None = Field(description="What an extractor's features mean.")
+    observation: str | None = Field(description="Input of the extractor.")
+    kind: str | None = Field(description="Kind of features.")
     accepts: list[str] | None = Field(description="Kinds of features a model reads.")
     labels: list[str] = Field(description="Labels of the survey's source.")
-    label_names: list[str] = Field(description="What the labels name, with numbers in print.")
+    label_names: list[str] = Field(description="Names of the labels, with printed numbers.")
     studies: list[str]
     origin: str
     version: int

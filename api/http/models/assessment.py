@@ -38,9 +38,7 @@ class SweepsQuery(TableQuestion):
 
     series: Several[Series] = several("Only this feature.")
     sweep: Several[SweepName] = several("Only this sweep.")
-    extractor: Several[ExtractorName] = several(
-        "Only this extractor, by the name of its implementation."
-    )
+    extractor: Several[ExtractorName] = several("Only this extractor.")
     sort: Annotated[str | None, sorting(columns.SWEEPS), GIVEN] = SORT
     fields: Several[Annotated[str, columns_of(columns.SWEEPS)]] = FIELDS
     limit: Limit = DEFAULT_PAGE
@@ -52,16 +50,18 @@ class AssessmentQuery(TableQuestion):
 
     model_config = ConfigDict(json_schema_extra={"examples": [{"method": ["BCTM"]}]})
 
-    method: Several[MethodName] = several("Only this method, as the survey's table calls it.")
+    method: Several[MethodName] = several("Only this method of the survey's table.")
 
 
 class Sweep(OpenShape):
-    """Error of an extractor at a point of a sweep. Numbers are null where undefined."""
+    """Error of an extractor at a point of a sweep. Numbers are null if undefined."""
 
     series: str = Field(description="Name of the reference feature.")
-    sweep: str = Field(description="What is varied; empty where the feature is not measured.")
+    sweep: str = Field(description="Varied quantity; empty if not measured.")
     point: str
-    value: float | None = Field(description="Place on the sweep's axis; null where it is a word.")
+    value: float | None = Field(
+        description="Position on the axis of the sweep; null if it is a word."
+    )
     extractor: str
     extractor_taxonomy: str
     extractor_version: int
@@ -70,14 +70,18 @@ class Sweep(OpenShape):
     n: int = Field(description="Samples.")
     unit: str
     found_fraction: float | None
-    kept_fraction: float | None = Field(description="Share within 3 px of the truth.")
+    kept_fraction: float | None = Field(
+        description="Share of samples found within 3 px of the truth."
+    )
     wrong_fraction: float | None = Field(
-        description="Share answered more than 1 px from the truth, or where there is none."
+        description=(
+            "Share of samples answered more than 1 px from the truth, or without a feature."
+        )
     )
     rms: float | None = Field(description="Root mean square error of one coordinate.")
-    bias: float | None = Field(description="Root mean square over the coordinates of the mean.")
+    bias: float | None = Field(description="RMS over the coordinates of the mean error.")
     bound: float | None = Field(description="Cramer-Rao bound of one coordinate.")
-    over_bound: float | None = Field(description="rms over the bound.")
+    over_bound: float | None = Field(description="RMS error divided by the bound.")
 
 
 class Sweeps(Listing):
@@ -87,21 +91,22 @@ class Sweeps(Listing):
 
 
 class Verdict(Shape):
-    """One property of one method; a score is 2, 1 or 0."""
+    """A property of a method; scores are 2, 1 or 0."""
 
     property: str
     survey: int
-    measured: int | None = Field(description="Null where it is not judged or not measured.")
+    measured: int | None = Field(description="Measured score; null if not judged or not measured.")
     agreement: Agreement = Field(
-        description="Not judged: what is measured cannot contradict the survey's score."
+        description=(
+            "agrees, near (one apart), opposed (two apart), not measured, or not judged: "
+            "the measurement cannot contradict the survey."
+        )
     )
     value: float | None = Field(description="The measured quantity.")
     unit: str
     extractor: str
     measured_on: str
-    reason: str = Field(
-        description="Why it is not judged or not measured, or why nothing was found."
-    )
+    reason: str = Field(description="Reason if not judged, not measured or not found.")
 
 
 class Method(Shape):
@@ -123,10 +128,12 @@ class PropertyDefinition(Shape):
     measure: str
     limits: str
     judged: Literal["always", "claimed", "failed", "never"] = Field(
-        description="Where an outcome can contradict the survey: its score is 1 or 2 (claimed), "
-        "less than 2 is measured (failed)."
+        description=(
+            "When the measurement can contradict the survey: score 1 or 2 (claimed), or "
+            "measured below 2 (failed)."
+        )
     )
-    why: str = Field(description="Why it cannot elsewhere.")
+    why: str = Field(description="Why it cannot contradict in other cases.")
 
 
 class Assessment(Shape):

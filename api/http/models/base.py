@@ -42,8 +42,8 @@ class OpenShape(Described):
 class Listing(Shape):
     """A page of a list."""
 
-    total: int = Field(description="Items of the whole list.")
-    next: str | None = Field(description="Cursor of the next page; null on the last.")
+    total: int = Field(description="Total number of items.")
+    next: str | None = Field(description="Cursor of the next page; null on the last page.")
 
 
 class Question(BaseModel):
@@ -61,12 +61,13 @@ class TableQuestion(Question):
 
     format: Annotated[Literal["json", "csv"] | None, GIVEN] = Field(
         None,
-        description="What to answer in, as a link can say it; it has to be among what the Accept "
-        "header takes, if there is one. Left out, that header decides.",
+        description=(
+            "Response format; must be one the Accept header allows. By default the header decides."
+        ),
     )
     safe: bool = Field(
         default=False,
-        description="CSV for spreadsheets: cells that would run as formulas are escaped.",
+        description="Escape CSV cells that a spreadsheet would run as formulas.",
     )
 
 
@@ -78,9 +79,11 @@ class CitedQuestion(TableQuestion):
 
     format: Annotated[_CitedFormat, GIVEN] = Field(  # type: ignore[assignment]  # more than a table
         None,
-        description="What to answer in, as a link can say it: JSON, CSV, or references as BibTeX, "
-        "RIS or CSL JSON, of the studies whose title is known. It has to be among what the Accept "
-        "header takes, if there is one. Left out, that header decides.",
+        description=(
+            "Response format: JSON, CSV, or references to studies with a known title as "
+            "BibTeX, RIS or CSL JSON; must be one the Accept header allows. By default "
+            "the header decides."
+        ),
     )
 
 
@@ -91,13 +94,13 @@ class OnlyFormat(TableQuestion):
 
 
 class Selected(Shape):
-    """What `fields` makes of a page: rows with these columns alone, nothing nested."""
+    """A page with the columns of `fields`, as flat rows."""
 
     model_config = ConfigDict(extra="allow")
 
     items: list[dict[str, str | float | bool | list[Any] | dict[str, Any] | None]]
-    total: int = Field(description="Items of the whole list.")
-    next: str | None = Field(description="Cursor of the next page; null on the last.")
+    total: int = Field(description="Total number of items.")
+    next: str | None = Field(description="Cursor of the next page; null on the last page.")
 
 
 class Paged(Protocol):

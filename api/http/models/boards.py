@@ -1,4 +1,4 @@
-"""What the leaderboard comes to: the best of each architecture, and an overview of the parts."""
+"""Leaderboard summary: the best of each architecture, and an overview of the parts."""
 
 from __future__ import annotations
 
@@ -49,66 +49,69 @@ class OverviewQuery(TableQuestion):
     )
 
     role: Several[RoleName] = several("Only parts of this role.")
-    detector: Several[Detector] = several("Count boards of this detector only.")
-    mask: Several[Mask] = several("Count boards of this mask only.")
+    detector: Several[Detector] = several("Only data sets with this detector.")
+    mask: Several[Mask] = several("Only data sets with this mask.")
 
 
 class BestOfArchitecture(Shape):
     """The best pipeline of an architecture under the first condition of its data sets.
 
-    Of several data sets the one counts whose best pipeline errs least. Numbers are null where
+    On the data set with the lowest error. Numbers are null where
     undefined, all of them where nothing has an error.
     """
 
     detector: str
     mask: str
     datasets: list[str] = Field(description="Data sets of the architecture.")
-    dataset: str | None = Field(description="The one whose best pipeline errs least.")
+    dataset: str | None = Field(description="The data set with the lowest error.")
     half_fov_deg: float | None
     extractor: str | None
     model: str | None
-    studies: list[str] = Field(
-        description="Mapped studies that used this pipeline on the architecture."
-    )
-    rms_deg: float | None = Field(description="RMS error on the standard unit.")
+    studies: list[str] = Field(description="Studies that used this pipeline on the architecture.")
+    rms_deg: float | None = Field(description="RMS error on the standard sensor unit.")
     own_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
-    own_se: float | None = Field(description="Its relative standard error.")
+    own_se: float | None = Field(description="Relative standard error of the own error.")
     quoted_deg: float | None = Field(
-        description="Error on the odd units of what errs least on the even ones."
+        description="Error on odd units of the pipeline that is best on even units."
     )
     on_bench_deg: float | None = Field(
-        description="Error expected when calibrated on the standard bench."
+        description="Error expected with the standard calibration bench."
     )
     on_bench_basis: Literal["measured", "estimated"] | None
-    bound_deg: float | None = Field(description="Cramer-Rao bound, rms, with the unit known.")
-    over_bound: float | None = Field(description="RMS error over the bound.")
+    bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
+    over_bound: float | None = Field(description="RMS error divided by the bound.")
     over_bound_se: float | None = Field(description="Standard error of that ratio.")
     bound_unit_deg: float | None
     over_bound_unit: float | None
-    availability: float | None = Field(description="Answered share of the observable samples.")
+    availability: float | None = Field(
+        description="Availability: share of observable samples with an answer."
+    )
     unit_rms_deg: list[float | None] | None = Field(
-        description="Error over all answers on each unit, the standard one first."
+        description="RMS error of all answers on each unit, standard unit first."
     )
     others_low_deg: float | None = Field(
-        description="Smallest of these on a unit other than the standard one."
+        description="Smallest error on a unit other than the standard one."
     )
-    others_high_deg: float | None = Field(description="Largest of these.")
+    others_high_deg: float | None = Field(
+        description="Largest error on a unit other than the standard one."
+    )
     runner_up_extractor: str | None = Field(
-        description="Of the pipeline that ranks next on the data set."
+        description="Extractor of the pipeline that ranks next."
     )
     runner_up_model: str | None
     runner_up_own_deg: float | None
     runner_up_unit_rms_deg: list[float | None] | None
     first_group: int = Field(
-        description="How many pipelines of the data set a paired test does not tell apart."
+        description="Number of pipelines that a paired test cannot separate from the best."
     )
-    tie: bool = Field(description="Whether the runner-up is one of them.")
-    units_ahead: int | None = Field(description="Units on which the best errs less.")
-    units_compared: int = Field(description="Units on which both have an error.")
+    tie: bool = Field(description="Whether the runner-up is tied with the best.")
+    units_ahead: int | None = Field(
+        description="Units on which the best pipeline has the lower error."
+    )
+    units_compared: int = Field(description="Units on which both were scored.")
     finer_dataset: str | None = Field(
-        description="Of the pipeline that errs least of those that answer half of the samples or "
-        "more, but too seldom to rank first; null unless the best errs by more than "
-        f"{FINER:g} times as much."
+        description="Data set of the pipeline with the lowest error at 50 to 95 % availability; "
+        f"null unless the best has more than {FINER:g} times its error."
     )
     finer_extractor: str | None
     finer_model: str | None
@@ -124,30 +127,32 @@ class Architectures(Listing):
 
 
 class PartOverview(Shape):
-    """How often a part of a pipeline comes near the bound."""
+    """Number of data sets on which a part of a pipeline is near the bound."""
 
     role: Literal["extractor", "compensation", "model"]
-    part: str = Field(description="Name of its implementation.")
+    part: str = Field(description="Name of the implementation.")
     taxonomy: str
-    boards: int = Field(description="Boards with a bound on which it ran.")
-    answered: int = Field(description="Those on which a pipeline with it answers often enough.")
-    within_1_5: int = Field(description="Those on which the best of these is within 1.5 bounds.")
+    boards: int = Field(description="Number of data sets with a bound on which it ran.")
+    answered: int = Field(description="Of these, data sets with a pipeline at 95 % availability.")
+    within_1_5: int = Field(
+        description="Of these, data sets with a pipeline within 1.5 times the bound."
+    )
     within_3: int
     within_10: int
     share_1_5: float = Field(description="`within_1_5` over `boards`.")
     share_3: float
     share_10: float
-    median_over_bound: float | None = Field(description="Over the boards answered.")
-    leads: int = Field(description="Boards on which it is part of the pipeline in front.")
+    median_over_bound: float | None = Field(description="Median of error divided by bound.")
+    leads: int = Field(description="Number of data sets on which it is part of the best pipeline.")
     reachable_10: int = Field(
-        description="Of `boards`, those on which any pipeline is within 10 bounds."
+        description="Of `boards`, those on which any pipeline is within 10 times the bound."
     )
 
 
 class Overview(Shape):
-    """The share of boards on which each part of a pipeline comes near the bound."""
+    """Share of data sets on which each part of a pipeline is near the bound."""
 
-    says: str = Field(description="How it aggregates, in words.")
-    within: list[float] = Field(description="The limits, in times the bound.")
-    boards: int = Field(description="Boards that count: data sets under their first condition.")
+    says: str = Field(description="Description of the aggregation.")
+    within: list[float] = Field(description="Limits, as multiples of the bound.")
+    boards: int = Field(description="Number of data sets counted, nominal condition.")
     parts: list[PartOverview]

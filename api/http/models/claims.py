@@ -36,7 +36,7 @@ class ClaimsQuery(TableQuestion):
         Field(
             min_length=1,
             max_length=200,
-            description="Words, all of which stand in the claim, its study or its section.",
+            description="Search words; all must occur in the claim, its study or its section.",
         ),
         GIVEN,
     ] = None
@@ -47,43 +47,53 @@ class ClaimsQuery(TableQuestion):
 
 
 class ClaimRule(Shape):
-    """One thing that has to hold for a claim."""
+    """A criterion of a claim."""
 
     rule: str
-    statistic: str = Field(description="What is computed in every trial.")
-    decides: str = Field(description="What the statistic has to be for the rule to hold.")
+    statistic: str = Field(description="Statistic computed in every trial.")
+    decides: str = Field(description="Threshold of the statistic.")
     standing: Standing = Field(
-        description="Holds or fails where the whole interval is on one side; open between."
+        description=(
+            "holds or fails: the 95 % interval is on one side of the threshold; open: it "
+            "includes the threshold."
+        )
     )
-    estimate: float | None = Field(description="Mean over the trials; of ratios the geometric one.")
+    estimate: float | None = Field(description="Mean over the trials; geometric mean for ratios.")
     low: float | None = Field(description="Lower end of the 95 % interval of the mean.")
-    high: float | None = Field(description="Upper end.")
-    trials: int = Field(description="Trials that gave a number.")
-    timed: bool = Field(description="A ratio of run times, which differs from run to run.")
+    high: float | None = Field(description="Upper end of the 95 % interval of the mean.")
+    trials: int = Field(description="Number of trials with a result.")
+    timed: bool = Field(
+        description="Whether it is a ratio of run times, which varies between runs."
+    )
 
 
 class Claim(Shape):
-    """One statement of the survey, and what came out."""
+    """A statement of the survey with its verdict."""
 
     id: str
     section: str = Field(description="Label in the survey's source.")
-    section_name: str = Field(description="What the label names, with its number in print.")
+    section_name: str = Field(description="Name of the section, with printed number.")
     study: str = Field(description="Key of the study that the survey cites; empty for none.")
     statement: str
     verdict: str | None = Field(
-        description="Reproduced where every rule holds, partly where some do, refuted where none "
-        "does and one fails, not testable here where all are open; null where not measured."
+        description=(
+            "reproduced: every criterion holds; partly: some hold; refuted: none holds "
+            "and at least one fails; not testable here: all undecided; null: not "
+            "measured."
+        )
     )
-    explanation: str = Field(description="Why it is not so, or what to read it with.")
+    explanation: str = Field(description="Explanation of the verdict, or remarks.")
     measured_on: str = Field(description="Data, sensors and methods.")
-    trials: int = Field(description="Planned.")
+    trials: int = Field(description="Number of planned trials.")
     replicate: Literal["unit", "seed"] = Field(
-        description="What differs between trials: the unit of the sensor, or the random draws."
+        description="Difference between trials: sensor unit or random seed."
     )
     rules: list[ClaimRule]
-    second_method: str = Field(description="The other method it was checked by; empty for none.")
-    second_agrees: bool | None = Field(description="Whether it says the same of every rule.")
-    second: list[ClaimRule] = Field(description="The rules by that method.")
+    second_method: str = Field(description="Second method of the check; empty if none.")
+    second_agrees: bool | None = Field(
+        description="Whether the second method gives the same verdict for every criterion."
+    )
+    second: list[ClaimRule] = Field(description="Results of the criteria by the second method.")
 
 
 class Claims(Listing):
@@ -94,20 +104,22 @@ class Claims(Listing):
 
 
 class ClaimLine(Shape):
-    """A line of the claim's plot."""
+    """A line of a claim's plot."""
 
-    across: list[float | str] = Field(description="Places.")
-    median: list[float | None] = Field(description="Of the trials.")
-    low: list[float | None] = Field(description="Smallest of the trials.")
-    high: list[float | None] = Field(description="Largest of the trials.")
+    across: list[float | str] = Field(description="Positions on the horizontal axis.")
+    median: list[float | None] = Field(description="Median of the trials.")
+    low: list[float | None] = Field(description="Minimum of the trials.")
+    high: list[float | None] = Field(description="Maximum of the trials.")
 
 
 class ClaimDetail(Claim):
-    """One claim with every number of its trials."""
+    """A claim with the results of all trials."""
 
-    how_to_test: str = Field(description="As the claim was taken from the survey.")
-    values: dict[str, list[float | None]] = Field(description="By rule, a number a trial.")
+    how_to_test: str = Field(description="Test method, stated before measuring.")
+    values: dict[str, list[float | None]] = Field(
+        description="Statistic of each trial, by criterion."
+    )
     second_values: dict[str, list[float | None]]
-    across: str = Field(description="What the plot's places are.")
-    up: str = Field(description="What the plot's values are.")
+    across: str = Field(description="Quantity on the horizontal axis.")
+    up: str = Field(description="Quantity on the vertical axis.")
     lines: dict[str, ClaimLine]

@@ -45,30 +45,29 @@ class CompareQuery(OfEdition, TableQuestion):
 
     architecture: InOrder[Architecture] = Field(
         default_factory=list,
-        description=f"Detector and mask with a colon between; {FEWEST} to {MOST} of them, each "
-        "compared by its best pipeline.",
+        description=f"Architectures as DETECTOR:MASK, {FEWEST} to {MOST}; each by its best "
+        "pipeline.",
     )
     dataset: Annotated[DatasetName | None, GIVEN] = Field(
-        None, description="Standard data set of the pipelines."
+        None, description="Data set of the pipelines."
     )
     pipeline: InOrder[Pipeline] = Field(
         default_factory=list,
-        description="Names of extractor and model with a colon between, as its leaderboard has "
-        f"them; {FEWEST} to {MOST} of them.",
+        description=f"Pipelines as EXTRACTOR:MODEL, {FEWEST} to {MOST}.",
     )
     condition: Annotated[Condition | None, GIVEN] = Field(
-        None, description="Of the data set; its first by default."
+        None, description="Condition of the data set; by default the first."
     )
 
 
 class FinerPipeline(Shape):
-    """A pipeline of the same architecture that errs far less."""
+    """A pipeline of the same architecture with a much lower error."""
 
     dataset: str
     extractor: str
     model: str
     rms_deg: float
-    availability: float = Field(description="Share of the samples that its error is of.")
+    availability: float = Field(description="Availability.")
 
 
 class ConditionError(Shape):
@@ -77,9 +76,8 @@ class ConditionError(Shape):
     rms_deg: float | None
     availability: float | None
     finer: FinerPipeline | None = Field(
-        description="Of an architecture: the pipeline of the data set that errs least under this "
-        "condition of those that answer half of the samples or more; null unless the error is more "
-        f"than {FINER:g} times as large."
+        description="Pipeline of the architecture with the lowest error under this condition at "
+        f"50 % availability or more; null unless the error is more than {FINER:g} times as large."
     )
 
 
@@ -92,7 +90,7 @@ class RingError(Shape):
 
 
 class Compared(Shape):
-    """A pipeline, or the best one of an architecture. Numbers are null where undefined."""
+    """A pipeline, or the best one of an architecture. Numbers are null if undefined."""
 
     detector: str
     mask: str
@@ -100,50 +98,55 @@ class Compared(Shape):
     condition: str | None
     extractor: str | None
     model: str | None
-    studies: list[str] = Field(description="Mapped studies that used it on such a sensor.")
-    proposed: list[str] | None = Field(
-        description="Of an architecture: all mapped studies that have it."
-    )
+    studies: list[str] = Field(description="Studies that used it on such a sensor.")
+    proposed: list[str] | None = Field(description="Studies with this architecture.")
     rms_deg: float | None
-    over_least: float | None = Field(description="RMS error over the least of those compared.")
-    bound_deg: float | None = Field(description="Cramer-Rao bound, rms, with the unit known.")
+    over_least: float | None = Field(
+        description="RMS error divided by the lowest of those compared."
+    )
+    bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
     over_bound: float | None
     over_bound_se: float | None = Field(description="Standard error of that ratio.")
     own_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
     on_bench_deg: float | None = Field(
-        description="Error expected when calibrated on the standard bench."
+        description="Error expected with the standard calibration bench."
     )
-    unit_rms_deg: list[float | None] | None = Field(description="Error on each unit.")
-    low_deg: float | None = Field(description="Smallest error of a unit.")
-    high_deg: float | None = Field(description="Largest.")
+    unit_rms_deg: list[float | None] | None = Field(description="Error on each sensor unit.")
+    low_deg: float | None = Field(description="Smallest error over units.")
+    high_deg: float | None = Field(description="Largest error over units.")
     availability: float | None
     false_sun: float | None
-    latency_us: float | None = Field(description="Time of a sample on this machine, if timed.")
-    time_ratio: float | None = Field(description="The same over the time of a reference.")
+    latency_us: float | None = Field(
+        description="Time per sample on this machine, microseconds; null if not timed."
+    )
+    time_ratio: float | None = Field(description="Time divided by that of a reference method.")
     half_fov_deg: float | None
-    rank: int | None = Field(description="Place on the leaderboard of its data set and condition.")
+    rank: int | None = Field(description="Rank on the leaderboard of the data set and condition.")
     status: Literal["ok", "refused", "failed", "none"]
-    reason: str | None = Field(description="Why there is no score.")
+    reason: str | None = Field(description="Reason for a missing score.")
     needed_poses: int | None = Field(
-        description="Calibration poses after which it is within 10 % of its floor; null where it "
-        "has no learning curve, or all poses are too few."
+        description=(
+            "Calibration poses needed to be within 10 % of the error floor; null without "
+            "a learning curve, or if more than all poses are needed."
+        )
     )
     needed_low: int | None
     needed_high: int | None
-    poses: int | None = Field(description="Poses that the data set gives; null without a curve.")
-    floor_error_deg: float | None = Field(description="Where its learning curve ends.")
-    finer: FinerPipeline | None = Field(
-        description="Of an architecture: what errs least of the pipelines that answer half of the "
-        "samples or more, but too seldom to rank first; null unless the error is more than "
-        f"{FINER:g} times as large."
+    poses: int | None = Field(
+        description="Calibration poses in the data set; null without a learning curve."
     )
-    conditions: dict[str, ConditionError] = Field(description="Its error by condition.")
-    rings: list[RingError] = Field(description="Its error by angle off the boresight.")
+    floor_error_deg: float | None = Field(description="Error floor of the learning curve.")
+    finer: FinerPipeline | None = Field(
+        description="Pipeline of the architecture with the lowest error at 50 to 95 % "
+        f"availability; null unless the error is more than {FINER:g} times as large."
+    )
+    conditions: dict[str, ConditionError] = Field(description="RMS error by condition.")
+    rings: list[RingError] = Field(description="RMS error by off-axis angle.")
 
 
 class Comparison(Shape):
-    """What is compared, in the order asked for."""
+    """Compared pipelines or architectures, in the requested order."""
 
-    dataset: str | None = Field(description="Null where architectures are compared.")
+    dataset: str | None = Field(description="Null if architectures are compared.")
     condition: str | None
     items: list[Compared]

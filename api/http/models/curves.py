@@ -30,7 +30,7 @@ class CurvesQuery(TableQuestion):
         json_schema_extra={"examples": [{"dataset": ["cmos-single-aperture"], "limit": 1}]}
     )
 
-    dataset: Several[DatasetName] = several("Only this standard data set.")
+    dataset: Several[DatasetName] = several("Only this data set.")
     extractor: Several[ExtractorName] = several("Only this extractor.")
     model: Several[ModelName] = several("Only this model.")
     sort: Annotated[str | None, sorting(columns.CURVES), GIVEN] = SORT
@@ -40,58 +40,74 @@ class CurvesQuery(TableQuestion):
 
 
 class CurvePoint(Shape):
-    """Errors after so many poses, over draws and units; null where every draw was refused."""
+    """Errors with a number of poses, over draws and units; null if every draw was refused."""
 
     poses: int
-    middle_deg: float | None = Field(description="Median of the draws' root mean square errors.")
-    least_deg: float | None = Field(description="Smallest of them.")
-    largest_deg: float | None = Field(description="Largest of them.")
-    availability: float | None = Field(description="Median answered share of the test split.")
-    refused: int = Field(description="Draws whose poses the model refused.")
+    middle_deg: float | None = Field(description="Median RMS error over the draws.")
+    least_deg: float | None = Field(description="Smallest RMS error over the draws.")
+    largest_deg: float | None = Field(description="Largest RMS error over the draws.")
+    availability: float | None = Field(description="Median availability on the test split.")
+    refused: int = Field(description="Draws with poses that the model refused.")
 
 
 class Curve(Shape):
-    """The learning curve of one pipeline. Poses are null where all there are are too few."""
+    """Learning curve of a pipeline. Poses are null if more than all poses are needed."""
 
     dataset: str
-    place: int = Field(description="Among the data set's leaders, each with another model.")
+    place: int = Field(
+        description="Rank among the data set's leading pipelines, each with another model."
+    )
     condition: str
     extractor: str
     model: str
-    poses: int = Field(description="That the calibration split has.")
-    in_order: bool = Field(description="Whether they are a time series, taken in its order.")
+    poses: int = Field(description="Poses of the calibration split.")
+    in_order: bool = Field(description="Whether the poses are a time series, used in order.")
     floor: Literal["fitted", "all", "none"] = Field(
-        description="fitted: where the fitted law of the squared error, f^2 + a poses^-b, ends; "
-        "all: the error with all poses, where no law is fitted; none: all poses are too few."
+        description=(
+            "fitted: asymptote f of the fitted squared error f^2 + a poses^-b; all: error "
+            "with all poses; none: more than all poses are needed."
+        )
     )
-    floor_error_deg: float | None = Field(description="The floor, root mean square over units.")
-    floor_low_deg: float | None = Field(description="Where nine in ten fitted floors lie, from.")
-    floor_high_deg: float | None = Field(description="To.")
-    exponent: float | None = Field(description="b of the law.")
-    misfit: float | None = Field(description="By how much the law misses the errors, relative.")
+    floor_error_deg: float | None = Field(description="Error floor, RMS over units.")
+    floor_low_deg: float | None = Field(description="Lower end of the 90 % range of fitted floors.")
+    floor_high_deg: float | None = Field(
+        description="Upper end of the 90 % range of fitted floors."
+    )
+    exponent: float | None = Field(description="Exponent b of the fitted law.")
+    misfit: float | None = Field(description="Relative residual of the fitted law.")
     bound_deg: float = Field(
-        description="Cramer-Rao bound of the pipeline's published score, for a unit that is known "
-        "by its dark and flat readings where there are any."
+        description=(
+            "Cramer-Rao bound of the published score, for a unit known only through its "
+            "dark and flat frames."
+        )
     )
     bench_deg: float | None = Field(
-        description="Fixed error of the standard bench's directions, which the curve is without."
+        description="Error of the standard calibration bench; not included in the curve."
     )
-    over_bound: float | None = Field(description="Floor over bound.")
-    all_deg: list[float | None] = Field(description="Own error with all poses, by unit.")
-    draws: int = Field(description="Draws of poses, over all units.")
-    reached: int = Field(description="Draws that come within 10 % of the floor.")
+    over_bound: float | None = Field(description="Error floor divided by the bound.")
+    all_deg: list[float | None] = Field(description="Own error with all poses, by sensor unit.")
+    draws: int = Field(description="Random draws of poses, over all units.")
+    reached: int = Field(description="Draws within 10 % of the error floor.")
     needed_poses: int | None = Field(
-        description="Poses from which on half of the draws err by at most 1.1 floors and answer "
-        "95 % of the test split."
+        description=(
+            "Poses with which half of the random draws are within 10 % of the error floor "
+            "and have 95 % availability."
+        )
     )
-    needed_low: int | None = Field(description="The same of the first draw.")
-    needed_high: int | None = Field(description="The same of the last draw.")
-    error_poses: int | None = Field(description="The same of half of the draws, by error alone.")
-    answers_poses: int | None = Field(description="The same, by answers alone.")
-    needed: list[int | None] = Field(description="By draw, unit after unit.")
-    error_from: list[int | None] = Field(description="By draw, by error alone.")
-    answers_from: list[int | None] = Field(description="By draw, by answers alone.")
-    refusal: str = Field(description="Why the first refused draw was; empty where none was.")
+    needed_low: int | None = Field(description="Poses needed in the best random draw.")
+    needed_high: int | None = Field(description="Poses needed in the worst random draw.")
+    error_poses: int | None = Field(description="Poses needed by the error criterion alone.")
+    answers_poses: int | None = Field(
+        description="Poses needed by the availability criterion alone."
+    )
+    needed: list[int | None] = Field(description="Poses needed by each draw, unit after unit.")
+    error_from: list[int | None] = Field(
+        description="Poses needed by each draw, error criterion alone."
+    )
+    answers_from: list[int | None] = Field(
+        description="Poses needed by each draw, availability criterion alone."
+    )
+    refusal: str = Field(description="Reason of the first refused draw; empty if none.")
     points: list[CurvePoint]
 
 

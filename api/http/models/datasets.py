@@ -35,7 +35,7 @@ class DatasetsQuery(TableQuestion):
 
 
 class Dataset(OpenShape):
-    """Card of a standard data set."""
+    """Summary of a data set."""
 
     name: str
     version: int
@@ -49,11 +49,10 @@ class Dataset(OpenShape):
     bounds: dict[str, float] = Field(description="Cramer-Rao bound by condition, rms, degrees.")
     splits: dict[str, dict[str, Any]]
     stands_for: dict[str, Any] = Field(
-        description="The nearest built `sensors` with their published figures, or why it is an "
-        "`idealisation`."
+        description="Built `sensors` for comparison, or the reason for an `idealisation`."
     )
-    setups: dict[str, dict[str, Any]] = Field(description="What each condition is.")
-    preview: str = Field(description="Where its picture is served.")
+    setups: dict[str, dict[str, Any]] = Field(description="Descriptions of the conditions.")
+    preview: str = Field(description="Address of its picture.")
 
 
 class RealismQuery(TableQuestion):
@@ -67,7 +66,7 @@ class RealismQuery(TableQuestion):
 
 
 class BuiltSensor(Shape):
-    """Published figures of a built sensor, and ours over them. Null where not known."""
+    """Published figures of a built sensor, compared with ours. Null if unknown."""
 
     id: str
     name: str
@@ -79,51 +78,59 @@ class BuiltSensor(Shape):
     source: str = Field(description="Address, document, study or label of the survey's source.")
     source_name: str = Field(description="Publisher, document or part of the survey.")
     accuracy_rms_deg: float | None = Field(
-        description="Accuracy as a root mean square: three sigma and largest errors over three."
+        description="Accuracy converted to RMS: 3-sigma and maximum errors divided by three."
     )
-    our_rms_deg: float | None = Field(description="Our error, over its field where narrower.")
-    accuracy_ratio: float | None = Field(description="Our error over its accuracy.")
-    precision_ratio: float | None = Field(description="Our repeatability over its precision.")
+    our_rms_deg: float | None = Field(
+        description="Our RMS error, over its field of view if narrower."
+    )
+    accuracy_ratio: float | None = Field(description="Our error divided by its accuracy.")
+    precision_ratio: float | None = Field(description="Our repeatability divided by its precision.")
 
 
 class RealismRow(Shape):
-    """A data set beside the built sensors that it stands for."""
+    """A data set compared with built sensors."""
 
     dataset: str
-    idealisation: str | None = Field(description="Why it stands for none; null where it does.")
-    extractor: str | None = Field(description="Of the best pipeline on the nominal condition.")
+    idealisation: str | None = Field(
+        description="Reason for an idealised sensor; null if built sensors exist."
+    )
+    extractor: str | None = Field(
+        description="Extractor of the best pipeline under nominal conditions."
+    )
     model: str | None
     rms_deg: float | None
-    bound_deg: float | None = Field(description="Cramer-Rao bound, over the data set's field.")
+    bound_deg: float | None = Field(description="Cramer-Rao bound over the field of the data set.")
     repeatability_deg: float | None
     half_fov_deg: float | None
     accuracy_ratio: float | None = Field(
-        description="1 within the range of the sensors' figures, else that of the nearest."
+        description="1 within the range of the sensors' figures, else the ratio to the nearest."
     )
     precision_ratio: float | None
-    sentence: str | None = Field(description="What explains a difference.")
-    unexplained: bool = Field(description="Beyond a factor of two without a sentence.")
+    sentence: str | None = Field(description="Explanation of a difference.")
+    unexplained: bool = Field(
+        description="Whether a difference of more than a factor of two is unexplained."
+    )
     sensors: list[BuiltSensor]
 
 
 class Realism(Shape):
-    """Data sets beside built sensors."""
+    """Data sets compared with built sensors."""
 
     datasets: list[RealismRow]
 
 
 class Data(Shape):
-    """The published data of a split in a condition; null where none are pinned."""
+    """Published hash of a split under a condition; null if none."""
 
     condition: str
     split: str
     samples: int
     data_hash: str | None
-    bound_deg: float | None = Field(description="Cramer-Rao bound, rms over the test split.")
+    bound_deg: float | None = Field(description="RMS Cramer-Rao bound over the test split.")
 
 
 class DatasetDetail(Dataset):
-    """Card of a standard data set, with every parameter that its numbers depend on."""
+    """Description of a data set with all simulation parameters."""
 
     geometry: dict[str, Any]
     regime: dict[str, Any]

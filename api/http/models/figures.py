@@ -37,7 +37,11 @@ class MatrixQuery(StudyFilters):
 
     rows: Level = Field(ROWS, description="Attribute of the rows.")
     columns: Level = Field(
-        COLUMNS_OF, description="Attribute of the columns; the rows' own shows what goes together."
+        COLUMNS_OF,
+        description=(
+            "Attribute of the columns; the same attribute as the rows shows which values "
+            "occur together."
+        ),
     )
 
 
@@ -47,26 +51,26 @@ class ListedFigure(Shape):
     figure: str
     title: str
     caption: str
-    levels: list[str] = Field(description="What it shows of a study.")
+    levels: list[str] = Field(description="Attributes shown.")
 
 
 class Figures(Shape):
     """The survey's figures."""
 
     items: list[ListedFigure]
-    studies: int = Field(description="Studies that there are figures of.")
+    studies: int = Field(description="Number of studies in the figures.")
 
 
 class Figure(Shape):
-    """A figure: what it shows in sentences, and the table behind it."""
+    """A figure with its description and table."""
 
     figure: str
     title: str
     caption: str
     text: list[str]
-    studies: int = Field(description="Studies that met the filters.")
+    studies: int = Field(description="Number of studies that match the filters.")
     options: dict[str, str]
-    counts: dict[str, int] = Field(description="Of the matrix: how many pairs are in each state.")
+    counts: dict[str, int] = Field(description="Number of pairs in each state (evidence map).")
     left_out: list[LeftOut]
-    columns: list[str] = Field(description="Columns of the table and of the CSV, always these.")
+    columns: list[str] = Field(description="Columns of the table.")
     rows: list[dict[str, str | int | float | list[str] | None]]

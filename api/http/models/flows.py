@@ -20,11 +20,14 @@ class FlowsQuery(StudyFilters):
 
     counting: Literal["studies", "fractional"] = Field(
         "studies",
-        description="Distinct studies on a link; or each study as a weight of one, split evenly "
-        "over the combinations of its values, so that inflow equals outflow.",
+        description=(
+            "studies: number of distinct studies per link. fractional: each study has "
+            "weight one, divided over the combinations of its values, so that inflow "
+            "equals outflow."
+        ),
     )
     grouped: Flag = Field(
-        False, description="Categories instead of models, families instead of extractors."
+        False, description="Show categories of models and families of extractors."
     )
 
 
@@ -35,16 +38,16 @@ class Node(Shape):
     level: str
     value: str
     name: str
-    count: float = Field(description="Distinct studies, or the sum of their fractions.")
+    count: float = Field(description="Number of studies, or sum of their fractions.")
     studies: list[str]
 
 
 class Link(Shape):
-    """Studies that go from one value to another."""
+    """Link between two values with its studies."""
 
     source: str
     target: str
-    value: float = Field(description="Distinct studies, or the sum of their fractions.")
+    value: float = Field(description="Number of studies, or sum of their fractions.")
     studies: list[str]
 
 
@@ -62,7 +65,7 @@ class Flows(Shape):
     chart: str
     levels: list[str]
     counting: Literal["studies", "fractional"]
-    studies: int = Field(description="Studies that met the filters.")
+    studies: int = Field(description="Number of studies that match the filters.")
     nodes: list[Node]
     links: list[Link]
     left_out: list[LeftOut]

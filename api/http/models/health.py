@@ -17,9 +17,7 @@ class Health(Shape):
     studies: int
     datasets: int
     scores: int
-    facts_sha256: str | None = Field(
-        description="Digest of the manifest of the facts that are served; null without one."
-    )
+    facts_sha256: str | None = Field(description="Digest of the survey's tables; null if unknown.")
     record_sha256: str | None = Field(
-        description="Digest of the manifest of the published record that is served; null without."
+        description="Digest of the published results; null if unknown."
     )

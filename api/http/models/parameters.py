@@ -110,23 +110,22 @@ WHOLE = Whole(r"-?\d{1,18}")
 NUMBER = Spelt(r"-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?")
 Flag = Annotated[bool, Spelt("true|false")]
 
-Limit = Annotated[int, Field(ge=1, le=LARGEST_PAGE, description="Items on a page."), WHOLE]
+Limit = Annotated[
+    int, Field(ge=1, le=LARGEST_PAGE, description="Maximum number of items per page."), WHOLE
+]
 SORT = Field(
     default=None,
-    description="Order by this column, or from its largest value down with - before it; rows "
-    "without a value come last, and equal ones keep the order of the list.",
+    description=(
+        "Column to sort by; - in front sorts in descending order. Rows without a value come last."
+    ),
 )
-FIELDS = several(
-    "Only these columns of the table, in its order. In JSON, too, an item then is a row of the "
-    "table, with nothing nested."
-)
+FIELDS = several("Columns to return. JSON items are then flat table rows.")
 Cursor = Annotated[
     str | None,
     Field(
         min_length=1,
         max_length=200,
-        description="Where to go on: the `next` of the previous page, unchanged and with the "
-        "same filters.",
+        description="`next` of the previous page, with the same filters.",
     ),
     GIVEN,
 ]

@@ -8,7 +8,7 @@ from api.http.models.base import Shape
 
 
 class Violation(Shape):
-    """One thing wrong with a request."""
+    """An error in a request."""
 
     parameter: str
     value: str | None

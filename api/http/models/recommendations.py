@@ -1,4 +1,4 @@
-"""Requirements on a sensor, and the paths that meet them."""
+"""Requirements, and the architectures that meet them."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from registry.ranking import Sort
 
 
 def _wanted(attribute: str) -> Any:
-    return several(f"Only paths with one of these values of {attribute}.")
+    return several(f"Require one of these values of {attribute}.")
 
 
 def _unwanted(attribute: str) -> Any:
-    return several(f"No path with one of these values of {attribute}.")
+    return several(f"Exclude these values of {attribute}.")
 
 
 Number = Annotated[float | None, NUMBER]
 
 
 class Requirements(OfEdition):
-    """What a sensor shall have."""
+    """Requirements on a sensor and its calibration."""
 
     task: Several[words.Task] = _wanted("task")
     error: Several[words.Error] = _wanted("error")
@@ -48,72 +48,76 @@ class Requirements(OfEdition):
         None,
         gt=0,
         le=180,
-        description="RMS error at most this, in degrees, over the field asked for and all it shall "
-        "survive: measured; where nothing is measured, a stated accuracy as the RMS of its kind "
-        "(unspecified: as printed), never a precision.",
+        description=(
+            "Maximum RMS error, degrees, over the required field of view and conditions. "
+            "Measured; if not measured, the stated accuracy converted to RMS."
+        ),
     )
     min_fov_deg: Number = Field(
         None,
         gt=0,
         le=360,
-        description="Full field of view at least this, in degrees: measured; stated where nothing "
-        "is measured.",
+        description="Minimum full field of view, degrees. Measured; if not measured, stated.",
     )
     max_latency_us: Number = Field(
         None,
         gt=0,
         le=1e12,
-        description="Extraction and prediction of one sample at most this, in microseconds.",
+        description="Maximum time of extraction and prediction per sample, microseconds.",
     )
     min_availability: Number = Field(
         None,
         gt=0,
         le=1,
-        description="Answered share of the samples at least this, nominal and surviving: measured.",
+        description="Minimum availability, nominal and under all required conditions.",
     )
     survive: Several[words.Hazard] = several(
-        "Only designs that a data set tries under each of these, and that answer often enough "
-        "under them, within the largest error if one is asked for."
+        "Conditions to tolerate: a data set must test each, with sufficient "
+        "availability and within the maximum error."
     )
     properties: Several[words.Property] = several(
-        "Only extractors that have all of these in the survey's assessment, in part at least."
+        "Required extractor properties, at least partly provided in the survey's assessment."
     )
     exclude_needs: Several[words.Need] = several(
-        "No calibration that reads one of these beside the sensor."
+        "Exclude calibrations that need one of these inputs."
     )
     bench_deg: Number = Field(
         None,
         ge=0,
         le=180,
-        description="Fixed error of the calibration bench, in degrees: by default that of each "
-        "data set's standard bench; 0 for own errors.",
+        description=(
+            "Calibration-bench error, degrees; by default that of each data set's "
+            "standard bench; 0 for own errors."
+        ),
     )
     confidence: Number = Field(
         None,
         ge=0.5,
         le=0.999,
-        description="Share of sensor units and benches on which the largest error has to be kept; "
-        "0.9 by default.",
+        description=(
+            "Share of sensor units and benches that must meet the maximum error; default 0.9."
+        ),
     )
     sort: Sort = Field(
         "advice",
-        description="Order of the architectures: advised or used ones first, by the measure of "
-        "the tasks asked for or by error (advice); backed by most studies (support); smallest "
-        "error (measured). Calibrations come by error but for support.",
+        description=(
+            "Ranking. advice: advised or used in studies first, then by the measure of "
+            "the tasks or by error. support: by number of studies. measured: by error."
+        ),
     )
     limit: Annotated[int, WHOLE] = Field(
         20,
         ge=1,
         le=LARGEST_PAGE,
-        description="Architectures to return; `count`, paths, nodes and links tell of all.",
+        description="Maximum number of architectures; `count`, paths, nodes and links cover all.",
     )
     calibrations: Annotated[int, WHOLE] = Field(
-        5, ge=1, le=LARGEST_PAGE, description="Calibrations to return of each architecture."
+        5, ge=1, le=LARGEST_PAGE, description="Maximum number of calibrations per architecture."
     )
 
 
 class RequirementsQuery(Requirements, TableQuestion):
-    """What a sensor shall have, in a query."""
+    """Requirements in a query."""
 
     model_config = ConfigDict(
         json_schema_extra={
@@ -131,7 +135,7 @@ class RequirementsQuery(Requirements, TableQuestion):
 
 
 class RequirementsBody(Requirements, strict=True):
-    """What a sensor shall have, in a body: numbers are no text there."""
+    """Requirements in a request body."""
 
     model_config = ConfigDict(
         json_schema_extra={
@@ -149,7 +153,7 @@ class RequirementsBody(Requirements, strict=True):
 
 
 class Nominal(Shape):
-    """The score under the first condition of the data set, over its whole field."""
+    """Score under nominal conditions, over the whole field."""
 
     condition: str
     rms_deg: float | None
@@ -157,86 +161,95 @@ class Nominal(Shape):
     over_bound: float | None
     repeatability_deg: float | None
     availability: float | None = Field(
-        description="Answered share of the samples whose direction is observable."
+        description="Availability: share of observable samples with an answer."
     )
-    false_sun: float | None = Field(description="Answered share of the other samples.")
+    false_sun: float | None = Field(
+        description="False detections: share of unobservable samples with an answer."
+    )
 
 
 class Units(Shape):
-    """Own errors over units of the sensor that were measured, the standard one among them."""
+    """Own errors over the measured sensor units."""
 
     count: int
     least_deg: float
     largest_deg: float
     meeting: int | None = Field(
-        description="How many of ten units meet the largest error asked for; null if none is."
+        description="Number of ten units that meet the maximum error; null without one."
     )
-    of: int = Field(description="Ten; of what was measured on fewer than five, by their spread.")
+    of: int = Field(description="Ten; extrapolated if fewer than five units were measured.")
 
 
 class Finer(Shape):
-    """A pipeline on the same sensor that errs far less, but answers too seldom to be judged."""
+    """A pipeline with a lower error at lower availability."""
 
     dataset: str
     extractor: str
     model: str
-    error_deg: float = Field(description="Its largest error where it answers.")
-    availability: float = Field(description="Its least answered share.")
+    error_deg: float = Field(description="Its maximum RMS error over conditions.")
+    availability: float = Field(description="Its lowest availability over conditions.")
 
 
 class Measured(Shape):
-    """A pipeline on a data set, judged over the field and the conditions asked for."""
+    """A pipeline on a data set, with its error over the required field of view and conditions."""
 
     dataset: str
     extractor: str
     model: str
     error_deg: float | None = Field(
-        description="What it is judged by: its largest error, nominal and under all it shall "
-        "survive; where a largest error or a bench is asked for, the error that the asked share of "
-        "units and benches keeps within; null where it answers too seldom."
+        description=(
+            "Error used for ranking: maximum RMS error over the required conditions. With "
+            "a maximum error or a bench: the error that the required share of units and "
+            "benches meets. Null below the required availability."
+        )
     )
     own_deg: float | None = Field(
-        description="The same calibrated with true directions, over sensor units."
+        description="Own error: calibrated with true directions, over sensor units."
     )
-    bench_deg: float = Field(description="Fixed error of the bench that it is judged on.")
-    needs: list[str] = Field(description="What its calibration reads beside the sensor.")
-    condition: str = Field(description="Where that was measured.")
-    field_deg: float | None = Field(description="Full field that the error holds over.")
-    nominal_deg: float | None = Field(description="The error of the first condition alone.")
+    bench_deg: float = Field(description="Calibration-bench error used.")
+    needs: list[str] = Field(description="Inputs that the calibration needs besides the sensor.")
+    condition: str = Field(description="Condition with the maximum error.")
+    field_deg: float | None = Field(description="Full field of view of the error.")
+    nominal_deg: float | None = Field(description="RMS error under nominal conditions.")
     nominal: Nominal
     conditions: dict[str, float | None] = Field(
-        description="Errors under what it shall survive, by condition."
+        description="RMS errors under the conditions to tolerate."
     )
     fov_deg: float | None = Field(description="Full field of view of the data set.")
-    availability: float | None = Field(description="Least answered share of all these.")
+    availability: float | None = Field(description="Lowest availability over the conditions.")
     latency_us: float | None = Field(
-        description="Of one sample on this machine, microseconds; null where it is not timed."
+        description="Time per sample on this machine, microseconds; null if not timed."
     )
     units: Units | None
     finer: Finer | None = Field(
-        description="Of what keeps the other requirements on this sensor, but answers too seldom "
-        f"to be judged, at least {100 * LEAST_ANSWERED:.0f} % though: what errs least, where the "
-        f"error here is more than {FINER:g} times as large."
+        description=f"Pipeline with the lowest error at {100 * LEAST_ANSWERED:.0f} % availability "
+        f"or more; null unless the error here is more than {FINER:g} times as large."
     )
 
 
 class Calibration(Shape):
-    """An extractor, compensations and a model, as values of the taxonomy, with their evidence."""
+    """A calibration (extractor, compensations, model) in the survey's labels, with evidence."""
 
     rank: int
     extractor: str
     compensations: list[str]
     model: str
-    advised: list[str] = Field(description="The survey's advice that names it.")
-    studies: list[str] = Field(description="Studies that stand for it; empty: in no study.")
-    with_model: int = Field(description="Studies that stand for its compensations and model.")
+    advised: list[str] = Field(description="Advice of the survey that names it.")
+    studies: list[str] = Field(description="Studies that used it; empty if none.")
+    with_model: int = Field(
+        description="Number of studies that use this model and these compensations."
+    )
     support: float = Field(
         description="Geometric mean of the architecture's studies, `with_model` and `studies`."
     )
-    measured: Measured | None = Field(description="Its best pipeline that meets the requirements.")
-    other_datasets: list[Measured] = Field(description="Its best on each other data set.")
+    measured: Measured | None = Field(
+        description="Its most accurate pipeline that meets the requirements."
+    )
+    other_datasets: list[Measured] = Field(
+        description="Its most accurate pipeline on each other data set."
+    )
     basis: dict[str, Literal["measured", "stated", "studies", "advised", "assessed"]] = Field(
-        description="On what each requirement was judged."
+        description="Evidence by which each requirement was checked."
     )
 
 
@@ -257,43 +270,43 @@ class Advice(Shape):
     model_category: str
     extractor: str
     section: str
-    section_name: str = Field(description="What the label names, with its number in print.")
+    section_name: str = Field(description="Name of the section, with printed number.")
     note: str
 
 
 class TaskMeasure(Shape):
-    """What an architecture is ranked by for a task."""
+    """Measure by which an architecture is ranked for a task."""
 
     task: str
     value: float | None
     unit: str
     basis: Literal["measured", "published"]
-    built: int = Field(description="Built sensors that it is the median of.")
+    built: int = Field(description="Number of built sensors in the median.")
     words: str
 
 
 class Architecture(Shape):
-    """A detector behind a mask, with its evidence, and its calibrations, best first."""
+    """An architecture with evidence and calibrations, best first."""
 
     rank: int
     detector: str
     mask: str
     tasks: list[Task]
-    advised: bool = Field(description="Whether the survey advises it for what is asked.")
+    advised: bool = Field(description="Whether the survey advises it for these requirements.")
     advice: list[Advice]
     studies: list[str]
-    best: Calibration = Field(description="The calibration that errs least.")
-    pareto: bool = Field(description="Whether none has more studies and a smaller error.")
+    best: Calibration = Field(description="The calibration with the lowest measured error.")
+    pareto: bool = Field(description="Pareto: no other has both more studies and a lower error.")
     contradiction: str | None = Field(
-        description="Where the best measured calibration is not what most studies stand for."
+        description="Sentence, if the most accurate calibration is not the one most studies used."
     )
-    measures: list[TaskMeasure] = Field(description="Own measures of the tasks asked for.")
+    measures: list[TaskMeasure] = Field(description="Measures of the requested tasks.")
     count: int = Field(description="Calibrations that meet the requirements.")
     calibrations: list[Calibration]
 
 
 class Regret(Shape):
-    """By how much the first calibration named errs more than the best one measured."""
+    """Accuracy lost by the ranking: first calibration compared with the most accurate one."""
 
     first_deg: float | None
     best_deg: float
@@ -302,14 +315,14 @@ class Regret(Shape):
 
 
 class Pair(Shape):
-    """A detector behind a mask."""
+    """An architecture: detector and mask."""
 
     detector: str
     mask: str
 
 
 class Path(Shape):
-    """A way that studies behind the answer took."""
+    """A combination of values used in studies."""
 
     task: str
     detector: str
@@ -320,7 +333,7 @@ class Path(Shape):
 
 
 class Relaxation(OpenShape):
-    """A change of the requirements that leaves architectures."""
+    """A change of the requirements that gives results."""
 
     constraint: str
     architectures: int
@@ -328,7 +341,7 @@ class Relaxation(OpenShape):
 
 
 class Blocked(Shape):
-    """Why nothing is left."""
+    """Why no architecture meets the requirements."""
 
     constraint: str
     detail: str
@@ -340,21 +353,25 @@ class Recommendations(Shape):
 
     requirements: dict[str, Any]
     sort: str
-    count: int = Field(description="Architectures that meet the requirements, beyond `limit` too.")
-    designs: int = Field(description="Their calibrations, all together.")
+    count: int = Field(description="Number of architectures that meet the requirements.")
+    designs: int = Field(description="Number of their calibrations.")
     architectures: list[Architecture]
     contradictions: list[str] = Field(
-        description="Where an architecture that the survey does not advise does better."
+        description="Sentences, where an architecture that is not advised has better results."
     )
     regret: Regret | None
     untimed: int = Field(
-        description="Measured pipelines that a limit on latency cannot judge: not timed here."
+        description=(
+            "Number of pipelines excluded by the latency limit because they were not timed."
+        )
     )
     untried: dict[str, list[Pair]] = Field(
-        description="Architectures that no data set tries under what they shall survive."
+        description="Architectures without a data set that tests the required condition."
     )
     paths: list[Path]
     nodes: list[Node]
     links: list[Link]
-    left_out: list[LeftOut] = Field(description="Studies on no path for want of a value.")
+    left_out: list[LeftOut] = Field(
+        description="Studies not shown because an attribute is unknown."
+    )
     blocked: Blocked | None

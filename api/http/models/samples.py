@@ -29,12 +29,10 @@ class SampleErrorsQuery(TableQuestion):
         json_schema_extra={"examples": [{"extractor": ["weighted-spots"], "unit": 0, "limit": 1}]}
     )
 
-    extractor: Several[ExtractorName] = several(
-        "Only this extractor, by the name of its implementation."
-    )
-    model: Several[ModelName] = several("Only this model, by the name of its implementation.")
+    extractor: Several[ExtractorName] = several("Only this extractor.")
+    model: Several[ModelName] = several("Only this model.")
     unit: Annotated[int | None, WHOLE] = Field(
-        None, ge=0, le=127, description="Only this unit of the sensor; 0 is the standard one."
+        None, ge=0, le=127, description="Only this sensor unit; 0 is the standard unit."
     )
     fields: Several[Annotated[str, columns_of(columns.SAMPLE_ERRORS)]] = FIELDS
     limit: Limit = DEFAULT_PAGE
@@ -46,18 +44,19 @@ class SampleError(Shape):
 
     extractor: str
     model: str
-    unit: int = Field(description="Which unit of the sensor; 0 is the standard one.")
+    unit: int = Field(description="Sensor unit; 0 is the standard unit.")
     sample: int = Field(description="Number of the sample in the test split, from 0.")
     sun_x: float = Field(description="True direction of the Sun in the sensor's frame, x.")
-    sun_y: float = Field(description="The same, y.")
-    sun_z: float = Field(description="The same, z: along the boresight.")
-    observable: bool = Field(description="Whether the direction can be told at all.")
+    sun_y: float = Field(description="True direction of the Sun in the sensor's frame, y.")
+    sun_z: float = Field(
+        description="True direction of the Sun in the sensor's frame, z (boresight)."
+    )
+    observable: bool = Field(description="Whether the readings contain the direction.")
     bound_deg: float | None = Field(
-        description="Cramer-Rao bound of this sample, of unit 0; null where there is none."
+        description="Cramer-Rao bound of this sample for unit 0; null if none."
     )
     error_deg: float | None = Field(
-        description="Angle between answer and truth, kept to a part in 2,000; null where there is "
-        "no answer."
+        description="Separation angle, stored to one part in 2,000; null without an answer."
     )
     doubt: int = Field(
         description="; ".join(f"{code}: {meaning}" for code, meaning in DOUBTS.items()) + "."

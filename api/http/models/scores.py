@@ -36,10 +36,8 @@ class ScoresQuery(TableQuestion):
 
     dataset: Several[DatasetName] = several("Only this data set.")
     condition: Several[Condition] = several("Only this condition.")
-    extractor: Several[ExtractorName] = several(
-        "Only this extractor, by the name of its implementation."
-    )
-    model: Several[ModelName] = several("Only this model, by the name of its implementation.")
+    extractor: Several[ExtractorName] = several("Only this extractor.")
+    model: Several[ModelName] = several("Only this model.")
     sort: Annotated[str | None, sorting(columns.RESULTS), GIVEN] = SORT
     fields: Several[Annotated[str, columns_of(columns.RESULTS)]] = FIELDS
     limit: Limit = DEFAULT_PAGE
@@ -52,7 +50,7 @@ class WholeLeaderboardQuery(TableQuestion):
     model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
 
     whole: Flag = Field(
-        default=False, description="All rows in one answer, which has more than 10 MB as JSON."
+        default=False, description="Return all rows at once (more than 10 MB of JSON)."
     )
     limit: Limit = DEFAULT_PAGE
     cursor: Cursor = None
@@ -64,29 +62,29 @@ class LeaderboardQuery(TableQuestion):
     model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
 
     condition: Several[Condition] = several("Only this condition.")
-    extractor: Several[ExtractorName] = several(
-        "Only this extractor, by the name of its implementation."
-    )
-    model: Several[ModelName] = several("Only this model, by the name of its implementation.")
+    extractor: Several[ExtractorName] = several("Only this extractor.")
+    model: Several[ModelName] = several("Only this model.")
     best_of_extractor: Flag = Field(
         default=False,
-        description="Only the pipeline of each extractor that ranks before its others.",
+        description="Only the best pipeline of each extractor.",
     )
     studied: Flag = Field(
         default=False,
-        description="Only pipelines that mapped studies used on such a sensor.",
+        description="Only pipelines that studies used on such a sensor.",
     )
     field_deg: Annotated[str | None, OneOf(lambda: FIELD_EDGES), GIVEN] = Field(
         None,
-        description="Rank by the error within this angle of the boresight, degrees: rings of the "
-        "field count by their solid angle, so that sensors compare at an equal field.",
+        description=(
+            "Rank by the error within this off-axis angle, degrees, weighted by solid angle."
+        ),
     )
     max_error_deg: Annotated[float | None, NUMBER] = Field(
         None,
         gt=0,
         le=180,
-        description="Rank by the widest field in whose every ring the RMS error stays within "
-        "this, degrees.",
+        description=(
+            "Rank by the field of view within which the RMS error is at most this, degrees."
+        ),
     )
     sort: Annotated[str | None, sorting(columns.LEADERBOARD), GIVEN] = SORT
     fields: Several[Annotated[str, columns_of(columns.LEADERBOARD)]] = FIELDS
@@ -103,7 +101,7 @@ class Score(OpenShape):
     dataset: str
     dataset_version: int
     condition: str
-    unit: int = Field(description="Which unit of the sensor; 0 is the standard one.")
+    unit: int = Field(description="Sensor unit; 0 is the standard unit.")
     detector: str
     mask: str
     half_fov_deg: float | None
@@ -114,25 +112,31 @@ class Score(OpenShape):
     model_taxonomy: str
     model_version: int
     status: Literal["ok", "refused", "failed"]
-    reason: str = Field(description="Why there is no score; empty where there is one.")
+    reason: str = Field(description="Reason for a missing score; empty otherwise.")
     n_calibration: int | None
     n_test: int | None
-    n_observable: int | None = Field(description="Test samples whose direction is observable.")
-    availability: float | None = Field(description="Answered share of the observable samples.")
+    n_observable: int | None = Field(description="Number of observable test samples.")
+    availability: float | None = Field(
+        description="Availability: share of observable samples with an answer."
+    )
     false_sun: float | None = Field(
-        description="Answered share of the samples that are not observable; null without any."
+        description=(
+            "False detections: share of unobservable samples with an answer; null without "
+            "such samples."
+        )
     )
     rms_deg: float | None = Field(
-        description="Root mean square error, calibrated with true directions; under `on-bench` "
-        "with those that drawn benches give."
+        description=(
+            "RMS error, calibrated with true directions; under `on-bench` with directions "
+            "of random benches."
+        )
     )
     charged_deg: float | None = Field(
-        description="The same over all answers, those to samples whose direction is not observable "
-        "among them. Ranks are by it."
+        description=(
+            "RMS error over all answers, including those to unobservable samples. Ranks use it."
+        )
     )
-    aligned_deg: float | None = Field(
-        description="Root mean square error that is left after the best rotation of all answers."
-    )
+    aligned_deg: float | None = Field(description="RMS error after boresight alignment.")
     median_deg: float | None
     p95_deg: float | None
     p997_deg: float | None
@@ -142,16 +146,20 @@ class Score(OpenShape):
     rms_alpha_deg: float | None
     rms_beta_deg: float | None
     repeatability_deg: float | None = Field(
-        description="Standard deviation of answers to a pose held still, over both axes."
+        description=(
+            "Repeatability: standard deviation of answers at a fixed pose, over both axes."
+        )
     )
-    bound_deg: float | None = Field(description="Cramer-Rao bound, rms, with the unit known.")
-    over_bound: float | None = Field(description="RMS error over the bound.")
+    bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
+    over_bound: float | None = Field(description="RMS error divided by the bound.")
     over_bound_se: float | None = Field(description="Standard error of that ratio.")
     bound_unit_deg: float | None = Field(
-        description="Cramer-Rao bound, rms, with the unit unknown but for flat and dark readings; "
-        "null where elements do not differ each by itself."
+        description=(
+            "RMS Cramer-Rao bound for a unit known only through its dark and flat frames; "
+            "null if elements do not differ individually."
+        )
     )
-    over_bound_unit: float | None = Field(description="RMS error over that bound.")
+    over_bound_unit: float | None = Field(description="RMS error divided by that bound.")
 
 
 class Scores(Listing):
@@ -161,57 +169,63 @@ class Scores(Listing):
 
 
 class LeaderboardRow(Score):
-    """A score with its place. Members `rms_<inner>_<outer>_deg` are errors by off-axis angle."""
+    """A score with its rank. Members `rms_<inner>_<outer>_deg` are errors by off-axis angle."""
 
     rank: int | None = Field(
-        description="Place in the condition by own error, or by the error over the field asked "
-        "for. Pipelines that answer less than 95 % come behind all others; null without an error."
+        description=(
+            "Rank by own error, or by the error over the requested field. Pipelines below "
+            "95 % availability rank last; null without an error."
+        )
     )
     group: int | None = Field(
         None,
-        description="1 for what a paired test over units does not tell apart from the leader, 2 "
-        "for what it does not tell apart from the best of the others, and so on; null where the "
-        "pipeline was scored on fewer than five units.",
+        description=(
+            "1 for pipelines that a paired test over units cannot separate from the "
+            "leader, 2 for the next such group, and so on; null with fewer than five "
+            "units."
+        ),
     )
-    tied: bool = Field(description="Whether others share the rank.")
+    tied: bool = Field(description="Whether the rank is shared.")
     own_deg: float | None = Field(
-        None, description="Own error: geometric mean over units of `charged_deg`."
+        None, description="Own error: geometric mean of `charged_deg` over units."
     )
-    own_se: float | None = Field(None, description="Its relative standard error over units.")
+    own_se: float | None = Field(
+        None, description="Relative standard error of the own error over units."
+    )
     on_bench_deg: float | None = Field(
-        None, description="Error expected when calibrated on the standard bench."
+        None, description="Error expected with the standard calibration bench."
     )
     on_bench_basis: Literal["measured", "estimated"] | None = Field(
         None,
-        description="Measured on twenty drawn benches, or estimated: root of the squares of own "
-        "error and bench.",
+        description=(
+            "measured on twenty random benches, or estimated as the root sum of squares "
+            "of own error and bench error."
+        ),
     )
     twin_of: str | None = Field(
-        None, description="A pipeline of the same extractor with the same numbers throughout."
+        None, description="Pipeline of the same extractor with identical results."
     )
     folded: bool = Field(
-        default=False, description="Whether it is so far behind that boards show it only if asked."
+        default=False, description="Whether it is hidden by default, as much less accurate."
     )
     best_of_extractor: bool = Field(
-        description="Whether no other pipeline of its extractor ranks before it. These are listed "
-        "first, the others behind."
+        description="Whether it is the best pipeline of its extractor. These are listed first."
     )
     studies: list[str] = Field(
-        description="Mapped studies that used this pipeline on such a sensor, or for which it "
-        "stands in."
+        description="Studies that used this pipeline, or the nearest method, on such a sensor."
     )
     unit_rms_deg: list[float | None] | None = Field(
-        description="Error over all answers on each unit of the sensor, the standard one first."
+        description="RMS error of all answers on each sensor unit, standard unit first."
     )
-    low_deg: float | None = Field(
-        description="Smallest error of a unit; null where one unit is scored."
-    )
-    high_deg: float | None = Field(description="Largest error of a unit.")
+    low_deg: float | None = Field(description="Smallest error over units; null with one unit.")
+    high_deg: float | None = Field(description="Largest error over units.")
     latency_us: float | None = Field(
-        description="Extraction and prediction of one sample on this machine, microseconds; null "
-        "where it is not timed."
+        description=(
+            "Time of extraction and prediction per sample on this machine, microseconds; "
+            "null if not timed."
+        )
     )
-    time_ratio: float | None = Field(description="The same over the time of a reference.")
+    time_ratio: float | None = Field(description="Time divided by that of a reference method.")
 
 
 class LeaderboardDataset(OpenShape):
@@ -222,57 +236,65 @@ class LeaderboardDataset(OpenShape):
     detector: str
     mask: str
     idealisation: str | None = Field(
-        None, description="Why it stands for no built sensor; null where it stands for one."
+        None, description="Reason for an idealised sensor; null if built sensors exist."
     )
     conditions: list[str]
     smallest_ratio: float | None = Field(
-        None, description="Ratio to the leader that the board tells apart in nine of ten cases."
+        None,
+        description="Smallest error ratio to the leader that is resolved in nine of ten cases.",
     )
     quoted_deg: float | None = Field(
-        None, description="Error on the odd units of the pipeline that leads on the even ones."
+        None, description="Error on odd units of the pipeline that leads on even units."
     )
-    references: str | None = Field(None, description="References that readings are corrected by.")
+    references: str | None = Field(None, description="Reference readings used for corrections.")
     bench_deg: float | None = Field(
-        None, description="Fixed error of the standard calibration bench, root mean square."
+        None, description="RMS error of the standard calibration bench."
     )
     bench_aligned_deg: float | None = Field(
-        None, description="What the best rotation leaves of it."
+        None, description="RMS bench error after boresight alignment."
     )
     bound_unit_deg: float | None = Field(
-        None, description="Bound with the unit known by its references, root mean square."
+        None, description="RMS bound for a unit known only through its reference readings."
     )
-    controls: list[Control] = Field(default_factory=list, description="Two answers to compare to.")
-    folded: int = Field(0, description="Pipelines that are far behind.")
+    controls: list[Control] = Field(
+        default_factory=list, description="Two controls for comparison."
+    )
+    folded: int = Field(0, description="Number of hidden, much less accurate pipelines.")
     rows: list[LeaderboardRow]
 
 
 class Control(Shape):
-    """An answer that no method gives: `oracle` has the bound's noise, `boresight` never moves."""
+    """A control for comparison.
+
+    `oracle` is the truth with the noise of the bound; `boresight` always answers the boresight.
+    """
 
     name: Literal["oracle", "boresight"]
     rms_deg: float | None
 
 
 class RecordNamed(Shape):
-    """Which record a leaderboard shows."""
+    """Published results that a leaderboard shows."""
 
-    version: str = Field(description="Of the atlas; its tag is `v` and this.")
+    version: str = Field(description="Version of the Atlas; the git tag is `v` plus this.")
     sha256: str | None = Field(
-        description="Of manifest.json of the record, which names every file of it by its digest; "
-        "null where there is none."
+        description=(
+            "SHA-256 of manifest.json, which lists every file of the published results; "
+            "null if none."
+        )
     )
 
 
 class Leaderboard(OpenShape):
-    """The published leaderboard; no schema and no data sets where none is published."""
+    """The published leaderboard; empty if none is published."""
 
     model_config = ConfigDict(extra="allow", serialize_by_alias=True)
 
     schema_version: int | str | None = Field(alias="schema")
     datasets: list[LeaderboardDataset]
     record: RecordNamed
-    total: int = Field(description="Rows of all data sets together.")
-    next: str | None = Field(description="Cursor of the next page; null on the last.")
+    total: int = Field(description="Total number of rows.")
+    next: str | None = Field(description="Cursor of the next page; null on the last page.")
 
 
 class LeaderboardRows(Listing):

@@ -22,30 +22,30 @@ class SearchQuery(TableQuestion):
     q: Annotated[str, GIVEN] = Field(
         min_length=1,
         max_length=200,
-        description="Words. Case, accents and endings do not matter, a slip of the keyboard is "
-        "forgiven.",
+        description=(
+            "Search words. Case, accents, endings and small spelling mistakes are tolerated."
+        ),
     )
-    kind: Several[Kind] = several("Only things of this kind.")
+    kind: Several[Kind] = several("Only results of this kind.")
     limit: Limit = 20
     cursor: Cursor = None
 
 
 class Found(Shape):
-    """A thing found."""
+    """A search result."""
 
-    rank: int = Field(description="Place among all that is found, from 1.")
+    rank: int = Field(description="Position among the results, from 1.")
     kind: Kind
-    id: str = Field(description="Its name among its kind.")
+    id: str = Field(description="Name or key.")
     title: str
-    excerpt: str = Field(description="Where its text has one of the words.")
+    excerpt: str = Field(description="Excerpt with a search word.")
     score: float = Field(
-        description="By BM25F; what has all words comes first whatever its score, and what is "
-        "called just so before that."
+        description="BM25F score; exact names rank first, then results with all words."
     )
-    address: str | None = Field(description="Where this service tells of it.")
+    address: str | None = Field(description="Address in the API.")
 
 
 class SearchResults(Listing):
-    """A page of what is found, the best first."""
+    """A page of search results, best first."""
 
     items: list[Found]

@@ -32,8 +32,7 @@ Grade = Literal["faithful", "close", "stand-in", "none"]
 
 
 def _filter(attribute: str, more: str = "") -> Any:
-    text = f"Only studies with one of these values of {attribute}{more}."
-    return several(f"{text} Different attributes must all match.")
+    return several(f"Only studies with one of these values of {attribute}{more}.")
 
 
 class OfEdition(Question):
@@ -41,7 +40,7 @@ class OfEdition(Question):
 
     edition: Choice = Field(
         "survey",
-        description="The survey's studies, or all: these and the ones added after it.",
+        description="Studies of the survey, or all, including added ones.",
     )
 
 
@@ -77,17 +76,18 @@ class StudiesQuery(CitedQuestion, StudyFilters):
         None, ge=0, le=9999, description="Only studies of this year or earlier."
     )
     grade: Several[Grade] = several(
-        "Only studies whose run is so near to them: faithful (every part is its own, stated or "
-        "inferred with a reason), close (one part departs from it), stand-in (more do), none "
-        "(nothing of it runs)."
+        "Only studies with this grade: faithful (every part is the study's own, "
+        "stated or inferred with a reason), close (one part differs), stand-in (more "
+        "parts differ), none (not implemented)."
     )
-    state: Several[State] = several("Only studies of which this much can be run.")
+    state: Several[State] = several("Only studies with this state of implementation.")
     q: Annotated[str | None, GIVEN] = Field(
         None,
         min_length=1,
         max_length=200,
-        description="Only studies whose key, title, authors or venue have all these words, case "
-        "aside.",
+        description=(
+            "Search words; all must occur in key, title, authors or venue. Case does not matter."
+        ),
     )
     sort: Annotated[str | None, sorting(columns.STUDIES), GIVEN] = SORT
     fields: Several[Annotated[str, columns_of(columns.STUDIES)]] = FIELDS
@@ -102,31 +102,26 @@ class StudyQuery(CitedQuestion):
 
 
 class Runs(Shape):
-    """What is scored of a study; basis and assumed are of the pipeline that rests on most."""
+    """Scored pipelines of a study; basis and assumed are those of its best-supported pipeline."""
 
     pipelines: int
-    cells: int = Field(
-        description="Pairs of a pipeline and a data set under a condition that stand for the study."
-    )
-    scored: int = Field(description="Those of them that have a published score.")
+    cells: int = Field(description="Number of cells (pipeline, data set, condition) of the study.")
+    scored: int = Field(description="Number of cells with a published score.")
     basis: dict[str, Basis] = Field(
-        description="What detector, mask, extractor and model rest on: stated by the study, "
-        "inferred, implied by the survey's definition of its methods, recalled, or chosen by a "
-        "rule."
+        description=(
+            "Basis of detector, mask, extractor and model: stated, inferred, implied by "
+            "the survey's definitions, recalled, or defaulted by a rule."
+        )
     )
-    assumed: dict[str, str] = Field(
-        description="Of what is not stated, the reason or the rule why it stands there."
-    )
+    assumed: dict[str, str] = Field(description="Reason or rule for each part that is not stated.")
 
 
 class Score(Shape):
-    """What is published of a pipeline on a data set under a condition; a null status: nothing."""
+    """Published score of a pipeline on a data set and condition; status is null if none."""
 
     dataset: str
     condition: str
-    purposes: list[Purpose] = Field(
-        description="What the study is run for that this shows: albedo, temperature, flight."
-    )
+    purposes: list[Purpose] = Field(description="Test purpose: albedo, temperature or flight.")
     status: str | None
     rms_deg: float | None
     bound_deg: float | None
@@ -134,7 +129,7 @@ class Score(Shape):
 
 
 class Verification(Shape):
-    """A confirmation of what is said of a study, by one of its authors or of the survey's."""
+    """A confirmation of a study's values by an author."""
 
     name: str
     date: str = Field(description="YYYY-MM-DD.")
@@ -143,7 +138,7 @@ class Verification(Shape):
 
 
 class Headline(Shape):
-    """The score that a study is shown by."""
+    """Best score of a study's pipelines."""
 
     extractor: str
     model: str
@@ -155,16 +150,16 @@ class Headline(Shape):
 
 
 class Departure(Shape):
-    """A part of a study's run that is not the study's own."""
+    """A difference between a study and its implementation here."""
 
     part: Literal["sensor", "condition", "extractor", "model", "compensation"]
     value: str
     text: str
-    settled_by: str = Field(description="What would make the part the study's own.")
+    settled_by: str = Field(description="Information needed to remove the difference.")
 
 
 class Study(Shape):
-    """A mapped study. A text is empty where nothing is known."""
+    """A study. Texts are empty if unknown."""
 
     key: str
     title: str
@@ -178,25 +173,23 @@ class Study(Shape):
     url: str
     identity: str = Field(description="Whether a public page confirms author, year and topic.")
     edition: Literal["survey", "extension"] = Field(
-        description="Whether it is among the survey's studies or was added after it."
+        description="survey, or extension (added after the survey)."
     )
     verified: list[Verification]
-    grade: Grade = Field(description="How near what runs is to the study.")
-    sentence: str = Field(description="What runs, and what of it is missing or chosen.")
-    state: State = Field(
-        description="Whether gaps are left: every value of its mapping runs, or some of them, or "
-        "none. The grade says how near that is to the study."
+    grade: Grade = Field(
+        description="Grade of the implementation: faithful, close, stand-in or none."
     )
+    sentence: str = Field(description="Implementation and its differences, one sentence.")
+    state: State = Field(description="complete: every value is implemented; partial: some; none.")
     runs: Runs
     headline: Headline | None = Field(
-        description="Least error of the pipelines that rest on most, each where it tells most of "
-        "the study; null where that is not measured."
+        description="Lowest error of the best-supported pipelines; null if not measured."
     )
     values: dict[str, list[str]]
 
 
 class AttributeValue(Shape):
-    """One value of the mapping and where it comes from; an empty value is an empty cell."""
+    """A value of a study with its source; empty if unknown."""
 
     attribute: str
     value: str
@@ -205,26 +198,22 @@ class AttributeValue(Shape):
     source_name: str = Field(description="Publisher, document or part of the survey.")
     note: str
     role: Literal["proposed", "compared", "unknown", ""] = Field(
-        description="Of a model or an extractor: whether the study proposed it or only compared it."
+        description="Whether the study proposed the method or only compared it."
     )
-    name_in_study: str = Field(
-        description="What the study calls it, where that is known and not the taxonomy's name."
-    )
-    nearest: bool = Field(
-        description="The taxonomy has no such value; this is the nearest that it has."
-    )
+    name_in_study: str = Field(description="Name used in the study, if different.")
+    nearest: bool = Field(description="Whether the value is the nearest one in the taxonomy.")
 
 
 class Setting(Shape):
-    """A data set under a condition that stands for a study."""
+    """A data set and condition used for a study."""
 
     dataset: str
     condition: str
-    purposes: list[Purpose] = Field(description="What the study is run for that it shows.")
+    purposes: list[Purpose] = Field(description="Purpose of the study that this shows.")
 
 
 class StudyPipeline(Shape):
-    """A pipeline that runs what the study did, and the data sets that it is scored on."""
+    """A pipeline of the study with its data sets and scores."""
 
     detector: str
     mask: str
@@ -232,25 +221,23 @@ class StudyPipeline(Shape):
     model: str
     extractor_taxonomy: str
     model_taxonomy: str
-    stages: list[str] = Field(
-        description="The model's compensations by their taxonomy values, and the model itself last."
-    )
+    stages: list[str] = Field(description="Survey labels of the compensations, then of the model.")
     basis: dict[str, Basis] = Field(
-        description="What detector, mask, extractor and model rest on: the study states it, it is "
-        "inferred, recalled, or stands there by a rule."
+        description=(
+            "Basis of detector, mask, extractor and model: stated, inferred, recalled, or "
+            "defaulted by a rule."
+        )
     )
-    assumed: dict[str, str] = Field(
-        description="Of what is not stated, the reason or the rule why it stands there."
-    )
-    datasets: list[str] = Field(description="All data sets that it can be scored on.")
+    assumed: dict[str, str] = Field(description="Reason or rule for each part that is not stated.")
+    datasets: list[str] = Field(description="Data sets on which it can be scored.")
     settings: list[Setting] = Field(
-        description="Those of them that stand for the study, the one that tells most first."
+        description="Data sets and conditions used for the study, most relevant first."
     )
-    scores: list[Score] = Field(description="What is published of each of the settings.")
+    scores: list[Score] = Field(description="Published score of each setting.")
 
 
 class Gap(Shape):
-    """Something of a study that does not run as the mapping states it, and why."""
+    """A value of a study that is not implemented, with the reason."""
 
     attribute: str
     value: str
@@ -258,41 +245,47 @@ class Gap(Shape):
 
 
 class Reported(Shape):
-    """An accuracy or a precision as published, with the statistic that it is."""
+    """A published accuracy or precision with its statistic."""
 
     value_deg: float = Field(description="The number as published, in degrees.")
     kind: Literal["1sigma", "3sigma", "p95", "rms", "mean", "max", "unspecified"] = Field(
-        description="Which statistic of the error it is; unspecified where the source does not say."
+        description="Statistic of the error; unspecified if the source does not say."
     )
-    label: str = Field(description="What the number is, in words.", examples=["1-sigma precision"])
+    label: str = Field(description="Description of the number.", examples=["1-sigma precision"])
     rms_deg: float = Field(
-        description="The number as the RMS that it is compared as: 3 sigma and a largest error "
-        "over 3, 95 % over 1.96, a mean over 0.7979, unspecified as printed."
+        description=(
+            "The number converted to RMS: 3 sigma and maximum divided by 3, 95 % by 1.96, "
+            "mean by 0.7979, unspecified as printed."
+        )
     )
 
 
 class StudyDetail(Study):
-    """A mapped study with the basis of every value and what of it can be run."""
+    """A study with the basis of every value and its implementation."""
 
     note: str
     attributes: list[AttributeValue]
     reported_accuracy: Reported | None = Field(
-        description="How far off the study reports its own sensor to be; `scores` are measured "
-        "here, on simulated ones."
+        description=(
+            "Accuracy that the study reports for its own sensor; `scores` are measured "
+            "here on simulated sensors."
+        )
     )
     reported_precision: Reported | None = Field(
-        description="How far repeated readings of its own sensor scatter, which is no accuracy."
+        description=(
+            "Precision (scatter of repeated readings) that the study reports; not an accuracy."
+        )
     )
-    departures: list[Departure] = Field(description="What keeps the run from being faithful.")
+    departures: list[Departure] = Field(description="Differences from the study.")
     purposes: dict[Purpose, str] = Field(
-        description="What the study is run for, with the rule that says so."
+        description="Test purposes of the study, with their rules."
     )
     pipelines: list[StudyPipeline]
     gaps: list[Gap]
 
 
 class Edition(Shape):
-    """An edition of the studies, as it is cited."""
+    """An edition of the studies, for citation."""
 
     name: Literal["survey", "extension"]
     title: str
@@ -304,7 +297,7 @@ class Edition(Shape):
 
 
 class Editions(Shape):
-    """The survey's studies, and those after it."""
+    """Studies of the survey, and added ones."""
 
     items: list[Edition]
 

@@ -8,13 +8,13 @@ from api.http.models.base import Shape
 
 
 class TaxonomyValue(Shape):
-    """A word of the vocabulary."""
+    """A value of the taxonomy."""
 
     value: str
     name: str
     category: str
     section: str = Field(description="Label in the survey; empty where it has none.")
-    section_name: str = Field(description="What the label names, with its number in print.")
+    section_name: str = Field(description="Name of the section, with printed number.")
 
 
 class Taxonomy(Shape):

@@ -21,12 +21,12 @@ router = APIRouter(route_class=StrictRoute, dependencies=[NO_PARAMETERS])
 
 
 @router.get(
-    "/healthz", summary="State of the service", response_model=Health, dependencies=[JSON_ONLY]
+    "/healthz", summary="Status of the service", response_model=Health, dependencies=[JSON_ONLY]
 )
 async def health(request: Request, response: Response, known: Known) -> dict[str, Any]:
-    """Whether it answers, with how much, and of which facts and record (digests of manifests).
+    """Return the status of the service, with versions of facts and record (digests of manifests).
 
-    It is asked anew each time and never stored.
+    Never cached.
     """
     response.headers["Cache-Control"] = "no-store"
     return {

@@ -1,4 +1,4 @@
-"""/v1/advice and /v1/protocol: what the survey advises, and how all this came about."""
+"""/v1/advice and /v1/protocol: advice of the survey; rules for studies and scores."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 
 @router.get("/advice", summary="The survey's advice", response_model=Advices | Selected)
 async def advice(known: Known, query: Annotated[AdviceQuery, Query()]) -> Answer:
-    """Which sensor and calibration the survey's text advises, and for what.
+    """List the sensors and calibrations that the survey's text recommends, and for which tasks.
 
-    Rows of errors say where an error is met, which is no advice to build.
+    Rows of errors name errors that occur, which is no recommendation.
     """
     found = narrow(known.advice, query, ("requirement", "detector", "mask"))
     shown = page(order(found, query.sort), "/v1/advice", query)
     return list_answer(shown, shown.items, columns.ADVICE, fields=query.fields)
 
 
-@router.get("/protocol", summary="How studies and scores came about", response_model=Protocol)
+@router.get("/protocol", summary="Rules for studies and scores", response_model=Protocol)
 async def protocol(
     known: Known,  # noqa: ARG001 - as every path function has it
     query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
 ) -> Answer:
-    """How the survey searched and chose its studies, and by what rules pipelines are scored here.
+    """Describe how the survey selected studies, and the rules of the scores.
 
-    As CSV: a row a sentence.
+    CSV: a row per sentence.
     """
     document = told()
     return Answer(document, columns.PROTOCOL, lambda: [*document["survey"], *document["scores"]])

@@ -16,9 +16,9 @@ from api.http.pagination import order, page
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
 
-@router.get("/algorithms", summary="The implementations", response_model=Algorithms | Selected)
+@router.get("/algorithms", summary="Implementations", response_model=Algorithms | Selected)
 async def algorithms(known: Known, query: Annotated[AlgorithmsQuery, Query()]) -> Answer:
-    """Extractors and models, each with the value it implements and the studies it follows."""
+    """List extractors and models with the survey's labels and the studies they are based on."""
     found = [
         implementation.to_dict() for implementation in known.catalogue.implementations(query.role)
     ]

@@ -1,4 +1,4 @@
-"""/v1/assessment: what methods can do, as the survey says and as measured."""
+"""/v1/assessment: properties of methods, as scored by the survey and as measured."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 
 @router.get(
     "/assessment",
-    summary="The survey's assessment beside the measured one",
+    summary="Assessment of the survey, with measured scores",
     response_model=Assessment,
 )
 async def assessment(known: Known, query: Annotated[AssessmentQuery, Query()]) -> Answer:
-    """Scores 2 (provides), 1 (partly), 0 (does not) of 19 methods in 21 properties.
+    """Scores 2 (yes), 1 (partly), 0 (no) of 19 methods and 21 properties.
 
-    Each tells what the survey says, what was measured by the stated definition, and whether they
-    agree. As CSV: a row a method and property.
+    Each has the score of the survey, the measured score and their agreement. CSV: a row per method
+    and property.
     """
     whole = known.measurements.assessment
     methods = [m for m in whole["methods"] if not query.method or m["method"] in query.method]

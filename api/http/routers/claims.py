@@ -19,11 +19,11 @@ from benchmark.claims.ledger import Entry, tally
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
 
-@router.get("/claims", summary="The survey's claims, tried", response_model=Claims | Selected)
+@router.get("/claims", summary="Claims of the survey, tested", response_model=Claims | Selected)
 async def claims(known: Known, query: Annotated[ClaimsQuery, Query()]) -> Answer:
-    """Every statement of the survey about algorithms, as an experiment with a verdict.
+    """List the claims of the survey about algorithms with their verdicts.
 
-    What decides is stated as rules with limits. As CSV: a row a claim.
+    Each claim was tested with criteria set in advance. CSV: a row per claim.
     """
     found = [entry for entry in known.measurements.claims.values() if _is_wanted(entry, query)]
     items = order([entry.to_dict() for entry in found], query.sort)
@@ -34,17 +34,17 @@ async def claims(known: Known, query: Annotated[ClaimsQuery, Query()]) -> Answer
 
 @router.get(
     "/claims/{id}",
-    summary="One claim",
+    summary="A claim",
     response_model=ClaimDetail,
 )
 async def claim(
     known: Known,
-    id: Annotated[ClaimId, Path(description="Id of the claim.", examples=["C04"])],  # noqa: A002 - the parameter's name
+    id: Annotated[ClaimId, Path(description="Claim, such as C29.", examples=["C04"])],  # noqa: A002 - the parameter's name
     query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
 ) -> Answer:
-    """One claim with its rules, the number of every trial and the lines of its plot.
+    """Return a claim with its criteria, the results of all trials and its plot.
 
-    As CSV: the rules.
+    CSV: the criteria.
     """
     document = detail(known.measurements.claims[id])
     second = {rule["rule"]: rule["standing"] for rule in document["second"]}

@@ -18,13 +18,12 @@ from registry.taxonomy import InvalidValueError
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
 
-@router.get("/compare", summary="Side by side", response_model=Comparison)
+@router.get("/compare", summary="Comparison", response_model=Comparison)
 async def compare(known: Known, query: Annotated[CompareQuery, Query()]) -> Answer:
-    """Two to four pipelines of a data set, or architectures, with all that tells them apart.
+    """Compare two to four pipelines of a data set, or two to four architectures.
 
-    That is error, bound, availability, times, calibration poses, errors by condition and by angle,
-    and the studies behind each. As CSV: a row each, without errors by condition and angle; what is
-    far finer on the part that it answers stands in columns of its own.
+    Error, bound, availability, time, calibration poses, errors by condition and off-axis angle, and
+    studies. CSV: a row each, without errors by condition and angle.
     """
     try:
         document = _compare(known.of(query.edition), query)

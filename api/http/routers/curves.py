@@ -1,4 +1,4 @@
-"""/v1/curves: learning curves of each data set's leaders."""
+"""/v1/curves: learning curves of the leading pipelines."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from api.http.pagination import narrow, order, page
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
 
-@router.get("/curves", summary="Learning curves of the leaders", response_model=Curves | Selected)
+@router.get("/curves", summary="Learning curves", response_model=Curves | Selected)
 async def curves(known: Known, query: Annotated[CurvesQuery, Query()]) -> Answer:
-    """Error against the number of calibration poses, of the three leaders of every data set.
+    """Error against number of calibration poses, three leading pipelines of each data set.
 
-    Each is calibrated on random draws of growing subsets of the poses, on two units of the sensor,
-    and scored on the whole test split. As CSV: a row a pipeline, without the curve's points.
+    Each is calibrated on random subsets of the poses, on two sensor units, and scored on the whole
+    test split. CSV: a row per pipeline, without the points.
     """
     rows = narrow(known.measurements.curves, query, ("dataset", "extractor", "model"))
     shown = page(order(rows, query.sort), "/v1/curves", query)

@@ -1,4 +1,4 @@
-"""/v1/datasets: what is measured on."""
+"""/v1/datasets: the standard data sets."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ Name = Annotated[
 ]
 
 
-@router.get("/datasets", summary="The standard data sets", response_model=Datasets | Selected)
+@router.get("/datasets", summary="Data sets", response_model=Datasets | Selected)
 async def datasets(known: Known, query: Annotated[DatasetsQuery, Query()]) -> Answer:
-    """Short cards of the simulated data sets every pipeline is scored on."""
+    """List the simulated data sets."""
     cards = order(known.measurements.cards, query.sort)
     shown = page(cards, "/v1/datasets", query)
     return list_answer(shown, shown.items, columns.DATASETS, fields=query.fields)
@@ -37,7 +37,7 @@ async def datasets(known: Known, query: Annotated[DatasetsQuery, Query()]) -> An
 
 @router.get(
     "/datasets/{name}",
-    summary="One data set",
+    summary="A data set",
     response_model=DatasetDetail,
 )
 async def dataset(
@@ -45,10 +45,10 @@ async def dataset(
     name: Name,
     query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
 ) -> Answer:
-    """Its card: all that its numbers depend on, and what is published of them.
+    """Return the description of a data set and its published hashes and bounds.
 
-    That is geometry, conditions with every parameter, seeds, the bound of each condition, the hash
-    of each split, and where its picture is. As CSV: the hashes and bounds.
+    Geometry, conditions with all parameters, seeds, bounds, hashes, address of the picture. CSV:
+    hashes and bounds.
     """
     card = known.measurements.card(name)
     link = ", ".join(_links(known, name))
@@ -57,29 +57,28 @@ async def dataset(
 
 @router.get(
     "/datasets/{name}/preview.png",
-    summary="A picture of a data set",
+    summary="Picture of a data set",
     response_class=Picture,
     dependencies=[NO_PARAMETERS],
 )
 def dataset_preview(known: Known, name: Name) -> Picture:
-    """Picture of some of its nominal samples.
+    """Return a picture of nominal samples.
 
-    They are frames from small to large incidence, profiles, currents over angle or time, or spikes
-    by their time. Where it is not drawn yet, who asks for it waits, and nobody else.
+    Frames, profiles, currents or events. The first request draws the picture and may take seconds.
     """
     return Picture(known.pictures.png(name))
 
 
 @router.get(
     "/datasets/{name}/errors",
-    summary="Errors sample by sample",
+    summary="Errors of each sample",
     response_model=SampleErrors | Selected,
 )
 async def errors(known: Known, name: Name, query: Annotated[SampleErrorsQuery, Query()]) -> Answer:
-    """Error of every pipeline on every sample of the test split, under the nominal condition.
+    """Return the error of every pipeline on every test sample, nominal condition.
 
-    By extractor, model, unit and sample, with the sample's direction and bound. The whole table is
-    one file: /v1/datasets/{name}/errors.parquet.
+    By extractor, model, unit and sample, with direction and bound. The whole table is
+    /v1/datasets/{name}/errors.parquet.
     """
     found = choose(known.measurements, name, query)
     shown = page(range(len(found)), f"/v1/datasets/{name}/errors", query)
@@ -89,12 +88,12 @@ async def errors(known: Known, name: Name, query: Annotated[SampleErrorsQuery, Q
 
 @router.get(
     "/datasets/{name}/errors.parquet",
-    summary="Errors sample by sample, as one file",
+    summary="Errors of each sample, as a file",
     response_class=Columns,
     dependencies=[NO_PARAMETERS],
 )
 def errors_file(known: Known, name: Name) -> Columns:
-    """All errors of a data set, as published.
+    """Return the published errors of all samples as Parquet.
 
     Columns: extractor, model, unit, sample, error_deg (NaN: no answer) and doubt.
     """
@@ -103,12 +102,12 @@ def errors_file(known: Known, name: Name) -> Columns:
 
 @router.get(
     "/datasets/{name}/directions.parquet",
-    summary="What the samples are, as one file",
+    summary="Directions of the samples, as a file",
     response_class=Columns,
     dependencies=[NO_PARAMETERS],
 )
 def directions_file(known: Known, name: Name) -> Columns:
-    """Directions of a data set's test samples, as published, for the errors to be joined with.
+    """Return the published directions of the test samples as Parquet, to join with the errors.
 
     Columns: sample, sun_x, sun_y, sun_z, observable and bound_deg (NaN: none).
     """

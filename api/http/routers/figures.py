@@ -1,4 +1,4 @@
-"""/v1/figures: the survey's figures, drawn from the studies as they are held now."""
+"""/v1/figures: the survey's figures, drawn from the current data."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ async def figures(
     known: Known,
     query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
 ) -> Answer:
-    """List the figures, each with what it shows of a study. The evidence map is `matrix`."""
+    """List the figures and the attributes they show. The evidence map is `matrix`."""
     items = [
         {"figure": name, "title": title, "caption": caption, "levels": list(LEVELS[name])}
         for name, (title, caption) in TITLES.items()
@@ -31,13 +31,15 @@ async def figures(
     return Answer(document, columns.FIGURES, lambda: items)
 
 
-@router.get("/figures/matrix", summary="Studies by two attributes", response_model=Figure)
+@router.get(
+    "/figures/matrix", summary="Evidence map: studies by two attributes", response_model=Figure
+)
 async def matrix(known: Known, query: Annotated[MatrixQuery, Query()]) -> Answer:
-    """Tell of every pair of values what is known of it: an evidence map.
+    """Return the evidence map: one row per pair of values.
 
-    The rows are the pairs. `state` is `measured` (scored here, with the best own error), `studied`,
-    `impossible` (with the `reason`), `unknown` (no study has both, but of some that have one the
-    other is unknown) or `unstudied`; `command` and `leads_to` say what could be measured.
+    `state` is `measured` (scored here, with the best own error), `studied`, `impossible` (with the
+    `reason`), `unknown` (a study has one value, the other is unknown) or `unstudied`. `command` and
+    `leads_to` show how to measure the pair.
     """
     studies = known.of(query.edition).facts
     asked = (query.wanted(), query.rows, query.columns)
@@ -47,13 +49,14 @@ async def matrix(known: Known, query: Annotated[MatrixQuery, Query()]) -> Answer
 @router.get("/figures/{figure}", summary="A figure of the survey", response_model=Figure)
 async def figure(
     known: Known,
-    figure: Annotated[FigureName, Path(description="Which figure.", examples=["performance"])],
+    figure: Annotated[FigureName, Path(description="Figure.", examples=["performance"])],
     query: Annotated[FigureQuery, Query()],
 ) -> Answer:
-    """Give what the figure shows in sentences and as a table, with the studies behind every mark.
+    """Return a figure as sentences and as a table, with the studies of every mark.
 
-    A flow has a row a value and a row a pair of neighbouring values; the sunburst a row an arc;
-    publications a row a year or venue and part of its bar; parallel coordinates a row a sensor.
+    Flows: a row per value and per pair of neighbouring values. Sunburst: a row per arc.
+    Publications: a row per year or venue and part of its bar. Parallel coordinates: a row per
+    sensor.
     """
     return answered(drawn(figure, known.of(query.edition).facts, query.wanted()))
 

@@ -19,13 +19,12 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 @router.get("/flows/{chart}", summary="A decision flow", response_model=Flows)
 async def flows(
     known: Known,
-    chart: Annotated[Chart, Path(description="Which diagram.", examples=["error"])],
+    chart: Annotated[Chart, Path(description="Chart.", examples=["error"])],
     query: Annotated[FlowsQuery, Query()],
 ) -> Answer:
-    """Nodes and links of one of the survey's diagrams, with the studies behind each.
+    """Return nodes and links of a diagram of the survey, with their studies.
 
-    A filter keeps the studies that have one of the values, and of those studies only these
-    values. As CSV: the links.
+    Filters keep the studies with one of the values. CSV: the links.
     """
     studies = known.of(query.edition).facts
     found = flows_of(chart, query.wanted(), query.counting, grouped=query.grouped, facts=studies)

@@ -36,15 +36,15 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 
 @router.get(
     "/leaderboard",
-    summary="The leaderboard",
+    summary="Leaderboard",
     response_model=Leaderboard,
 )
 async def leaderboard(known: Known, query: Annotated[WholeLeaderboardQuery, Query()]) -> Answer:
-    """Every data set and condition: pipelines ranked by error, the best of each extractor first.
+    """Return the leaderboards of all data sets and conditions.
 
-    Pipelines that answer less than 95 % rank behind all others; a rank is shared where errors on
-    five units built alike overlap. Every data set is listed, with its rows that are on this page;
-    `whole` gives all rows in one answer. Sweeps are at /v1/sweeps.
+    Pipelines are ranked by error, the best of each extractor first. Pipelines below 95 %
+    availability rank last. Ranks are shared if a paired test over sensor units cannot separate
+    them. `whole` returns all rows at once.
     """
     board = {k: v for k, v in known.measurements.leaderboard.items() if k != "sweeps"}
     rows = known.measurements.board_rows()
@@ -70,14 +70,14 @@ def _with_rows(
 
 @router.get(
     "/leaderboard/architectures",
-    summary="The best pipeline of each architecture",
+    summary="Best pipeline of each architecture",
     response_model=Architectures | Selected,
 )
 async def architectures(known: Known, query: Annotated[ArchitecturesQuery, Query()]) -> Answer:
-    """How far the best pipeline of each detector and mask is from its bound, and how sure that is.
+    """Return the best pipeline of each architecture, with its bound and its uncertainty.
 
-    How sure: by the standard error of its ratio to the bound, by its errors on other units of the
-    sensor, and by whether the pipeline that ranks next is within either.
+    Uncertainty: standard error of the ratio to the bound, errors on other sensor units, and ties
+    with the runner-up.
     """
     rows = narrow(best_of_each(known.measurements.leaderboard), query, ("detector", "mask"))
     shown = page(order(rows, query.sort), "/v1/leaderboard/architectures", query)
@@ -86,13 +86,13 @@ async def architectures(known: Known, query: Annotated[ArchitecturesQuery, Query
 
 @router.get(
     "/leaderboard/overview",
-    summary="How near the bound each part of a pipeline comes",
+    summary="Ratio to the bound by part of the pipeline",
     response_model=Overview,
 )
 async def overview(known: Known, query: Annotated[OverviewQuery, Query()]) -> Answer:
-    """Share of the data sets on which each extractor, compensation and model comes near its bound.
+    """Return how often each extractor, compensation and model is near the bound, over data sets.
 
-    `says` tells in words how it aggregates. As CSV: a row a part.
+    `says` describes the aggregation. CSV: a row per part.
     """
     board = known.measurements.leaderboard
     boards = narrow(board["datasets"], query, ("detector", "mask"))
@@ -103,7 +103,7 @@ async def overview(known: Known, query: Annotated[OverviewQuery, Query()]) -> An
 
 @router.get(
     "/leaderboard/{dataset}",
-    summary="The leaderboard of a data set",
+    summary="Leaderboard of a data set",
     response_model=LeaderboardRows | Selected,
 )
 async def leaderboard_of_dataset(
@@ -113,10 +113,10 @@ async def leaderboard_of_dataset(
     ],
     query: Annotated[LeaderboardQuery, Query()],
 ) -> Answer:
-    """Rows of one data set's leaderboard, within a condition the best of each extractor first.
+    """Return the leaderboard of a data set.
 
-    `field_deg` ranks by the error over a part of the field, `max_error_deg` by the field that keeps
-    an error.
+    `field_deg` ranks by the error over part of the field, `max_error_deg` by the field of view for
+    a maximum error.
     """
     ranked = known.measurements.board_rows(dataset)
     if query.field_deg is not None:

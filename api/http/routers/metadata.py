@@ -48,9 +48,9 @@ class LinkSet(LinkDocument):
     response_class=LinkedData,
 )
 async def dataset_croissant(request: Request, known: Known, name: Name) -> LinkedData:
-    """Its files with their SHA-256, and what each column holds (MLCommons Croissant 1.0).
+    """Files with SHA-256 and column descriptions (MLCommons Croissant 1.0).
 
-    `mlcroissant.Dataset(jsonld=ADDRESS)` loads its records.
+    Load records with `mlcroissant.Dataset(jsonld=ADDRESS)`.
     """
     base, who = str(request.base_url), identity()
     answer = await dataset(known, name)
@@ -82,7 +82,7 @@ async def dataset_linkset(request: Request, known: Known, name: Name) -> LinkSet
     response_class=LinkedData,
 )
 async def leaderboard_croissant(request: Request, known: Known) -> LinkedData:
-    """Give the leaderboard's table with its SHA-256, and what each column holds."""
+    """Return the table of the leaderboard with SHA-256 and column descriptions."""
     base, who = str(request.base_url), identity()
     answer = await leaderboard(known, WholeLeaderboardQuery.model_validate({"whole": True}))
     file, table = served.table_of_ranks(answer.representation(CSV).body, base)
@@ -103,7 +103,7 @@ async def leaderboard_linkset(request: Request) -> LinkSet:
 
 @root.get("/codemeta.json", response_class=LinkedData)
 async def software() -> LinkedData:
-    """Give the software in the words of CodeMeta 3.0."""
+    """Return the description of the software (CodeMeta 3.0)."""
     landing = signposting.landing_of_atlas(identity())
     links = signposting.headers(landing.links_of_metadata())
     return LinkedData(codemeta(identity().citation), links)

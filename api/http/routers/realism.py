@@ -15,13 +15,13 @@ from api.http.models.datasets import BuiltSensor, Realism, RealismQuery
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
 
-@router.get("/realism", summary="Data sets beside built sensors", response_model=Realism)
+@router.get("/realism", summary="Data sets compared with built sensors", response_model=Realism)
 async def realism(known: Known, query: Annotated[RealismQuery, Query()]) -> Answer:
-    """List the nearest built sensors of each data set with published figures, and ours beside.
+    """Compare each data set with built sensors and their published figures.
 
-    Our accuracy is the error of the best pipeline on the nominal condition, our precision its
-    repeatability. A sentence explains a difference by more than a factor of two; a data set that
-    stands for no built sensor says why. As CSV: a row a data set and sensor.
+    Our accuracy is the RMS error of the best pipeline under nominal conditions, our precision its
+    repeatability. Differences of more than a factor of two are explained. CSV: a row per data set
+    and sensor.
     """
     chosen = [
         row

@@ -29,16 +29,17 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 READ = Depends(query_as(RequirementsQuery))
 
 DESCRIPTION = (
-    "Which sensor: detector and mask. How to calibrate it: extractor, compensations, model. Three "
-    "kinds of evidence stay apart: what the survey advises, what studies proposed, what is "
-    "measured here. Values of one attribute are alternatives; all else must hold. An empty answer "
-    "names what blocks it and what would help. As CSV: a row a calibration."
+    "Ranks architectures (detector + mask) and their calibrations (extractor + compensations + "
+    "model) that meet the requirements. Three kinds of evidence: advised by the survey, used in "
+    "studies, measured here. Values of one attribute are alternatives; all other requirements "
+    "must hold. An empty answer names the requirement that excludes all, and changes that would "
+    "help. CSV: a row per calibration."
 )
 
 
 @router.get(
     "/recommendations",
-    summary="Which sensor, which calibration",
+    summary="Recommended sensors and calibrations",
     description=DESCRIPTION,
     response_model=Recommendations,
 )
@@ -49,7 +50,7 @@ async def recommendations(known: Known, query: Annotated[RequirementsQuery, READ
 
 @router.post(
     "/recommendations",
-    summary="Which sensor, which calibration (requirements in a body)",
+    summary="Recommended sensors and calibrations (requirements in the body)",
     description=DESCRIPTION,
     response_model=Recommendations,
 )

@@ -16,9 +16,9 @@ from api.http.pagination import narrow, order, page
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
 
-@router.get("/results", summary="The scores", response_model=Scores | Selected)
+@router.get("/results", summary="Scores", response_model=Scores | Selected)
 async def results(known: Known, query: Annotated[ScoresQuery, Query()]) -> Answer:
-    """One row a data set, condition, extractor and model, failures included."""
+    """Return scores: a row per data set, condition, extractor and model, including failures."""
     names = ("dataset", "condition", "extractor", "model")
     rows = order(narrow(known.measurements.scores, query, names), query.sort)
     shown = page(rows, "/v1/results", query)

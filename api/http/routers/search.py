@@ -1,4 +1,4 @@
-"""/v1/search: everything that is told, by words."""
+"""/v1/search: full-text search over all pages."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 
 @router.get("/search", summary="Search", response_model=SearchResults)
 async def search(known: Known, query: Annotated[SearchQuery, Query()]) -> Answer:
-    """Studies, algorithms, data sets, claims, attributes and words of the field, the best first.
+    """Search studies, algorithms, data sets, claims, attributes and terms.
 
-    What is called just so stands first, then what has every word asked for.
+    Exact names rank first, then results with all words.
     """
     hits = known.index.find(query.q, query.kind)
     ranked: list[dict[str, Any]] = []

@@ -1,4 +1,4 @@
-"""/v1/studies: the mapped studies, and what of each can be run."""
+"""/v1/studies: the studies and their implementation."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ AS_ACCEPTED = StudyQuery.model_construct()
 
 @router.get(
     "/studies",
-    summary="The mapped studies",
+    summary="Studies",
     response_model=Studies | Selected,
     response_class=CitedAnswer,
 )
 async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> Answer:
-    """Studies of the survey's mapping: 129, where it states 128. Filters narrow the list.
+    """List the studies of the survey: 129 keys in its tables, 128 in its text.
 
-    `edition=all` has the studies added after the survey, too. As BibTeX, RIS or CSL JSON:
-    references to those of them whose title is known.
+    `edition=all` includes added studies. BibTeX, RIS and CSL JSON: references to studies with a
+    known title.
     """
     known = known.of(query.edition)
     found = [study for study in known.facts.studies.values() if _is_wanted(study, query, known)]
@@ -59,9 +59,10 @@ async def editions(
     known: Known,
     query: TableOnly = TABLE_AS_ACCEPTED,  # noqa: ARG001 - the route has read it
 ) -> Answer:
-    """Give the survey's studies and those after it as they are cited: each with its version.
+    """List the editions of the studies, for citation.
 
-    A version is that of the data package, the number of studies and a digest of their tables.
+    A version consists of the data package's version, the number of studies and a digest of their
+    tables.
     """
     items = [one.to_dict() for one in known.editions]
     return Answer({"items": items}, columns.EDITIONS, lambda: items)
@@ -69,7 +70,7 @@ async def editions(
 
 @router.get(
     "/studies/{key}",
-    summary="One study",
+    summary="A study",
     response_model=StudyDetail,
     response_class=CitedAnswer,
 )
@@ -78,12 +79,10 @@ async def study(
     key: Annotated[StudyKey, Path(description="Key of the study.", examples=["Chang2008"])],
     query: Annotated[StudyQuery, Query()] = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
 ) -> Answer:
-    """Every value of the mapping with its basis, and what of the study is scored.
+    """Return a study: values with basis, implementation and scores.
 
-    That is the pipelines that run what the study did, or what stands nearest to it, each with the
-    data sets that it is scored on; and the values that do not run as they are. As CSV: the
-    values; as BibTeX, RIS or CSL JSON: the reference to it. A study of either edition is found;
-    `edition` says of which it is.
+    Pipelines implement the study's method or the nearest one; values that are not implemented are
+    listed as gaps. CSV: the values. BibTeX, RIS, CSL JSON: the reference.
     """
     known = known.of("all")
     found = known.facts.study(key)

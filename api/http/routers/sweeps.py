@@ -18,10 +18,10 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 
 @router.get("/sweeps", summary="Sweeps on reference features", response_model=Sweeps | Selected)
 async def sweeps(known: Known, query: Annotated[SweepsQuery, Query()]) -> Answer:
-    """Error of every extractor over noise, feature size, sub-pixel phase and more.
+    """Return the error of every extractor against noise, feature size, sub-pixel phase and more.
 
-    The features are in closed form, and each point has its Cramer-Rao bound. A row without a sweep
-    says why an extractor is not measured on a feature.
+    The features are known in closed form; each point has its Cramer-Rao bound. A row without a
+    sweep gives the reason why an extractor is not measured.
     """
     rows = narrow(known.measurements.sweeps, query, ("series", "sweep", "extractor"))
     shown = page(order(rows, query.sort), "/v1/sweeps", query)

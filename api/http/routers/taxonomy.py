@@ -1,4 +1,4 @@
-"""/v1/taxonomy: the vocabulary."""
+"""/v1/taxonomy: the vocabulary of the survey."""
 
 from __future__ import annotations
 
@@ -14,17 +14,16 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 
 @router.get(
     "/taxonomy",
-    summary="The vocabulary",
+    summary="Vocabulary of the survey",
     response_model=Taxonomy,
 )
 async def taxonomy(
     known: Known,
     query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
 ) -> Answer:
-    """Every value that an attribute of a study may take.
+    """List all values of all attributes of studies.
 
-    Each has its name, category and section of the survey. Other endpoints take these values as
-    filters.
+    Each has name, category and section of the survey. Other endpoints take them as filters.
     """
     attributes = known.taxonomy.to_dict()
     return Answer(

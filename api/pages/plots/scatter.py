@@ -34,7 +34,7 @@ class Point:
     address : where a press leads
     across, error_deg : its place
     bound_deg : the limit of its error; None where it has none
-    finer : what errs far less on the part that it answers, as `/v1/recommendations` tells it
+    finer : a pipeline with lower error at lower availability, as in `/v1/recommendations`
     """
 
     name: str

@@ -8,6 +8,7 @@ from urllib.parse import quote
 import pytest
 from playwright.sync_api import Locator, expect
 
+from api.pages.answer import KINDS
 from api.pages.terms import display_text as named
 from tests.api.page.visiting import Visit, get_json
 
@@ -37,7 +38,7 @@ def test_each_architecture_shows_advice_studies_and_measurement_in_columns_of_th
     page = wide.go(f"/?{asked}&view=table")
     page.get_by_role("button", name=f"Show all {len(found)} architectures").click()
     headings = page.locator(".architectures > thead th.kind").all_inner_texts()
-    assert headings == ["The survey advises it", "Studies proposed it", "Measured here"]
+    assert headings == [label for _, label in KINDS]
     rows = page.locator(".architecture").all()
     assert len(rows) == len(found) > 10
     for row, architecture in zip(rows, found, strict=True):
@@ -63,19 +64,20 @@ def test_a_row_opens_to_its_calibrations_the_best_measured_among_them(wide: Visi
     page = wide.go(f"/?{asked}&view=table")
     page.locator(".expand").first.click()
     assert 0 < page.locator(".calibration").count() < architecture["count"]
-    expect(page.locator(".calibration", has_text="errs least")).to_have_count(1)
+    expect(page.locator(".calibration .pareto-mark")).to_have_count(1)
     page.get_by_role("button", name=f"Show all {architecture['count']} calibrations").click()
     rows = page.locator(".calibration")
     expect(rows).to_have_count(architecture["count"])
     for row, calibration in zip(rows.all(), architecture["calibrations"], strict=True):
         stages = [*calibration["compensations"], calibration["model"]]
-        ours = (calibration["measured"] or {}).get("extractor", "direct")
-        unnamed = calibration["extractor"] == "None" and not ours.startswith("direct")
-        way = [
-            f"{ours} (ours)" if unnamed else named(calibration["extractor"], "extractor"),
+        labels = [
+            named(calibration["extractor"], "extractor"),
             *(named(stage, "model") for stage in stages),
         ]
-        assert row.locator(".pathway li").all_inner_texts() == way
+        assert [text.strip() for text in row.locator(".labels li").all_inner_texts()] == labels
+        measured = calibration["measured"]
+        name = f"{measured['extractor']} + {measured['model']}"
+        assert row.locator(".method").inner_text() == name
         unproposed = "not in the literature" in kind(row, "proposed")
         assert unproposed == (not calibration["studies"])
         if calibration["measured"]["error_deg"] is not None:
@@ -87,7 +89,7 @@ def test_a_row_opens_to_its_calibrations_the_best_measured_among_them(wide: Visi
 def test_studies_of_a_row_show_the_basis_of_each_value(wide: Visit) -> None:
     page = wide.go("/?task=Accuracy&view=table")
     page.locator(".expand").first.click()
-    page.locator(".detail summary", has_text="proposed it").click()
+    page.locator(".detail summary", has_text="basis of each value").click()
     keys = answer(wide, "task=Accuracy&limit=1")["architectures"][0]["studies"]
     expect(page.locator(".study")).to_have_count(len(keys))
     page.locator(".study details summary").first.click()
@@ -115,7 +117,7 @@ def test_what_disagrees_costs_or_is_not_tried_stands_above_the_table(wide: Visit
     costs = answer(wide, "error=Manufacturing")["regret"]
     assert costs["ratio"] > 2
     assert costs["sentence"][1:] in page.locator("#findings").inner_text()
-    page.get_by_role("button", name="Order by measurement").click()
+    page.get_by_role("button", name="Rank by measurement").click()
     wide.settle()
     assert wide.query()["sort"] == ["measured"]
     best = answer(wide, "error=Manufacturing&sort=measured&limit=1")
@@ -170,7 +172,7 @@ def test_hazards_properties_and_availability_are_asked_of_the_service(wide: Visi
     [
         ("detector=Event&mask=Lens", {"detector", "mask"}),
         ("max_error_deg=0.0001", {"error at most"}),
-        ("survive=spin&survive=ageing&task=FOV", {"shall survive", "task"}),
+        ("survive=spin&survive=ageing&task=FOV", {"must tolerate", "task"}),
     ],
 )
 def test_no_match_names_the_constraint_and_a_relaxation_leads_out(

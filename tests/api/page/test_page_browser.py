@@ -164,7 +164,7 @@ def test_the_keyboard_alone_requires_a_value_opens_evidence_and_sorts(wide: Visi
     heading = page.locator("th", has=page.locator('[data-sort="availability"]'))
     assert heading.get_attribute("aria-sort") == "descending"
     assert [t.split()[1] for t in page.locator(".score").all_inner_texts()] == ["b", "c", "a"]
-    assert "Answered, descending" in page.locator("#board-status").inner_text()
+    assert "Availability, descending" in page.locator("#board-status").inner_text()
 
 
 def test_a_value_of_the_table_is_required_and_keeps_the_focus(wide: Visit) -> None:

@@ -108,7 +108,7 @@ def test_figures_are_read_without_javascript_in_both_schemes_and_on_paper(
     page.goto(f"{address}/figures/error")
     assert page.locator(".live-figure > svg.wide").is_visible()
     assert page.locator(".figure-table tbody tr").count() > 50
-    page.get_by_text("Only some of the studies").click()
+    page.locator(".figure-filters > summary").click()
     page.get_by_label("Detector").select_option("CMOS")
     follow(page.get_by_role("button", name="Show"))
     assert "detector=CMOS" in page.url

@@ -52,11 +52,11 @@ def test_coarse_with_albedo(wide: Visit) -> None:
     expect(page.locator("#question")).to_contain_text("albedo")
     page.locator("#board-condition").select_option("nominal")
     wide.settle()
-    expect(page.locator("#board-judged")).to_contain_text("cannot be judged under this condition")
+    expect(page.locator("#board-judged")).to_contain_text("not tested by this condition")
     page.locator("#max_latency_us").fill("100")
     page.locator("#max_latency_us").press("Enter")
     wide.settle()
-    expect(page.locator("#board-judged")).to_contain_text("no pipeline has been timed")
+    expect(page.locator("#board-judged")).to_contain_text("no times on this machine")
     page.locator('[name="across"][value="poses"]').check()
     page.wait_for_url("**across=poses**")
 
@@ -92,7 +92,7 @@ def test_compare(wide: Visit) -> None:
         "QPD + Single-Ap.",
     ]
     page.locator('select[name="dataset"]').select_option("ccd-lens")
-    choose = page.get_by_role("button", name="Choose its pipelines")
+    choose = page.get_by_role("button", name="Choose pipelines")
     follow(page.get_by_role("button", name="Compare", exact=True).last.or_(choose).last)
     ways = page.locator('select[name="pipeline"]')
     ways.nth(0).select_option(index=1)

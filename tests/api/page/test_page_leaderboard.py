@@ -20,12 +20,12 @@ def test_ranks_that_units_do_not_tell_apart_are_shown_as_ties(wide: Visit) -> No
         mark = "=" if row["tied"] else ""
         assert text.split()[0] == f"{row['rank']}{mark}"
         assert ("–" in text) == (row["low_deg"] is not None)
-        assert ("false Suns" in text) == bool(row["false_sun"])
+        assert ("false detections" in text) == bool(row["false_sun"])
     assert page.locator(".key-units").count() == 1
     page.select_option("#board-condition", "stable")
     wide.settle()
     assert page.locator(".key-units").count() == 0
-    assert "rest on one unit" in page.locator("#board-body .legend").inner_text()
+    assert "one sensor unit" in page.locator("#board-body .legend").inner_text()
 
 
 def test_the_leaderboard_is_judged_over_a_part_of_the_field(wide: Visit) -> None:
@@ -41,7 +41,7 @@ def test_the_leaderboard_is_judged_over_a_part_of_the_field(wide: Visit) -> None
     assert float(best[3].rstrip("°")) == pytest.approx(first["field_rms_deg"], rel=0.01)
     page.select_option("#board-field", "90")  # wider than the sensor's own
     wide.settle()
-    assert "own field ends at 60" in page.locator("#board-body .legend").inner_text()
+    assert "ends at 60" in page.locator("#board-body .legend").inner_text()
     assert page.locator(".score").first.inner_text().split()[0] == "–"
 
 
@@ -89,7 +89,7 @@ def test_the_leaderboard_shows_every_row_the_service_has(wide: Visit) -> None:
 def test_the_card_of_a_data_set_opens_with_its_picture(wide: Visit, name: str) -> None:
     page = wide.go("/?view=table")
     page.locator("#dataset").select_option(name)
-    summary = page.get_by_text(f"Card of {name}: a picture")
+    summary = page.get_by_text(f"Description of {name}: a picture")
     summary.click()
     picture = page.locator("#board-card img.preview")
     picture.wait_for()

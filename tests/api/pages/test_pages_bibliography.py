@@ -99,8 +99,8 @@ def test_the_file_to_fill_in_has_every_incomplete_study_and_confirms_nothing(
 
 @pytest.mark.parametrize(
     "page",
-    ["/studies", "/studies?detector=CMOS&q=sun", "/studies/Liebe2002", "/detectors/QPD",
-     "/architectures/CMOS/Encoded", "/algorithms/tm"],
+    ["/studies?rows=all", "/studies?detector=CMOS&q=sun&rows=all", "/studies/Liebe2002",
+     "/detectors/QPD", "/architectures/CMOS/Encoded", "/algorithms/tm"],
 )  # fmt: skip
 def test_what_a_page_offers_to_cite_is_what_it_lists(atlas: Client, page: str) -> None:
     text = atlas.get(page, accept="text/html").text

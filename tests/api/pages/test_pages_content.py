@@ -41,7 +41,7 @@ def test_a_board_is_that_of_the_service_in_its_order(atlas: Client) -> None:
     rows = atlas.walk("/v1/leaderboard/ccd-lens?condition=hot&limit=500")
     html = atlas.get("/datasets/ccd-lens?condition=hot&rows=all").text
     board = html[html.index('id="board"') : html.index('id="heat"')]
-    names = re.findall(r'<td class="first">.*?>([^<]+)</a> → .*?>([^<]+)</a>', board)
+    names = re.findall(r'<td class="first">.*?>([^<]+)</a> \+ .*?>([^<]+)</a>', board)
     assert names == [(row["extractor"], row["model"]) for row in rows]
 
 
@@ -98,7 +98,7 @@ def test_the_answer_reads_without_a_script(atlas: Client) -> None:
         assert f"{architecture['detector']} + {architecture['mask']}" in page
         measured = architecture["best"]["measured"]
         assert degrees(measured["error_deg"]) in page
-    assert "Asked for: task Accuracy, shall survive albedo." in page
+    assert "task Accuracy, must tolerate albedo." in page
 
 
 def test_what_leaves_nothing_and_what_would_help_are_said(atlas: Client) -> None:
@@ -131,7 +131,7 @@ def test_the_scatter_has_a_point_for_every_measured_architecture(atlas: Client) 
 
 
 def test_comparison_needs_two_and_takes_four(atlas: Client) -> None:
-    assert "side by side" in atlas.get("/compare?architecture=CMOS:Encoded").text
+    assert 'class="side"' not in atlas.get("/compare?architecture=CMOS:Encoded").text
     five = "&".join(
         f"architecture=CMOS:{m}" for m in ("Encoded", "Slit", "Lens", "L-Slit", "N-Slit")
     )
@@ -147,17 +147,12 @@ def test_comparison_names_what_is_far_finer_under_a_condition(atlas: Client) -> 
     told = [t for item in items for t in item["conditions"].values()]
     finer = [t["finer"] for t in told if t["finer"]]
     for f in finer:
-        by = f"({f['extractor']} → {f['model']})"
+        by = f"({f['extractor']} + {f['model']})"
         if f["availability"] < 0.95:
-            words = "Far finer on the part it answers"
-            by = f"on {percent(f['availability'])} of the samples {by}"
-        else:
-            words = "Far finer otherwise calibrated"
-        assert f"{words} : {degrees(f['rms_deg'])} {by}" in page.replace(":", " :").replace(
-            "  ", " "
-        )
+            by = f"at {percent(f['availability'])} {by}"
+        assert f"{degrees(f['rms_deg'])} {by}" in page
     seldom = [t for t in told if t["availability"] < 0.95]
-    assert all(f"answers {percent(t['availability'])}" in page for t in seldom)
+    assert all(f"availability {percent(t['availability'])}" in page for t in seldom)
 
 
 def finer_built(board: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -188,10 +183,8 @@ def test_what_is_far_finer_on_a_part_stands_beside_the_best(
     monkeypatch.setattr(sensors, "architectures", finer_built)
     fresh = client_of(create_app(atlas.app.state.knowledge))
     html = fresh.get(address, accept="text/html").text
-    said = "Far finer on the part it answers : 0.000123° on 78.9 % of the samples (bcm → lut)"
-    assert text_of(html).count(said) == 1
-    link = html[: html.index("Far finer on the part it answers")].rpartition("<a ")[2]
-    assert "/glossary#term-finer" in link
+    assert text_of(html).count("0.000123° at 78.9 % (bcm + lut)") == 1
+    assert "/glossary#term-finer" in html
 
 
 def test_a_card_of_the_answer_names_what_is_far_finer_with_its_share(atlas: Client) -> None:
@@ -203,9 +196,8 @@ def test_a_card_of_the_answer_names_what_is_far_finer_with_its_share(atlas: Clie
         html = atlas.get(asked, accept="text/html").text
         card = text_of(html[html.index('class="best-one"') :].partition("</a>")[0])
         measured, finer = a["best"]["measured"], a["best"]["measured"]["finer"]
-        assert f"errs {degrees(measured['error_deg'])} at best, over " in card
-        share = f"{degrees(finer['error_deg'])} on {percent(finer['availability'])} of the samples"
-        assert f"Far finer on the part it answers: {share}" in card
+        assert f"RMS error {degrees(measured['error_deg'])} over " in card
+        assert f"{degrees(finer['error_deg'])} at {percent(finer['availability'])}" in card
 
 
 def test_search_leads_to_the_page_of_what_it_finds(atlas: Client) -> None:
