@@ -15,6 +15,7 @@ import numpy as np
 
 from algorithms.angles import tangents_from_sun
 from algorithms.contract import FeatureKind, Floats
+from api.calibrate.face_normals import face_normals
 from api.calibrate.readings import (
     MATRICES,
     Readings,
@@ -26,7 +27,6 @@ from api.calibrate.settings import Form, Settings, Transform
 
 #: A hypothesis is reported where it leaves less than this share of the residual as stated.
 _BETTER = 0.8
-#: And named likely, not possible, below this.
 _MUCH_BETTER = 0.5
 #: Directions up to this far off the boresight tell about axes.
 _WITHIN_DEG = 60.0
@@ -38,15 +38,13 @@ _SHIFTS = (-3, -2, -1, 1, 2, 3)
 #: Correlation of all quadrants' sum with the cosine of incidence that says they are inverted.
 _FALLING = 0.5
 _AMBIGUOUS = {
-    "rotate-180": "two inverted outputs, a sensor turned by 180 deg and angles of the other sign "
-    "look the same in the file",
+    "rotate-180": "two inverted outputs, a turn by 180 deg and angles of the other sign look alike",
     "mirror-x": "an inverted x output and an angle of the other sign look the same in the file",
     "mirror-y": "an inverted y output and an angle of the other sign look the same in the file",
     "swap-xy": "exchanged outputs and exchanged angles look the same in the file",
     "rotate-90": "a sensor turned by 90 deg and exchanged outputs, one inverted, look the same",
     "rotate-270": "a sensor turned by 270 deg and exchanged outputs, one inverted, look the same",
-    "swap-negated-xy": "exchanged and inverted outputs and exchanged angles of the other sign "
-    "look the same",
+    "swap-negated-xy": "exchanged inverted outputs and exchanged negated angles look the same",
 }
 
 
@@ -343,34 +341,6 @@ def _of_faces(readings: Readings, settings: Settings) -> Iterator[Finding]:
                 float(np.degrees(np.arccos(np.clip(cosine[at, at], -1, 1)))),
                 float(np.degrees(np.arccos(np.clip(cosine[at, nearest], -1, 1)))), {}, True,
             )  # fmt: skip
-
-
-def face_normals(readings: Readings) -> tuple[Floats, Floats]:
-    """Return where each channel looks (K, 3), and how it goes with the light there (K,).
-
-    By least squares of signal over the cosine, on the samples that light it most.
-    """
-    sun, signals = readings.sun, readings.features
-    normals = np.zeros((signals.shape[1], 3))
-    explained = np.zeros(signals.shape[1])
-    for at, signal in enumerate(signals.T):
-        centred = signal - np.median(signal)
-        start = (centred[:, None] * sun).mean(axis=0)
-        normal = start / (np.linalg.norm(start) or 1.0)
-        for _ in range(20):
-            lit = sun @ normal > 0.2
-            if lit.sum() < 6:
-                break
-            found = np.linalg.lstsq(sun[lit], signal[lit], rcond=None)[0]
-            length = np.linalg.norm(found)
-            if not length > 0:
-                break
-            normal = found / length
-        normals[at] = normal
-        with np.errstate(invalid="ignore"):
-            share = np.corrcoef(signal, np.maximum(sun @ normal, 0.0))[0, 1]
-        explained[at] = share if np.isfinite(share) else 0.0
-    return normals, explained
 
 
 def _left_deg(readings: Readings, sun: Floats) -> float:
