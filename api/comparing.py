@@ -152,7 +152,7 @@ def _architecture(known: Knowledge, name: str, best: Mapping[str, Any] | None) -
 
 
 def _finer(rows: Sequence[Mapping[str, Any]], error_deg: float | None) -> dict[str, Any] | None:
-    """Return which of some pipelines errs far less than an error, where it answers."""
+    """Return the pipeline with an error far below a given one, at lower availability."""
     if error_deg is None:
         return None
     found = finer_for(

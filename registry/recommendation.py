@@ -128,7 +128,7 @@ class Recommendation:
 
     @property
     def regret(self) -> Member | None:
-        """By how much the first calibration named errs more than the best one measured."""
+        """Error of the first calibration compared with the most accurate one measured."""
         regret: Member | None = self.document["regret"]
         return regret
 

@@ -1,4 +1,4 @@
-"""What the docs say of learning curves: poses needed, floors, who does not reach it; a picture."""
+"""Generated parts of the page on learning curves: poses needed, floors, a picture."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ class EntrySources(Protocol):
 
 
 def entries(known: EntrySources) -> tuple[Entry, ...]:
-    """Return everything that is told, by kind and in the order its lists have."""
+    """Return all entries of the search, by kind, in the order of their lists."""
     found = (_studies, _algorithms, _datasets, _claims, _attributes, _words)
     return tuple(entry for of_kind in found for entry in of_kind(known))
 
