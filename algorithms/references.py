@@ -49,7 +49,7 @@ class ReferenceCorrection:
     Examples
     --------
     >>> correction = ReferenceCorrection(np.array([1.0, 2.0]), np.array([11.0, 32.0]))
-    >>> correction.corrected(np.array([[6, 17]]))
+    >>> correction.correct(np.array([[6, 17]]))
     array([[10., 10.]])
     """
 

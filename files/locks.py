@@ -71,7 +71,8 @@ def _lock(place: Path, *, wait: bool) -> Iterator[None]:
     from filelock import FileLock, Timeout  # noqa: PLC0415 - as slow to load as a command's help
 
     file = lock_path(place)
-    file.parent.stat()  # filelock would make the directory
+    # filelock would make the directory, and try for ever where no file can be made
+    os.close(os.open(file, os.O_RDWR | os.O_CREAT, 0o644))
     lock = FileLock(file)
     try:
         lock.acquire(blocking=False)

@@ -112,7 +112,7 @@ def test_a_query_passes_the_functions_listed_from_http_to_answer() -> None:
 
     asyncio.run(asked("task=Cost"))  # facts and measurements are loaded by the first query
     landmarks = [
-        "registry/judging.py: Question.meeting",
+        "registry/judging.py: Question.matching_designs",
         "registry/answer_json.py: answer_json",
         "api/http/answers.py: Answer.representation",
         "api/http/representations.py: Representation.respond",

@@ -13,13 +13,13 @@ from benchmark.metrics.score import AVAILABLE
 Row = Mapping[str, Any]
 
 WIDTH = 80
-_HEADINGS = ("architecture", "best pipeline", "deg", "", "±", "bounds", "bench, deg")
-_NUMBERS = frozenset({"deg", "bounds", "±", "bench, deg", "median", *map("{:g}".format, WITHIN)})
+_HEADINGS = ("architecture", "best pipeline", "deg", "", "±", "bounds", "bench")
+_NUMBERS = frozenset({"deg", "bounds", "±", "bench", "median", *map("{:g}".format, WITHIN)})
 _MORE = (
     "More: --dataset NAME (all pipelines), --each (every data set), --overview (parts), --format "
     "json (all numbers)."
 )
-_ARCHITECTURE = (17, 29)  # columns of names; numbers take the rest
+_ARCHITECTURE = (17, 32)  # columns of names; numbers take the rest
 
 
 def architectures_text(rows: Sequence[Row], width: int = WIDTH) -> str:
@@ -27,11 +27,10 @@ def architectures_text(rows: Sequence[Row], width: int = WIDTH) -> str:
     room = min(width, WIDTH)
     lines = [
         *prose(
-            "The best pipeline of each architecture (detector, mask) under nominal conditions, on "
-            "its data set with the smallest own error (true directions in the calibration, "
-            "geometric mean over sensor units). ±: standard error. bounds: RMS error divided by "
-            "the Cramer-Rao bound. bench: error expected with the standard calibration bench. =: "
-            f"a tie with the runner-up in a paired test over the units. {tally(rows)}",
+            "The best pipeline of each architecture (detector, mask) under nominal conditions, by "
+            "own error, deg. ±: standard error. bounds: RMS error over the Cramer-Rao bound. "
+            "bench: error on the standard bench, deg. =: tie with the runner-up in a paired test. "
+            f"{tally(rows)}",
             room,
         ),
         "",
@@ -89,7 +88,7 @@ def _line_of(cells: Sequence[str]) -> Iterator[str]:
 def _line(*cells: str) -> str:
     name, pipeline, error, tie, doubt, ratio, bench = cells
     wide, wider = _ARCHITECTURE
-    numbers = f"{error:>8}{tie:1} {doubt:>4} {ratio:>6} {bench:>10}"
+    numbers = f"{error:>8}{tie:1} {doubt:>4} {ratio:>6} {bench:>7}"
     return f"{name:<{wide}}{pipeline:<{wider}}{numbers}".rstrip()
 
 

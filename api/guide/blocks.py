@@ -25,8 +25,6 @@ NOT_RUN: Mapping[tuple[str, ...], str] = {
     ("git", "clone"): "fetches the repository",
     ("sunatlas", "leaderboard", "--check"): "measures every cell again: hours",
     ("sunatlas", "rank"): "needs the page's file: the recipes' test runs it in a copy of the tree",
-    ("sunatlas", "deposit", "build"): "half a minute; tests/api/deposit builds it",
-    ("sunatlas", "run"): "measures for a minute; tests/api/cli/test_cli_measuring.py runs it",
 }
 
 _FENCE = re.compile(

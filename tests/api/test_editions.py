@@ -51,7 +51,7 @@ def test_every_later_study_has_its_page_and_its_endpoint_in_every_form(atlas: Cl
     for key in later():
         page = atlas.get(f"/studies/{key}")
         assert page.status_code == 200
-        assert "Added after the survey" in page.text
+        assert "after the survey" in page.text
         for address in (f"/studies/{key}.json", f"/studies/{key}.csv", f"/v1/studies/{key}"):
             assert atlas.get(address).status_code == 200
         assert atlas.get(f"/v1/studies/{key}").json()["edition"] == "extension"

@@ -46,7 +46,8 @@ def tables(atlas: Client) -> list[str]:
     found = [
         target(path, methods["get"])[0]
         for path, methods in paths.items()
-        if "text/csv" in methods.get("get", {}).get("responses", {}).get("200", {})["content"]
+        if "text/csv"
+        in methods.get("get", {}).get("responses", {}).get("200", {}).get("content", {})
     ]
     assert len(found) > 25
     return [*found, *WHOLE, *PAGES]

@@ -35,7 +35,7 @@ def assess(
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Compare the survey's scores of extractors with measured scores.
+    """Compare the survey's scores of extractors with ours.
 
     19 methods and 21 properties, scored 2 (yes), 1 (partly) or 0 (no). A cell shows the survey's
     score, a mark and the measured score: = agrees, ~ differs by one, x differs by two. A dot means

@@ -58,7 +58,7 @@ def calibrate(
         typer.Option(help="Only this model, such as polynomial-2d; may be repeated."),
     ] = None,
 ) -> int:
-    """Calibrate a sensor from a turntable file.
+    """Calibrate your own sensor from a turntable file.
 
     Reads the file, detects its conventions and wrong poses, compares all applicable models by
     cross-validation, and writes a report (HTML), the calibration (JSON), a Python module and C99

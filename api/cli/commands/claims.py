@@ -45,7 +45,7 @@ def claims(
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Show claims of the survey about algorithms, with verdicts.
+    """Show claims of the survey, with verdicts.
 
     Each claim was tested on at least five sensor units or seeds. Reproduced: every criterion holds
     with 95 % confidence. Partly: some hold. Refuted: none holds and at least one fails. Not

@@ -18,7 +18,7 @@ def compile_command(
     workers: WorkersOption = 1,
     quiet: Annotated[bool, typer.Option(help="No message at the end.")] = False,
 ) -> None:
-    """Compile all numerical kernels now instead of at their first call.
+    """Compile all numerical kernels now.
 
     Compiled kernels are kept beside the source or in the user's cache. The first call in a new
     process is then as fast as later ones.

@@ -43,7 +43,7 @@ def curves(
     ] = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Show how many calibration poses the leading pipelines need.
+    """Show how many calibration poses pipelines need.
 
     needed: number of poses with which half of the random draws are within 10 % of the error floor
     and have 95 % availability; range: first and last draw; error from, answers from: each criterion

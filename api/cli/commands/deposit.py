@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from api.deposit.archives.server import Server
 
 app = typer.Typer(
-    help="Build, verify, upload or publish the bundle for an archive.",
+    help="Build, verify, upload or publish the archive bundle.",
     add_completion=False,
     rich_markup_mode=None,
 )

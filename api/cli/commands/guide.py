@@ -14,7 +14,7 @@ app = typer.Typer(no_args_is_help=True, add_completion=False, rich_markup_mode=N
 
 @app.callback()
 def guide() -> None:
-    """Build the guide, the site that the service has at /guide."""
+    """Build the guide, served at /guide."""
 
 
 @app.command()

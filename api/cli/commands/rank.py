@@ -59,7 +59,7 @@ def rank(
     store: StoreOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Check an algorithm, measure it and show it on the leaderboard of a data set.
+    """Check and measure an algorithm, and show its rank.
 
     The algorithm is an extractor, model or compensation, given by name or file. It must pass the
     common tests; otherwise the failures are printed and nothing is measured. Its pipelines are then

@@ -105,7 +105,7 @@ def recommend(
     ] = 5,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Rank the sensors and calibrations that meet requirements.
+    """Rank sensors and calibrations that meet your requirements.
 
     Lists architectures (detector + mask) with their calibrations (extractor + compensations +
     model) and three kinds of evidence: advised by the survey, used in studies, measured here. The

@@ -48,7 +48,7 @@ def verify(
     scheduler: SchedulerOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Measure a random sample of published cells again, and compare.
+    """Measure a random sample of published cells again.
 
     Results must agree digit for digit with the published ones. Differences that another processor
     may cause are counted; all others are printed with file and cell, and the exit code is 1.

@@ -118,9 +118,9 @@ def test_what_a_killed_process_left_goes_and_what_a_living_one_writes_stays(cali
         ),
         (
             lambda stored: stored["model"]["fitted"]["hull_"].update(
-                object="algorithms.pipeline:extracted"
+                object="algorithms.pipeline:extract_features"
             ),
-            "holds no algorithms.pipeline:extracted",
+            "holds no algorithms.pipeline:extract_features",
         ),
     ],
 )

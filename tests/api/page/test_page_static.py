@@ -11,7 +11,7 @@ from registry.requirements import HAZARDS, LIMITS, LISTS, NEEDS, SETTINGS
 from registry.studies import facts
 from tests.api.conftest import Client
 
-PAGE = Path(__file__).parents[3] / "api" / "page"
+PAGE = Path(__file__).parents[3] / "api" / "static"
 MODULES = sorted(PAGE.glob("*.js"))
 STYLES = sorted(PAGE.glob("styles/*.css"))
 READABLE = 4.5  # WCAG 2.2, 1.4.3, level AA

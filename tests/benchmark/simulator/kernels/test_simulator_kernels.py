@@ -2,26 +2,15 @@
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from numba.core.dispatcher import Dispatcher
 
 import benchmark
-from algorithms import kernels as shared_kernels
-from benchmark.simulator import kernels
 
 ROOT = Path(benchmark.__file__).parent.parent
-
-MODULES = [
-    f"{package.__name__}.{found.name}"
-    for package in (kernels, shared_kernels)
-    for found in pkgutil.iter_modules(package.__path__)
-]
 
 
 @pytest.mark.slow
@@ -40,12 +29,3 @@ def test_kernels_work_where_no_cache_can_be_written():
         "assert convex_area(square, np.empty((0, 3))) == 6.0\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, timeout=600)
-
-
-@pytest.mark.parametrize("name", MODULES)
-def test_kernels_call_only_their_own_file(name):
-    """Numba keeps old machine code where only a called kernel of another file has changed."""
-    module = importlib.import_module(name)
-    found = [value for value in vars(module).values() if isinstance(value, Dispatcher)]
-    assert found
-    assert {kernel.py_func.__module__ for kernel in found} == {name}
