@@ -129,5 +129,7 @@ def test_marks_are_reached_by_the_tab_key_and_lead_to_their_studies(
     node.focus()
     page.keyboard.press("Enter")
     page.wait_for_url("**/studies?detector=CMOS")
+    page.get_by_role("link", name="Show all 48 studies").click()
+    page.wait_for_url("**/studies?detector=CMOS&rows=all")
     assert page.locator("tbody tr").count() == 48
     context.close()
