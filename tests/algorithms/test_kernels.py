@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import os
 import subprocess
@@ -75,3 +76,28 @@ def test_numba_itself_refuses_to_cache_as_expected(tmp_path, monkeypatch):
     with pytest.raises(RuntimeError, match="cannot cache function"):
         numba.njit(cache=True)(twice)
     assert compiled(twice)(21) == 42
+
+
+def test_no_compiled_record_outlives_its_array():
+    """Numba frees an array after its last use, whoever still has a record of it."""
+    wrong = []
+    for floor in ("algorithms", "benchmark"):
+        for path in (ROOT / floor).rglob("*.py"):
+            for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+                if isinstance(node, ast.FunctionDef) and "compiled" in map(
+                    _name, node.decorator_list
+                ):
+                    wrong += [f"{path}:{one.lineno}" for one in ast.walk(node) if _fleeting(one)]
+    assert wrong == []
+
+
+def _name(node):
+    return getattr(node, "id", "")
+
+
+def _fleeting(node):
+    """Whether a record is taken out of an array that nothing else holds."""
+    if not (isinstance(node, ast.Subscript) and isinstance(node.value, ast.Call)):
+        return False
+    call = node.value.func
+    return isinstance(call, ast.Attribute) and call.attr in ("empty", "zeros", "ones", "full")

@@ -5,6 +5,7 @@ import pytest
 from scipy.special import ndtr
 
 from algorithms.contract import SensorGeometry
+from algorithms.extractors.frames.multi_spot import spot_pixels_kernel
 from algorithms.extractors.frames.multi_spot.combination_kernel import combine
 from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
 from algorithms.extractors.frames.multi_spot.weighted_spots import WeightedSpots
@@ -205,3 +206,29 @@ def test_one_aperture_states_no_covariance():
     found = WeightedSpots(apertures, blur_px=2.0).measure(noisy(frames, rng).astype(np.uint16))
     assert np.abs(found.features - places).max() < 0.1
     assert np.isnan(found.covariance).all()
+
+
+@pytest.mark.parametrize("each", [40, 60, 64, 70, 150])
+def test_other_light_around_a_spot_is_told_as_the_written_steps_tell_it(each):
+    """The compiled loop has the numbers of its own Python where a ring holds another light.
+
+    At some 57 to 72 pixels a spot the ring's mask once took the memory of the sums.
+    """
+    rng = np.random.default_rng(each)
+    ends = np.array([each, 2 * each, 3 * each])
+    pixels = np.zeros((6, 3 * each))
+    pixels[0], pixels[1] = rng.integers(0, 60, (2, 3 * each))
+    pixels[3] = rng.uniform(0.0, 9.0, 3 * each)
+    pixels[2] = 40.0 + 0.3 * pixels[0] + rng.normal(0.0, 3.0, 3 * each)
+    lit = slice(each, each + each // 4)
+    pixels[2, lit] += rng.uniform(200.0, 900.0, each // 4)
+    pixels[3, lit] = 8.0
+    compiled, written = pixels.copy(), pixels.copy()
+    lights = np.zeros((2, 3))
+    noises = (
+        spot_pixels_kernel._flatten(compiled, ends, 6.0, lights[0]),
+        spot_pixels_kernel._flatten.py_func(written, ends, 6.0, lights[1]),
+    )
+    assert noises[0] == pytest.approx(noises[1], rel=1e-12)
+    np.testing.assert_allclose(compiled[2], written[2], rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(lights[0], lights[1], rtol=1e-9)

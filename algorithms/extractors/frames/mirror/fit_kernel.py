@@ -332,9 +332,10 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
     work, wide = space[:11], space[11:16]
     lanes = np.empty(10 * LANES, dtype=np.float32)
     both = np.empty(2, dtype=SUMS)
-    sums, other_sums = both[0], both[1]
     before = np.empty(1, dtype=states.dtype)
     for k in todo:
+        # here, as a compiled record does not keep its array, which is freed after its last use
+        sums, other_sums = both[0], both[1]
         box, state = boxes[k], states[k]
         if not np.isfinite(state.xx):
             continue

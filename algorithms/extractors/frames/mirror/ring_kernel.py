@@ -345,8 +345,10 @@ def flatten(  # noqa: PLR0917 - Numba takes no keyword-only ones
     """Fit the background around the windows `todo`, take it off, and write it to `grounds`."""
     lines, columns = space[:3], space[8:13]
     lanes, right = np.empty(6 * LANES, dtype=np.float32), np.empty(4)
-    powers = np.empty(1, dtype=_POWERS)[0]
+    # a compiled record does not keep its array, which is freed after its last use
+    kept_powers = np.empty(1, dtype=_POWERS)
     for k in todo:
+        powers = kept_powers[0]
         state, ground, box, half = states[k], grounds[k], boxes[k], lights[k].half
         width, height = box.columns, box.last - box.top
         ground.slope[:], ground.bend[:] = 0.0, 0.0

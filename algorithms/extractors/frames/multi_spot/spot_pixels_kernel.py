@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
-from algorithms.kernels.records import record
+from algorithms.kernels.records import Records, record
 
 #: Reach of a spot's pixels beyond its rim: over its radius, and px; of these the outermost show
 #: the background.
@@ -181,9 +181,11 @@ def _flatten(pixels: Floats, ends: NDArray[np.int64], ring: float, lights: Float
         grounds[0, s], grounds[1, s], grounds[2, s] = mean, variance, n
         begin = ends[s]
     noise = float(np.median(grounds[1]))
-    sums = np.zeros(1, dtype=_SLOPE_SUMS)[0]
+    # a compiled record does not keep its array, which is freed after its last use
+    kept_sums = np.zeros(1, dtype=_SLOPE_SUMS)
     begin = 0
     for s in range(ends.size):
+        sums = kept_sums[0]
         own = pixels[:, begin : ends[s]]
         mean, n = grounds[0, s], grounds[2, s]
         spread = 4.0 * math.sqrt(grounds[1, s])
@@ -210,15 +212,16 @@ def _flatten(pixels: Floats, ends: NDArray[np.int64], ring: float, lights: Float
             light += u - mean
         lights[s] = light
         begin = ends[s]
-    slope_x, slope_y, sure = _slope(sums)
+    slope_x, slope_y, sure = _slope(kept_sums)
     if sure > _SLOPE * _SLOPE * 2.0 * noise:  # its chi square, of two degrees of freedom
         _tilt(pixels, ends, slope_x, slope_y)
     return noise
 
 
 @compiled
-def _slope(sums: SlopeSums) -> tuple[float, float, float]:
-    """Slope of the light along x and y, and the squares that it explains."""
+def _slope(kept_sums: Records) -> tuple[float, float, float]:
+    """Slope of the light along x and y of one record of sums, and the squares that it explains."""
+    sums = kept_sums[0]
     n = max(sums.n, 1.0)
     xx = sums.xx - sums.x * sums.x / n
     xy = sums.xy - sums.x * sums.y / n
