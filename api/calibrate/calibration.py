@@ -39,7 +39,7 @@ from api.calibrate.uncertainty import (
     refits,
     spread_deg,
 )
-from api.calibrate.verdict import Verdict, judge, next_poses, patterns_in
+from api.calibrate.verdict import Verdict, judge, next_poses, patterns_in, with_doubt
 from files.reading import read_bytes
 
 #: Residuals of samples left out, over their robust scale, that list a sample as wrong after all.
@@ -244,6 +244,8 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, ratio, patterns,
         *next_poses(readings.sun),
     )  # fmt: skip
+    if doubt := next((one for one in found if one.certain and one.change), None):
+        verdict = with_doubt(verdict, doubt.found)
     progress("done", len(wanted) + 3, len(wanted) + 3)
     return Calibration(
         stated, (*applied, *found), tuple(applied), readings, tuple(excluded), tuple(runs), fold,

@@ -1,9 +1,9 @@
-"""The verdict on a calibration: good, model misfit or poses missing; and what to do next."""
+"""The verdict on a calibration, and what to do next."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -14,7 +14,7 @@ from algorithms.contract import Floats, UnusableDataError
 from api.calibrate.readings import Readings
 from api.calibrate.uncertainty import tangent_offsets
 
-Word = Literal["good", "model misfit", "poses missing"]
+Word = Literal["good", "model misfit", "poses missing", "conventions in doubt"]
 #: Ratio of the difference of two halves' fits to what their stated uncertainties add up to.
 RATIO_GOOD, RATIO_MISFIT = (0.7, 1.4), 2.0
 #: Share of the residuals' variance that a pattern explains to be named, and its significance.
@@ -49,7 +49,7 @@ class Verdict:
 
     Attributes
     ----------
-    word : {"good", "model misfit", "poses missing"}
+    word : {"good", "model misfit", "poses missing", "conventions in doubt"}
     reason : str
         In one or two sentences.
     split_ratio : float
@@ -124,6 +124,20 @@ def judge(  # noqa: PLR0917 - the numbers it is made of
             f"noise is {told:.3g} deg"
         )
     return Verdict(word, reason, split_ratio, patterns, next_poses)
+
+
+def with_doubt(verdict: Verdict, found: str) -> Verdict:
+    """Return a verdict that is good only if the file's conventions are as stated after all.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        On the fit.
+    found : str
+        The convention that the file seems to follow instead, in a sentence.
+    """
+    reason = f"{found}: apply that or state it; as stated, {verdict.reason}"
+    return replace(verdict, word="conventions in doubt", reason=reason)
 
 
 def patterns_in(offsets: Floats, readings: Readings) -> tuple[Pattern, ...]:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bench import HEADER, angles_of, grid, quadrants, spots, sun_of, turn, write
+from bench import CENTRE, HEADER, angles_of, grid, quadrants, spots, sun_of, turn, write
 
 from algorithms.angles import separation_deg
 from algorithms.contract import UnusableDataError
@@ -114,6 +114,16 @@ def test_one_axis_is_refused_with_what_would_settle_it(turned, tmp_path):
     path = write(tmp_path / "one.csv", HEADER, spots(sun, 1), angles_of(sun))
     with pytest.raises(UnusableDataError, match="second axis"):
         calibrate([path])
+
+
+@pytest.mark.parametrize("model", ["pinhole", "homography", "polynomial-2d"])
+def test_no_model_calls_a_mirrored_file_good_without_leave_to_mirror(model, tmp_path):
+    mirrored = (spots(SUN, 1) - CENTRE) * [-1, 1] + CENTRE
+    path = write(tmp_path / "mirrored.csv", HEADER, mirrored, ANGLES)
+    found = calibrate([path], models=(model,))
+    assert found.verdict.word == "conventions in doubt"
+    assert "mirror-x" in found.verdict.reason
+    assert calibrate([path], models=(model,), apply=True).verdict.word != "conventions in doubt"
 
 
 @pytest.mark.parametrize("seed", range(5))
