@@ -39,8 +39,8 @@ from tools.bench.verdicts import Verdict, broken
 
 LARGEST_RATIO = 3.0
 PATH = "/v1/recommendations"
-#: Questions of each kind before those that are measured: a service that has answered some.
-WARM = 100
+#: Questions of each kind before those that are measured.
+WARM = 10
 #: How often a drawn question has a requirement of a kind.
 _SHARE = 0.4
 #: A connection is kept however long the machine lets its next request wait, s.

@@ -110,6 +110,17 @@ def test_croissant_loads_errors_with_their_types(atlas, address, load) -> None:
 
 
 @pytest.mark.slow
+def test_croissant_loads_every_error(atlas, address, load) -> None:
+    rows = rows_of(load(f"{address}/v1/datasets/pd-slit/croissant.json"), "errors")
+    published = atlas.app.state.knowledge.measurements.sample_errors("pd-slit")
+    assert len(rows) == len(published)
+    for row, (_, known) in zip(rows[::997], published.iloc[::997].iterrows(), strict=True):
+        assert row["extractor"].decode() == known["extractor"]
+        assert (row["unit"], row["sample"]) == (known["unit"], known["sample"])
+        assert row["error_deg"] == (None if pd.isna(known["error_deg"]) else known["error_deg"])
+
+
+@pytest.mark.slow
 def test_croissant_loads_the_leaderboard(atlas, address, load) -> None:
     rows = rows_of(load(f"{address}/v1/leaderboard/croissant.json"), "ranks")
     table = atlas.table("/v1/leaderboard?whole=true")
