@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from algorithms.contract import AboutExtractor, Floats
 from algorithms.extractors.frames.multi_spot.pattern_memory import found_once
+from algorithms.extractors.frames.multi_spot.records import Lattice, Matches, Seen, Views
 from algorithms.row_arithmetic import medians
 
 Apertures = tuple[tuple[float, float, float], ...]
@@ -39,18 +40,6 @@ _SAMPLE = 4096
 _LEAST_SIGNAL = 5.0
 #: Spots kept of a frame, an aperture: stray lights may add to them.
 _SPOTS_PER_APERTURE = 4
-
-
-@dataclass(frozen=True, eq=False)
-class Lattice:
-    """The apertures of a mask, and which of them is near a point."""
-
-    apertures: Floats  # (A, 3)
-    table: NDArray[np.int64]  # (R, C) the aperture in a cell, -1 for none
-    corner: Floats  # (2,) of the table's first cell
-    cell_px: float
-    nearest_px: float  # least distance of two apertures, infinite for one
-    lines: NDArray[np.int64]  # (2, A) in which column and row each is
 
 
 @dataclass(frozen=True, eq=False)
@@ -231,79 +220,56 @@ def _find_pattern(
     least = max(_AREAS[0] * math.pi / 4.0 * float(widths.min()) ** 2, _LEAST_PIXELS)
     most = max(_AREAS[1] * (float(widths.max()) + blur_px) ** 2, 2.0 * least)
     room = min(_SPOTS_PER_APERTURE * len(widths) + 16, int(height * width / least) + 1)
-    seen, cuts = np.empty((count, room, 4)), np.empty((count, _CUTS, 3))
-    counts, cut_counts = np.empty((2, count), dtype=np.int64)
-    spots_kernel.segment(
-        frames, levels.maxima, levels.threshold, least, most, seen, counts, cuts, cut_counts
+    seen = empty_seen(count, room, _CUTS)
+    spots_kernel.segment(frames, levels.maxima, levels.threshold, least, most, seen)
+    shape = count, _COMPARED, len(widths)
+    matches = Matches(
+        np.empty((count, _COMPARED, 2)),
+        np.empty(shape, dtype=np.int32),
+        np.empty(count, dtype=np.int64),
     )
-
-    places = np.empty((count, _COMPARED, 2))
-    matches = np.empty((count, _COMPARED, len(widths)), dtype=np.int32)
-    kept = np.empty(count, dtype=np.int64)
-    aperture_grid_kernel.match(
-        seen,
-        counts,
-        known.apertures,
-        known.table,
-        known.corner,
-        known.cell_px,
-        (height, width),
-        tolerance_px,
-        # for a doubt, a line of spots unexplained is a fault, and some are missing
-        (faulty_lines + 0.5) * max(int(np.bincount(line).max()) for line in known.lines) + 4,
-        places,
-        matches,
-        kept,
+    # for a doubt, a line of spots unexplained is a fault, and some are missing
+    slack = (faulty_lines + 0.5) * max(int(np.bincount(line).max()) for line in known.lines) + 4
+    aperture_grid_kernel.match(seen, known, (height, width), tolerance_px, slack, matches)
+    views = Views(
+        np.empty(shape, dtype=np.int8),
+        np.empty((count, _COMPARED, _CUTS), dtype=np.int32),
+        np.empty((count, room), dtype=np.bool_),
+        np.empty((count, _COMPARED), dtype=np.bool_),
     )
-    states = np.empty((count, _COMPARED, len(widths)), dtype=np.int8)
-    cut_to = np.empty((count, _COMPARED, _CUTS), dtype=np.int32)
-    bright = np.empty((count, room), dtype=np.bool_)
-    enough = np.empty((count, _COMPARED), dtype=np.bool_)
-    view_kernel.look(
-        frames,
-        levels.threshold,
-        seen,
-        counts,
-        cuts,
-        cut_counts,
-        known.apertures,
-        margin_px(blur_px),
-        SHARE,
-        places,
-        matches,
-        kept,
-        states,
-        cut_to,
-        bright,
-        enough,
-    )
+    margin = margin_px(blur_px)
+    view_kernel.look(frames, levels.threshold, seen, known.apertures, margin, SHARE, matches, views)
     displacement = np.empty((count, 2))
     partners = np.empty((count, len(widths)), dtype=np.int64)
     reason = np.empty(count, dtype=np.int64)
     apart = min(known.nearest_px, float(height + width)) / 4.0
     evidence_kernel.decide(
         seen,
-        counts,
-        cut_counts,
-        known.apertures,
-        known.lines,
+        known,
         tolerance_px,
         (float(faulty_lines), apart if sequence else 0.0),
         field_px or (0.0, 0.0, math.inf),
-        places,
         matches,
-        kept,
-        states,
-        cut_to,
-        bright,
-        enough,
+        views,
         displacement,
         partners,
         reason,
     )
-    positions = np.take_along_axis(seen, np.maximum(partners, 0)[:, :, None], axis=1)[:, :, :2]
+    positions = np.take_along_axis(seen.spots, np.maximum(partners, 0)[:, :, None], axis=1)[
+        :, :, :2
+    ]
     positions[partners < 0] = np.nan
     return Pattern(displacement, positions, reason >= evidence_kernel.SEVERAL)
+
+
+def empty_seen(count: int, room: int, cuts: int) -> Seen:
+    """Room for the spots of so many frames: whole ones and cut ones of each."""
+    return Seen(
+        np.zeros((count, room, 4)),
+        np.empty(count, dtype=np.int64),
+        np.zeros((count, cuts, 3)),
+        np.empty(count, dtype=np.int64),
+    )
 
 
 def margin_px(blur_px: float) -> float:

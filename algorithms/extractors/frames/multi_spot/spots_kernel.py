@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.extractors.frames.multi_spot.records import Seen
 
 Runs = NDArray[np.int32]
 """(R, 5) lit pixels side by side: a run of the same spot before it or itself, first column, past
@@ -117,20 +118,14 @@ def segment(  # noqa: PLR0917 - Numba takes no keyword-only ones
     levels: Floats,
     least: float,
     most: float,
-    spots: Floats,
-    counts: NDArray[np.int64],
-    cuts: Floats,
-    cut_counts: NDArray[np.int64],
+    seen: Seen,
 ) -> None:
     """Write the spots of each frame, in the order their first pixels are read.
 
     A spot is a set of pixels above the frame's level (N,) that touch at sides or corners. Whole
-    are those of `least` to `most` pixels that do not touch the frame's edge: `spots` (N, S, 4)
-    receives the mean x and y, weighted by the light above the level, the number of pixels and
-    that light. `counts` (N,) is how many there are, -1 where more than S. `cuts` (N, C, 3) and
-    `cut_counts` (N,): the means, the light of a pixel and the number of those at the edge.
-    `maxima` (N, H) are the rows' largest values: rows that hold no pixel above the level are not
-    read.
+    are those of `least` to `most` pixels that do not touch the frame's edge; their number is -1
+    where there are more than there is room for. `maxima` (N, H) are the rows' largest values: rows
+    that hold no pixel above the level are not read.
     """
     count, height, width = frames.shape
     room = height * (width // 2 + 1)  # at most every other pixel starts a run
@@ -146,4 +141,6 @@ def segment(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 outermost = i == 0 or i == height - 1
                 end = _add_runs(frames[k, i], levels[k], i, outermost, runs, light, end)
                 _join(runs, above, here, end)
-        counts[k], cut_counts[k] = _keep(runs, light, end, least, most, spots[k], cuts[k])
+        seen.counts[k], seen.cut_counts[k] = _keep(
+            runs, light, end, least, most, seen.spots[k], seen.cuts[k]
+        )
