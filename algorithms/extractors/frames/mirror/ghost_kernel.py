@@ -26,12 +26,15 @@ from algorithms.extractors.frames.mirror.lines_kernel import (
     places,
 )
 from algorithms.extractors.frames.mirror.records import State
+from algorithms.kernels.cholesky import factor, forward
 from algorithms.kernels.records import Records
 
 #: A pixel counts as lit above this fraction of the peak.
 _CUT = np.float32(0.1)
 #: Slopes along both axes, and the four cubic shapes.
 _SLOPES, _TERMS = 2, 6
+#: Pivot over diagonal below which a shape is not determined.
+_DEPENDENT = 1e-6
 #: Sums of products that their normal equations need.
 _SUMS = 24
 #: Chi squared, of four degrees of freedom, of what is skew, over the scatter, and its share of the
@@ -151,22 +154,11 @@ def _equations(lanes: Line, matrix: Floats, right: Floats) -> None:
 @compiled
 def _explain(matrix: Floats, right: Floats) -> float:
     """Chi squared that the cubic shapes explain beyond the slopes: by Cholesky, slopes first."""
-    size = len(right)
     total = 0.0
-    for a in range(size):
-        own = matrix[a, a]
-        for b in range(a):
-            for c in range(b):
-                matrix[a, b] -= matrix[a, c] * matrix[b, c]
-            matrix[a, b] /= matrix[b, b]
-            matrix[a, a] -= matrix[a, b] * matrix[a, b]
-            right[a] -= matrix[a, b] * right[b]
-        if not matrix[a, a] > 1e-6 * own:
-            return 0.0  # too few pixels to tell shapes apart
-        matrix[a, a] = math.sqrt(matrix[a, a])
-        right[a] /= matrix[a, a]
-        if a >= _SLOPES:
-            total += right[a] * right[a]
+    if factor(matrix, _DEPENDENT):  # else too few pixels to tell shapes apart
+        forward(matrix, right)
+        for one in right[_SLOPES:]:
+            total += one * one
     return total
 
 
