@@ -107,7 +107,7 @@ class CalibratedModel(Model):
         """(N, 3) unit vectors of features (N, F), row by row; NaN rows stay NaN."""
         ...
 
-    def settled(self) -> tuple[Parameter, ...]:
+    def fitted_parameters(self) -> tuple[Parameter, ...]:
         """Parameters with standard errors, once learnt; none by default."""
         return ()
 
@@ -167,7 +167,7 @@ class CalibratedModel(Model):
             residual_rms_deg=residual,
             data_digest=data_digest(features, sun, context),
             condition=self.condition(),
-            parameters=self.settled(),
+            parameters=self.fitted_parameters(),
             settings=dict(self.settings()),
             validation_rms_deg=left_out,
         )

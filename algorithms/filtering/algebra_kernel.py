@@ -155,7 +155,7 @@ def update(  # noqa: C901, PLR0912 - one pass, nothing allocated between
 
 
 @compiled
-def foretold(spread: Floats, innovation: Floats) -> tuple[Floats, Floats]:
+def innovation_likelihood(spread: Floats, innovation: Floats) -> tuple[Floats, Floats]:
     """Squared innovation (B,) in units of its covariance (B, m, m), and its log-likelihood (B,)."""
     count, m = innovation.shape
     squared, likelihood = np.full(count, np.nan), np.full(count, np.nan)
@@ -169,7 +169,7 @@ def foretold(spread: Floats, innovation: Floats) -> tuple[Floats, Floats]:
 
 
 @compiled
-def gained(
+def update_by_points(
     covariance: Floats, crossed: Floats, spread: Floats, innovation: Floats
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """As `update`, of sigma points: ``K = C S^-1``, ``P - K S K'``; C (B, n, m), S (B, m, m)."""

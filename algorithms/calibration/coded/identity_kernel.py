@@ -177,7 +177,7 @@ def name_of(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def of_one(spots: Floats, i: int, own: int, code: Code, trials: Floats) -> int:
+def places_of_spot(spots: Floats, i: int, own: int, code: Code, trials: Floats) -> int:
     """Write the hypotheses that one spot allows, but `own` aperture's; return how many."""
     number = 0
     for a in range(code[0].shape[0]):
@@ -303,6 +303,6 @@ def search_correlation(  # noqa: PLR0917 - Numba takes no keyword-only ones
             for s in range(min(count, _ANCHORS)):
                 if best <= s:
                     break
-                number = of_one(spots, s, -1, code, room[0])
+                number = places_of_spot(spots, s, -1, code, room[0])
                 best = _improve(spots, count, room, number, most, code, view, best, found[k])
         faults[k] = best

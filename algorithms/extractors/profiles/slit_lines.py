@@ -248,7 +248,7 @@ class SlitLines:
         values[~inside] = np.nan
         return values, starts
 
-    def grouped(self, shifts: Floats) -> Floats:
+    def group_means(self, shifts: Floats) -> Floats:
         """Shifts (N A, G) from those of each spot (N A, S): means over the spots of a slant."""
         means = np.empty((len(shifts), len(self.tangents)))
         for group in range(len(self.tangents)):

@@ -223,7 +223,7 @@ class BlendedPolynomials(ProjectionModel):
 
 
 def _rows(nominal: Floats, interval: float) -> GridAxis:
-    return GridAxis.enclosing(nominal[:, 0], interval)
+    return GridAxis.over(nominal[:, 0], interval)
 
 
 def _scale(nominal: Floats) -> tuple[float, float]:

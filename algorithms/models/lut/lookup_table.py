@@ -177,7 +177,7 @@ class ErrorTable(ProjectionModel):
 
 
 def _axes(nominal: Floats, interval: float) -> tuple[GridAxis, GridAxis]:
-    return GridAxis.enclosing(nominal[:, 0], interval), GridAxis.enclosing(nominal[:, 1], interval)
+    return GridAxis.over(nominal[:, 0], interval), GridAxis.over(nominal[:, 1], interval)
 
 
 def _nodes(nominal: Floats, interval: float) -> int:

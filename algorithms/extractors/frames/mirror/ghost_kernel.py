@@ -69,7 +69,7 @@ def _weight(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _of_slopes(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _add_slope_products(  # noqa: PLR0917 - Numba takes no keyword-only ones
     s: Line, p: int, stride: int, w: Line, e: Line, x: Line, y: Line, lanes: Line
 ) -> None:
     """Write weighted products of the slopes along both axes to the lanes.
@@ -103,7 +103,7 @@ def _of_slopes(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _of_cubes(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _add_cube_products(  # noqa: PLR0917 - Numba takes no keyword-only ones
     s: Line, p: int, w: Line, e: Line, x: Line, y: Line, lanes: Line
 ) -> None:
     """Write weighted products of the cubic shapes to the lanes, after those of the slopes.
@@ -192,7 +192,7 @@ def skewness(  # noqa: PLR0917 - Numba takes no keyword-only ones
         x, y = space[1, :n], space[2, :n]
         height = box.last - box.top
         places(box, 4.0 / math.sqrt(float(box.columns * box.columns + height * height)), x, y)
-        _of_slopes(s[k], p, box.stride, w, e[k], x, y, lanes)
-        _of_cubes(s[k], p, w, e[k], x, y, lanes)
+        _add_slope_products(s[k], p, box.stride, w, e[k], x, y, lanes)
+        _add_cube_products(s[k], p, w, e[k], x, y, lanes)
         _equations(lanes, matrix, right)
         form.skew = _explain(matrix, right) > least

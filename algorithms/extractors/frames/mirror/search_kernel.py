@@ -200,7 +200,7 @@ def _measure(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _lit(
+def _mark_lit(
     row: NDArray[Any], cut: float, columns: NDArray[np.int32], lit: NDArray[np.int32]
 ) -> tuple[int, int, bool]:
     """Write which of a row's blocks are lit; return the first, the last and whether all between."""
@@ -235,7 +235,7 @@ def _regions(  # noqa: PLR0917 - Numba takes no keyword-only ones
         above, here = here, end
         if not maxima[i] > cut:
             continue
-        j, last, one = _lit(least[i], cut, columns, lit)
+        j, last, one = _mark_lit(least[i], cut, columns, lit)
         lit[last + 1] = 0
         while j <= last:
             while lit[j] == 0:  # the last one is not

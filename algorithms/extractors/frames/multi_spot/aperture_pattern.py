@@ -220,7 +220,7 @@ def _find_pattern(
     least = max(_AREAS[0] * math.pi / 4.0 * float(widths.min()) ** 2, _LEAST_PIXELS)
     most = max(_AREAS[1] * (float(widths.max()) + blur_px) ** 2, 2.0 * least)
     room = min(_SPOTS_PER_APERTURE * len(widths) + 16, int(height * width / least) + 1)
-    seen = empty_seen(count, room, _CUTS)
+    seen = room_for_spots(count, room, _CUTS)
     spots_kernel.segment(frames, levels.maxima, levels.threshold, least, most, seen)
     shape = count, _COMPARED, len(widths)
     matches = Matches(
@@ -262,7 +262,7 @@ def _find_pattern(
     return Pattern(displacement, positions, reason >= evidence_kernel.SEVERAL)
 
 
-def empty_seen(count: int, room: int, cuts: int) -> Seen:
+def room_for_spots(count: int, room: int, cuts: int) -> Seen:
     """Room for the spots of so many frames: whole ones and cut ones of each."""
     return Seen(
         np.zeros((count, room, 4)),

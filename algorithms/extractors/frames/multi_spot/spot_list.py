@@ -23,11 +23,11 @@ from algorithms.extractors.frames.multi_spot.aperture_design import (
 )
 from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     Apertures,
-    empty_seen,
     frame_levels,
+    room_for_spots,
 )
 from algorithms.inputs import as_frames, require_positive
-from algorithms.spot_lists import SPOT_COLUMNS, spot_columns, spots_listed
+from algorithms.spot_lists import SPOT_COLUMNS, list_length, spot_columns
 
 #: Pixels of a spot above the threshold, over those of its aperture: the least of the smallest,
 #: which may gather its light, the most of the largest with the Sun's image, which grows with
@@ -142,7 +142,7 @@ class SpotList(Extractor):
         design = design_pattern(geometry, cls.about.name)
         return cls(
             apertures_px=design["apertures_px"],
-            spots=spots_listed(geometry, cls.about.name),
+            spots=list_length(geometry, cls.about.name),
             blur_px=design["blur_px"],
         )
 
@@ -160,7 +160,7 @@ class SpotList(Extractor):
         least = max(_AREAS[0] * math.pi / 4.0 * float(widths.min()) ** 2, _LEAST_PIXELS)
         most = max(_AREAS[1] * (float(widths.max()) + self.blur_px) ** 2, 2.0 * least)
         room = min(_ROOM * self.spots, int(height * width / least) + 1)
-        seen = empty_seen(count, room, cuts=0)
+        seen = room_for_spots(count, room, cuts=0)
         spots_kernel.segment(frames, levels.maxima, levels.threshold, least, most, seen)
         listed = np.ascontiguousarray(seen.spots[:, :, [0, 1, 3]])
         counts = np.maximum(seen.counts, 0)
