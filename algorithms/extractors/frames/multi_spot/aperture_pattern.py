@@ -6,15 +6,18 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.contract import AboutExtractor, Floats
+from algorithms.contract import Floats
 from algorithms.extractors.frames.multi_spot.pattern_memory import found_once
 from algorithms.extractors.frames.multi_spot.records import Lattice, Matches, Seen, Views
 from algorithms.row_arithmetic import medians
+
+if TYPE_CHECKING:
+    from algorithms.extractors.frames.multi_spot.mask_spots import MaskSpots
 
 Apertures = tuple[tuple[float, float, float], ...]
 """A row an aperture: x, y from the middle of the mask, and width, px."""
@@ -86,36 +89,6 @@ class Pattern(NamedTuple):
     ambiguous: NDArray[np.bool_]
 
 
-class PatternSearch(Protocol):
-    """What methods that read a mask's pattern of apertures say of it: see their parameters."""
-
-    about: ClassVar[AboutExtractor]
-
-    @property
-    def apertures_px(self) -> Apertures:
-        """The mask."""
-
-    @property
-    def blur_px(self) -> float:
-        """Width of the Sun's image behind a hole."""
-
-    @property
-    def threshold(self) -> float:
-        """Fraction of the spots' brightness that makes a spot."""
-
-    @property
-    def tolerance_px(self) -> float:
-        """Largest distance of a spot from its aperture's place."""
-
-    @property
-    def faulty_lines(self) -> int:
-        """Lines of apertures that may be dark or doubled at once."""
-
-    @property
-    def field_px(self) -> FieldPx | None:
-        """Middle and reach of the field of view."""
-
-
 def nearest_distance(apertures: Floats) -> float:
     """Least distance of two apertures (A, 3); infinite for one alone."""
     if len(apertures) == 1:
@@ -182,7 +155,7 @@ def frame_levels(frames: NDArray[Any], apertures_px: Apertures, threshold: float
 
 
 def find_pattern(
-    search: PatternSearch, frames: NDArray[Any], levels: Levels, *, sequence: bool = False
+    search: MaskSpots, frames: NDArray[Any], levels: Levels, *, sequence: bool = False
 ) -> Pattern:
     """Find the pattern in each of the frames (N, H, W) of `as_frames`.
 
@@ -278,7 +251,7 @@ def margin_px(blur_px: float) -> float:
 
 
 def follow_pattern(
-    search: PatternSearch,
+    search: MaskSpots,
     frames: NDArray[Any],
     follow: Callable[[NDArray[Any], Levels, Pattern], Floats],
 ) -> Floats:
