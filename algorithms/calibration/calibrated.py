@@ -120,8 +120,9 @@ class CalibratedModel(Model):
         return {}
 
     def validation_rms_deg(self) -> float | None:
-        """Error on samples left out, where settings were chosen by it; None by default."""
-        return None
+        """Error on samples left out, where they chose a setting: `validated_deg_`, or None."""
+        found: float | None = getattr(self, "validated_deg_", None)
+        return found
 
     def variance(self, features: Floats, context: Columns) -> Floats:
         """(N,) variance of a tangent axis that the parameters' errors make, rad^2; 0 by default."""

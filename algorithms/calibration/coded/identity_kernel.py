@@ -2,16 +2,11 @@
 
 A hypothesis is a displacement of the mask on the detector. It explains a spot that falls where it
 has an aperture; its faults are the spots it leaves unexplained and the apertures in view that it
-finds dark. What is handed around, as `algorithms.calibration.coded.table` makes it:
-
-- spots (K, 3): x and y px, logarithm of the width that their light stands for;
-- code: places (A, 3) of the apertures and logarithm of their width, in the order of y; cells (R, C)
-  with the aperture in each, their corner, number a px, tolerances; and the table of spacings: where
-  each cell's pairs start, the pairs, and reach, cell, tolerance and cells a side;
-- room: hypotheses (H, 3), each displacement x and y and logarithm of light's width over the
-  apertures'; how many spots they leave (H,); the aperture of each spot (K,);
-- view: width and height of the detector, boresight x and y, focal length, and how far a spot's rim
-  and the Sun's image behind it reach, px.
+finds dark. `algorithms.calibration.coded.table` makes what is handed around: spots (K, 3), x and y
+px and logarithm of the width that their light stands for; `Code`, the apertures in the order of y,
+their cells and the table of spacings; and the view, the detector and how far light reaches on it.
+`Room` holds hypotheses (H, 3), displacement and logarithm of light's width over the apertures', how
+many spots they leave (H,), and the aperture of each spot (K,).
 """
 
 from __future__ import annotations
