@@ -19,7 +19,7 @@ from algorithms.contract import (
     Model,
     SensorGeometry,
 )
-from algorithms.pipeline import Pipeline, staged
+from algorithms.pipeline import Pipeline, make_stages
 
 
 @dataclass(frozen=True)
@@ -74,8 +74,8 @@ class Chain:
 
     def for_sensor(self, geometry: SensorGeometry, kind: FeatureKind) -> Model:
         """Return all parts unfitted; UnsuitableDesignError where one does not suit the sensor."""
-        stages, behind = staged(self.compensations, geometry, kind)
-        made = Chained(self.about, stages, self.model.for_sensor(behind, kind))
+        stages, behind = make_stages(self.compensations, geometry, kind)
+        made = ChainModel(self.about, stages, self.model.for_sensor(behind, kind))
         return cast("Model", made)  # whose about is its own, not its class's
 
     def pipeline(self, extractor: type[Extractor], geometry: SensorGeometry) -> Pipeline:
@@ -84,7 +84,7 @@ class Chain:
 
 
 @dataclass
-class Chained:
+class ChainModel:
     """The parts of a `Chain` made for a sensor: fits and predicts as a model does.
 
     Parameters

@@ -18,12 +18,15 @@ def compiled(function: Kernel) -> Kernel:
     numbers alone, in a batch and on every run. The machine code is cached beside the source, else
     in the user's cache directory; where neither can be written, it is compiled in each process.
     A kernel may call kernels that its module imports: it is compiled again when their files change.
-    Numbers that a module imports from another one do not count.
+    Numbers that a module imports from another one do not count. With ``NUMBA_DISABLE_JIT=1`` in the
+    environment nothing is compiled, for debuggers and for coverage.
     """
     try:
         kernel = numba.njit(cache=True, nogil=True, fastmath=False)(function)
     except RuntimeError:  # Numba: "cannot cache function: no locator available"
         return cast("Kernel", numba.njit(cache=False, nogil=True, fastmath=False)(function))
+    if not isinstance(kernel, CPUDispatcher):
+        return function
     index = _index(kernel)
     stamps = {
         other.py_func.__module__: _index(other)._source_stamp for other in _imported(function)

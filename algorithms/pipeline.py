@@ -85,7 +85,7 @@ class Pipeline:
     ) -> Self:
         """All parts with the parameters this sensor's design asks for."""
         kind = extractor.about.kind
-        stages, behind = staged(compensations, geometry, kind)
+        stages, behind = make_stages(compensations, geometry, kind)
         return cls(extractor.for_sensor(geometry), model.for_sensor(behind, kind), stages)
 
     @property
@@ -153,7 +153,7 @@ class Pipeline:
                 raise NotFittedError(f"{stage.about.name} is not fitted yet; call fit first")
 
 
-def staged(
+def make_stages(
     compensations: Sequence[type[Compensation]], geometry: SensorGeometry, kind: FeatureKind
 ) -> tuple[tuple[Compensation, ...], SensorGeometry]:
     """Make compensations for a sensor, each for the design that those before it leave.
@@ -183,7 +183,7 @@ def staged(
     >>> design = SensorGeometry(
     ...     focal_length_mm=2.0, aperture_width_mm=1.0, cover_glass=((0.5, 1.5),)
     ... )
-    >>> (glass,), behind = staged((Refraction,), design, FeatureKind.BALANCE)
+    >>> (glass,), behind = make_stages((Refraction,), design, FeatureKind.BALANCE)
     >>> glass.layers, behind.cover_glass
     (((0.5, 1.5),), None)
     """

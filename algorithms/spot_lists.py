@@ -38,7 +38,7 @@ def detector_size_px(geometry: SensorGeometry, by: str) -> tuple[float, float]:
     return 2.0 * x + 1.0, 2.0 * y + 1.0
 
 
-def spots_listed(geometry: SensorGeometry, by: str) -> int:
+def list_length(geometry: SensorGeometry, by: str) -> int:
     """Length of the lists for a mask that is larger than its detector.
 
     Parameters

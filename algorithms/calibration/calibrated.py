@@ -107,7 +107,7 @@ class CalibratedModel(Model):
         """(N, 3) unit vectors of features (N, F), row by row; NaN rows stay NaN."""
         ...
 
-    def settled(self) -> tuple[Parameter, ...]:
+    def fitted_parameters(self) -> tuple[Parameter, ...]:
         """Parameters with standard errors, once learnt; none by default."""
         return ()
 
@@ -120,8 +120,9 @@ class CalibratedModel(Model):
         return {}
 
     def validation_rms_deg(self) -> float | None:
-        """Error on samples left out, where settings were chosen by it; None by default."""
-        return None
+        """Error on samples left out, where they chose a setting: `validated_deg_`, or None."""
+        found: float | None = getattr(self, "validated_deg_", None)
+        return found
 
     def variance(self, features: Floats, context: Columns) -> Floats:
         """(N,) variance of a tangent axis that the parameters' errors make, rad^2; 0 by default."""
@@ -167,7 +168,7 @@ class CalibratedModel(Model):
             residual_rms_deg=residual,
             data_digest=data_digest(features, sun, context),
             condition=self.condition(),
-            parameters=self.settled(),
+            parameters=self.fitted_parameters(),
             settings=dict(self.settings()),
             validation_rms_deg=left_out,
         )

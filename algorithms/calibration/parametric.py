@@ -166,7 +166,7 @@ class ParametricModel(CalibratedModel):
         """(N, 3) unit vectors of features (N, F)."""
         return self.directions(self.vector_, features, context)
 
-    def settled(self) -> tuple[Parameter, ...]:
+    def fitted_parameters(self) -> tuple[Parameter, ...]:
         """Every parameter with its standard error."""
         deviations = np.sqrt(np.diag(self.covariance_))
         return tuple(

@@ -11,6 +11,7 @@ import numpy as np
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels.cholesky import backward, factor, forward
 
 
 @compiled
@@ -62,36 +63,26 @@ def innovation_covariance(covariance: Floats, sensitivity: Floats, noise: Floats
 
 
 @compiled
-def _rooted(matrix: Floats, root: Floats) -> float:
-    """Write the lower root of a matrix (m, m) into `root`; return its log-determinant.
-
-    They may be the same array. NaN where there is no root.
-    """
-    determinant = 0.0
-    for i in range(len(matrix)):
-        for j in range(i + 1):
-            total = matrix[i, j]
-            for k in range(j):
-                total -= root[i, k] * root[j, k]
-            if i == j:
-                root[i, i] = math.sqrt(total) if total > 0.0 else math.nan
-                determinant += 2.0 * math.log(root[i, i])
-            else:
-                root[i, j] = total / root[j, j]
-    return determinant
+def _factor(root: Floats) -> None:
+    """Replace the lower half of a covariance by its root; NaN throughout where there is none."""
+    if not factor(root, 0.0):
+        root[:] = np.nan
 
 
 @compiled
-def _whitened(root: Floats, innovation: Floats, white: Floats) -> float:
-    """Write an innovation (m,) in units of its deviations into `white`; return its square."""
-    squares = 0.0
-    for i in range(len(innovation)):
-        total = innovation[i]
-        for k in range(i):
-            total -= root[i, k] * white[k]
-        white[i] = total / root[i, i]
+def _whiten(root: Floats, innovation: Floats, white: Floats) -> tuple[float, float]:
+    """Write an innovation (m,) in units of its deviations; return its square and log-likelihood.
+
+    `root` is its covariance, which its root replaces.
+    """
+    _factor(root)
+    white[:] = innovation
+    forward(root, white)
+    squares, determinant = 0.0, 0.0
+    for i in range(white.size):
         squares += white[i] * white[i]
-    return squares
+        determinant += 2.0 * math.log(root[i, i])
+    return squares, -0.5 * (squares + determinant + white.size * math.log(2.0 * math.pi))
 
 
 @compiled
@@ -129,21 +120,11 @@ def update(  # noqa: C901, PLR0912 - one pass, nothing allocated between
                 for k in range(n):
                     total += sensitivity[b, i, k] * shape[k, j]
                 root[i, j] = total
-        determinant = _rooted(root, root)
-        squares = _whitened(root, innovation[b], white)
-        squared[b] = squares
-        likelihood[b] = -0.5 * (squares + determinant + m * math.log(2.0 * math.pi))
+        squared[b], likelihood[b] = _whiten(root, innovation[b], white)
+        gain[:] = shape
         for i in range(n):  # rows of K = P H' S^-1 by the two triangles
-            for j in range(m):
-                total = shape[i, j]
-                for k in range(j):
-                    total -= root[j, k] * gain[i, k]
-                gain[i, j] = total / root[j, j]
-            for j in range(m - 1, -1, -1):
-                total = gain[i, j]
-                for k in range(j + 1, m):
-                    total -= root[k, j] * gain[i, k]
-                gain[i, j] = total / root[j, j]
+            forward(root, gain[i])
+            backward(root, gain[i])
             for j in range(m):
                 gain[i, j] *= estimated[i]
                 step[b, i] += gain[i, j] * innovation[b, j]
@@ -174,22 +155,21 @@ def update(  # noqa: C901, PLR0912 - one pass, nothing allocated between
 
 
 @compiled
-def foretold(spread: Floats, innovation: Floats) -> tuple[Floats, Floats]:
+def innovation_likelihood(spread: Floats, innovation: Floats) -> tuple[Floats, Floats]:
     """Squared innovation (B,) in units of its covariance (B, m, m), and its log-likelihood (B,)."""
     count, m = innovation.shape
     squared, likelihood = np.full(count, np.nan), np.full(count, np.nan)
     root, white = np.zeros((m, m)), np.empty(m)
     for b in range(count):
-        determinant = _rooted(spread[b], root)
-        squares = _whitened(root, innovation[b], white)
+        root[:] = spread[b]
+        squares, told = _whiten(root, innovation[b], white)
         if math.isfinite(squares):
-            squared[b] = squares
-            likelihood[b] = -0.5 * (squares + determinant + m * math.log(2.0 * math.pi))
+            squared[b], likelihood[b] = squares, told
     return squared, likelihood
 
 
 @compiled
-def gained(
+def update_by_points(
     covariance: Floats, crossed: Floats, spread: Floats, innovation: Floats
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """As `update`, of sigma points: ``K = C S^-1``, ``P - K S K'``; C (B, n, m), S (B, m, m)."""
@@ -200,16 +180,12 @@ def gained(
     for b in range(count):
         if not np.isfinite(innovation[b]).all():
             continue
-        determinant = _rooted(spread[b], root)
-        squares = _whitened(root, innovation[b], white)
-        squared[b] = squares
-        likelihood[b] = -0.5 * (squares + determinant + m * math.log(2.0 * math.pi))
+        root[:] = spread[b]
+        squared[b], likelihood[b] = _whiten(root, innovation[b], white)
+        half[:] = crossed[b]
         for i in range(n):  # C L'^-1, whose square is K S K'
+            forward(root, half[i])
             for j in range(m):
-                total = crossed[b, i, j]
-                for k in range(j):
-                    total -= root[j, k] * half[i, k]
-                half[i, j] = total / root[j, j]
                 step[b, i] += half[i, j] * white[j]
         for i in range(n):
             for j in range(i + 1):
@@ -246,7 +222,8 @@ def sigma_errors(covariance: Floats, scale: float) -> Floats:
     out = np.zeros((count, 2 * n + 1, n))
     root = np.zeros((n, n))
     for b in range(count):
-        _rooted(covariance[b], root)
+        root[:] = covariance[b]
+        _factor(root)
         for p in range(n):
             for i in range(p, n):
                 out[b, 1 + p, i] = scale * root[i, p]

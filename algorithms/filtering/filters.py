@@ -139,7 +139,7 @@ class ExtendedKalman(_OneBelief):
     def update(self, space: StateSpace, belief: Belief, read: Floats, known: Floats) -> Belief:
         """Belief with readings (B, m)."""
         sensitivity = space.sensitivity(belief.states, known)
-        innovation = read - space.measured(belief.states, known)
+        innovation = read - space.predict_readings(belief.states, known)
         noise = self.weigh(belief, sensitivity, innovation)
         step, covariance, squared, likelihood = algebra.update(
             belief.covariance,
@@ -150,17 +150,17 @@ class ExtendedKalman(_OneBelief):
         )
         if (space.correlate() > 1.0).any():  # a reading is as far off as readings are
             spread = algebra.innovation_covariance(belief.covariance, sensitivity, noise)
-            squared, likelihood = algebra.foretold(spread, innovation)
-        states = space.moved(belief.states, step)
+            squared, likelihood = algebra.innovation_likelihood(spread, innovation)
+        states = space.add_errors(belief.states, step)
         after = Belief(states, covariance, belief.noise, squared, likelihood, belief.weights)
-        return self.learnt(space, after, read, known, sensitivity)
+        return self.adapt(space, after, read, known, sensitivity)
 
     def weigh(self, belief: Belief, sensitivity: Floats, innovation: Floats) -> Floats:
         """(B, m, m) covariance of these readings: that of the belief."""
         del sensitivity, innovation
         return belief.noise
 
-    def learnt(
+    def adapt(
         self, space: StateSpace, after: Belief, read: Floats, known: Floats, sensitivity: Floats
     ) -> Belief:
         """Belief with what the update tells of the noise: nothing here."""
@@ -187,17 +187,26 @@ class AdaptiveKalman(ExtendedKalman):
     most : float
         Multiple of it above which none rises: a reading that is taken for noise altogether would
         never again tell that the estimate is off.
+
+    Examples
+    --------
+    >>> from algorithms.filtering.state_space import LinearStateSpace
+    >>> one = np.eye(1)
+    >>> space = LinearStateSpace(one, 0 * one, one, one)
+    >>> belief = initial_state(space, np.zeros((1, 1)), one)
+    >>> AdaptiveKalman().update(space, belief, np.array([[2.0]]), np.zeros(0)).noise
+    array([[[1.01]]])
     """
 
     window: float = 50.0
     least: float = 1e-4
     most: float = 16.0
 
-    def learnt(
+    def adapt(
         self, space: StateSpace, after: Belief, read: Floats, known: Floats, sensitivity: Floats
     ) -> Belief:
         """Belief with its noise moved towards that of the residuals."""
-        residual = read - space.measured(after.states, known)
+        residual = read - space.predict_readings(after.states, known)
         heard = np.isfinite(residual).all(axis=1) & np.isfinite(after.squared_innovation)
         left = residual[:, :, None] * residual[:, None, :]
         found = algebra.innovation_covariance(after.covariance, sensitivity, left)
@@ -225,6 +234,16 @@ class RobustKalman(ExtendedKalman):
         As `ExtendedKalman`.
     limit : float
         Standard deviations up to which a reading counts in full, positive.
+
+    Examples
+    --------
+    >>> from algorithms.filtering.state_space import LinearStateSpace
+    >>> one = np.eye(1)
+    >>> space = LinearStateSpace(one, 0 * one, one, one)
+    >>> belief = initial_state(space, np.zeros((1, 1)), one)
+    >>> far = np.array([[20.0]])  # without the limit, half of it would be believed
+    >>> RobustKalman().update(space, belief, far, np.zeros(0)).states.round(2)
+    array([[1.41]])
     """
 
     limit: float = 2.0
@@ -279,11 +298,13 @@ class SigmaPointKalman(_OneBelief):
         count, number, size = points.shape
         after = space.propagate(points.reshape(-1, size), known, step_s)
         middle = after[::number].copy()
-        off = space.away(after, np.repeat(middle, number, axis=0))
+        off = space.errors_between(after, np.repeat(middle, number, axis=0))
         mean, _ = algebra.centre(off.reshape(count, number, -1), means)
-        states = space.moved(middle, mean)
+        states = space.add_errors(middle, mean)
         # of the mean, in its own axes
-        off = space.away(after, np.repeat(states, number, axis=0)).reshape(count, number, -1)
+        off = space.errors_between(after, np.repeat(states, number, axis=0)).reshape(
+            count, number, -1
+        )
         covariance = algebra.cross(off, off, spreads)
         covariance += space.process_noise(step_s)
         return replace(belief, states=states, covariance=covariance)
@@ -293,22 +314,22 @@ class SigmaPointKalman(_OneBelief):
         means, spreads = self.weights(space.errors)
         points, errors = self._points(space, belief)
         count, number, size = points.shape
-        seen = space.measured(points.reshape(-1, size), known).reshape(count, number, -1)
+        seen = space.predict_readings(points.reshape(-1, size), known).reshape(count, number, -1)
         mean, off = algebra.centre(seen, means)
         spread = algebra.cross(off, off, spreads)
-        step, covariance, squared, likelihood = algebra.gained(
+        step, covariance, squared, likelihood = algebra.update_by_points(
             belief.covariance,
             algebra.cross(errors, off, spreads),
             spread + spread_over(belief.noise, space.correlate()),
             read - mean,
         )
         if (space.correlate() > 1.0).any():
-            squared, likelihood = algebra.foretold(spread + belief.noise, read - mean)
+            squared, likelihood = algebra.innovation_likelihood(spread + belief.noise, read - mean)
         if self.considered:  # what is known of them stays; of all the rest the gain is the best
             kept = np.ix_(range(count), self.considered, self.considered)
             covariance[kept] = belief.covariance[kept]
             step[:, list(self.considered)] = 0.0
-        states = space.moved(belief.states, step)
+        states = space.add_errors(belief.states, step)
         return Belief(states, covariance, belief.noise, squared, likelihood, belief.weights)
 
     def _points(self, space: StateSpace, belief: Belief) -> tuple[Floats, Floats]:
@@ -316,7 +337,7 @@ class SigmaPointKalman(_OneBelief):
         n, count = space.errors, len(belief.states)
         errors = algebra.sigma_errors(belief.covariance, math.sqrt(n + self.kappa))
         number = 2 * n + 1
-        states = space.moved(np.repeat(belief.states, number, axis=0), errors.reshape(-1, n))
+        states = space.add_errors(np.repeat(belief.states, number, axis=0), errors.reshape(-1, n))
         return states.reshape(count, number, -1), errors
 
 

@@ -80,10 +80,10 @@ class MultipleModels:
         weights = belief.weights.reshape(-1, number)
         runs = np.arange(len(weights))
         likely = belief.states.reshape(len(weights), number, -1)[runs, weights.argmax(axis=1)]
-        apart = space.away(belief.states, np.repeat(likely, number, axis=0))
+        apart = space.errors_between(belief.states, np.repeat(likely, number, axis=0))
         apart = apart.reshape(-1, number, n)
         mean = (weights[:, :, None] * apart).sum(axis=1)
         apart = apart - mean[:, None, :]
         both = belief.covariance.reshape(-1, number, n, n)
         both = both + apart[:, :, :, None] * apart[:, :, None, :]
-        return space.moved(likely, mean), (weights[:, :, None, None] * both).sum(axis=1)
+        return space.add_errors(likely, mean), (weights[:, :, None, None] * both).sum(axis=1)

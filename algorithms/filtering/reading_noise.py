@@ -20,7 +20,7 @@ _QUIETEST, _SHARES = 1e-3, 13
 _FOLLOWED = 0.99
 
 
-class Learnt(Protocol):
+class FittedFilter(Protocol):
     """A filter that has learnt how its sensor reads a Sun."""
 
     noise_: Floats
@@ -30,7 +30,7 @@ class Learnt(Protocol):
         """Return its state space, with this noise of readings."""
         ...
 
-    def considered(self) -> tuple[int, ...]:
+    def considered_errors(self) -> tuple[int, ...]:
         """Which errors of the state are considered."""
         ...
 
@@ -54,7 +54,9 @@ def correlated_steps(residuals: Floats) -> Floats:
     return steps
 
 
-def heard(model: Learnt, features: Floats, known: Floats, apart_s: Floats, least: Floats) -> Floats:
+def estimate_noise(
+    model: FittedFilter, features: Floats, known: Floats, apart_s: Floats, least: Floats
+) -> Floats:
     """Lower the noise of a calibration's residuals to what the readings themselves leave of it.
 
     Residuals have the noise of the calibration's reference, too; readings that follow each other
@@ -64,7 +66,7 @@ def heard(model: Learnt, features: Floats, known: Floats, apart_s: Floats, least
 
     Parameters
     ----------
-    model : Learnt
+    model : FittedFilter
         With everything learnt but its noise, of which it has the residuals'.
     features, known : ndarray, shapes (n, m) and (n, 7)
         In the order of time.
@@ -80,7 +82,7 @@ def heard(model: Learnt, features: Floats, known: Floats, apart_s: Floats, least
     """
     from algorithms.filtering.filters import ExtendedKalman  # noqa: PLC0415 - Numba
 
-    by = ExtendedKalman(model.considered())
+    by = ExtendedKalman(model.considered_errors())
     shares = np.geomspace(_QUIETEST, 1.0, _SHARES)
     told, followed = [], []
     for share in shares:
@@ -89,7 +91,9 @@ def heard(model: Learnt, features: Floats, known: Floats, apart_s: Floats, least
         total, rows = 0.0, 0
         for row, read in enumerate(features):
             if belief is None or not np.isfinite(apart_s[row]):
-                belief = space.started(by, model.starts_, read, known[row], model.considered())
+                belief = space.start_belief(
+                    by, model.starts_, read, known[row], model.considered_errors()
+                )
                 continue
             belief = by.predict(space, belief, known[row], float(apart_s[row]))
             belief = by.update(space, belief, read[None], known[row])

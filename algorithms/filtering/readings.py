@@ -42,7 +42,7 @@ class Readings(Protocol):
         """Give what the calibration samples chose."""
         ...
 
-    def lit(self, features: Floats) -> Floats:
+    def is_sunlit(self, features: Floats) -> Floats:
         """Whether (N,) features (N, m) are of sunlight, as far as they tell."""
         ...
 
@@ -79,13 +79,13 @@ class FaceReadings:
         """Give nothing: nothing was to be chosen."""
         return {}
 
-    def lit(self, features: Floats) -> Floats:
+    def is_sunlit(self, features: Floats) -> Floats:
         """Whether a face has a fifth of full sunlight: on a closed body the Sun gives one more."""
         brightest = ((features - self.design[:, 9]) / self.design[:, 14]).max(axis=1)
         return np.asarray(brightest > _DARK, dtype=np.float64)
 
     @classmethod
-    def learnt(
+    def from_calibration(
         cls, normals: Floats, signals: Floats, sun: Floats, known: Floats, by: str
     ) -> FaceReadings:
         """Least squares, twice: the second time about the tilts that the first one found.
@@ -176,7 +176,7 @@ class SpotReadings:
         )
         return found
 
-    def lit(self, features: Floats) -> Floats:
+    def is_sunlit(self, features: Floats) -> Floats:
         """Say nothing: a spot does not tell what made it."""
         return np.ones(len(features))
 
@@ -185,7 +185,7 @@ class SpotReadings:
         return {"order": int(self.powers.sum(axis=1).max())}
 
     @classmethod
-    def learnt(cls, spots: Floats, sun: Floats, known: Floats, by: str) -> SpotReadings:
+    def from_calibration(cls, spots: Floats, sun: Floats, known: Floats, by: str) -> SpotReadings:
         """Least squares of spots (n, 2) px, of Suns (n, 3) and what is known (n, 7).
 
         The order, up to 7, is the one that does best on poses left out.

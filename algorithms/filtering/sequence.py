@@ -15,7 +15,7 @@ from algorithms.calibration.quality import FitQuality, data_digest
 from algorithms.context import Context, as_context, complete
 from algorithms.contract import FeatureKind, Floats, Model, SensorGeometry, UnusableDataError
 from algorithms.filtering.drift import GAINS, HEAD_SHIFTS, LEVEL, MOTION, Drift, Gyroscope
-from algorithms.filtering.reading_noise import correlated_steps, heard
+from algorithms.filtering.reading_noise import correlated_steps, estimate_noise
 from algorithms.filtering.track import Track
 from algorithms.inputs import (
     as_calibration_rows,
@@ -167,7 +167,7 @@ class SunFilter(Model):
         """How beliefs go on: linearised at the estimate."""
         from algorithms.filtering.filters import ExtendedKalman  # noqa: PLC0415 - Numba
 
-        return ExtendedKalman(self.considered())
+        return ExtendedKalman(self.considered_errors())
 
     def drifts(self) -> Sequence[Drift]:
         """Parameters of the sensor in the state: the light's strength before faces."""
@@ -184,7 +184,7 @@ class SunFilter(Model):
         shift = max(self.shift_ageing_per_year * years, _LEAST_AGED)
         return [Drift(place, shift, 0.0) for place in HEAD_SHIFTS[1:]]
 
-    def considered(self) -> tuple[int, ...]:
+    def considered_errors(self) -> tuple[int, ...]:
         """Which errors of the state are considered: those of `uncertain`, and the head's turn."""
         first, number = MOTION + len(self.drifts()), len(self.uncertain(0.0))
         turn = first + number
@@ -224,9 +224,9 @@ class SunFilter(Model):
         by, known = self.about.name, _known(told)
         if self.face_normals:
             normals = np.asarray(self.face_normals, dtype=np.float64)
-            self.readings_ = FaceReadings.learnt(normals, features, sun, known, by)
+            self.readings_ = FaceReadings.from_calibration(normals, features, sun, known, by)
         else:
-            self.readings_ = SpotReadings.learnt(features, sun, known, by)
+            self.readings_ = SpotReadings.from_calibration(features, sun, known, by)
         residuals = features - self._explain(sun, known)
         apart = np.diff(told["time_s"])
         self.step_s_ = float(np.median(apart))
@@ -243,7 +243,7 @@ class SunFilter(Model):
             gaps = np.diff(told["time_s"], prepend=-np.inf)
             apart = np.where((gaps > 0) & (gaps <= _LONGEST * self.step_s_), gaps, np.inf)
             quiet = np.maximum(_QUIET * self.noise_, least)
-            self.noise_ = heard(self, features, self._known(told), apart, quiet)
+            self.noise_ = estimate_noise(self, features, self._known(told), apart, quiet)
 
     def assess(self, features: Floats, sun: Floats, told: dict[str, Floats]) -> None:
         """Set `quality_`: UnusableDataError where the filter does not follow its calibration."""
@@ -284,7 +284,7 @@ class SunFilter(Model):
         told = as_context(context, self.about.context, len(found), self.about.name)
         usable = complete(told, len(found)) & np.isfinite(found).all(axis=1)
         usable &= told["eclipse"] == 0
-        usable &= np.where(usable, self.readings_.lit(found), 0.0) > 0
+        usable &= np.where(usable, self.readings_.is_sunlit(found), 0.0) > 0
         return self._follow(found, told["time_s"], _known(told), usable)
 
     def space(self, years: float = 0.0, noise: Floats | None = None) -> SunSpace:
@@ -327,7 +327,9 @@ class SunFilter(Model):
             elif belief is not None:
                 belief = by.predict(space, belief, known[row], float(steps[row]))
             if usable[row] and belief is None:
-                belief = space.started(by, self.starts_, found[row], known[row], self.considered())
+                belief = space.start_belief(
+                    by, self.starts_, found[row], known[row], self.considered_errors()
+                )
                 read[row] = belief is not None
             elif usable[row] and belief is not None:
                 belief = by.update(space, belief, found[row : row + 1], known[row])
@@ -369,7 +371,7 @@ class SunFilter(Model):
         space = SunSpace(self.readings_, np.eye(self.columns()), Gyroscope(1.0, 1.0, 1.0), ())
         states = space.states_towards(sun)
         known = known - np.array([0.0] * 6 + [self.readings_.middle_k])
-        rows = [space.measured(states[n : n + 1], known[n]) for n in range(len(sun))]
+        rows = [space.predict_readings(states[n : n + 1], known[n]) for n in range(len(sun))]
         return np.concatenate(rows)
 
 

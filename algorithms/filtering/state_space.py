@@ -14,8 +14,8 @@ class StateSpace(Protocol):
     """``x' = f(x, u, dt) + w``, ``z = h(x, u) + v``: dynamics, readings, and the noise of both.
 
     States (B, S) may live on a curved space, as a direction does; their errors (B, n) are flat:
-    `moved` adds an error to a state and `away` takes the difference of two. ``u`` (U,) is what is
-    known from moment to moment: rates, temperatures. B counts runs or hypotheses.
+    `add_errors` adds them to states and `errors_between` takes the difference of two. ``u`` (U,) is
+    what is known from moment to moment: rates, temperatures. B counts runs or hypotheses.
     """
 
     @property
@@ -40,7 +40,7 @@ class StateSpace(Protocol):
         """(n, n) covariance Q of what a step adds."""
         ...
 
-    def measured(self, states: Floats, known: Floats) -> Floats:
+    def predict_readings(self, states: Floats, known: Floats) -> Floats:
         """(B, m) readings without noise: h."""
         ...
 
@@ -56,11 +56,11 @@ class StateSpace(Protocol):
         """(m,) steps over which errors of readings are correlated, 1 of white ones."""
         ...
 
-    def moved(self, states: Floats, errors: Floats) -> Floats:
+    def add_errors(self, states: Floats, errors: Floats) -> Floats:
         """States (B, S) with errors (B, n) added."""
         ...
 
-    def away(self, states: Floats, origins: Floats) -> Floats:
+    def errors_between(self, states: Floats, origins: Floats) -> Floats:
         """Errors (B, n) that take origins (B, S) to states."""
         ...
 
@@ -83,7 +83,7 @@ class LinearStateSpace:
     Examples
     --------
     >>> space = LinearStateSpace(np.eye(1), np.eye(1), np.eye(1), np.eye(1))
-    >>> space.measured(np.array([[3.0]]), np.zeros(0))
+    >>> space.predict_readings(np.array([[3.0]]), np.zeros(0))
     array([[3.]])
     """
 
@@ -117,7 +117,7 @@ class LinearStateSpace:
         del step_s
         return self.process
 
-    def measured(self, states: Floats, known: Floats) -> Floats:
+    def predict_readings(self, states: Floats, known: Floats) -> Floats:
         """``H x``."""
         del known
         return np.asarray(states @ self.observation.T)
@@ -135,10 +135,10 @@ class LinearStateSpace:
         """White."""
         return np.ones(len(self.noise))
 
-    def moved(self, states: Floats, errors: Floats) -> Floats:
+    def add_errors(self, states: Floats, errors: Floats) -> Floats:
         """Their sum."""
         return states + errors
 
-    def away(self, states: Floats, origins: Floats) -> Floats:
+    def errors_between(self, states: Floats, origins: Floats) -> Floats:
         """Their difference."""
         return states - origins

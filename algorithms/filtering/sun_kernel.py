@@ -87,7 +87,7 @@ def transition(states: Floats, after: Floats, rate: Floats, step_s: float) -> Fl
 
 
 @compiled
-def move(states: Floats, errors: Floats) -> Floats:
+def add_errors(states: Floats, errors: Floats) -> Floats:
     """States (B, S) with errors (B, n) added; the axes turn with the direction."""
     out = states.copy()
     for b in range(len(states)):
@@ -143,7 +143,7 @@ def heading_slopes(states: Floats, slopes: Floats, first: int) -> None:
 
 
 @compiled
-def away(states: Floats, origins: Floats) -> Floats:
+def errors_between(states: Floats, origins: Floats) -> Floats:
     """Errors (B, n) that take origins (B, S) to states, as `move` adds them."""
     count, n = len(states), states.shape[1] - 7
     out = np.empty((count, n))

@@ -30,7 +30,7 @@ class SunSpace:
     Parameters
     ----------
     readings : Readings
-        Learnt.
+        FittedFilter.
     noise : ndarray, shape (m, m)
         Covariance of readings.
     gyroscope : Gyroscope
@@ -93,12 +93,12 @@ class SunSpace:
             self._step = step_s, noise
         return self._step[1]
 
-    def measured(self, states: Floats, known: Floats) -> Floats:
+    def predict_readings(self, states: Floats, known: Floats) -> Floats:
         """Give readings without noise."""
         return self._read(states, known)[0]
 
     def sensitivity(self, states: Floats, known: Floats) -> Floats:
-        """Jacobian of `measured`."""
+        """Jacobian of `predict_readings`."""
         return self._read(states, known)[1]
 
     def _read(self, states: Floats, known: Floats) -> tuple[Floats, Floats]:
@@ -116,14 +116,14 @@ class SunSpace:
         """Give the steps over which errors of readings are correlated."""
         return self._steps
 
-    def moved(self, states: Floats, errors: Floats) -> Floats:
+    def add_errors(self, states: Floats, errors: Floats) -> Floats:
         """States with errors added."""
-        found: Floats = motion.move(states, errors)
+        found: Floats = motion.add_errors(states, errors)
         return found
 
-    def away(self, states: Floats, origins: Floats) -> Floats:
+    def errors_between(self, states: Floats, origins: Floats) -> Floats:
         """Errors that take origins to states."""
-        found: Floats = motion.away(states, origins)
+        found: Floats = motion.errors_between(states, origins)
         return found
 
     def states_towards(self, sun: Floats) -> Floats:
@@ -135,7 +135,7 @@ class SunSpace:
         states[:, 0:3], states[:, 3:6], states[:, 6:9] = first, np.cross(sun, first), sun
         return states
 
-    def started(
+    def start_belief(
         self,
         by: Filter,
         starts: Floats,
@@ -152,7 +152,7 @@ class SunSpace:
         """
         scale = np.sqrt(np.diagonal(self._noise))
         tried = self.states_towards(starts)
-        off = (read - self.measured(tried, known)) / scale
+        off = (read - self.predict_readings(tried, known)) / scale
         cost = (off**2).sum(axis=1)
         if not np.isfinite(cost).any():
             return None
@@ -169,7 +169,7 @@ class SunSpace:
             if not np.isfinite(innovation).all():
                 return None
             step, covariance, _, _ = algebra.update(prior, slopes, noise, innovation, estimated)
-            state = self.moved(first, step)
+            state = self.add_errors(first, step)
         left, slopes = self._read(state, known)
         unsure = slopes[0][:, list(considered)] ** 2 @ np.diagonal(prior[0])[list(considered)]
         left = (read - left[0]) ** 2 / (np.diagonal(noise[0]) + unsure)

@@ -76,7 +76,7 @@ class CubatureKalmanFilter(SunFilter):
         """Take the cubature rule's points."""
         from algorithms.filtering.filters import CUBATURE  # noqa: PLC0415 - Numba
 
-        return replace(CUBATURE, considered=self.considered())
+        return replace(CUBATURE, considered=self.considered_errors())
 
 
 @documented
@@ -118,7 +118,7 @@ class UnscentedKalmanFilter(SunFilter):
         """Take points on both sides."""
         from algorithms.filtering.filters import SigmaPointKalman  # noqa: PLC0415 - Numba
 
-        return SigmaPointKalman(kappa=self.kappa, considered=self.considered())
+        return SigmaPointKalman(kappa=self.kappa, considered=self.considered_errors())
 
 
 @documented
@@ -161,7 +161,7 @@ class RobustKalmanFilter(SunFilter):
         """Weigh readings by how far off they are."""
         from algorithms.filtering.filters import RobustKalman  # noqa: PLC0415 - Numba
 
-        return RobustKalman(self.considered(), limit=self.limit)
+        return RobustKalman(self.considered_errors(), limit=self.limit)
 
 
 @documented
@@ -204,7 +204,7 @@ class AdaptiveKalmanFilter(SunFilter):
         """Let the noise follow the residuals."""
         from algorithms.filtering.filters import AdaptiveKalman  # noqa: PLC0415 - Numba
 
-        return AdaptiveKalman(self.considered(), window=self.window)
+        return AdaptiveKalman(self.considered_errors(), window=self.window)
 
 
 @documented
@@ -250,7 +250,7 @@ class MultipleModelEstimation(SunFilter):
         """Keep a filter for each scale."""
         from algorithms.filtering.hypotheses import MultipleModels  # noqa: PLC0415 - Numba
 
-        return MultipleModels(tuple(self.noise_scales), considered=self.considered())
+        return MultipleModels(tuple(self.noise_scales), considered=self.considered_errors())
 
 
 @documented

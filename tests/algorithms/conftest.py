@@ -17,7 +17,7 @@ from algorithms.angles import sun_from_angles
 from algorithms.calibration.parametric import tangent_axes
 from algorithms.context import CONTEXT
 from algorithms.contract import FeatureKind, Observation, SensorGeometry
-from algorithms.spot_lists import spots_listed
+from algorithms.spot_lists import list_length
 
 Floats = NDArray[np.float64]
 
@@ -216,7 +216,7 @@ def _dial_signals(geometry: SensorGeometry, tangents: Floats) -> Floats:
 def _spot_lists(geometry: SensorGeometry, tangents: Floats) -> Floats:
     """Spots of a mask well on its detector, for each of the Sun's tangents (x, y)."""
     middle, holes = np.array(geometry.centre_px), np.array(geometry.apertures)[:, :2]
-    lists = np.zeros((len(tangents), spots_listed(geometry, "suite"), 3))
+    lists = np.zeros((len(tangents), list_length(geometry, "suite"), 3))
     for row, tangent in zip(lists, tangents, strict=True):
         spots = middle + (holes + geometry.focal_length_mm * tangent) / geometry.pixel_pitch_mm
         seen = spots[(np.abs(spots - middle) < middle - 4.0).all(axis=1)]
@@ -333,7 +333,7 @@ def coverage_of() -> Callable[..., float]:
                 told = sun + off[0] * first + off[1] * second
                 told = told / np.linalg.norm(told, axis=1, keepdims=True)
             model.learn(read, told, {})
-            for parameter, value in zip(model.settled(), truth, strict=True):
+            for parameter, value in zip(model.fitted_parameters(), truth, strict=True):
                 low, high = parameter.interval()
                 held.append(low <= value <= high)
         del model.starts

@@ -17,6 +17,7 @@ from algorithms.discovery import (
     discover_extractors,
     discover_models,
 )
+from algorithms.filtering import filters, hypotheses
 
 IMPLEMENTATIONS = {**discover_extractors(), **discover_compensations(), **discover_models()}
 #: Modules whose public functions and classes a user calls.
@@ -88,6 +89,17 @@ def test_the_examples_of_an_implementation_run_and_show_a_number(name):
     (example,) = finder.find(implementation, implementation.__name__, globs=dict(vars(module)))
     assert any(any(c.isdigit() for c in part.want) for part in example.examples)
     assert doctest.DocTestRunner().run(example).failed == 0
+
+
+def test_every_rule_of_update_has_an_example():
+    rules = {
+        rule
+        for module in (filters, hypotheses)
+        for rule in vars(module).values()
+        if isinstance(rule, type) and hasattr(rule, "update") and not rule.__name__.startswith("_")
+    } - {filters.Filter}
+    assert len(rules) >= 5
+    assert [rule for rule in rules if ">>> " not in rule.__doc__] == []
 
 
 def test_all_other_examples_run():

@@ -19,6 +19,37 @@ from algorithms.compiled import compiled
 ROOT = Path(algorithms.__file__).parent.parent
 
 
+CENTRES = """
+import numpy as np
+from algorithms.extractors.frames.multi_spot.weighted_spots import WeightedSpots
+holes = ((-8, -6, 5), (8, -5, 5), (-7, 7, 5), (9, 6, 5))
+y, x = np.mgrid[:40, :46]
+away = np.array([np.hypot(x - 23.4 - u, y - 18.8 - v) for u, v, _ in holes])
+light = 20 + 200 * np.clip(3.0 - away, 0, 1).sum(axis=0)
+frame = np.round(light + np.random.default_rng(1).normal(0, 2, light.shape)).astype(np.uint16)
+print(*(value.hex() for value in WeightedSpots(holes).extract(frame[None])[0].tolist()))
+"""
+
+
+def test_kernels_give_the_same_numbers_without_the_compiler():
+    """For debuggers and coverage: Numba then hands the functions back as they are."""
+    found = [
+        subprocess.run(
+            [sys.executable, "-c", CENTRES],
+            env={**os.environ, "NUMBA_DISABLE_JIT": disabled},
+            check=True,
+            capture_output=True,
+            text=True,
+            cwd=ROOT,
+            timeout=600,
+        ).stdout
+        for disabled in ("0", "1")
+    ]
+    assert len(found[0].split()) == 2
+    assert "nan" not in found[0]
+    assert found[0] == found[1]
+
+
 @pytest.mark.slow
 def test_kernels_work_where_nothing_can_be_cached():
     """A read-only installation: Numba finds no place for its cache and says so with an error."""

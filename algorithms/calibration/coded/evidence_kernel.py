@@ -23,8 +23,8 @@ from algorithms.calibration.coded.identity_kernel import (
     leave,
     name_of,
     near,
-    of_one,
     partners_of,
+    places_of_spot,
     room_for,
     spacings,
 )
@@ -99,14 +99,14 @@ def _agreement(dimensions: int, squares: float, noise: Noise) -> float:
 
 
 @compiled
-def _close(dark_ones: int, noise: Noise) -> float:
+def _dark_odds(dark_ones: int, noise: Noise) -> float:
     """Logarithm of the odds of apertures being dark: on whole masks hardly any is."""
     whole, broken = -dark_ones * noise[_WHOLE], -dark_ones * noise[_DARK]
     return math.log((1.0 - noise[_BROKEN]) * math.exp(whole) + noise[_BROKEN] * math.exp(broken))
 
 
 @compiled
-def _of_width(off: float, noise: Noise) -> float:
+def _width_evidence(off: float, noise: Noise) -> float:
     """Logarithm of the density of a width's residual, over that of one nothing is known of."""
     design, odd = off / noise[_WIDTH], off / noise[_ODD_WIDTH]
     told = (1.0 - noise[_ODD]) * math.exp(-0.5 * design * design) / noise[_WIDTH]
@@ -126,7 +126,7 @@ def _widths(spots: Floats, count: int, places: Floats, partners: Indices, noise:
     middle = np.median(off[:number])
     found = 0.0
     for s in range(number):
-        found += _of_width(off[s] - middle, noise)
+        found += _width_evidence(off[s] - middle, noise)
     return found
 
 
@@ -135,7 +135,7 @@ def _at_most(count: int, left: int, noise: Noise) -> float:
     """Evidence for a place that leaves so many of the spots: no place that does has more."""
     found = _agreement(max(2 * (count - left) - 2, 0), 0.0, noise) - left * noise[_UNEXPLAINED]
     if noise[_WIDTH] > 0.0:
-        found += (count - left) * _of_width(0.0, noise)
+        found += (count - left) * _width_evidence(0.0, noise)
     return found
 
 
@@ -177,7 +177,7 @@ def _evidence(  # noqa: PLR0917 - Numba takes no keyword-only ones
     if found < least:
         return -math.inf
     closed = dark(count, at, int(min((found - least) / noise[_DARK], 1e6)), code, view, partners)
-    found += _close(closed, noise)
+    found += _dark_odds(closed, noise)
     return found if found >= least else -math.inf
 
 
@@ -216,7 +216,7 @@ def _compare(  # noqa: C901, PLR0912, PLR0917 - one pass over places; positional
             continue
         sets += 1
         if mates[i] == i:
-            number = of_one(spots, i, -1, code, trials)
+            number = places_of_spot(spots, i, -1, code, trials)
         else:
             number = name_of(spots, i, mates[i], -1, code, trials)
         leave(spots, count, room, number, most, most, code)

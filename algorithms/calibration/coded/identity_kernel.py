@@ -2,16 +2,11 @@
 
 A hypothesis is a displacement of the mask on the detector. It explains a spot that falls where it
 has an aperture; its faults are the spots it leaves unexplained and the apertures in view that it
-finds dark. What is handed around, as `algorithms.calibration.coded.table` makes it:
-
-- spots (K, 3): x and y px, logarithm of the width that their light stands for;
-- code: places (A, 3) of the apertures and logarithm of their width, in the order of y; cells (R, C)
-  with the aperture in each, their corner, number a px, tolerances; and the table of spacings: where
-  each cell's pairs start, the pairs, and reach, cell, tolerance and cells a side;
-- room: hypotheses (H, 3), each displacement x and y and logarithm of light's width over the
-  apertures'; how many spots they leave (H,); the aperture of each spot (K,);
-- view: width and height of the detector, boresight x and y, focal length, and how far a spot's rim
-  and the Sun's image behind it reach, px.
+finds dark. `algorithms.calibration.coded.table` makes what is handed around: spots (K, 3), x and y
+px and logarithm of the width that their light stands for; `Code`, the apertures in the order of y,
+their cells and the table of spacings; and the view, the detector and how far light reaches on it.
+`Room` holds hypotheses (H, 3), displacement and logarithm of light's width over the apertures', how
+many spots they leave (H,), and the aperture of each spot (K,).
 """
 
 from __future__ import annotations
@@ -177,7 +172,7 @@ def name_of(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def of_one(spots: Floats, i: int, own: int, code: Code, trials: Floats) -> int:
+def places_of_spot(spots: Floats, i: int, own: int, code: Code, trials: Floats) -> int:
     """Write the hypotheses that one spot allows, but `own` aperture's; return how many."""
     number = 0
     for a in range(code[0].shape[0]):
@@ -303,6 +298,6 @@ def search_correlation(  # noqa: PLR0917 - Numba takes no keyword-only ones
             for s in range(min(count, _ANCHORS)):
                 if best <= s:
                     break
-                number = of_one(spots, s, -1, code, room[0])
+                number = places_of_spot(spots, s, -1, code, room[0])
                 best = _improve(spots, count, room, number, most, code, view, best, found[k])
         faults[k] = best

@@ -25,7 +25,7 @@ from algorithms.contract import (
     UnusableDataError,
 )
 from algorithms.inputs import as_features, require_positive
-from algorithms.spot_lists import SPOT_COLUMNS, detector_size_px, spots_listed
+from algorithms.spot_lists import SPOT_COLUMNS, detector_size_px, list_length
 
 if TYPE_CHECKING:
     from algorithms.calibration.coded.evidence_kernel import Noise
@@ -195,7 +195,7 @@ class CodedMask(ForwardModel):
         rows = np.round(np.array(geometry.apertures) / pitch, 6)
         return cls(
             apertures_px=tuple(tuple(row) for row in rows.tolist()),
-            spots=max(spots_listed(geometry, cls.about.name), 3),
+            spots=max(list_length(geometry, cls.about.name), 3),
             focal_length_mm=focal,
             pixel_pitch_mm=pitch,
             centre_px=geometry.centre_px,

@@ -14,10 +14,12 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels.cholesky import solve
 
 _PARAMETERS = 6  # amplitude, x, y, sigma x, sigma y, background
 #: Widths within which pixels are lit; pixels beyond that tell the noise of a dark one.
 _LIT, _TELL = 3.0, 30.0
+_DEPENDENT = 1e-14  # pivot over diagonal below which a parameter is not determined
 
 
 @compiled
@@ -128,32 +130,13 @@ def _normal_matrix(p: Floats, x: Floats, y: Floats, matrix: Floats) -> None:
 
 
 @compiled
-def _dot(a: Floats, b: Floats, count: int) -> float:
-    total = 0.0
-    for c in range(count):
-        total += a[c] * b[c]
-    return total
-
-
-@compiled
-def _solve(matrix: Floats, right: Floats, damping: float, step: Floats) -> bool:
-    """Solve (matrix + damping diagonal) step = right by Cholesky; False where not definite."""
-    size = len(right)
-    lower = np.zeros((size, size))
-    for a in range(size):
-        for b in range(a):
-            lower[a, b] = (matrix[a, b] - _dot(lower[a], lower[b], b)) / lower[b, b]
-        total = (1.0 + damping) * matrix[a, a] - _dot(lower[a], lower[a], a)
-        if not total > 1e-14 * matrix[a, a]:
-            return False
-        lower[a, a] = math.sqrt(total)
-    for a in range(size):
-        step[a] = (right[a] - _dot(lower[a], step, a)) / lower[a, a]
-    for a in range(size - 1, -1, -1):
-        step[a] /= lower[a, a]
-        for c in range(a):
-            step[c] -= lower[a, c] * step[a]
-    return True
+def _step(matrix: Floats, right: Floats, damping: float, work: Floats, step: Floats) -> bool:
+    """Solve (matrix + damping diagonal) step = right; False where not definite."""
+    work[:] = matrix
+    for a in range(_PARAMETERS):
+        work[a, a] = (1.0 + damping) * matrix[a, a]
+    step[:] = right
+    return solve(work, step, _DEPENDENT)
 
 
 @compiled
@@ -174,7 +157,8 @@ def fit_gaussians(  # noqa: C901 - one loop, its kernel's steps in order
     right = np.empty(_PARAMETERS)
     tried_right = np.empty(_PARAMETERS)
     step = np.empty(_PARAMETERS)
-    matrix = np.empty((_PARAMETERS, _PARAMETERS))
+    normal = np.empty((2, _PARAMETERS, _PARAMETERS))
+    matrix, work = normal[0], normal[1]
     for k in range(count):
         frame = frames[k]
         out[k] = np.nan
@@ -186,7 +170,7 @@ def fit_gaussians(  # noqa: C901 - one loop, its kernel's steps in order
         _normal_matrix(p, x, y, matrix)
         damping = 1e-3
         for _ in range(limit):
-            if not _solve(matrix, right, damping, step):
+            if not _step(matrix, right, damping, work, step):
                 damping = max(10 * damping, 1e-6)
                 continue
             for m in range(_PARAMETERS):
@@ -260,7 +244,8 @@ def covariances(
     _, height, width = frames.shape
     x, y = np.empty((3, width)), np.empty((3, height))
     right = np.zeros(_PARAMETERS)
-    matrix = np.empty((_PARAMETERS, _PARAMETERS))
+    normal = np.empty((2, _PARAMETERS, _PARAMETERS))
+    matrix, work = normal[0], normal[1]
     moves = np.empty((2, _PARAMETERS))
     for k in range(len(fits)):
         out[k] = np.nan
@@ -277,7 +262,7 @@ def covariances(
         for axis in range(2):
             right[:] = 0.0
             right[1 + axis] = 1.0
-            good = good and _solve(matrix, right, 0.0, moves[axis])
+            good = good and _step(matrix, right, 0.0, work, moves[axis])
         if not good:
             continue
         a, b = moves[0], moves[1]

@@ -254,5 +254,5 @@ def _shifts(slits: SlitLines, lines: Floats, middle: float, middles: Middles) ->
     for _ in range(_MOVES + 1):
         windows, starts = slits.windows(lines, shifts)
         found = middles(windows.reshape(-1, windows.shape[2]), np.repeat(floors, spots))
-        shifts = slits.grouped(starts + found.reshape(-1, spots) - slits.pattern())
+        shifts = slits.group_means(starts + found.reshape(-1, spots) - slits.pattern())
     return shifts

@@ -48,10 +48,6 @@ class EigenAnalysis(SlitLines):
     the N pixels are those of a window about each spot; the cross-spectra of slits of one slant
     are summed. The minimum is searched on a grid and then off it, by Newton's method.
 
-    Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
-    a NaN or infinity, where a slit's spot is missing, cut by the line's end or covered by
-    another's, and where light elsewhere is half as bright (a second Sun, noise alone).
-
     Cost: 2 operations a pixel and slit, the median of each line, 8 a frequency and pixel of the
     windows, the eigenvectors of a matrix, 5 to 30 a side, and its side times 4 tries a pixel.
 

@@ -59,10 +59,6 @@ class LinearPhase(SlitLines):
     whose phases are summed over the slits of one slant: what is left to unwrap is a fraction of a
     turn, and the other spots stay out.
 
-    Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
-    a NaN or infinity, where a slit's spot is missing, cut by the line's end or covered by
-    another's, and where light elsewhere is half as bright (a second Sun, noise alone).
-
     Cost: 2 operations a pixel and slit, the median of each line, and 8 a frequency and pixel of
     the windows, half as many as pixels.
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels.cholesky import solve
 
 Bools = NDArray[np.bool_]
 
@@ -29,6 +30,8 @@ _WIDTHS = (1.0, 0.5, 1.5)
 #: A width held at its value weighs by this; where it takes all but this of the light, it is.
 _HELD, _DIMMER = 1e9, 0.25
 _STEPS = 150
+#: Pivot over diagonal below which an unknown is not determined.
+_DEPENDENT = 1e-12
 _LEAST_PART = 0.3
 #: Steps after which what the width is expected to be weighs the same in all that follow.
 _WEIGHED = 3
@@ -143,33 +146,6 @@ def _terms(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _solve(matrix: Floats, vector: Floats) -> bool:
-    """Solve four symmetric equations in place; False where they do not settle all unknowns."""
-    n = len(vector)
-    for k in range(n):
-        scale = matrix[k, k]
-        for j in range(k):
-            scale -= matrix[k, j] ** 2
-        if not scale > 1e-12 * matrix[k, k]:
-            return False
-        matrix[k, k] = math.sqrt(scale)
-        for i in range(k + 1, n):
-            total = matrix[i, k]
-            for j in range(k):
-                total -= matrix[i, j] * matrix[k, j]
-            matrix[i, k] = total / matrix[k, k]
-    for k in range(n):
-        for j in range(k):
-            vector[k] -= matrix[k, j] * vector[j]
-        vector[k] /= matrix[k, k]
-    for k in range(n - 1, -1, -1):
-        for j in range(k + 1, n):
-            vector[k] -= matrix[j, k] * vector[j]
-        vector[k] /= matrix[k, k]
-    return True
-
-
-@compiled
 def _pattern(  # noqa: PLR0917 - Numba takes no keyword-only ones
     terms: Floats,
     lit: Bools,
@@ -244,7 +220,7 @@ def _shift(  # noqa: C901, PLR0917 - one fit; Numba takes no keyword-only ones
             matrix[2, 2] += _HELD * matrix[0, 0] if held else firm
             vector[2] += firm * bright * (1.0 - width)
         explained = vector.copy()
-        if not _solve(matrix, vector) or not abs(shift) < reach:
+        if not solve(matrix, vector, _DEPENDENT) or not abs(shift) < reach:
             return math.nan
         if turn == 0:
             bright, held = vector[0], False

@@ -69,6 +69,10 @@ class SlitLines:
     -----
     Shapes: profiles (N, A L) of A lines, any unit, to ``(x_px, y_px)`` (N, 2), counted from the
     first pixel of a line whose middle is the sensor's.
+
+    Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
+    a NaN or infinity, where a slit's spot is missing, cut by the line's end or covered by
+    another's, and where light elsewhere is half as bright (a second Sun, noise alone).
     """
 
     about: ClassVar[AboutExtractor]
@@ -248,7 +252,7 @@ class SlitLines:
         values[~inside] = np.nan
         return values, starts
 
-    def grouped(self, shifts: Floats) -> Floats:
+    def group_means(self, shifts: Floats) -> Floats:
         """Shifts (N A, G) from those of each spot (N A, S): means over the spots of a slant."""
         means = np.empty((len(shifts), len(self.tangents)))
         for group in range(len(self.tangents)):

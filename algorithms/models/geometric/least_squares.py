@@ -126,7 +126,7 @@ class LeastSquaresGeometry(ProjectionModel, ParametricModel):
         Those of the rotation angles, without a trigonometric function of a sample: sines and
         cosines of an arc tangent are roots, and the offsets turn them.
         """
-        from algorithms.models.geometric.projection_kernel import projected_and_turned  # noqa: PLC0415 - Numba
+        from algorithms.models.geometric.projection_kernel import project_and_turn  # noqa: PLC0415 - Numba
 
         del context
         stretch, _, _, left, low = (float(value) for value in vector)
@@ -135,7 +135,7 @@ class LeastSquaresGeometry(ProjectionModel, ParametricModel):
         scale = float(self.unit_mm) / (float(self.focal_length_mm) + stretch)
         turns = tuple(float(wave(turn)) for turn in (beta_0, alpha_0) for wave in (np.sin, np.cos))
         sun = np.empty((len(features), 3))
-        projected_and_turned(
+        project_and_turn(
             features[:, 0],
             features[:, 1],
             ((left, low), (tan_beta, tan_alpha), scale),

@@ -125,7 +125,7 @@ class WarmCells(WeightedCells):
             )
         self.reference_ = reference
 
-    def settled(self) -> tuple[Parameter, ...]:
+    def fitted_parameters(self) -> tuple[Parameter, ...]:
         """Return the temperature coefficient."""
         return (
             Parameter(

@@ -49,7 +49,7 @@ def project(x: Floats, y: Floats, centre: tuple[float, float], scale: float, sun
 
 
 @compiled
-def projected_and_turned(
+def project_and_turn(
     x: Floats,
     y: Floats,
     lines: tuple[tuple[float, float], tuple[float, float], float],

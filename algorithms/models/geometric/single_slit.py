@@ -125,11 +125,11 @@ class DeflectedSlits(SlitModel):
             u, v = tangents.T if axis == "x" else tangents.T[::-1]
             place = 0 if axis == "x" else 1
             zero = (vector[6 + place] - self.centre_px[place]) * self.pixel_pitch_mm
-            found[:, number] = (focal - glass) * deflected(u, v, theta, delta) + zero
+            found[:, number] = (focal - glass) * deflect(u, v, theta, delta) + zero
         return found
 
 
-def deflected(along: Floats, across: Floats, theta_deg: float, delta_deg: float) -> Floats:
+def deflect(along: Floats, across: Floats, theta_deg: float, delta_deg: float) -> Floats:
     """Tangents (N,) of u' that a slit deflected and inclined gives for those of u and v.
 
     The bracket of eq:slit: ``tan(u) + tan(v) tan(arctan(tan(u) tan(delta) / (1 - tan(v)
@@ -137,7 +137,7 @@ def deflected(along: Floats, across: Floats, theta_deg: float, delta_deg: float)
 
     Examples
     --------
-    >>> deflected(np.array([1.0]), np.array([0.5]), theta_deg=0.0, delta_deg=0.0)
+    >>> deflect(np.array([1.0]), np.array([0.5]), theta_deg=0.0, delta_deg=0.0)
     array([1.])
     """
     slope, turn = np.tan(np.radians(delta_deg)), np.tan(np.radians(theta_deg))

@@ -14,7 +14,7 @@ from algorithms.calibration.forward import ForwardModel
 from algorithms.calibration.slit_sensor import require_crossed_slits
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
 from algorithms.inputs import require_positive
-from algorithms.models.geometric.single_slit import deflected
+from algorithms.models.geometric.single_slit import deflect
 
 _DIAGONAL = math.sqrt(0.5)  # sine and cosine of 45 deg
 
@@ -159,8 +159,8 @@ class DeflectedSlitPairs(ForwardModel):
         """(N, 2) balances of tangents (N, 2)."""
         x, y = tangents.T
         first, second = _DIAGONAL * (x + y), _DIAGONAL * (y - x)
-        u = vector[0] * deflected(first, second, vector[1], vector[2])
-        v = vector[3] * deflected(second, first, vector[4], vector[5])
+        u = vector[0] * deflect(first, second, vector[1], vector[2])
+        v = vector[3] * deflect(second, first, vector[4], vector[5])
         found = np.empty_like(tangents)
         found[:, 0] = vector[6] + _DIAGONAL / self.unit_mm * (u - v)
         found[:, 1] = vector[7] + _DIAGONAL / self.unit_mm * (u + v)

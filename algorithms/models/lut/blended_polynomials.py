@@ -152,10 +152,6 @@ class BlendedPolynomials(ProjectionModel):
         """Give degree and smoothing, chosen or given."""
         return {"degree": self.coefficients_deg_.shape[1] - 1, "smoothing": self.smoothing_}
 
-    def validation_rms_deg(self) -> float | None:
-        """Error on samples left out, where they chose a setting."""
-        return self.validated_deg_
-
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of features (N, 2)."""
         from algorithms.models.lut.table_kernel import corrected_along_rows  # noqa: PLC0415 - Numba
@@ -223,7 +219,7 @@ class BlendedPolynomials(ProjectionModel):
 
 
 def _rows(nominal: Floats, interval: float) -> GridAxis:
-    return GridAxis.enclosing(nominal[:, 0], interval)
+    return GridAxis.over(nominal[:, 0], interval)
 
 
 def _scale(nominal: Floats) -> tuple[float, float]:

@@ -45,7 +45,7 @@ class GridAxis:
     nodes: int
 
     @classmethod
-    def enclosing(cls, values: Floats, interval: float) -> GridAxis:
+    def over(cls, values: Floats, interval: float) -> GridAxis:
         """Return the axis with nodes at multiples of `interval` that encloses all values."""
         first = int(np.floor(values.min() / interval))
         last = max(int(np.ceil(values.max() / interval)), first + 1)

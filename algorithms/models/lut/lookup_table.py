@@ -128,10 +128,6 @@ class ErrorTable(ProjectionModel):
         """Give the smoothing, chosen or given."""
         return {"smoothing": self.smoothing_}
 
-    def validation_rms_deg(self) -> float | None:
-        """Error on samples left out, where they chose the smoothing."""
-        return self.validated_deg_
-
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of features (N, 2)."""
         from algorithms.models.lut.table_kernel import correct  # noqa: PLC0415 - Numba
@@ -177,7 +173,7 @@ class ErrorTable(ProjectionModel):
 
 
 def _axes(nominal: Floats, interval: float) -> tuple[GridAxis, GridAxis]:
-    return GridAxis.enclosing(nominal[:, 0], interval), GridAxis.enclosing(nominal[:, 1], interval)
+    return GridAxis.over(nominal[:, 0], interval), GridAxis.over(nominal[:, 1], interval)
 
 
 def _nodes(nominal: Floats, interval: float) -> int:

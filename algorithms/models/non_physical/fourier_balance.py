@@ -128,10 +128,6 @@ class FourierBalance(CalibratedModel):
         """Give the order, chosen or given."""
         return {"harmonics": self.coefficients_.shape[1] // 2 - 1}
 
-    def validation_rms_deg(self) -> float | None:
-        """Error on samples left out, where they chose the order."""
-        return self.validated_deg_
-
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of balances (N, 2)."""
         from algorithms.models.non_physical.regression_kernel import series_values  # noqa: PLC0415 - Numba

@@ -107,7 +107,7 @@ class LinearFit(CalibratedModel):
             deviations[axis] = np.sqrt(np.diag(shift @ errors @ shift.T))
         self.coefficients_, self.deviations_ = coefficients, deviations
 
-    def settled(self) -> tuple[Parameter, ...]:
+    def fitted_parameters(self) -> tuple[Parameter, ...]:
         """Give intercepts and slopes, in degrees (or tangents) and per unit of feature."""
         unit = "deg" if self.target == "angle" else ""
         return tuple(

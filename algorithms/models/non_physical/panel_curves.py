@@ -138,7 +138,7 @@ class AveragedPanelCurves(FacesModel):
             self.curves_[pair] = curve
             self.deviations_[pair] = np.sqrt(size * (inverse**2).sum(axis=1))
 
-    def settled(self) -> tuple[Parameter, ...]:
+    def fitted_parameters(self) -> tuple[Parameter, ...]:
         """Levels and amplitudes, in the signals' unit."""
         return tuple(
             Parameter(f"{what}_{pair}", float(value), float(deviation))

@@ -32,9 +32,39 @@ MAX_DEGREE = 15
 """Past the 11th degree nothing is gained (Chang2006); past this, rounding and overfitting rule."""
 
 
+@dataclass
+class _Polynomial(CalibratedModel):
+    """What polynomials of features have in common.
+
+    Parameters
+    ----------
+    target : {"angle", "tangent"}
+        What the polynomial gives: the angle in degrees, as published, or its tangent.
+    """
+
+    degree: int | None = None
+    target: Target = "angle"
+
+    middle_: Floats = field(init=False, repr=False, compare=False)
+    half_range_: Floats = field(init=False, repr=False, compare=False)
+    coefficients_: Floats = field(init=False, repr=False, compare=False)
+    powers_: Floats = field(init=False, repr=False, compare=False)
+    whitening_: Floats = field(init=False, repr=False, compare=False)
+    validated_deg_: float | None = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        by, degree = self.about.name, self.degree
+        if degree is not None and not 1 <= degree <= MAX_DEGREE:
+            raise ValueError(
+                f"{by}: degree must be from 1 to {MAX_DEGREE}, or None; got {degree!r}"
+            )
+        require_target(self.target, by)
+
+
 @documented
 @dataclass
-class AxisPolynomial(CalibratedModel):
+class AxisPolynomial(_Polynomial):
     """Each Sun angle as a polynomial of the feature of its own axis.
 
     Compact and fast, it follows any smooth response of one axis, but not what the other axis does
@@ -45,8 +75,6 @@ class AxisPolynomial(CalibratedModel):
     degree : int, optional
         Degree n, 1 to 15; the study takes the sixth. None: chosen from the calibration samples
         by cross-validation.
-    target : {"angle", "tangent"}
-        What the polynomial gives: the angle in degrees, as published, or its tangent.
 
     Attributes
     ----------
@@ -92,21 +120,6 @@ class AxisPolynomial(CalibratedModel):
         accepts=POSITIONS,
     )
 
-    degree: int | None = None
-    target: Target = "angle"
-
-    middle_: Floats = field(init=False, repr=False, compare=False)
-    half_range_: Floats = field(init=False, repr=False, compare=False)
-    coefficients_: Floats = field(init=False, repr=False, compare=False)
-    powers_: Floats = field(init=False, repr=False, compare=False)
-    whitening_: Floats = field(init=False, repr=False, compare=False)
-    validated_deg_: float | None = field(init=False, repr=False, compare=False)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        _require_degree(self.about.name, self.degree)
-        require_target(self.target, self.about.name)
-
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Fit one polynomial an axis to samples (n, 2) of Suns (n, 3)."""
         del context
@@ -128,10 +141,6 @@ class AxisPolynomial(CalibratedModel):
     def settings(self) -> Mapping[str, Setting]:
         """Give the degree, chosen or given."""
         return {"degree": self.coefficients_.shape[1] - 1}
-
-    def validation_rms_deg(self) -> float | None:
-        """Error on samples left out, where they chose the degree."""
-        return self.validated_deg_
 
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of features (N, 2)."""
@@ -158,7 +167,7 @@ class AxisPolynomial(CalibratedModel):
 
 @documented
 @dataclass
-class SurfacePolynomial(CalibratedModel):
+class SurfacePolynomial(_Polynomial):
     """Each Sun angle as a polynomial surface over both features.
 
     The cross terms take up what turns one axis into the other: in-plane rotation, tilt and
@@ -168,8 +177,6 @@ class SurfacePolynomial(CalibratedModel):
     ----------
     degree : int, optional
         Total degree n, 1 to 15. None: chosen from the calibration samples by cross-validation.
-    target : {"angle", "tangent"}
-        What the polynomial gives: the angle in degrees or its tangent.
 
     Attributes
     ----------
@@ -217,21 +224,6 @@ class SurfacePolynomial(CalibratedModel):
         accepts=POSITIONS,
     )
 
-    degree: int | None = None
-    target: Target = "angle"
-
-    middle_: Floats = field(init=False, repr=False, compare=False)
-    half_range_: Floats = field(init=False, repr=False, compare=False)
-    coefficients_: Floats = field(init=False, repr=False, compare=False)
-    powers_: Floats = field(init=False, repr=False, compare=False)
-    whitening_: Floats = field(init=False, repr=False, compare=False)
-    validated_deg_: float | None = field(init=False, repr=False, compare=False)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        _require_degree(self.about.name, self.degree)
-        require_target(self.target, self.about.name)
-
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Fit both surfaces to samples (n, 2) of Suns (n, 3)."""
         del context
@@ -258,10 +250,6 @@ class SurfacePolynomial(CalibratedModel):
     def settings(self) -> Mapping[str, Setting]:
         """Give the total degree, chosen or given."""
         return {"degree": _degree(self.coefficients_.shape[1])}
-
-    def validation_rms_deg(self) -> float | None:
-        """Error on samples left out, where they chose the degree."""
-        return self.validated_deg_
 
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of features (N, 2)."""
@@ -328,8 +316,3 @@ def _surface_terms(scaled: Floats, degree: int) -> Floats:
     """``T_i(u_x) T_j(u_y)`` for i + j <= degree, (N, terms)."""
     x, y = (_axis_columns(column, degree) for column in scaled.T)
     return np.stack([x[i] * y[j] for i, j in _powers(degree)], axis=1)
-
-
-def _require_degree(by: str, degree: int | None) -> None:
-    if degree is not None and not 1 <= degree <= MAX_DEGREE:
-        raise ValueError(f"{by}: degree must be from 1 to {MAX_DEGREE}, or None; got {degree!r}")

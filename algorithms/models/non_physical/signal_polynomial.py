@@ -184,10 +184,6 @@ class SignalPolynomial(FacesModel):
             "dropped": self.dropped_,
         }
 
-    def validation_rms_deg(self) -> float | None:
-        """Error on samples left out, where they chose the degree."""
-        return self.validated_deg_
-
     def answer(self, features: Floats, context: Columns) -> Floats:
         """Directions (N, 3) of signals (N, K)."""
         del context

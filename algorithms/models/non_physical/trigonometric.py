@@ -150,7 +150,7 @@ class TrigonometricPanels(FacesModel):
         if not all(np.linalg.cond(lit) < WORST_CONDITION for lit in self._octants()):
             raise UnusableDataError(f"{by}: the fitted cosines of three panels lie in one plane")
 
-    def settled(self) -> tuple[Parameter, ...]:
+    def fitted_parameters(self) -> tuple[Parameter, ...]:
         """Offsets and amplitudes of the panels that samples settle, in the signals' unit."""
         values = np.column_stack([self.offsets_, self.amplitudes_])
         return tuple(

@@ -156,7 +156,7 @@ class AssembledFaces(FacesModel):
         """Give the condition of the equations."""
         return self.condition_
 
-    def settled(self) -> tuple[Parameter, ...]:
+    def fitted_parameters(self) -> tuple[Parameter, ...]:
         """Gains, tilts and coefficients of the response, and the lamp's slopes."""
         return self.parameters_
 

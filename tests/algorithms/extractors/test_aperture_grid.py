@@ -7,6 +7,7 @@ from algorithms.extractors.frames.multi_spot import aperture_grid_kernel as kern
 from algorithms.extractors.frames.multi_spot import evidence_kernel as evidence
 from algorithms.extractors.frames.multi_spot import view_kernel as view
 from algorithms.extractors.frames.multi_spot.aperture_pattern import lattice
+from algorithms.extractors.frames.multi_spot.records import Matches, Seen, Views
 
 #: Asymmetric, so that no turn, mirror or shift of it is itself.
 APERTURES = ((-30.0, -8.0, 6.0), (-9.0, 7.0, 6.0), (4.0, -6.0, 8.0), (22.0, 9.0, 6.0))
@@ -43,9 +44,7 @@ def test_the_nearest_aperture_is_that_of_all():
     for x, y in rng.uniform((-45, -20), (40, 22), (400, 2)):
         away = (TABLE[:, 0] - x) ** 2 + (TABLE[:, 1] - y) ** 2
         for reach in (3.0, 9.0):
-            a, squared = kernel._nearest(
-                known.table, known.corner, known.cell_px, known.apertures, x, y, reach
-            )
+            a, squared = kernel.nearest(known, x, y, reach)
             if away.min() < reach**2:
                 assert a == away.argmin()
                 assert squared == pytest.approx(away.min())
@@ -58,7 +57,7 @@ def test_the_nearest_aperture_is_that_of_all():
 def test_votes_are_for_the_displacement_of_each_pair():
     spots = np.array([[10.0, 30.0, 1.0], [70.0, 5.0, 1.0]])
     cell = 2.0
-    ballot = np.zeros((60, 90), dtype=np.int32)
+    ballot = np.zeros((60, 90), dtype=np.int16)
     touched = np.empty(8, dtype=np.int64)
     cells = kernel._cast(spots, TABLE, cell, ballot, touched)
     expected = np.zeros_like(ballot)
@@ -72,7 +71,7 @@ def test_votes_are_for_the_displacement_of_each_pair():
 
 def test_a_peak_has_no_better_neighbour_and_none_before_it_as_good():
     rng = np.random.default_rng(2)
-    ballot = np.zeros((12, 17), dtype=np.int32)
+    ballot = np.zeros((12, 17), dtype=np.int16)
     ballot[1:-1, 1:-1] = rng.integers(0, 3, (10, 15))
     for i in range(1, 11):
         for j in range(1, 16):
@@ -84,12 +83,12 @@ def test_a_peak_has_no_better_neighbour_and_none_before_it_as_good():
 
 
 def test_candidates_are_the_peaks_with_most_votes_around_them_a_third_of_the_most_at_least():
-    ballot = np.zeros((30, 41), dtype=np.int32)
+    ballot = np.zeros((30, 41), dtype=np.int16)
     peaks = {(5, 5): 9, (5, 20): 3, (20, 9): 2, (12, 33): 6, (24, 24): 4}
     for place, votes in peaks.items():
         ballot[place] = votes
     touched = np.array([i * 41 + j for i, j in peaks], dtype=np.int64)
-    room = np.empty(touched.size, dtype=np.int32)
+    room = np.empty(touched.size, dtype=np.int16)
     best, votes = np.empty(3, dtype=np.int64), np.empty(3, dtype=np.int64)
     assert kernel._rank(ballot, touched, room, best, votes) == 3
     assert votes.tolist() == [9, 6, 4]
@@ -106,63 +105,28 @@ def matched(spots, shape, tolerance=1.0, share=0.3):
     listed = np.array([(x, y, 9.0, 9.0) for x, y, *_ in spots])[None]
     for x, y, *_ in spots:
         frame[0, round(y) - 1 : round(y) + 2, round(x) - 1 : round(x) + 2] = 2.0
-    count, none = np.array([len(spots)]), np.zeros(1, dtype=np.int64)
-    places, kept = np.empty((1, 24, 2)), np.empty(1, dtype=np.int64)
-    matches = np.empty((1, 24, len(APERTURES)), dtype=np.int32)
-    kernel.match(
-        listed,
-        count,
-        known.apertures,
-        known.table,
-        known.corner,
-        known.cell_px,
-        shape,
-        tolerance,
-        4.0,
-        places,
-        matches,
-        kept,
+    none = np.zeros(1, dtype=np.int64)
+    seen = Seen(listed, np.array([len(spots)]), np.empty((1, 4, 3)), none)
+    all_of = 1, 24, len(APERTURES)
+    matches = Matches(np.empty((1, 24, 2)), np.empty(all_of, dtype=np.int32), none.copy())
+    kernel.match(seen, known, shape, tolerance, 4.0, matches)
+    views = Views(
+        np.empty(all_of, dtype=np.int8),
+        np.empty((1, 24, 4), dtype=np.int32),
+        np.empty((1, len(spots)), dtype=np.bool_),
+        np.empty((1, 24), dtype=np.bool_),
     )
-    states = np.empty((1, 24, len(APERTURES)), dtype=np.int8)
-    cut_to = np.empty((1, 24, 4), dtype=np.int32)
-    bright = np.empty((1, len(spots)), dtype=np.bool_)
-    enough = np.empty((1, 24), dtype=np.bool_)
-    view.look(
-        frame,
-        np.ones(1),
-        listed,
-        count,
-        np.empty((1, 4, 3)),
-        none,
-        known.apertures,
-        1.0,
-        share,
-        places,
-        matches,
-        kept,
-        states,
-        cut_to,
-        bright,
-        enough,
-    )
+    view.look(frame, np.ones(1), seen, known.apertures, 1.0, share, matches, views)
     displacement = np.empty((1, 2))
     partners = np.empty((1, len(APERTURES)), dtype=np.int64)
     evidence.decide(
-        listed,
-        count,
-        none,
-        known.apertures,
-        known.lines,
+        seen,
+        known,
         tolerance,
         (0.0, 0.0),
         (0.0, 0.0, np.inf),
-        places,
         matches,
-        kept,
-        states,
-        cut_to,
-        bright,
-        enough,
+        views,
         displacement,
         partners,
         np.empty(1, dtype=np.int64),

@@ -13,6 +13,7 @@ from algorithms.extractors.frames.cameras import blooming_kernel as blooming
 from algorithms.extractors.frames.cameras import circles_kernel as circles
 from algorithms.extractors.frames.cameras import dark_holes_kernel as holes
 from algorithms.extractors.frames.cameras.hough import HoughCircle
+from algorithms.kernels.regions import SIDES, flood
 
 # Blooming lines
 
@@ -233,10 +234,11 @@ def hole(pixels, start, most=99, shape=(7, 11)):
     image = np.full(shape, 9.0)
     for place in pixels:
         image[place] = 5.0  # not above a level of 5
-    marks = np.zeros(shape, dtype=np.int32)
+    marks = np.zeros(image.size, dtype=np.int32)
     found = np.empty(image.size, dtype=np.int64)
-    count = holes._fill(image, 5.0, start[0] * shape[1] + start[1], 3, most, marks, found)
-    return count, marks, found
+    first = start[0] * shape[1] + start[1]
+    count, enclosed = flood(image, first, 5.0, False, SIDES, most, 3, marks, found)
+    return count if enclosed else 0, marks, found
 
 
 def test_a_hole_is_what_hangs_together_side_by_side():
@@ -245,7 +247,7 @@ def test_a_hole_is_what_hangs_together_side_by_side():
     assert count == 3
     assert set(found[:3].tolist()) == {2 * 11 + 3, 2 * 11 + 4, 3 * 11 + 4}
     assert (marks == 3).sum() == 3
-    assert holes._corner(marks, 3, found, 3) == pytest.approx(
+    assert holes._corner(marks, 3, found[:3], 11) == pytest.approx(
         # edges across at x = 2.5, 4.5 in the first row, 3.5 and 4.5 in the second
         ((2.5 + 4.5 + 3.5 + 4.5) / 4, (1.5 + 2.5 + 1.5 + 3.5) / 4)
     )

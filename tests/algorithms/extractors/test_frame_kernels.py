@@ -249,8 +249,9 @@ def test_damped_equations_are_solved_and_singular_ones_refused(damping):
     rng = np.random.default_rng(5)
     design = rng.normal(size=(9, 6))
     matrix, right, step = design.T @ design, rng.normal(size=6), np.empty(6)
-    assert gaussian_kernel._solve(matrix, right, damping, step)
+    work = np.empty((6, 6))
+    assert gaussian_kernel._step(matrix, right, damping, work, step)
     damped = matrix + damping * np.diag(np.diag(matrix))
     np.testing.assert_allclose(step, np.linalg.solve(damped, right), rtol=1e-8)
     matrix[:, 5] = matrix[5] = 0.0
-    assert not gaussian_kernel._solve(matrix, right, damping, step)
+    assert not gaussian_kernel._step(matrix, right, damping, work, step)

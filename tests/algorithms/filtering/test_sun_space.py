@@ -37,7 +37,7 @@ def some_states(space, count=7):
     sun = rng.normal((0.2, -0.1, 1.0), 0.3, (count, 3))
     states = space.states_towards(sun / np.linalg.norm(sun, axis=1, keepdims=True))
     size = np.r_[0.3, 0.3, 1e-3 * np.ones(3), 0.02 * np.ones(space.errors - 5)]
-    return space.moved(states, size * rng.standard_normal((count, space.errors)))
+    return space.add_errors(states, size * rng.standard_normal((count, space.errors)))
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -56,8 +56,8 @@ def test_moved_and_away_undo_each_other(name: str) -> None:
     space, rng = SPACES[name], np.random.default_rng(6)
     states = some_states(space)
     errors = rng.normal(0.0, 0.2, (len(states), space.errors))
-    again = space.moved(states, errors)
-    np.testing.assert_allclose(space.away(again, states), errors, atol=1e-13)
+    again = space.add_errors(states, errors)
+    np.testing.assert_allclose(space.errors_between(again, states), errors, atol=1e-13)
     axes = again[:, :9].reshape(-1, 3, 3)
     np.testing.assert_allclose(
         axes @ axes.transpose(0, 2, 1), np.eye(3)[None] * np.ones((7, 1, 1)), atol=1e-14
@@ -76,11 +76,11 @@ def test_derivatives_are_those_of_differences(name: str) -> None:
     for column in range(n):
         error = np.zeros((len(states), n))
         error[:, column] = step
-        up, down = space.moved(states, error), space.moved(states, -error)
-        change = space.away(space.propagate(up, KNOWN, STEP_S), after)
-        change -= space.away(space.propagate(down, KNOWN, STEP_S), after)
+        up, down = space.add_errors(states, error), space.add_errors(states, -error)
+        change = space.errors_between(space.propagate(up, KNOWN, STEP_S), after)
+        change -= space.errors_between(space.propagate(down, KNOWN, STEP_S), after)
         np.testing.assert_allclose(transition[:, :, column], change / (2 * step), atol=2e-6)
-        read = space.measured(up, KNOWN) - space.measured(down, KNOWN)
+        read = space.predict_readings(up, KNOWN) - space.predict_readings(down, KNOWN)
         np.testing.assert_allclose(sensitivity[:, :, column], read / (2 * step), atol=2e-5)
 
 
@@ -100,7 +100,7 @@ def test_errors_and_innovations_are_as_large_as_the_filter_says(name: str, by: s
         if step:
             belief = kalman.predict(space, belief, runs.known[step], STEP_S)
         belief = kalman.update(space, belief, runs.readings[step], runs.known[step])
-        off = space.away(runs.states[step], belief.states)
+        off = space.errors_between(runs.states[step], belief.states)
         inverse = np.linalg.inv(belief.covariance)
         errors.append(np.einsum("bi,bij,bj->b", off, inverse, off))
         innovations.append(belief.squared_innovation)
@@ -135,7 +135,7 @@ def test_a_filter_that_ignores_gains_is_too_sure_and_one_that_considers_them_is_
         considering = schmidt.update(whole, considering, runs.readings[step], known)
         ignoring = ExtendedKalman().update(plain, ignoring, runs.readings[step], known)
     for name, belief in {"considering": considering, "ignoring": ignoring}.items():
-        off = plain.away(
+        off = plain.errors_between(
             np.ascontiguousarray(runs.states[-1][:, :13]), belief.states[:, :13].copy()
         )
         spread[name] = float(np.mean(off[:, :2] ** 2))
@@ -156,7 +156,9 @@ def squared_errors(space, by, runs, first) -> tuple[np.ndarray, np.ndarray]:
         if step:
             belief = by.predict(space, belief, known, STEP_S)
         belief = by.update(space, belief, runs.readings[step], known)
-        off = space.away(np.ascontiguousarray(runs.states[step][:, :size]), belief.states)[:, :2]
+        off = space.errors_between(
+            np.ascontiguousarray(runs.states[step][:, :size]), belief.states
+        )[:, :2]
         inverse = np.linalg.inv(belief.covariance[:, :2, :2])
         found.append(np.einsum("bi,bij,bj->b", off, inverse, off))
         innovations.append(belief.squared_innovation / space.readings)
@@ -202,7 +204,7 @@ def mixed_errors(space, by, runs, first) -> np.ndarray:
             belief = by.predict(space, belief, known, STEP_S)
         belief = by.update(space, belief, runs.readings[step], known)
         states, covariance = by.estimate(space, belief)
-        off = space.away(np.ascontiguousarray(runs.states[step][:, :size]), states)[:, :2]
+        off = space.errors_between(np.ascontiguousarray(runs.states[step][:, :size]), states)[:, :2]
         inverse = np.linalg.inv(covariance[:, :2, :2])
         found.append(np.einsum("bi,bij,bj->b", off, inverse, off))
     return np.array(found)
@@ -216,8 +218,8 @@ def test_readings_slope_with_the_heads_turn_as_differences_do() -> None:
     for column in range(5, 8):
         error = np.zeros((len(states), space.errors))
         error[:, column] = 1e-6
-        read = space.measured(space.moved(states, error), KNOWN)
-        read = read - space.measured(space.moved(states, -error), KNOWN)
+        read = space.predict_readings(space.add_errors(states, error), KNOWN)
+        read = read - space.predict_readings(space.add_errors(states, -error), KNOWN)
         np.testing.assert_allclose(sensitivity[:, :, column], read / 2e-6, atol=2e-5)
 
 
@@ -229,7 +231,7 @@ def test_a_turned_head_sees_what_turning_the_sun_shows() -> None:
     for n, state in enumerate(states):
         still[n, 6:9] = turned_exactly(state[None, 6:9], state[-3:])[0]
     np.testing.assert_allclose(
-        space.measured(states, KNOWN), space.measured(still, KNOWN), rtol=1e-12
+        space.predict_readings(states, KNOWN), space.predict_readings(still, KNOWN), rtol=1e-12
     )
 
 
@@ -239,7 +241,10 @@ def test_readings_that_err_alike_for_some_steps_tell_as_much_as_fewer() -> None:
     told = SunSpace(pinhole(), 0.01 * np.eye(2), GYROSCOPE, (), steps=np.full(2, 9.0))
     runs = drawn(space, first=first, seed=15, steps=200)
     clean = np.array(
-        [space.measured(at, known) for at, known in zip(runs.states, runs.known, strict=True)]
+        [
+            space.predict_readings(at, known)
+            for at, known in zip(runs.states, runs.known, strict=True)
+        ]
     )
     white = runs.readings - clean
     for step in range(1, len(white)):
@@ -257,12 +262,12 @@ def test_a_reading_that_no_direction_explains_begins_nothing() -> None:
     space, by = SPACES["faces"], ExtendedKalman()
     sun = np.array([[0.6, 0.0, 0.8]])
     known = np.r_[np.zeros(3), 1.0, 0.0, 0.0, 0.0]
-    read = space.measured(space.states_towards(sun), known)[0]
+    read = space.predict_readings(space.states_towards(sun), known)[0]
     starts = np.vstack([np.eye(3), -np.eye(3), sun])
-    begun = space.started(by, starts, read, known)
+    begun = space.start_belief(by, starts, read, known)
     assert begun is not None
     np.testing.assert_allclose(begun.states[0, 6:9], sun[0], atol=2e-3)
-    assert space.started(by, starts, read + 20.0 * np.arange(6), known) is None
+    assert space.start_belief(by, starts, read + 20.0 * np.arange(6), known) is None
 
 
 def test_what_is_considered_explains_a_first_reading_that_its_noise_does_not() -> None:
@@ -272,10 +277,10 @@ def test_what_is_considered_explains_a_first_reading_that_its_noise_does_not() -
     by = ExtendedKalman(considered)
     sun = np.array([[0.6, 0.0, 0.8]])
     known = np.r_[np.zeros(3), 1.0, 0.0, 0.0, 0.0]
-    read = space.measured(space.states_towards(sun), known)[0]
+    read = space.predict_readings(space.states_towards(sun), known)[0]
     read *= np.array([1.02, 1.0, 1.0, 1.0, 0.98, 1.0])  # aged by a deviation each
-    assert space.started(by, sun, read, known, considered) is not None
-    assert space.started(by, sun, read + 5.0 * np.eye(6)[1], known, considered) is None
+    assert space.start_belief(by, sun, read, known, considered) is not None
+    assert space.start_belief(by, sun, read + 5.0 * np.eye(6)[1], known, considered) is None
 
 
 def test_gains_that_drift_are_found_by_the_filter_that_has_them_in_its_state() -> None:

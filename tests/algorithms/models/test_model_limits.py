@@ -226,9 +226,9 @@ def test_directions_fill_the_field_evenly_and_follow_its_rim(
 
 
 def test_an_axis_has_nodes_at_multiples_that_enclose_all() -> None:
-    assert GridAxis.enclosing(np.array([-3.1, 4.9]), 2.0) == GridAxis(-4.0, 2.0, 6)
-    assert GridAxis.enclosing(np.array([-4.0, 6.0]), 2.0) == GridAxis(-4.0, 2.0, 6)
-    assert GridAxis.enclosing(np.array([2.0, 2.0]), 2.0) == GridAxis(2.0, 2.0, 2)
+    assert GridAxis.over(np.array([-3.1, 4.9]), 2.0) == GridAxis(-4.0, 2.0, 6)
+    assert GridAxis.over(np.array([-4.0, 6.0]), 2.0) == GridAxis(-4.0, 2.0, 6)
+    assert GridAxis.over(np.array([2.0, 2.0]), 2.0) == GridAxis(2.0, 2.0, 2)
 
 
 def test_a_cell_is_that_between_two_nodes_and_end_cells_go_on() -> None:

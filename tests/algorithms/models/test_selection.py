@@ -122,7 +122,7 @@ def test_chosen_settings_are_as_good_as_the_best_in_hindsight(name, where, noise
 def test_errors_left_out_are_those_of_tables_solved_one_by_one():
     rng = np.random.default_rng(4)
     nominal, errors = rng.uniform(-10, 10, (120, 2)), rng.normal(0, 1, (120, 2))
-    axes = [GridAxis.enclosing(column, 2.0) for column in nominal.T]
+    axes = [GridAxis.over(column, 2.0) for column in nominal.T]
     along = [interpolation_matrix(a, c) for a, c in zip(axes, nominal.T, strict=True)]
     design = row_products(*along)
     roughness = surface_roughness(axes[0].nodes, axes[1].nodes)

@@ -182,7 +182,7 @@ def test_intervals_of_the_coefficient_hold_the_truth_as_often_as_they_say():
     for seed in range(200):
         noise = np.random.default_rng(seed).normal(0, 0.003, signals.shape)
         model.learn(signals + noise, sun, told)
-        low, high = model.settled()[0].interval()
+        low, high = model.fitted_parameters()[0].interval()
         held.append(low <= 0.0045 <= high)
     assert 0.93 <= np.mean(held) <= 0.97
 

@@ -63,16 +63,16 @@ def drawn(
     known[:, :3], known[:, 3] = rates(steps), 1.0
     ahead = np.array([[0.1, 0.1, 0.98**0.5]])
     middle = np.repeat(space.states_towards(ahead), runs, axis=0)
-    states = space.moved(middle, draws(rng, first, runs))
+    states = space.add_errors(middle, draws(rng, first, runs))
     history, read = [], []
     for step in range(steps):
         if step:
             # the gyroscope's noise moves the truth: the rate is one for all runs
             states = space.propagate(states, known[step], STEP_S)
-            states = space.moved(states, draws(rng, space.process_noise(STEP_S), runs))
+            states = space.add_errors(states, draws(rng, space.process_noise(STEP_S), runs))
         history.append(states)
         noise = draws(rng, space.measurement_noise(), runs)
-        read.append(space.measured(states, known[step]) + noise)
+        read.append(space.predict_readings(states, known[step]) + noise)
     return Runs(space, np.array(history), np.array(read), known, middle)
 
 

@@ -137,14 +137,14 @@ def sun_from_blooming_lines(lines: Sequence[ArrayLike], cameras: Sequence[LineCa
             )
     total = np.zeros((len(given[0]), 3))
     for a, b in combinations(range(len(cameras)), 2):
-        sun, sine = _meeting(given[a], cameras[a], given[b], cameras[b])
+        sun, sine = _sun_on_line(given[a], cameras[a], given[b], cameras[b])
         votes = given[a][:, 4] * given[b][:, 4] / (given[a][:, 4] + given[b][:, 4])
         met = np.isfinite(sun).all(axis=1) & (sine >= _PARALLEL) & np.isfinite(votes)
         total[met] += (sine**2 * votes)[met, None] * sun[met]
     return normalise(total)
 
 
-def _meeting(
+def _sun_on_line(
     line_a: Floats, camera_a: LineCamera, line_b: Floats, camera_b: LineCamera
 ) -> tuple[Floats, Floats]:
     """Directions (N, 3) that two cameras' lines have in common, and the sine of their angle."""

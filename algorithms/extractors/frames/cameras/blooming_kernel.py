@@ -166,7 +166,7 @@ def _agreement(places: Floats, count: int, place: float) -> tuple[float, float]:
 
 
 @compiled
-def _meeting(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _sun_on_line(  # noqa: PLR0917 - Numba takes no keyword-only ones
     frame: NDArray[Any],
     low: float,
     level: float,
@@ -300,7 +300,7 @@ def blooming_lines(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if not last - first >= _LENGTH * typical:
             continue
         whole = _refine(runs, found, r, turn, widest, (first, last))
-        place, apart = _meeting(
+        place, apart = _sun_on_line(
             frame, low, level, whole, turn, 0.5 * typical + 1.5, reach, room, votes
         )
         # Columns end where their overflow does, so that their lengths tell the middle to a

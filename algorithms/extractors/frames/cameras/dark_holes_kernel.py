@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels.regions import SIDES, flood
 
 #: Squared distance of a hole's pixels from their mean, over that of a disc, up to which it is
 #: round: an ellipse of 2.6 : 1.
@@ -47,70 +48,26 @@ def blur(frame: NDArray[Any], taps: Floats, rows: Floats, out: Floats) -> None:
 
 
 @compiled
-def _fill(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    image: Floats,
-    level: float,
-    start: int,
-    mark: int,
-    most: int,
-    marks: NDArray[np.int32],
-    pixels: NDArray[np.int64],
-) -> int:
-    """Collect the pixels not above a level that hang together with `start`, side by side.
-
-    They are given `mark` and listed in `pixels` (as row times width plus column). Returns how
-    many; 0 where they reach the frame's edge or are more than `most`.
-    """
-    height, width = image.shape
-    marks[start // width, start % width] = mark
-    pixels[0] = start
-    count = 1
-    done = 0
-    enclosed = True
-    while done < count:
-        i, j = pixels[done] // width, pixels[done] % width
-        done += 1
-        if i == 0 or j == 0 or i == height - 1 or j == width - 1:
-            enclosed = False
-            if most < pixels.size:
-                break
-            continue
-        for side in range(4):
-            a = i + (side == 0) - (side == 1)
-            b = j + (side == 2) - (side == 3)
-            if marks[a, b] != mark and not image[a, b] > level:
-                marks[a, b] = mark
-                pixels[count] = a * width + b
-                count += 1
-        if count > most:
-            enclosed = False
-            break
-    return count if enclosed else 0
-
-
-@compiled
 def _corner(
-    marks: NDArray[np.int32], mark: int, pixels: NDArray[np.int64], count: int
+    marks: NDArray[np.int32], mark: int, pixels: NDArray[np.int64], width: int
 ) -> tuple[float, float]:
     """Refine the corner (x, y) of a hole's rim: the point that its edges are seen from square on.
 
     It solves ``sum(n n^T (q - p)) = 0`` over the rim's edges between two pixels, at p with the
     normal n. Normals lie along the axes, so that the two equations come apart.
     """
-    width = marks.shape[1]
     x = 0.0
     y = 0.0
     edges_x = 0
     edges_y = 0
-    for n in range(count):
-        i, j = pixels[n] // width, pixels[n] % width
+    for at in pixels:
         for side in (-1, 1):
-            if marks[i, j + side] != mark:
+            if marks[at + side] != mark:
                 edges_x += 1
-                x += j + 0.5 * side
-            if marks[i + side, j] != mark:
+                x += at % width + 0.5 * side
+            if marks[at + side * width] != mark:
                 edges_y += 1
-                y += i + 0.5 * side
+                y += at // width + 0.5 * side
     return x / edges_x, y / edges_y
 
 
@@ -130,37 +87,6 @@ def _round(pixels: NDArray[np.int64], count: int, width: int) -> bool:
     spread = (xx + yy) / count - (x * x + y * y) / (count * count)
     # a pixel has an extent of its own: 1/12 along each axis
     return spread + 1.0 / 6.0 <= _ROUND * count / (2.0 * math.pi)
-
-
-@compiled
-def _exterior(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    image: Floats,
-    level: float,
-    i: int,
-    j: int,
-    top: int,
-    bottom: int,
-    left: int,
-    right: int,
-    marks: NDArray[np.int32],
-    pixels: NDArray[np.int64],
-) -> None:
-    """Mark with -1 the dark pixels within a box that hang together with (i, j)."""
-    width = image.shape[1]
-    marks[i, j] = -1
-    pixels[0] = i * width + j
-    count = 1
-    while count:
-        count -= 1
-        i, j = pixels[count] // width, pixels[count] % width
-        for side in range(4):
-            a = i + (side == 0) - (side == 1)
-            b = j + (side == 2) - (side == 3)
-            inside = top <= a <= bottom and left <= b <= right
-            if inside and marks[a, b] == 0 and not image[a, b] > level:
-                marks[a, b] = -1
-                pixels[count] = a * width + b
-                count += 1
 
 
 @compiled
@@ -193,25 +119,21 @@ def _seeds(  # noqa: PLR0917 - Numba takes no keyword-only ones
     Their darkest pixels go to `seeds`, their numbers of pixels to `sizes`; the largest are kept
     where there are more than fit. `marks` and `sizes` are zero before.
     """
-    width = image.shape[1]
     top, bottom, left, right = _bright_box(image, level)
-    # The dark that surrounds everything hangs together with the edge of the box about all light.
-    for i in range(top, bottom + 1):
-        step = 1 if i in (top, bottom) else max(right - left, 1)
-        for j in range(left, right + 1, step):
-            if marks[i, j] != -1 and not image[i, j] > level:
-                _exterior(image, level, i, j, top, bottom, left, right, marks, pixels)
-    for i in range(top + 1, bottom):
-        for j in range(left + 1, right):
-            if marks[i, j] != 0 or image[i, j] > level:
-                continue
-            count = _fill(image, level, i * width + j, 1, pixels.size, marks, pixels)
-            if count < least or not _round(pixels, count, width):
-                continue
-            place = np.argmin(sizes)  # an empty one while there is any: their sizes are zero
-            if sizes[place] < count:
-                sizes[place] = count
-                seeds[place] = _darkest(image, pixels, count)
+    # The dark that surrounds everything reaches the edge of the box about all light.
+    box = image[top : bottom + 1, left : right + 1].copy()
+    width = box.shape[1]
+    for first in range(box.size):
+        if marks[first] != 0 or box.flat[first] > level:
+            continue
+        count, enclosed = flood(box, first, level, False, SIDES, box.size, 1, marks, pixels)
+        if not enclosed or count < least or not _round(pixels, count, width):
+            continue
+        place = np.argmin(sizes)  # an empty one while there is any: their sizes are zero
+        if sizes[place] < count:
+            sizes[place] = count
+            darkest = _darkest(box, pixels, count)
+            seeds[place] = (top + darkest // width) * image.shape[1] + left + darkest % width
 
 
 @compiled
@@ -249,12 +171,15 @@ def _follow(  # noqa: PLR0917 - Numba takes no keyword-only ones
     found_y = np.nan
     for n in range(levels.size):
         size = 0
+        enclosed = False
         if not image.flat[seed] > levels[n]:
-            size = _fill(image, levels[n], seed, mark + n, most, marks, pixels)
-        if size == 0:
+            size, enclosed = flood(
+                image, seed, levels[n], False, SIDES, most, mark + n, marks, pixels
+            )
+        if not enclosed:
             last_x = np.nan
             continue
-        x, y = _corner(marks, mark + n, pixels, size)
+        x, y = _corner(marks, mark + n, pixels[:size], image.shape[1])
         if not math.hypot(x - last_x, y - last_y) <= moved:
             survived = 0
             sum_x = 0.0
@@ -291,7 +216,7 @@ def black_suns(  # noqa: PLR0917 - Numba takes no keyword-only ones
     count, height, width = frames.shape
     rows = np.empty((height, width))
     image = np.empty((height, width))
-    marks = np.empty((height, width), dtype=np.int32)
+    marks = np.empty(height * width, dtype=np.int32)
     pixels = np.empty(height * width, dtype=np.int64)
     seeds = np.empty(64, dtype=np.int64)
     sizes = np.empty(64, dtype=np.int64)
@@ -317,7 +242,15 @@ def black_suns(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 continue
             mark = 1 + n * levels.size
             x, y = _follow(
-                image, levels, seeds[n], 4 * sizes[n] + 16, survivals, moved, mark, marks, pixels
+                image,
+                levels,
+                seeds[n],
+                min(4 * sizes[n] + 16, pixels.size),
+                survivals,
+                moved,
+                mark,
+                marks,
+                pixels,
             )
             if math.isnan(x):
                 continue

@@ -89,7 +89,7 @@ def _several(form: Form, noise: float) -> bool:
 
 
 @compiled
-def _of_form(light: Light, state: State, form: Form, centre: Floats, saturated: bool) -> int:
+def _form_doubts(light: Light, state: State, form: Form, centre: Floats, saturated: bool) -> int:
     """Doubts that departures from symmetry raise."""
     area, departing = form.area, form.lenient
     doubts = 0
@@ -138,7 +138,7 @@ def conclude(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if boxes[k].columns == 0:
             found |= _CUT
         if np.isfinite(state.xx):
-            found |= _of_form(light, state, form, centre, saturated)
+            found |= _form_doubts(light, state, form, centre, saturated)
             if not 2.0 * math.sqrt(max(form.major, 0.0)) <= longest_px:
                 found |= _NOT_SYMMETRIC if form.skew and not saturated else 0
                 found |= _SEVERAL if _several(form, math.sqrt(state.dark)) else 0

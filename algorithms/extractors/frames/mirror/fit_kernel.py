@@ -206,7 +206,7 @@ def _weights(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _in_common(level: int, d: float) -> float:
+def _common_noise(level: int, d: float) -> float:
     """Product of the weighting's taps with those of the slopes at d: noise that both have."""
     d2 = d * d
     p = _PRODUCTS[level]
@@ -357,8 +357,8 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
         _normal(h_x, h_y, g_x, g_y, differences, w, share, lanes, sums)
         half = 0.5 * sums.share  # the mean of two pixels has half the variance
         square = half * _SQUARES[0]
-        product_x = square if first else half * _in_common(0, d_x)
-        product_y = square if first else half * _in_common(0, d_y)
+        product_x = square if first else half * _common_noise(0, d_x)
+        product_y = square if first else half * _common_noise(0, d_y)
         if not _solve(sums, product_x, product_y, square, state):
             continue
         away += max(abs(state.d[0]), abs(state.d[1])) > _AWAY
@@ -376,8 +376,8 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
             a, b = work[6, :n], work[7, :n]
             _weight(wide[level % 2], p, stride, work[5], a, b)
             _normal(a, b, g_x, g_y, differences, w, share, lanes, other_sums)
-            product_x = half * _in_common(level + 1, d_x)
-            product_y = half * _in_common(level + 1, d_y)
+            product_x = half * _common_noise(level + 1, d_x)
+            product_y = half * _common_noise(level + 1, d_y)
             before[0] = state
             _solve(other_sums, product_x, product_y, half * _SQUARES[level + 1], state)
             if not max(state.xx, state.yy) < max(before[0].xx, before[0].yy):

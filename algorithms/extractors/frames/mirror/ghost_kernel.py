@@ -26,12 +26,15 @@ from algorithms.extractors.frames.mirror.lines_kernel import (
     places,
 )
 from algorithms.extractors.frames.mirror.records import State
+from algorithms.kernels.cholesky import factor, forward
 from algorithms.kernels.records import Records
 
 #: A pixel counts as lit above this fraction of the peak.
 _CUT = np.float32(0.1)
 #: Slopes along both axes, and the four cubic shapes.
 _SLOPES, _TERMS = 2, 6
+#: Pivot over diagonal below which a shape is not determined.
+_DEPENDENT = 1e-6
 #: Sums of products that their normal equations need.
 _SUMS = 24
 #: Chi squared, of four degrees of freedom, of what is skew, over the scatter, and its share of the
@@ -66,7 +69,7 @@ def _weight(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _of_slopes(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _add_slope_products(  # noqa: PLR0917 - Numba takes no keyword-only ones
     s: Line, p: int, stride: int, w: Line, e: Line, x: Line, y: Line, lanes: Line
 ) -> None:
     """Write weighted products of the slopes along both axes to the lanes.
@@ -100,7 +103,7 @@ def _of_slopes(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _of_cubes(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _add_cube_products(  # noqa: PLR0917 - Numba takes no keyword-only ones
     s: Line, p: int, w: Line, e: Line, x: Line, y: Line, lanes: Line
 ) -> None:
     """Write weighted products of the cubic shapes to the lanes, after those of the slopes.
@@ -151,22 +154,11 @@ def _equations(lanes: Line, matrix: Floats, right: Floats) -> None:
 @compiled
 def _explain(matrix: Floats, right: Floats) -> float:
     """Chi squared that the cubic shapes explain beyond the slopes: by Cholesky, slopes first."""
-    size = len(right)
     total = 0.0
-    for a in range(size):
-        own = matrix[a, a]
-        for b in range(a):
-            for c in range(b):
-                matrix[a, b] -= matrix[a, c] * matrix[b, c]
-            matrix[a, b] /= matrix[b, b]
-            matrix[a, a] -= matrix[a, b] * matrix[a, b]
-            right[a] -= matrix[a, b] * right[b]
-        if not matrix[a, a] > 1e-6 * own:
-            return 0.0  # too few pixels to tell shapes apart
-        matrix[a, a] = math.sqrt(matrix[a, a])
-        right[a] /= matrix[a, a]
-        if a >= _SLOPES:
-            total += right[a] * right[a]
+    if factor(matrix, _DEPENDENT):  # else too few pixels to tell shapes apart
+        forward(matrix, right)
+        for one in right[_SLOPES:]:
+            total += one * one
     return total
 
 
@@ -200,7 +192,7 @@ def skewness(  # noqa: PLR0917 - Numba takes no keyword-only ones
         x, y = space[1, :n], space[2, :n]
         height = box.last - box.top
         places(box, 4.0 / math.sqrt(float(box.columns * box.columns + height * height)), x, y)
-        _of_slopes(s[k], p, box.stride, w, e[k], x, y, lanes)
-        _of_cubes(s[k], p, w, e[k], x, y, lanes)
+        _add_slope_products(s[k], p, box.stride, w, e[k], x, y, lanes)
+        _add_cube_products(s[k], p, w, e[k], x, y, lanes)
         _equations(lanes, matrix, right)
         form.skew = _explain(matrix, right) > least

@@ -1,29 +1,28 @@
 """Centres, covariances and doubts of point-symmetric spots: one frame or window each.
 
 What `mirror.extractor.MirrorRegistration` does to whole frames, for whoever has windows of frames.
-Stages of compiled loops are run here one after the other, on as many frames at once as the
-processor's cache holds: the light is found (`search_kernel`), the pixels about its middle are
-paired (`pairs_kernel`); then, by turns, the displacement is fitted (`fit_kernel`) and pairs that
-depart are left out (`outlier_kernel`). After the first turn the background's slope is taken off
-(`ring_kernel`); shapes are looked at in the end (`shape_kernel`, `ghost_kernel`), and what speaks
-against an answer is concluded from all that (`doubts_kernel`).
+On as many frames at once as the processor's cache holds, the light is found (`search_kernel`) and
+the pixels about its middle are paired (`pairs_kernel`); by turns, the displacement is fitted
+(`fit_kernel`) and pairs that depart are left out (`outlier_kernel`), after the first turn without
+the background's slope (`ring_kernel`). Numbers that tell one spot (`shape_kernel`, `ghost_kernel`)
+decide what speaks against an answer (`doubts_kernel`).
 
 About a point m / 2, m whole, pixels x and m - x pair without interpolation. With f the spot about
 its centre c, d = 2 c - m and u = x - m / 2, a pair's difference is ``D = f(u - d/2) - f(u + d/2)``
 and its mean ``S = (f(u - d/2) + f(u + d/2)) / 2``, so that ``D = -2 tanh(d . grad / 2) S``: a
-filter on S that depends on d alone. Noise of D and S is independent where both pixels have the
-same, and so is that of different pairs: d solves the weighted least squares of D on the slopes of
-S, by steps. Half of the Fisher information about c is in f(u - d/2), half in its mirror image, and
-an unknown but symmetric f is orthogonal to both: nothing of the Cramer-Rao bound is lost.
+filter on S that depends on d alone. Noise of D and S is independent, and so is that of different
+pairs: d solves the weighted least squares of D on the slopes of S, by steps. Half of the Fisher
+information about c is in f(u - d/2), half in its mirror image, and an unknown but symmetric f is
+orthogonal to both: nothing of the Cramer-Rao bound is lost.
 
-A weight is one over the variance: of a dark pixel, and of what neighbouring departures differ by
-where there is light, by the mean light around; weights as sharp as a rim would turn what slopes
-miss of it into a share of d. The slopes that weigh are smoothed as long as that lowers the
-variance, and products with those that predict are freed of the noise that both have in common.
+A weight is one over the variance, that of a dark pixel and what the mean light around adds: weights
+as sharp as a rim would turn what slopes miss of it into a share of d. The slopes that weigh are
+smoothed as long as that lowers the variance, and products with those that predict are freed of the
+noise that both have in common.
 
 The stages share these arrays, a row a frame. Lengths are in pixels, light is over the peak's.
 
-- `lights`, `boxes`, `states`, `grounds` and `forms`: records, see `records`.
+- `lights`, `boxes`, `states`, `grounds` and `forms`: see `records`.
 - `s`, `d`: means and differences of the window's pairs, upper half, row after row a stride apart;
   those of `s` after 7 rows and 8 numbers of margin.
 - `keep`: what a pair of the core counts: 1, a half in a middle row, 0 for one left out, and -1 for

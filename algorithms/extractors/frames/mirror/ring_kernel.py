@@ -107,7 +107,7 @@ def _mask(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _by_column(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _sum_columns(  # noqa: PLR0917 - Numba takes no keyword-only ones
     s: Line, d: Line, box: Box, displacement: Floats, line: Line, columns: Line
 ) -> None:
     """Sum the ring's differences, without what the spot's own slope explains, down its columns.
@@ -184,7 +184,7 @@ def _powers(box: Box, inverse: float, powers: Powers) -> None:
 
 
 @compiled
-def _add_left(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def _add_rest(  # noqa: PLR0917 - Numba takes no keyword-only ones
     r: Line,
     across: Line,
     along: Line,
@@ -222,7 +222,7 @@ def _right(  # noqa: PLR0917 - Numba takes no keyword-only ones
     c, e = np.float32(2.0 * ground.bend[0]), np.float32(2.0 * ground.bend[1])
     far = np.float32(limit)
     lanes[:] = ZERO
-    _add_left(lines[0], lines[1], lines[2], n, inverse, a, b, c, e, far, lanes)
+    _add_rest(lines[0], lines[1], lines[2], n, inverse, a, b, c, e, far, lanes)
     return fold(lanes, 4, LANES)
 
 
@@ -360,7 +360,7 @@ def flatten(  # noqa: PLR0917 - Numba takes no keyword-only ones
         variance = 2.0 * state.dark + 1e-12
         prior = (_PRIOR / max(half[0], half[1])) ** 2
         _powers(box, 1.0 / ground.square, powers)
-        _by_column(s[k], d[k], box, state.d, space[0], columns)
+        _sum_columns(s[k], d[k], box, state.d, space[0], columns)
         largest = _moments(box, 1.0 / ground.square, columns, right)
         if largest <= _FAR * math.sqrt(variance):
             _step(variance, prior, powers, right, ground)

@@ -17,6 +17,7 @@ from algorithms.compiled import compiled
 from algorithms.contract import Floats
 from algorithms.extractors.frames.mirror.records import Light
 from algorithms.kernels.records import Records, record
+from algorithms.kernels.regions import join_runs, root_of
 
 #: Standard deviations of a dark pixel by which the brightest block must be above the background,
 #: and a lit one; the fraction of the brightest block's light that a lit one must have.
@@ -34,11 +35,13 @@ _MOST = 256
 DARK, SEVERAL, EDGE = 1, 2, 3
 
 
-class Region:
-    """Sums over the blocks of a region that is lit.
+class Run:
+    """Lit blocks side by side, and sums over them or, where it is the first, over their region.
 
     Attributes
     ----------
+    parent, first, end
+        See `algorithms.kernels.regions`.
     light
         Above the background.
     above, above_x, above_y
@@ -49,6 +52,9 @@ class Region:
         First and last column, first and last row.
     """
 
+    parent: int
+    first: int
+    end: int
     light: float
     above: float
     above_x: float
@@ -65,7 +71,7 @@ class Region:
     bottom: float
 
 
-_REGION = record(Region)
+_RUN = record(Run)
 
 
 @compiled
@@ -160,17 +166,10 @@ def _erode(flat: NDArray[Any], width: int, least: NDArray[Any], maxima: NDArray[
 
 
 @compiled
-def _root(parents: NDArray[np.int64], label: int) -> int:
-    while parents[label] != label:
-        label = parents[label]
-    return label
-
-
-@compiled
-def _add_run(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    row: NDArray[Any], i: int, first: int, end: int, base: float, cut: float, region: Region
+def _measure(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    row: NDArray[Any], i: int, first: int, end: int, base: float, cut: float, run: Run
 ) -> None:
-    """Add the blocks ``first .. end - 1`` of row i to a region."""
+    """Write the blocks ``first .. end - 1`` of row i, and sums over them, to a run."""
     # Every other block to the other sums: one alone waits for itself.
     light, other, light_x, other_x = 0.0, 0.0, 0.0, 0.0
     n = end - first
@@ -188,25 +187,20 @@ def _add_run(  # noqa: PLR0917 - Numba takes no keyword-only ones
         light_x += (n - 1) * u
     light += other
     x = 0.5 * n * (first + end - 1)
-    above = light - n * (cut - base)
-    region.light += light
-    region.above += above
-    region.above_x += light_x + other_x + first * light - x * (cut - base)
-    region.above_y += i * above
-    region.blocks += n
-    region.x += x
-    region.y += i * n
-    region.xx += x * x / n + n * (n * n - 1.0) / 12.0
-    region.yy += i * i * n
-    region.xy += i * x
-    region.left = min(region.left, first)
-    region.right = max(region.right, end - 1)
-    region.top = min(region.top, i)
-    region.bottom = max(region.bottom, i)
+    run.first, run.end = first, end
+    run.light = light
+    run.above = light - n * (cut - base)
+    run.above_x = light_x + other_x + first * light - x * (cut - base)
+    run.above_y = i * run.above
+    run.blocks, run.x, run.y = n, x, i * n
+    run.xx = x * x / n + n * (n * n - 1.0) / 12.0
+    run.yy = i * i * n
+    run.xy = i * x
+    run.left, run.right, run.top, run.bottom = first, end - 1, i, i
 
 
 @compiled
-def _lit(
+def _mark_lit(
     row: NDArray[Any], cut: float, columns: NDArray[np.int32], lit: NDArray[np.int32]
 ) -> tuple[int, int, bool]:
     """Write which of a row's blocks are lit; return the first, the last and whether all between."""
@@ -222,76 +216,48 @@ def _lit(
 
 
 @compiled
-def _regions(  # noqa: C901, PLR0917 - one scan, its cases
+def _regions(  # noqa: PLR0917 - Numba takes no keyword-only ones
     least: NDArray[Any],
     maxima: NDArray[Any],
     base: float,
     cut: float,
     columns: NDArray[np.int32],
     lit: NDArray[np.int32],
-    runs: NDArray[np.int64],
-    parents: NDArray[np.int64],
-    regions: Records,
+    runs: Records,
 ) -> int:
-    """Gather the connected regions above a cut; return how many labels were given, -1 for too many.
+    """Gather the connected regions above a cut; return how many runs there are, -1 for too many.
 
-    Runs of lit blocks are joined with those of the row above that they touch. `columns` (W - 1,)
-    are their numbers; `lit` (W,) and `runs` (2, 3, W) are work space. A label whose parent is
-    another one has handed its sums over.
+    The first run of each region, its own parent, receives the region's sums. `columns` (W - 1,)
+    are the blocks' numbers; `lit` (W,) is work space.
     """
-    labels, above = 0, 0
+    number, above, here, end = 0, 0, 0, 0
     for i in range(maxima.size):
+        above, here = here, end
         if not maxima[i] > cut:
-            above = 0
             continue
-        old, new = i % 2, 1 - i % 2
-        row = least[i]
-        begin, last, one = _lit(row, cut, columns, lit)
+        j, last, one = _mark_lit(least[i], cut, columns, lit)
         lit[last + 1] = 0
-        here, p, j = 0, 0, begin
         while j <= last:
             while lit[j] == 0:  # the last one is not
                 j += 1
             first, j = j, last + 1 if one else j
             while lit[j] != 0:  # the one after the last is none
                 j += 1
-            label = -1
-            while p < above and runs[old, 1, p] < first:
-                p += 1
-            q = p
-            while q < above and runs[old, 0, q] <= j:
-                other = _root(parents, runs[old, 2, q])
-                if label < 0:
-                    label = other
-                elif other != label:
-                    parents[other] = label
-                    _join(regions[label], regions[other])
-                q += 1
-            if label < 0:
-                if labels == len(parents):
-                    return -1
-                label = labels
-                labels += 1
-                parents[label] = label
-                _clear(regions[label])
-            _add_run(row, i, first, j, base, cut, regions[label])
-            runs[new, 0, here], runs[new, 1, here], runs[new, 2, here] = first, j, label
-            here += 1
-        above = here
-    return labels
+            _measure(least[i], i, first, j, base, cut, runs[end])
+            runs[end].parent = end
+            end += 1
+        number += join_runs(runs, above, here, end)
+        if number > _MOST:
+            return -1
+    for run in range(end):
+        first = root_of(runs, run)
+        if first != run:
+            _join(runs[first], runs[run])
+    return end
 
 
 @compiled
-def _clear(region: Region) -> None:
-    """Begin a region without any block."""
-    region.light, region.above, region.above_x, region.above_y = 0.0, 0.0, 0.0, 0.0
-    region.blocks, region.x, region.y = 0.0, 0.0, 0.0
-    region.xx, region.yy, region.xy = 0.0, 0.0, 0.0
-    region.left, region.right, region.top, region.bottom = np.inf, -np.inf, np.inf, -np.inf
-
-
-@compiled
-def _join(region: Region, other: Region) -> None:
+def _join(region: Run, other: Run) -> None:
     """Add the sums of another region to those of one."""
     region.light += other.light
     region.above += other.above
@@ -308,7 +274,7 @@ def _join(region: Region, other: Region) -> None:
 
 
 @compiled
-def _compact(region: Region) -> bool:
+def _compact(region: Run) -> bool:
     """Whether a region's blocks lie together as those of an ellipse or a square do."""
     n = region.blocks
     xx = region.xx / n - (region.x / n) ** 2 + 1.0 / 12.0
@@ -327,9 +293,7 @@ def _refuse(light: Light, refusal: int) -> None:
 
 
 @compiled
-def find_lights(  # noqa: C901 - one frame, its cases
-    frames: NDArray[Any], unusable: NDArray[np.bool_], lights: Records
-) -> None:
+def find_lights(frames: NDArray[Any], unusable: NDArray[np.bool_], lights: Records) -> None:
     """Write where the one light of each frame is, or why there is not one."""
     count, height, width = frames.shape
     flat = frames.reshape(count, height * width)
@@ -337,9 +301,7 @@ def find_lights(  # noqa: C901 - one frame, its cases
     maxima = np.empty(height - 1, dtype=frames.dtype)
     columns, lit = np.arange(width - 1).astype(np.int32), np.empty(width, dtype=np.int32)
     work = np.empty((4, 2 * (height + width)))
-    runs = np.empty((2, 3, width), dtype=np.int64)
-    parents = np.empty(_MOST, dtype=np.int64)
-    regions = np.empty(_MOST, dtype=_REGION)
+    runs = np.empty(height * (width // 2 + 1), dtype=_RUN)
     for k in range(count):
         light = lights[k]
         _refuse(light, DARK)
@@ -353,18 +315,16 @@ def find_lights(  # noqa: C901 - one frame, its cases
         if not peak > _SEEN * sigma:
             continue
         cut = base + max(_CUT * peak, _LIT * sigma)
-        labels = _regions(least, maxima, base, cut, columns, lit, runs, parents, regions)
+        number = _regions(least, maxima, base, cut, columns, lit, runs)
         best, total = -1, 0.0
-        if labels < 0:
-            continue
-        for label in range(labels):
-            if parents[label] == label:
-                total += regions[label].light
-                if best < 0 or regions[label].light > regions[best].light:
-                    best = label
+        for run in range(number):
+            if runs[run].parent == run:
+                total += runs[run].light
+                if best < 0 or runs[run].light > runs[best].light:
+                    best = run
         if best < 0:
             continue
-        s = regions[best]
+        s = runs[best]
         inside = s.left > 0 and s.top > 0 and s.right < width - 2 and s.bottom < height - 2
         alone = total - s.light <= _RIVAL * s.light
         if not (s.blocks >= 2 and s.above > 0.0):

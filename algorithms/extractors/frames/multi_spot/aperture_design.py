@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from algorithms.contract import SensorGeometry, UnsuitableDesignError
-from algorithms.extractors.frames.multi_spot.aperture_pattern import (
-    FieldPx,
-    PatternSearch,
-    nearest_distance,
-)
+from algorithms.extractors.frames.multi_spot.aperture_pattern import FieldPx, nearest_distance
 from algorithms.inputs import require_positive
+
+if TYPE_CHECKING:
+    from algorithms.extractors.frames.multi_spot.mask_spots import MaskSpots
 
 PATTERN_NEEDS = ("focal_length_mm", "pixel_pitch_mm", "aperture_width_mm", "aperture_shape")
 """Fields of a sensor's design that `design_pattern` reads; slits have no shape there."""
@@ -73,7 +72,7 @@ def _field(geometry: SensorGeometry, focal_px: float) -> FieldPx | None:
     return (*centre, round(reach, 6))
 
 
-def require_pattern(search: PatternSearch) -> None:
+def require_pattern(search: MaskSpots) -> None:
     """Raise ValueError naming the first parameter of a pattern that is out of range."""
     by, tolerance_px, field_px = search.about.name, search.tolerance_px, search.field_px
     rows = (

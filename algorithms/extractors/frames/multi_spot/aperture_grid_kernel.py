@@ -9,10 +9,15 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.extractors.frames.multi_spot.records import (
+    Indices,
+    Lattice,
+    Matches,
+    Partners,
+    Seen,
+)
 
-Indices = NDArray[np.int64]
-Votes = NDArray[np.int32]
-Partners = NDArray[np.int32]
+Votes = NDArray[np.int16]
 
 #: Displacements tried, those that most pairs of a spot and an aperture vote for.
 _CANDIDATES = 64
@@ -25,13 +30,9 @@ _REACH = 2.0
 
 
 @compiled
-def _nearest(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    table: Indices, corner: Floats, cell: float, apertures: Floats, x: float, y: float, reach: float
-) -> tuple[int, float]:
-    """Aperture nearest to a point within `reach`, and its squared distance; -1 for none.
-
-    `table` (R, C) holds the aperture in each cell of a lattice from `corner`, or -1.
-    """
+def nearest(lattice: Lattice, x: float, y: float, reach: float) -> tuple[int, float]:
+    """Aperture nearest to a point within `reach`, and its squared distance; -1 for none."""
+    table, corner, cell = lattice.table, lattice.corner, lattice.cell_px
     best = -1
     least = reach * reach
     top = max(math.floor((y - reach - corner[1]) / cell), 0)
@@ -42,8 +43,8 @@ def _nearest(  # noqa: PLR0917 - Numba takes no keyword-only ones
         for j in range(left, right):
             a = table[i, j]
             if a >= 0:
-                dx = x - apertures[a, 0]
-                dy = y - apertures[a, 1]
+                dx = x - lattice.apertures[a, 0]
+                dy = y - lattice.apertures[a, 1]
                 distance = dx * dx + dy * dy
                 if distance < least:
                     least = distance
@@ -129,55 +130,74 @@ def _rank(ballot: Votes, touched: Indices, arounds: Votes, best: Indices, votes:
 
 
 @compiled
+def _pair(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    spots: Floats,
+    lattice: Lattice,
+    x: float,
+    y: float,
+    reach: float,
+    partner: Indices,
+    distance: Floats,
+    matched: Indices,
+) -> int:
+    """Write the nearest spot of each aperture moved by (x, y), and which have one, rising."""
+    number = 0
+    for s in range(spots.shape[0]):
+        a, squared = nearest(lattice, spots[s, 0] - x, spots[s, 1] - y, reach)
+        if a < 0 or (partner[a] >= 0 and not squared < distance[a]):
+            continue
+        if partner[a] < 0:
+            at = number
+            while at > 0 and matched[at - 1] > a:
+                matched[at] = matched[at - 1]
+                at -= 1
+            matched[at] = a
+            number += 1
+        partner[a] = s
+        distance[a] = squared
+    return number
+
+
+@compiled
 def _fit(  # noqa: PLR0917 - Numba takes no keyword-only ones
     spots: Floats,
-    apertures: Floats,
-    table: Indices,
-    corner: Floats,
-    cell: float,
+    lattice: Lattice,
     x: float,
     y: float,
     tolerance: float,
     partner: Indices,
     distance: Floats,
+    matched: Indices,
 ) -> tuple[float, float, float, int]:
     """Displacement near (x, y) under which spots lie on apertures, its quality and their number.
 
-    `partner` (A,) receives the spot of each aperture, or -1. The quality is the sum over the
-    matched of one less their squared distance in tolerances.
+    `partner` (A,) receives the spot of each aperture, or -1, and `matched` (S,) which have one. The
+    quality is the sum over these of one less their squared distance in tolerances.
     """
-    matched = 0
+    number = 0
     quality = 0.0
+    partner[:] = -1
     for turn in range(_ROUNDS):
         reach = tolerance * (_REACH if turn == 0 else 1.0)
-        partner[:] = -1
-        for s in range(spots.shape[0]):
-            a, squared = _nearest(
-                table, corner, cell, apertures, spots[s, 0] - x, spots[s, 1] - y, reach
-            )
-            if a >= 0 and (partner[a] < 0 or squared < distance[a]):
-                partner[a] = s
-                distance[a] = squared
-        matched = 0
+        for n in range(number):
+            partner[matched[n]] = -1
+        number = _pair(spots, lattice, x, y, reach, partner, distance, matched)
         quality = 0.0
         sum_x = 0.0
         sum_y = 0.0
-        for a in range(apertures.shape[0]):
-            s = partner[a]
-            if s >= 0:
-                matched += 1
-                quality += 1.0 - distance[a] / (reach * reach)
-                sum_x += spots[s, 0] - apertures[a, 0]
-                sum_y += spots[s, 1] - apertures[a, 1]
-        if matched == 0:
+        for a in matched[:number]:
+            quality += 1.0 - distance[a] / (reach * reach)
+            sum_x += spots[partner[a], 0] - lattice.apertures[a, 0]
+            sum_y += spots[partner[a], 1] - lattice.apertures[a, 1]
+        if number == 0:
             break
         if turn < _ROUNDS - 1:
             before_x, before_y = x, y
-            x = sum_x / matched
-            y = sum_y / matched
+            x = sum_x / number
+            y = sum_y / number
             if turn > 0 and x == before_x and y == before_y:
                 break  # another round would find the same
-    return x, y, quality, matched
+    return x, y, quality, number
 
 
 @compiled
@@ -192,15 +212,11 @@ def _distinct(places: Floats, number: int, x: float, y: float, tolerance: float)
 @compiled
 def _explanations(  # noqa: PLR0917 - Numba takes no keyword-only ones
     spots: Floats,
-    apertures: Floats,
-    table: Indices,
-    corner: Floats,
-    cell: float,
+    lattice: Lattice,
     tolerance: float,
     slack: float,
     starts: Floats,
     votes: Indices,
-    partner: Indices,
     places: Floats,
     partners: Partners,
 ) -> int:
@@ -209,8 +225,9 @@ def _explanations(  # noqa: PLR0917 - Numba takes no keyword-only ones
     `votes` (C,), in falling order, are the most spots that a start can match; `places` (K, 2) and
     `partners` (K, A) receive displacements and matches, best first.
     """
-    room = places.shape[0]
-    distance = np.empty(apertures.shape[0])
+    room, number = partners.shape
+    partner, distance = np.empty(number, dtype=np.int64), np.empty(number)
+    met = np.empty(spots.shape[0], dtype=np.int64)
     score = np.empty(room)
     kept = 0
     most = 0
@@ -218,16 +235,7 @@ def _explanations(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if votes[c] < most - slack or (kept == room and votes[c] <= score[kept - 1]):
             break  # no spot adds more than one
         x, y, quality, matched = _fit(
-            spots,
-            apertures,
-            table,
-            corner,
-            cell,
-            starts[c, 0],
-            starts[c, 1],
-            tolerance,
-            partner,
-            distance,
+            spots, lattice, starts[c, 0], starts[c, 1], tolerance, partner, distance, met
         )
         most = max(most, matched)
         if matched == 0 or not _distinct(places, kept, x, y, tolerance):
@@ -243,7 +251,7 @@ def _explanations(  # noqa: PLR0917 - Numba takes no keyword-only ones
         score[at] = quality
         places[at, 0] = x
         places[at, 1] = y
-        for a in range(partner.size):
+        for a in range(number):
             partners[at, a] = partner[a]
         kept = min(kept + 1, room)
     return kept
@@ -251,74 +259,61 @@ def _explanations(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 @compiled
 def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    spots: Floats,
-    counts: Indices,
-    apertures: Floats,
-    table: Indices,
-    corner: Floats,
-    cell: float,
+    seen: Seen,
+    lattice: Lattice,
     frame: tuple[int, int],
     tolerance: float,
     slack: float,
-    places: Floats,
-    partners: Partners,
-    kept: Indices,
+    matches: Matches,
 ) -> None:
-    """Find the displacements (x, y) of the apertures that match most of each frame's spots.
+    """Find the displacements of the apertures that match most of each frame's spots.
 
     Which of them it is, `evidence_kernel.decide` tells.
 
     Parameters
     ----------
-    spots, counts
-        (N, S, 4) and (N,) as `spots_kernel.segment` writes them.
-    apertures, table, corner, cell
-        (A, 3) x, y, width; the lattice of `_nearest`.
+    seen, lattice
+        The frames' spots and the mask.
     frame
         Height and width.
     tolerance
         Largest distance of a spot from its place, px.
     slack
         Spots that a displacement may match less than the best one: others are out of question.
-    places, partners, kept
-        (N, K, 2), (N, K, A) and (N,): receive the displacements, by falling quality of the match
-        (see `_fit`), the spot of each aperture under it, -1 for none, and their number.
+    matches
+        Receives the displacements, by falling quality of the match (see `_fit`).
     """
     height, width = frame
+    apertures, counts = lattice.apertures, seen.counts
     low_x = apertures[:, 0].max()
     low_y = apertures[:, 1].max()
     wide = width + low_x - apertures[:, 0].min()
     high = height + low_y - apertures[:, 1].min()
-    ballot = np.zeros((int(high / tolerance) + 4, int(wide / tolerance) + 4), dtype=np.int32)
+    ballot = np.zeros((int(high / tolerance) + 4, int(wide / tolerance) + 4), dtype=np.int16)
     touched = np.empty(max(counts.max(), 1) * apertures.shape[0], dtype=np.int64)
-    arounds = np.empty(touched.size, dtype=np.int32)
+    arounds = np.empty(touched.size, dtype=np.int16)
     best = np.empty(_CANDIDATES, dtype=np.int64)
     votes = np.empty(_CANDIDATES, dtype=np.int64)
     starts = np.empty((_CANDIDATES, 2))
-    partner = np.empty(apertures.shape[0], dtype=np.int64)
-    for k in range(spots.shape[0]):
-        kept[k] = 0
+    for k in range(counts.size):
+        matches.kept[k] = 0
         if counts[k] < 1:
             continue
-        seen = spots[k, : counts[k]]
-        cells = _cast(seen, apertures, tolerance, ballot, touched)
+        spots = seen.spots[k, : counts[k]]
+        cells = _cast(spots, apertures, tolerance, ballot, touched)
         candidates = _rank(ballot, touched[:cells], arounds, best, votes)
         for at in touched[:cells]:
             ballot.ravel()[at] = 0
         for c in range(candidates):
             starts[c, 0] = (best[c] % ballot.shape[1] - 0.5) * tolerance - low_x
             starts[c, 1] = (best[c] // ballot.shape[1] - 0.5) * tolerance - low_y
-        kept[k] = _explanations(
-            seen,
-            apertures,
-            table,
-            corner,
-            cell,
+        matches.kept[k] = _explanations(
+            spots,
+            lattice,
             tolerance,
             slack,
             starts[:candidates],
             votes[:candidates],
-            partner,
-            places[k],
-            partners[k],
+            matches.places[k],
+            matches.partners[k],
         )

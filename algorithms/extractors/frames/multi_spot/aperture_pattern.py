@@ -6,14 +6,18 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.contract import AboutExtractor, Floats
+from algorithms.contract import Floats
 from algorithms.extractors.frames.multi_spot.pattern_memory import found_once
+from algorithms.extractors.frames.multi_spot.records import Lattice, Matches, Seen, Views
 from algorithms.row_arithmetic import medians
+
+if TYPE_CHECKING:
+    from algorithms.extractors.frames.multi_spot.mask_spots import MaskSpots
 
 Apertures = tuple[tuple[float, float, float], ...]
 """A row an aperture: x, y from the middle of the mask, and width, px."""
@@ -39,18 +43,6 @@ _SAMPLE = 4096
 _LEAST_SIGNAL = 5.0
 #: Spots kept of a frame, an aperture: stray lights may add to them.
 _SPOTS_PER_APERTURE = 4
-
-
-@dataclass(frozen=True, eq=False)
-class Lattice:
-    """The apertures of a mask, and which of them is near a point."""
-
-    apertures: Floats  # (A, 3)
-    table: NDArray[np.int64]  # (R, C) the aperture in a cell, -1 for none
-    corner: Floats  # (2,) of the table's first cell
-    cell_px: float
-    nearest_px: float  # least distance of two apertures, infinite for one
-    lines: NDArray[np.int64]  # (2, A) in which column and row each is
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,36 +87,6 @@ class Pattern(NamedTuple):
     displacement: Floats
     spots: Floats
     ambiguous: NDArray[np.bool_]
-
-
-class PatternSearch(Protocol):
-    """What methods that read a mask's pattern of apertures say of it: see their parameters."""
-
-    about: ClassVar[AboutExtractor]
-
-    @property
-    def apertures_px(self) -> Apertures:
-        """The mask."""
-
-    @property
-    def blur_px(self) -> float:
-        """Width of the Sun's image behind a hole."""
-
-    @property
-    def threshold(self) -> float:
-        """Fraction of the spots' brightness that makes a spot."""
-
-    @property
-    def tolerance_px(self) -> float:
-        """Largest distance of a spot from its aperture's place."""
-
-    @property
-    def faulty_lines(self) -> int:
-        """Lines of apertures that may be dark or doubled at once."""
-
-    @property
-    def field_px(self) -> FieldPx | None:
-        """Middle and reach of the field of view."""
 
 
 def nearest_distance(apertures: Floats) -> float:
@@ -193,7 +155,7 @@ def frame_levels(frames: NDArray[Any], apertures_px: Apertures, threshold: float
 
 
 def find_pattern(
-    search: PatternSearch, frames: NDArray[Any], levels: Levels, *, sequence: bool = False
+    search: MaskSpots, frames: NDArray[Any], levels: Levels, *, sequence: bool = False
 ) -> Pattern:
     """Find the pattern in each of the frames (N, H, W) of `as_frames`.
 
@@ -231,79 +193,56 @@ def _find_pattern(
     least = max(_AREAS[0] * math.pi / 4.0 * float(widths.min()) ** 2, _LEAST_PIXELS)
     most = max(_AREAS[1] * (float(widths.max()) + blur_px) ** 2, 2.0 * least)
     room = min(_SPOTS_PER_APERTURE * len(widths) + 16, int(height * width / least) + 1)
-    seen, cuts = np.empty((count, room, 4)), np.empty((count, _CUTS, 3))
-    counts, cut_counts = np.empty((2, count), dtype=np.int64)
-    spots_kernel.segment(
-        frames, levels.maxima, levels.threshold, least, most, seen, counts, cuts, cut_counts
+    seen = room_for_spots(count, room, _CUTS)
+    spots_kernel.segment(frames, levels.maxima, levels.threshold, least, most, seen)
+    shape = count, _COMPARED, len(widths)
+    matches = Matches(
+        np.empty((count, _COMPARED, 2)),
+        np.empty(shape, dtype=np.int32),
+        np.empty(count, dtype=np.int64),
     )
-
-    places = np.empty((count, _COMPARED, 2))
-    matches = np.empty((count, _COMPARED, len(widths)), dtype=np.int32)
-    kept = np.empty(count, dtype=np.int64)
-    aperture_grid_kernel.match(
-        seen,
-        counts,
-        known.apertures,
-        known.table,
-        known.corner,
-        known.cell_px,
-        (height, width),
-        tolerance_px,
-        # for a doubt, a line of spots unexplained is a fault, and some are missing
-        (faulty_lines + 0.5) * max(int(np.bincount(line).max()) for line in known.lines) + 4,
-        places,
-        matches,
-        kept,
+    # for a doubt, a line of spots unexplained is a fault, and some are missing
+    slack = (faulty_lines + 0.5) * max(int(np.bincount(line).max()) for line in known.lines) + 4
+    aperture_grid_kernel.match(seen, known, (height, width), tolerance_px, slack, matches)
+    views = Views(
+        np.empty(shape, dtype=np.int8),
+        np.empty((count, _COMPARED, _CUTS), dtype=np.int32),
+        np.empty((count, room), dtype=np.bool_),
+        np.empty((count, _COMPARED), dtype=np.bool_),
     )
-    states = np.empty((count, _COMPARED, len(widths)), dtype=np.int8)
-    cut_to = np.empty((count, _COMPARED, _CUTS), dtype=np.int32)
-    bright = np.empty((count, room), dtype=np.bool_)
-    enough = np.empty((count, _COMPARED), dtype=np.bool_)
-    view_kernel.look(
-        frames,
-        levels.threshold,
-        seen,
-        counts,
-        cuts,
-        cut_counts,
-        known.apertures,
-        margin_px(blur_px),
-        SHARE,
-        places,
-        matches,
-        kept,
-        states,
-        cut_to,
-        bright,
-        enough,
-    )
+    margin = margin_px(blur_px)
+    view_kernel.look(frames, levels.threshold, seen, known.apertures, margin, SHARE, matches, views)
     displacement = np.empty((count, 2))
     partners = np.empty((count, len(widths)), dtype=np.int64)
     reason = np.empty(count, dtype=np.int64)
     apart = min(known.nearest_px, float(height + width)) / 4.0
     evidence_kernel.decide(
         seen,
-        counts,
-        cut_counts,
-        known.apertures,
-        known.lines,
+        known,
         tolerance_px,
         (float(faulty_lines), apart if sequence else 0.0),
         field_px or (0.0, 0.0, math.inf),
-        places,
         matches,
-        kept,
-        states,
-        cut_to,
-        bright,
-        enough,
+        views,
         displacement,
         partners,
         reason,
     )
-    positions = np.take_along_axis(seen, np.maximum(partners, 0)[:, :, None], axis=1)[:, :, :2]
+    positions = np.take_along_axis(seen.spots, np.maximum(partners, 0)[:, :, None], axis=1)[
+        :, :, :2
+    ]
     positions[partners < 0] = np.nan
     return Pattern(displacement, positions, reason >= evidence_kernel.SEVERAL)
+
+
+def room_for_spots(count: int, room: int, cuts: int) -> Seen:
+    """Room for the spots of so many frames: whole ones and cut ones of each."""
+    return Seen(
+        np.zeros((count, room, 4)),
+        np.empty(count, dtype=np.int64),
+        np.zeros((count, cuts, 3)),
+        np.empty(count, dtype=np.int64),
+    )
 
 
 def margin_px(blur_px: float) -> float:
@@ -312,7 +251,7 @@ def margin_px(blur_px: float) -> float:
 
 
 def follow_pattern(
-    search: PatternSearch,
+    search: MaskSpots,
     frames: NDArray[Any],
     follow: Callable[[NDArray[Any], Levels, Pattern], Floats],
 ) -> Floats:

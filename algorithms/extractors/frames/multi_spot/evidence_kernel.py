@@ -5,16 +5,23 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.extractors.frames.multi_spot.aperture_grid_kernel import nearest
+from algorithms.extractors.frames.multi_spot.records import (
+    Flags,
+    FrameView,
+    Indices,
+    Lattice,
+    Matches,
+    Partners,
+    Seen,
+    States,
+    Views,
+    Work,
+)
 from algorithms.extractors.frames.multi_spot.view_kernel import DARK, OUT
-
-Indices = NDArray[np.int64]
-Partners = NDArray[np.int32]
-States = NDArray[np.int8]
-Flags = NDArray[np.bool_]
 
 #: What `decide` says of a frame: an answer, no pattern found, several that it may be, and an answer
 #: that it is not, should lines be seen twice in full light.
@@ -33,80 +40,68 @@ _EVEN = 1e-9  # rounding speaks for none of two displacements
 
 @compiled
 def _price(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    faults: Flags,
+    near: Indices,
     lines: Indices,
     shown: Indices,
     line: float,
     limits: tuple[float, float],
-    limit: Floats,
-    sums: Floats,
+    work: Work,
 ) -> float:
-    """Price of the faulty, in columns or rows as is cheaper; that of a line has a limit (2, A)."""
+    """Price of the faulty ones, in columns or rows as is cheaper; that of a line has a limit."""
     least, most = limits
+    sums = work.sums
     best = math.inf
     for axis in range(2):
         sums[:] = 0.0
-        for a in range(faults.size):
-            if faults[a]:
+        for a in near:
+            if work.faults[a]:
                 one = line / max(shown[axis, lines[axis, a]], 1)
                 sums[lines[axis, a]] += min(max(one, least), most)
         total = 0.0
-        for a in range(sums.size):
-            total += min(sums[a], limit[axis, a])
+        for n in range(sums.size):
+            total += min(sums[n], work.limit[axis, n])
         best = min(best, total)
     return best
 
 
 @compiled
 def _dark_alone(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    state: States,
-    partner: Partners,
-    bright: Flags,
-    apertures: Floats,
+    frame: FrameView,
+    h: int,
+    lattice: Lattice,
     away_x: float,
     away_y: float,
-    near: float,
+    reach: float,
     faults: Flags,
 ) -> bool:
-    """Mark the dark places of one displacement where the other, `away` from it, has no aperture.
+    """Mark the dark places of displacement h where the other, `away` from it, has no aperture.
 
     Its spots that are dimmer than usual, as reflections are, count as dark.
     """
+    partner, state, apertures = frame.partners[h], frame.states[h], lattice.apertures
     some = False
-    for a in range(state.size):
-        dim = partner[a] >= 0 and not bright[partner[a]]
+    for a in frame.near[h, : frame.numbers[h]]:
+        dim = partner[a] >= 0 and not frame.bright[partner[a]]
         faults[a] = dim or state[a] == DARK
-        if not faults[a]:
-            continue
-        for b in range(state.size):
-            dx = apertures[a, 0] + away_x - apertures[b, 0]
-            dy = apertures[a, 1] + away_y - apertures[b, 1]
-            if dx * dx + dy * dy < near * near:
-                faults[a] = False
-                break
-        some |= faults[a]
+        if faults[a]:
+            x, y = apertures[a, 0] + away_x, apertures[a, 1] + away_y
+            faults[a] = nearest(lattice, x, y, reach)[0] < 0
+            some |= faults[a]
     return some
 
 
 @compiled
-def _lit_alone(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    partner: Partners,
-    cut: Partners,
-    other: Partners,
-    other_cut: Partners,
-    bright: Flags,
-    taken: Flags,
-    faults: Flags,
-) -> bool:
-    """Mark the apertures whose spots, whole or cut, only this displacement explains."""
+def _lit_alone(frame: FrameView, h: int, other: int, taken: Flags, faults: Flags) -> bool:
+    """Mark the apertures whose spots, whole or cut, only displacement h explains."""
+    partner, cut, other_cut = frame.partners[h], frame.cut_to[h], frame.cut_to[other]
     taken[:] = False
-    for a in range(other.size):
-        if other[a] >= 0:
-            taken[other[a]] = True
+    for a in frame.near[other, : frame.numbers[other]]:
+        if frame.partners[other, a] >= 0:
+            taken[frame.partners[other, a]] = True
     some = False
-    for a in range(partner.size):
+    for a in frame.near[h, : frame.numbers[h]]:
         s = partner[a]
-        faults[a] = s >= 0 and not taken[s] and bright[s]
+        faults[a] = s >= 0 and not taken[s] and frame.bright[s]
         some |= faults[a]
     for c in range(cut.size):
         if cut[c] >= 0 and other_cut[c] < 0:
@@ -116,78 +111,76 @@ def _lit_alone(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def _is_beside(at: float, partner: Partners, places: Floats, axis: int, away: float) -> bool:
-    """Whether all of the places (A, 3) that have a spot are on one side of `at` along an axis."""
+def _is_beside(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    at: float, frame: FrameView, h: int, apertures: Floats, axis: int, away: float
+) -> bool:
+    """Whether all apertures that have a spot under h are on one side of `at` along an axis."""
     below = above = False
-    for a in range(partner.size):
-        if partner[a] >= 0:
-            below |= places[a, axis] + away < at
-            above |= places[a, axis] + away > at
+    for a in frame.near[h, : frame.numbers[h]]:
+        if frame.partners[h, a] >= 0:
+            below |= apertures[a, axis] + away < at
+            above |= apertures[a, axis] + away > at
     return not (below and above)
 
 
 @compiled
 def _limit_doubled(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    faults: Flags,
-    apertures: Floats,
-    lines: Indices,
-    other: Partners,
+    frame: FrameView,
+    h: int,
+    other: int,
+    lattice: Lattice,
     away_x: float,
     away_y: float,
-    near: float,
-    doubled: float,
-    work: tuple[Indices, Indices],
-    limit: Floats,
-) -> None:
-    """Write the limit (2, A) of each line's price: less where it may be one of the other's twice.
+    tolerance: float,
+    work: Work,
+) -> bool:
+    """Lower the limits of lines of h that may be the other displacement's seen twice; if any.
 
     The faulty of a line are, where they lie beyond all spots of the `other` displacement, which is
     `away` from this one, and a line of it has an aperture beside each of them.
     """
-    faulty, beside = work
+    apertures, lines, faults = lattice.apertures, lattice.lines, work.faults
+    faulty, beside = work.faulty, work.beside
+    near = frame.near[h, : frame.numbers[h]]
+    some = False
     for axis in range(2):
         across, along = (away_x, away_y) if axis == 0 else (away_y, away_x)
-        limit[axis, :] = _LIGHT
         faulty[:] = 0
-        for a in range(faults.size):
+        for a in near:
             faulty[lines[axis, a]] += faults[a]
-        for a in range(faults.size):
+        for a in near:
             line = lines[axis, a]
-            if faulty[line] == 0:
-                continue
             number = faulty[line]
             faulty[line] = 0  # each line is looked at once
-            if not _is_beside(apertures[a, axis], other, apertures, axis, across):
+            if number == 0 or not _is_beside(
+                apertures[a, axis], frame, other, apertures, axis, across
+            ):
                 continue
             beside[:] = 0
-            for b in range(faults.size):
+            for b in near:
                 if not faults[b] or lines[axis, b] != line:
                     continue
                 for c in range(faults.size):
                     off = apertures[b, 1 - axis] - along - apertures[c, 1 - axis]
-                    beside[lines[axis, c]] += abs(off) < near
+                    beside[lines[axis, c]] += abs(off) < tolerance
             if beside.max() >= number:
-                limit[axis, line] = doubled
+                work.limit[axis, line] = _DOUBLED
+                some = True
+    return some
 
 
 @compiled
 def _closer(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    one: int,
-    other: int,
-    spots: Floats,
-    places: Floats,
-    partners: Partners,
-    apertures: Floats,
-    tolerance: float,
-    owner: Indices,
+    frame: FrameView, one: int, other: int, apertures: Floats, tolerance: float, owner: Indices
 ) -> float:
     """By how much spots that both explain lie nearer to their places under `one`: squares."""
+    spots, places, partners = frame.spots, frame.places, frame.partners
     owner[:] = -1
-    for a in range(partners.shape[1]):
+    for a in frame.near[one, : frame.numbers[one]]:
         if partners[one, a] >= 0:
             owner[partners[one, a]] = a
     closer = 0.0
-    for b in range(partners.shape[1]):
+    for b in frame.near[other, : frame.numbers[other]]:
         s = partners[other, b]
         if s >= 0 and owner[s] >= 0:
             a = owner[s]
@@ -200,47 +193,35 @@ def _closer(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 @compiled
 def _ahead(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    one: int,
-    other: int,
-    spots: Floats,
-    places: Floats,
-    view: tuple[Partners, Partners, States, Indices, Flags, Floats],
-    mask: tuple[Floats, Indices],
-    tolerance: float,
-    doubled: float,
-    work: tuple[Indices, Indices, Indices, Flags, Flags, Floats, Floats],
-) -> float:
-    """By how much more the frame speaks against the `other` displacement than against `one`."""
-    partners, cut_to, state, shown, bright, outside = view
-    apertures, lines = mask
-    owner, faulty, beside, taken, faults, limit, sums = work
-    ahead = _closer(one, other, spots, places, partners, apertures, tolerance, owner)
-    for side in range(2):
-        a, b = (other, one) if side == 0 else (one, other)
-        price = outside[a]
+    frame: FrameView, one: int, other: int, lattice: Lattice, tolerance: float, work: Work
+) -> tuple[float, float]:
+    """By how much more the frame speaks against the `other` displacement than against `one`.
+
+    The same if a line of lit ones that may be one of the other's seen twice is one fault.
+    """
+    places, lines = frame.places, lattice.lines
+    ahead = _closer(frame, one, other, lattice.apertures, tolerance, work.owner)
+    doubled = ahead
+    for a, b, sign in ((other, one, 1.0), (one, other, -1.0)):
+        price = frame.outside[a]
         away_x = places[a, 0] - places[b, 0]
         away_y = places[a, 1] - places[b, 1]
-        if _dark_alone(
-            state[a], partners[a], bright, apertures, away_x, away_y, 2.0 * tolerance, faults
-        ):
-            limit[:] = _DARKNESS
-            price += _price(faults, lines, shown[a], _DARKNESS, _DARK_ONE, limit, sums)
-        if _lit_alone(partners[b], cut_to[b], partners[a], cut_to[a], bright, taken, faults):
-            _limit_doubled(
-                faults,
-                apertures,
-                lines,
-                partners[a],
-                away_x,
-                away_y,
-                tolerance,
-                doubled,
-                (faulty, beside),
-                limit,
-            )
-            price += _price(faults, lines, shown[b], _LIGHT, _LIGHT_ONE, limit, sums)
-        ahead += price if side == 0 else -price
-    return ahead
+        if _dark_alone(frame, a, lattice, away_x, away_y, 2.0 * tolerance, work.faults):
+            work.limit[:] = _DARKNESS
+            near = frame.near[a, : frame.numbers[a]]
+            price += _price(near, lines, frame.shown[a], _DARKNESS, _DARK_ONE, work)
+        twice = price
+        if _lit_alone(frame, b, a, work.taken, work.faults):
+            work.limit[:] = _LIGHT
+            near, shown = frame.near[b, : frame.numbers[b]], frame.shown[b]
+            lit = _price(near, lines, shown, _LIGHT, _LIGHT_ONE, work)
+            price += lit
+            if _limit_doubled(frame, b, a, lattice, away_x, away_y, tolerance, work):
+                lit = _price(near, lines, shown, _LIGHT, _LIGHT_ONE, work)
+            twice += lit
+        ahead += sign * price
+        doubled += sign * twice
+    return ahead, doubled
 
 
 @compiled
@@ -258,35 +239,36 @@ def _is_thin(partner: Partners, lines: Indices, allowed: float, work: Indices) -
 
 @compiled
 def _choose(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    spots: Floats,
-    places: Floats,
-    view: tuple[Partners, Partners, States, Indices, Flags, Floats],
-    mask: tuple[Floats, Indices],
+    frame: FrameView,
+    lattice: Lattice,
     enough: Flags,
     limits: tuple[float, float],
     last: tuple[float, float, float],
-    work: tuple[Indices, Indices, Indices, Flags, Flags, Floats, Floats],
+    work: Work,
 ) -> tuple[int, int]:
     """Return the displacement that every other exceeds by enough, or -1, and why there is none.
 
-    `view` is what `decide` saw under each, `limits` the tolerance and the faults allowed; of those
-    nearer, the one within a reach of the last frame's is it too: `last` is x, y and reach.
+    `limits` are the tolerance and the faults allowed; of those nearer, the one within a reach of
+    the last frame's is it too: `last` is x, y and reach.
     """
     tolerance, allowed = limits
+    places = frame.places
+    ahead = np.empty((places.shape[0], 2))
     best = 0
     for h in range(1, places.shape[0]):
-        if _ahead(best, h, spots, places, view, mask, tolerance, _LIGHT, work) < -_EVEN:
+        ahead[h, 0], ahead[h, 1] = _ahead(frame, best, h, lattice, tolerance, work)
+        if ahead[h, 0] < -_EVEN:
             best = h
-    doubtful = _is_thin(view[0][best], mask[1], allowed, work[1])
+    for h in range(best):  # compared with another one above
+        ahead[h, 0], ahead[h, 1] = _ahead(frame, best, h, lattice, tolerance, work)
+    doubtful = _is_thin(frame.partners[best], lattice.lines, allowed, work.faulty)
     near_last = 0
     answer = -1
     others = 0
     for h in range(places.shape[0]):
         if h != best:
-            ahead = _ahead(best, h, spots, places, view, mask, tolerance, _DOUBLED, work)
-            doubtful |= ahead < allowed + _CLEAR
-            ahead = _ahead(best, h, spots, places, view, mask, tolerance, _LIGHT, work)
-            if ahead >= allowed + _CLEAR:
+            doubtful |= ahead[h, 1] < allowed + _CLEAR
+            if ahead[h, 0] >= allowed + _CLEAR:
                 continue
             others += 1
         away = math.hypot(places[h, 0] - last[0], places[h, 1] - last[1])
@@ -301,22 +283,43 @@ def _choose(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    spots: Floats,
-    counts: Indices,
-    cut_counts: Indices,
-    apertures: Floats,
+def _take_stock(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    states: States,
+    cut_to: Partners,
     lines: Indices,
+    near: Indices,
+    shown: Indices,
+    faults: Flags,
+) -> int:
+    """Write the apertures in view or with a cut spot, and how many of a line are in view.
+
+    Return how many are written; `faults` is work space.
+    """
+    faults[:] = False
+    for c in range(cut_to.size):
+        if cut_to[c] >= 0:
+            faults[cut_to[c]] = True
+    shown[:] = 0
+    number = 0
+    for a in range(states.size):
+        if states[a] != OUT:
+            shown[0, lines[0, a]] += 1
+            shown[1, lines[1, a]] += 1
+        if states[a] != OUT or faults[a]:
+            near[number] = a
+            number += 1
+    return number
+
+
+@compiled
+def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    seen: Seen,
+    lattice: Lattice,
     tolerance: float,
     limits: tuple[float, float],
     field: tuple[float, float, float],
-    places: Floats,
-    partners: Partners,
-    kept: Indices,
-    states: States,
-    cut_to: Partners,
-    bright: Flags,
-    enough: Flags,
+    matches: Matches,
+    views: Views,
     displacement: Floats,
     chosen: Indices,
     reason: Indices,
@@ -330,10 +333,8 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
     Parameters
     ----------
-    spots, counts, cut_counts
-        As `spots_kernel.segment` writes them.
-    apertures, lines
-        (A, 3) x, y, width; (2, A) in which column and row of the mask each is.
+    seen, lattice, matches, views
+        The frames' spots, the mask, displacements and what is seen under them.
     tolerance
         Largest distance of a spot from its place, px.
     limits
@@ -342,27 +343,24 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
         sequence.
     field
         x and y of the middle of the field, and how far displacements are from it along an axis.
-    places, partners, kept
-        As `aperture_grid_kernel.match` writes them.
-    states, cut_to, bright, enough
-        As `view_kernel.look` writes them.
     displacement, chosen, reason
         (N, 2), (N, A) and (N,): receive the displacement, NaN where none is found, the spot of
         each aperture, -1 for none, and FOUND, NOTHING, SEVERAL or DOUBTFUL.
     """
     allowed, reach = limits
-    room = places.shape[1]
-    number = apertures.shape[0]
-    shown = np.empty((room, 2, number), dtype=np.int64)
-    outside = np.empty(room)
-    work = (
-        np.empty(spots.shape[1], dtype=np.int64),
-        np.empty(number, dtype=np.int64),
-        np.empty(number, dtype=np.int64),
-        np.empty(spots.shape[1], dtype=np.bool_),
+    places, kept = matches.places, matches.kept
+    room, number = places.shape[1], lattice.apertures.shape[0]
+    line_count = max(lattice.lines[0].max(), lattice.lines[1].max()) + 1
+    near, numbers = np.empty((room, number), dtype=np.int64), np.empty(room, dtype=np.int64)
+    shown, outside = np.empty((room, 2, line_count), dtype=np.int64), np.empty(room)
+    work = Work(
+        np.empty(seen.spots.shape[1], dtype=np.int64),
+        np.empty(seen.spots.shape[1], dtype=np.bool_),
         np.empty(number, dtype=np.bool_),
-        np.empty((2, number)),
-        np.empty(number),
+        np.empty(line_count, dtype=np.int64),
+        np.empty(line_count, dtype=np.int64),
+        np.empty((2, line_count)),
+        np.empty(line_count),
     )
     last = (np.nan, np.nan, reach)
     for k in range(places.shape[0]):
@@ -371,30 +369,32 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
         reason[k] = NOTHING
         answer = -1
         if kept[k] > 0:
+            cut_to, states = views.cut_to[k, :, : seen.cut_counts[k]], views.states[k]
             for h in range(kept[k]):
-                shown[h] = 0
-                for a in range(number):
-                    if states[k, h, a] != OUT:  # in view
-                        shown[h, 0, lines[0, a]] += 1
-                        shown[h, 1, lines[1, a]] += 1
+                numbers[h] = _take_stock(
+                    states[h], cut_to[h], lattice.lines, near[h], shown[h], work.faults
+                )
                 away = max(abs(places[k, h, 0] - field[0]), abs(places[k, h, 1] - field[1]))
                 outside[h] = _OUTSIDE if away > field[2] else 0.0
-            cut = cut_to[k, :, : cut_counts[k]]
-            view = (partners[k], cut, states[k], shown, bright[k], outside)
-            answer, reason[k] = _choose(
-                spots[k, : counts[k]],
+            frame = FrameView(
+                seen.spots[k, : seen.counts[k]],
                 places[k, : kept[k]],
-                view,
-                (apertures, lines),
-                enough[k],
-                (tolerance, allowed),
-                last,
-                work,
+                matches.partners[k],
+                cut_to,
+                states,
+                views.bright[k],
+                near,
+                numbers,
+                shown,
+                outside,
+            )
+            answer, reason[k] = _choose(
+                frame, lattice, views.enough[k], (tolerance, allowed), last, work
             )
         last = (np.nan, np.nan, reach)
         if answer >= 0:
             displacement[k] = places[k, answer]
             for a in range(number):
-                chosen[k, a] = partners[k, answer, a]
+                chosen[k, a] = matches.partners[k, answer, a]
             if reach > 0.0:
                 last = (places[k, answer, 0], places[k, answer, 1], reach)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass
 from functools import lru_cache
 from typing import Any, ClassVar, Literal, Self, get_args
 
@@ -19,28 +19,19 @@ from algorithms.contract import (
     SensorGeometry,
     UnsuitableDesignError,
 )
-from algorithms.extractors.frames.multi_spot.aperture_design import (
-    PATTERN_NEEDS,
-    design_pattern,
-    require_pattern,
-)
+from algorithms.documented import documented
+from algorithms.extractors.frames.multi_spot.aperture_design import PATTERN_NEEDS, design_pattern
 from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     SHARE,
-    Apertures,
-    FieldPx,
     Levels,
     Pattern,
-    find_pattern,
     follow_pattern,
-    frame_levels,
     lattice,
     margin_px,
     nearest_distance,
 )
-from algorithms.extractors.frames.multi_spot.pattern_flags import without_covariance
-from algorithms.extractors.frames.single_light import frames_to_measure
+from algorithms.extractors.frames.multi_spot.mask_spots import MaskSpots
 from algorithms.inputs import Frames, as_frames
-from algorithms.measurement import Measurement
 
 Shape = Literal["round", "square"]
 
@@ -50,8 +41,9 @@ _SAMPLES = 16
 _LONGEST = 8.0
 
 
+@documented
 @dataclass(frozen=True)
-class ImageCorrelation(Extractor):
+class ImageCorrelation(MaskSpots, Extractor):
     """Middle of the summed correlations of all spots with their templates.
 
     Windows stand where the spots are predicted. Each is correlated with the image its aperture
@@ -60,8 +52,6 @@ class ImageCorrelation(Extractor):
 
     Parameters
     ----------
-    apertures_px : tuple of (x, y, width)
-        The mask's apertures, px from its middle; one at least.
     shape : {"round", "square"}
         Of the apertures; a square's sides lie along the pixels.
     correlations : int
@@ -71,25 +61,6 @@ class ImageCorrelation(Extractor):
         larger than the aperture, and its rim as wide.
     presence : float
         Light of a spot in its window, over the mean of all, below which it is missing; in (0, 1).
-    threshold : float
-        The fraction, in (0, 1), of the spots' brightness that makes a spot when the pattern is
-        searched for.
-    tolerance_px : float
-        Largest distance of a spot from its aperture's place, px, in that search; below a quarter
-        of the least distance of two apertures.
-    faulty_lines : int
-        Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
-        answer, not negative: a displacement is an answer where every other one leaves more of
-        them unexplained. Beyond 0 a departure: the survey takes the mask for whole.
-    field_px : tuple of (x, y, reach) or None
-        Where the pattern's middle is for a Sun on the boresight, and how far along an axis it is
-        from there at the edge of the field of view, px, positive: a Sun beyond it counts as a
-        faulty line. None for no such edge.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -108,17 +79,10 @@ class ImageCorrelation(Extractor):
     The prediction is the previous frame's result in `track`; in `extract`, which does not depend
     on order, it is the pattern found in the same frame as MCAM does.
 
-    Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers: the
-    spot of an aperture over the detector's middle, seen or not.
-
     Failure: a NaN row where the pattern is not found, as for MCAM, where the windows do not come
     to rest, and where fewer than 0.3 of the spots that should be whole in the frame are there.
 
     Cost: as MCAM, and ``2 (N_c + 1)^2`` operations a pixel of the template and spot.
-
-    References
-    ----------
-    Xing2008; survey fe:feic, alg:FEIC.
 
     Examples
     --------
@@ -143,18 +107,13 @@ class ImageCorrelation(Extractor):
         kind=FeatureKind.SPOT,
     )
 
-    apertures_px: Apertures = field(repr=False)
+    _: KW_ONLY
     shape: Shape = "round"
     correlations: int = 8
-    blur_px: float = 0.0
     presence: float = 0.3
-    threshold: float = 0.3
-    tolerance_px: float = 0.75
-    faulty_lines: int = 0
-    field_px: FieldPx | None = None
 
     def __post_init__(self) -> None:
-        require_pattern(self)
+        super().__post_init__()
         if self.shape not in get_args(Shape):
             raise ValueError(
                 f"{self.about.name}: shape must be one of {', '.join(get_args(Shape))}; "
@@ -191,24 +150,14 @@ class ImageCorrelation(Extractor):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
-        return self._correlate_frames(as_frames(observations))[0]
-
-    def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
-        """Positions and doubts of frames (N, H, W) or of one; no covariance is stated.
-
-        AMBIGUOUS_PATTERN where another identity of the spots explains a frame nearly as well.
-        Bad pixels are replaced by their neighbours.
-        """
-        frames = frames_to_measure(observations, bad, self.about.name)
-        found, *_, pattern = self._correlate_frames(frames)
-        return without_covariance(found, pattern)
+        return self._read(as_frames(observations))[0][0]
 
     def spots(self, observations: ArrayLike) -> Floats:
         """Positions (N, A, 2) of each aperture's spot in frames (N, H, W), px; NaN for none.
 
         Each from its own correlation. ValueError on wrong input.
         """
-        return self._correlate_frames(as_frames(observations))[1]
+        return self._read(as_frames(observations))[0][1]
 
     def track(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in successive frames (N, H, W) of one sequence.
@@ -225,10 +174,8 @@ class ImageCorrelation(Extractor):
 
         return follow_pattern(self, as_frames(observations), follow)
 
-    def _correlate_frames(self, frames: Frames) -> tuple[Floats, Floats, Pattern]:
-        levels = frame_levels(frames, self.apertures_px, self.threshold)
-        pattern = find_pattern(self, frames, levels)
-        return *self._correlate(frames, levels, pattern.displacement, sequence=False), pattern
+    def _locate(self, frames: Frames, levels: Levels, pattern: Pattern) -> tuple[Floats, Floats]:
+        return self._correlate(frames, levels, pattern.displacement, sequence=False)
 
     def _correlate(
         self, frames: NDArray[Any], levels: Levels, starts: Floats, *, sequence: bool

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -16,32 +16,24 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
-from algorithms.extractors.frames.multi_spot.aperture_design import (
-    PATTERN_NEEDS,
-    design_pattern,
-    require_pattern,
-)
+from algorithms.documented import documented
+from algorithms.extractors.frames.multi_spot.aperture_design import PATTERN_NEEDS, design_pattern
 from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     SHARE,
-    Apertures,
-    FieldPx,
     Levels,
     Pattern,
-    find_pattern,
     follow_pattern,
-    frame_levels,
     lattice,
     margin_px,
     nearest_distance,
 )
-from algorithms.extractors.frames.multi_spot.pattern_flags import without_covariance
-from algorithms.extractors.frames.single_light import frames_to_measure
+from algorithms.extractors.frames.multi_spot.mask_spots import MaskSpots
 from algorithms.inputs import Frames, as_frames, require_positive
-from algorithms.measurement import Measurement
 
 
+@documented
 @dataclass(frozen=True)
-class MeanShift(Extractor):
+class MeanShift(MaskSpots, Extractor):
     """Mean of all spots, each moved to where its gray values resemble those of a goal spot.
 
     A spot is described by a histogram of its gray values, weighted by a kernel about its centre.
@@ -50,8 +42,6 @@ class MeanShift(Extractor):
 
     Parameters
     ----------
-    apertures_px : tuple of (x, y, width)
-        The mask's apertures, px from its middle; one at least.
     bandwidth_px : float
         Radius h of a candidate's kernel, px, positive: it should hold a spot and the move between
         two frames, but no light of a neighbour.
@@ -69,22 +59,6 @@ class MeanShift(Extractor):
     similarity : float
         Bhattacharyya coefficient, over that of the goal's own spots, below which a spot is
         missing; in (0, 1).
-    tolerance_px : float
-        Largest distance of a spot from its aperture's place, px; below a quarter of the least
-        distance of two apertures.
-    faulty_lines : int
-        Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
-        answer, not negative: a displacement is an answer where every other one leaves more of
-        them unexplained. Beyond 0 a departure: the survey takes the mask for whole.
-    field_px : tuple of (x, y, reach) or None
-        Where the pattern's middle is for a Sun on the boresight, and how far along an axis it is
-        from there at the edge of the field of view, px, positive: a Sun beyond it counts as a
-        faulty line. None for no such edge.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -105,18 +79,11 @@ class MeanShift(Extractor):
     twentieth of a pixel only, and noise that moves pixels from bin to bin counts several times
     what it does in a centroid. The mean over spots that fall differently on the pixels is finer.
 
-    Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers: the
-    spot of an aperture over the detector's middle, seen or not.
-
     Failure: a NaN row where the pattern is not found, as for MCAM, and where fewer than 0.3 of the
     spots that should be whole in the frame resemble the goal.
 
     Cost: as MCAM, and 10 operations a pixel of a window of radius h, a spot and a step: three or
     four steps.
-
-    References
-    ----------
-    You2011; survey fe:fmms, alg:FMMS1, alg:FMMS2.
 
     Examples
     --------
@@ -141,19 +108,14 @@ class MeanShift(Extractor):
         kind=FeatureKind.SPOT,
     )
 
-    apertures_px: Apertures = field(repr=False)
+    _: KW_ONLY
     bandwidth_px: float
-    blur_px: float = 0.0
-    threshold: float = 0.3
     bins: int = 8
     convergence_px: float = 0.01
     similarity: float = 0.5
-    tolerance_px: float = 0.75
-    faulty_lines: int = 0
-    field_px: FieldPx | None = None
 
     def __post_init__(self) -> None:
-        require_pattern(self)
+        super().__post_init__()
         require_positive(
             self.about.name, bandwidth_px=self.bandwidth_px, convergence_px=self.convergence_px
         )
@@ -179,31 +141,21 @@ class MeanShift(Extractor):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Averaged positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
-        return self._shift_means(as_frames(observations))[0]
-
-    def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
-        """Positions and doubts of frames (N, H, W) or of one; no covariance is stated.
-
-        AMBIGUOUS_PATTERN where another identity of the spots explains a frame nearly as well.
-        Bad pixels are replaced by their neighbours.
-        """
-        frames = frames_to_measure(observations, bad, self.about.name)
-        found, *_, pattern = self._shift_means(frames)
-        return without_covariance(found, pattern)
+        return self._read(as_frames(observations))[0][0]
 
     def spots(self, observations: ArrayLike) -> Floats:
         """Positions (N, A, 2) of each aperture's spot in frames (N, H, W), px; NaN for none.
 
         ValueError on wrong input.
         """
-        return self._shift_means(as_frames(observations))[1]
+        return self._read(as_frames(observations))[0][1]
 
     def weights(self, observations: ArrayLike) -> Floats:
         """Similarity (N, A) of each aperture's spot to the goal, over that of the goal's own.
 
         Zero where no spot is found. ValueError on wrong input.
         """
-        return self._shift_means(as_frames(observations))[2]
+        return self._read(as_frames(observations))[0][2]
 
     def track(self, observations: ArrayLike) -> Floats:
         """Averaged positions (N, 2) in successive frames (N, H, W) of one sequence.
@@ -220,10 +172,10 @@ class MeanShift(Extractor):
 
         return follow_pattern(self, as_frames(observations), follow)
 
-    def _shift_means(self, frames: Frames) -> tuple[Floats, Floats, Floats, Pattern]:
-        levels = frame_levels(frames, self.apertures_px, self.threshold)
-        pattern = find_pattern(self, frames, levels)
-        return *self._shift(frames, levels, pattern, sequence=False), pattern
+    def _locate(
+        self, frames: Frames, levels: Levels, pattern: Pattern
+    ) -> tuple[Floats, Floats, Floats]:
+        return self._shift(frames, levels, pattern, sequence=False)
 
     def _shift(
         self,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,29 +14,21 @@ from algorithms.contract import (
     FeatureKind,
     Floats,
     Observation,
-    SensorGeometry,
 )
-from algorithms.extractors.frames.multi_spot.aperture_design import (
-    PATTERN_NEEDS,
-    design_pattern,
-    require_pattern,
-)
+from algorithms.documented import documented
+from algorithms.extractors.frames.multi_spot.aperture_design import PATTERN_NEEDS
 from algorithms.extractors.frames.multi_spot.aperture_pattern import (
-    Apertures,
-    FieldPx,
+    Levels,
     Pattern,
-    find_pattern,
-    frame_levels,
     lattice,
 )
-from algorithms.extractors.frames.multi_spot.pattern_flags import without_covariance
-from algorithms.extractors.frames.single_light import frames_to_measure
+from algorithms.extractors.frames.multi_spot.mask_spots import MaskSpots
 from algorithms.inputs import Frames, as_frames
-from algorithms.measurement import Measurement
 
 
+@documented
 @dataclass(frozen=True)
-class MultipleCentroids(Extractor):
+class MultipleCentroids(MaskSpots, Extractor):
     """Mean of the thresholded centroids of all whole spots, each less its aperture's place.
 
     Every aperture of the mask repeats the measurement, so noise falls with the square root of
@@ -45,29 +37,9 @@ class MultipleCentroids(Extractor):
 
     Parameters
     ----------
-    apertures_px : tuple of (x, y, width)
-        The mask's apertures, px from its middle; one at least.
-    blur_px : float
-        Width of the Sun's image behind a hole, px, not negative: bounds the size of a spot.
     threshold : float
         The fraction mu, in (0, 1), of the spots' brightness above the background. The survey
         gives no value; 0.3 is ours, as for BCTM.
-    tolerance_px : float
-        Largest distance of a spot from its aperture's place, px; below a quarter of the least
-        distance of two apertures.
-    faulty_lines : int
-        Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
-        answer, not negative: a displacement is an answer where every other one leaves more of
-        them unexplained. Beyond 0 a departure: the survey takes the mask for whole.
-    field_px : tuple of (x, y, reach) or None
-        Where the pattern's middle is for a Sun on the boresight, and how far along an axis it is
-        from there at the edge of the field of view, px, positive: a Sun beyond it counts as a
-        faulty line. None for no such edge.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -80,9 +52,6 @@ class MultipleCentroids(Extractor):
     the Sun's image, are left out. Displacements that most pairs of spot and aperture agree on are
     compared by what the frame shows of every aperture: dark places, unexplained spots.
 
-    Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers: the
-    spot of an aperture over the detector's middle, seen or not.
-
     Failure: a NaN row for a frame that is dark, without contrast, holds a NaN or infinity, or
     whose spots rise less than five times its noise; where fewer than 0.3 of the apertures that
     should be seen are; and where two displacements explain the frame alike (two suns, part of a
@@ -93,10 +62,6 @@ class MultipleCentroids(Extractor):
     alike on the pixels share the threshold's bias, and averaging gains nothing.
 
     Cost: 2 operations a pixel, 8 in rows with spots, and 20 a pair of spot and aperture.
-
-    References
-    ----------
-    Rufino2009b; survey fe:mcam, alg:MCAM.
 
     Examples
     --------
@@ -121,37 +86,9 @@ class MultipleCentroids(Extractor):
         kind=FeatureKind.SPOT,
     )
 
-    apertures_px: Apertures = field(repr=False)
-    blur_px: float = 0.0
-    threshold: float = 0.3
-    tolerance_px: float = 0.75
-    faulty_lines: int = 0
-    field_px: FieldPx | None = None
-
-    def __post_init__(self) -> None:
-        require_pattern(self)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry) -> Self:
-        """Return the method with this sensor's mask.
-
-        UnsuitableDesignError where its light is no spots.
-        """
-        return cls(**design_pattern(geometry, cls.about.name))
-
     def extract(self, observations: ArrayLike) -> Floats:
         """Averaged positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
-        return self._answers(as_frames(observations))[0]
-
-    def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
-        """Positions and doubts of frames (N, H, W) or of one; no covariance is stated.
-
-        AMBIGUOUS_PATTERN where another identity of the spots explains a frame nearly as well.
-        Bad pixels are replaced by their neighbours.
-        """
-        frames = frames_to_measure(observations, bad, self.about.name)
-        found, *_, pattern = self._answers(frames)
-        return without_covariance(found, pattern)
+        return self._read(as_frames(observations))[0][0]
 
     def spots(self, observations: ArrayLike) -> Floats:
         """Centroids (N, A, 2) of each aperture's spot in frames (N, H, W), px.
@@ -159,15 +96,11 @@ class MultipleCentroids(Extractor):
         NaN where a spot is missing, cut or not where it should be, and for the whole of a frame
         in which the pattern is not found. ValueError on wrong input.
         """
-        return self._pattern(as_frames(observations)).spots
+        return self._read(as_frames(observations))[1].spots
 
-    def _answers(self, frames: Frames) -> tuple[Floats, Pattern]:
-        pattern = self._pattern(frames)
-        return mean_displacement(pattern.spots, lattice(self.apertures_px).apertures), pattern
-
-    def _pattern(self, frames: Frames) -> Pattern:
-        levels = frame_levels(frames, self.apertures_px, self.threshold)
-        return find_pattern(self, frames, levels)
+    def _locate(self, frames: Frames, levels: Levels, pattern: Pattern) -> tuple[Floats]:
+        del frames, levels
+        return (mean_displacement(pattern.spots, lattice(self.apertures_px).apertures),)
 
 
 def mean_displacement(spots: Floats, apertures: Floats) -> Floats:

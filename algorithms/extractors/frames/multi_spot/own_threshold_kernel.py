@@ -9,46 +9,10 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels.regions import SIDES_AND_CORNERS, flood
 
 #: Share of a spot's lit pixels whose mean is its brightness.
 _BRIGHTEST = 0.25
-
-
-@compiled
-def _flood(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    frame: NDArray[Any],
-    first: int,
-    level: float,
-    most: int,
-    marks: NDArray[np.int64],
-    mark: int,
-    pixels: NDArray[np.int64],
-) -> int:
-    """Write the pixels above `level` that touch the first, itself included; 0 at the edge.
-
-    At sides or corners; `marks` (H W) holds `mark` where a pixel was met. 0 for more than `most`.
-    """
-    height, width = frame.shape
-    pixels[0] = first
-    marks[first] = mark
-    count = 1
-    done = 0
-    while done < count:
-        row = pixels[done] // width
-        column = pixels[done] % width
-        done += 1
-        if row == 0 or column == 0 or row == height - 1 or column == width - 1:
-            return 0
-        for i in range(row - 1, row + 2):
-            for j in range(column - 1, column + 2):
-                at = i * width + j
-                if marks[at] != mark and frame[i, j] > level:
-                    if count == most:
-                        return 0
-                    marks[at] = mark
-                    pixels[count] = at
-                    count += 1
-    return count
 
 
 @compiled
@@ -69,10 +33,10 @@ def own_threshold(  # noqa: PLR0917 - Numba takes no keyword-only ones
     than `most` pixels, are taken out; `counts` (N,) is how many there are.
     """
     height, width = frames.shape[1:]
-    marks = np.zeros(height * width, dtype=np.int64)
-    room = int(most) + 1
-    pixels = np.empty(room, dtype=np.int64)
-    values = np.empty(room)
+    marks = np.zeros(height * width, dtype=np.int32)
+    room = int(most)
+    pixels = np.empty(max(room, 1), dtype=np.int64)
+    values = np.empty(max(room, 1))
     mark = 0
     for k in range(frames.shape[0]):
         frame = frames[k]
@@ -83,8 +47,10 @@ def own_threshold(  # noqa: PLR0917 - Numba takes no keyword-only ones
             number = 0
             for _ in range(2):  # all of the spot, then what is above its own level
                 mark += 1
-                number = _flood(frame, first, level, room - 1, marks, mark, pixels)
-                if number == 0 or not frame[first // width, first % width] > level:
+                number, whole = flood(
+                    frame, first, level, True, SIDES_AND_CORNERS, room, mark, marks, pixels
+                )
+                if number == 0 or not whole or not frame[first // width, first % width] > level:
                     number = 0
                     break
                 for n in range(number):
@@ -96,8 +62,10 @@ def own_threshold(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 continue
             level = max(level, floors[k])
             mark += 1
-            number = _flood(frame, first, level, room - 1, marks, mark, pixels)
-            if number < least:
+            number, whole = flood(
+                frame, first, level, True, SIDES_AND_CORNERS, room, mark, marks, pixels
+            )
+            if number < least or not whole:
                 continue
             light, x, y = 0.0, 0.0, 0.0
             for n in range(number):

@@ -21,17 +21,19 @@ from algorithms.extractors.frames.multi_spot.aperture_design import (
     PATTERN_NEEDS,
     design_pattern,
 )
-from algorithms.extractors.frames.multi_spot.aperture_pattern import Apertures, frame_levels
+from algorithms.extractors.frames.multi_spot.aperture_pattern import (
+    Apertures,
+    frame_levels,
+    room_for_spots,
+)
 from algorithms.inputs import as_frames, require_positive
-from algorithms.spot_lists import SPOT_COLUMNS, spot_columns, spots_listed
+from algorithms.spot_lists import SPOT_COLUMNS, list_length, spot_columns
 
 #: Pixels of a spot above the threshold, over those of its aperture: the least of the smallest,
 #: which may gather its light, the most of the largest with the Sun's image, which grows with
 #: incidence.
 _AREAS = (0.15, 6.0)
 _LEAST_PIXELS = 4.0
-#: Spots of the frame's edge are not kept.
-_NONE_CUT = np.empty((0, 3))
 #: Spots that a frame may have before none are listed, for each that is kept.
 _ROOM = 4
 
@@ -140,7 +142,7 @@ class SpotList(Extractor):
         design = design_pattern(geometry, cls.about.name)
         return cls(
             apertures_px=design["apertures_px"],
-            spots=spots_listed(geometry, cls.about.name),
+            spots=list_length(geometry, cls.about.name),
             blur_px=design["blur_px"],
         )
 
@@ -158,14 +160,10 @@ class SpotList(Extractor):
         least = max(_AREAS[0] * math.pi / 4.0 * float(widths.min()) ** 2, _LEAST_PIXELS)
         most = max(_AREAS[1] * (float(widths.max()) + self.blur_px) ** 2, 2.0 * least)
         room = min(_ROOM * self.spots, int(height * width / least) + 1)
-        seen = np.zeros((count, room, 4))
-        counts, cut_counts = np.empty((2, count), dtype=np.int64)
-        cuts = np.broadcast_to(_NONE_CUT, (count, 0, 3)).copy()
-        spots_kernel.segment(
-            frames, levels.maxima, levels.threshold, least, most, seen, counts, cuts, cut_counts
-        )
-        listed = np.ascontiguousarray(seen[:, :, [0, 1, 3]])
-        counts = np.maximum(counts, 0)
+        seen = room_for_spots(count, room, cuts=0)
+        spots_kernel.segment(frames, levels.maxima, levels.threshold, least, most, seen)
+        listed = np.ascontiguousarray(seen.spots[:, :, [0, 1, 3]])
+        counts = np.maximum(seen.counts, 0)
         own_threshold_kernel.own_threshold(
             frames, levels.floor, levels.threshold, self.threshold, least, most, counts, listed
         )

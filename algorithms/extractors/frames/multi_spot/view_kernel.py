@@ -10,11 +10,14 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
-
-Indices = NDArray[np.int64]
-Partners = NDArray[np.int32]
-States = NDArray[np.int8]
-Flags = NDArray[np.bool_]
+from algorithms.extractors.frames.multi_spot.records import (
+    Flags,
+    Matches,
+    Partners,
+    Seen,
+    States,
+    Views,
+)
 
 #: What a frame shows of an aperture: less than half of its place, neither its spot nor darkness,
 #: its spot, darkness or a spot of another place. `evidence_kernel` reads them.
@@ -132,20 +135,12 @@ def _usual(spots: Floats, partner: Partners, bright: Flags) -> float:
 def look(  # noqa: PLR0917 - Numba takes no keyword-only ones
     frames: NDArray[Any],
     levels: Floats,
-    spots: Floats,
-    counts: Indices,
-    cuts: Floats,
-    cut_counts: Indices,
+    seen: Seen,
     apertures: Floats,
     margin: float,
     share: float,
-    places: Floats,
-    partners: Partners,
-    kept: Indices,
-    states: States,
-    cut_to: Partners,
-    bright: Flags,
-    enough: Flags,
+    matches: Matches,
+    views: Views,
 ) -> None:
     """Write what each frame shows under the displacements that match most of its spots.
 
@@ -153,35 +148,26 @@ def look(  # noqa: PLR0917 - Numba takes no keyword-only ones
     ----------
     levels
         (N,) above which a pixel of the frames (N, H, W) is lit.
-    spots, counts, cuts, cut_counts
-        As `spots_kernel.segment` writes them.
-    apertures
-        (A, 3) x, y, width.
+    seen, apertures, matches
+        The frames' spots; (A, 3) x, y, width; displacements.
     margin
         Px that a spot reaches beyond its aperture.
     share
         Least share of the spots that should be whole in the frame.
-    places, partners, kept
-        As `aperture_grid_kernel.match` writes them.
-    states
-        (N, K, A): receive OUT, UNSURE, SPOT or DARK of each aperture.
-    cut_to
-        (N, K, C): receive the aperture on which each bright spot that the edge cuts lies, or -1.
-    bright
-        (N, S): receive which spots are not much dimmer than those of the first displacement.
-    enough
-        (N, K): receive whether that share of the spots is found.
+    views
+        Receives what is seen.
     """
     for k in range(frames.shape[0]):
-        if kept[k] == 0:
+        if matches.kept[k] == 0:
             continue
-        seen = spots[k, : counts[k]]
-        cut = cuts[k, : cut_counts[k]]
-        dim = _usual(seen, partners[k, 0], bright[k, : counts[k]])
-        for h in range(kept[k]):
-            x, y = places[k, h]
+        spots = seen.spots[k, : seen.counts[k]]
+        cut = seen.cuts[k, : seen.cut_counts[k]]
+        dim = _usual(spots, matches.partners[k, 0], views.bright[k, : spots.shape[0]])
+        for h in range(matches.kept[k]):
+            x, y = matches.places[k, h]
+            partner, state = matches.partners[k, h], views.states[k, h]
             found, whole = _look(
-                frames[k], levels[k], apertures, margin, x, y, seen, partners[k, h], states[k, h]
+                frames[k], levels[k], apertures, margin, x, y, spots, partner, state
             )
-            enough[k, h] = found >= share * whole
-            _cut_partners(cut, apertures, x, y, margin, dim, cut_to[k, h, : cut_counts[k]])
+            views.enough[k, h] = found >= share * whole
+            _cut_partners(cut, apertures, x, y, margin, dim, views.cut_to[k, h, : cut.shape[0]])

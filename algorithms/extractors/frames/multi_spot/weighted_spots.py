@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -17,20 +17,14 @@ from algorithms.contract import (
     Observation,
     SensorGeometry,
 )
-from algorithms.extractors.frames.multi_spot.aperture_design import (
-    PATTERN_NEEDS,
-    design_pattern,
-    require_pattern,
-)
+from algorithms.documented import documented
+from algorithms.extractors.frames.multi_spot.aperture_design import PATTERN_NEEDS, design_pattern
 from algorithms.extractors.frames.multi_spot.aperture_pattern import (
-    Apertures,
-    FieldPx,
     Levels,
     Pattern,
-    find_pattern,
-    frame_levels,
     lattice,
 )
+from algorithms.extractors.frames.multi_spot.mask_spots import MaskSpots
 from algorithms.extractors.frames.multi_spot.pattern_flags import pattern_doubts
 from algorithms.extractors.frames.single_light import (
     check_agreement,
@@ -45,8 +39,9 @@ from algorithms.measurement import Measurement
 _RIM_PX = 2.0
 
 
+@documented
 @dataclass(frozen=True)
-class WeightedSpots(Extractor):
+class WeightedSpots(MaskSpots, Extractor):
     """Mean of the centres of all whole spots, each by the image that all of them share.
 
     The pattern tells which aperture cast which spot. Light against distance from the middle is
@@ -57,32 +52,9 @@ class WeightedSpots(Extractor):
 
     Parameters
     ----------
-    apertures_px : tuple of (x, y, width)
-        The mask's apertures, px from its middle; one at least.
-    blur_px : float
-        Width of the Sun's image behind a hole, px, not negative: bounds the size of a spot.
-    threshold : float
-        The fraction, in (0, 1), of the spots' brightness that makes a spot when the pattern is
-        searched for.
-    tolerance_px : float
-        Largest distance of a spot from its aperture's place, px, in that search; below a quarter
-        of the least distance of two apertures.
-    faulty_lines : int
-        Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
-        answer, not negative: a displacement is an answer where every other one leaves more of
-        them unexplained.
-    field_px : tuple of (x, y, reach) or None
-        Where the pattern's middle is for a Sun on the boresight, and how far along an axis it is
-        from there at the edge of the field of view, px, positive: a Sun beyond it counts as a
-        faulty line. None for no such edge.
     longest_px : float or None
         With one aperture, the longest half axis that the outline of its spot has, px, positive;
         None where no design tells. See `algorithms.extractors.frames.mirror.extractor`.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not as said above; the message names it.
 
     Notes
     -----
@@ -102,19 +74,12 @@ class WeightedSpots(Extractor):
     What a spline of 0.65 px misses of sharp rims or rings does not average where all spots fall
     alike on the pixels: 0.0003 px of a disc seven pixels wide, 0.001 to 0.002 px of strong rings.
 
-    Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers: the
-    spot of an aperture over the detector's middle, seen or not.
-
     Failure: a NaN row where the pattern is not found, as for MCAM, and where no spot's centre can
     be fitted. With less than four spots none can be told to be the wrong one; with one aperture,
     also where registration (`algorithms.extractors.frames.mirror`) does not find one whole
     symmetric light within half a pixel of the answer.
 
     Cost: as MCAM, and some 150 operations a pixel of the spots' surroundings.
-
-    References
-    ----------
-    None of the survey: ours.
 
     Examples
     --------
@@ -137,16 +102,11 @@ class WeightedSpots(Extractor):
         kind=FeatureKind.SPOT,
     )
 
-    apertures_px: Apertures = field(repr=False)
-    blur_px: float = 0.0
-    threshold: float = 0.3
-    tolerance_px: float = 0.75
     faulty_lines: int = 1
-    field_px: FieldPx | None = None
     longest_px: float | None = None
 
     def __post_init__(self) -> None:
-        require_pattern(self)
+        super().__post_init__()
         require_light(self.about.name, "spot", self.longest_px)
 
     @classmethod
@@ -160,7 +120,7 @@ class WeightedSpots(Extractor):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Weighted positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
-        return self._combine(as_frames(observations))[0]
+        return self._read(as_frames(observations))[0][0]
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
         """Positions, covariances and doubts of frames (N, H, W) or of one.
@@ -171,7 +131,7 @@ class WeightedSpots(Extractor):
         pixels are replaced by their neighbours.
         """
         frames = frames_to_measure(observations, bad, self.about.name)
-        found, _, sure, pattern = self._combine(frames)
+        (found, _, sure), pattern = self._read(frames)
         covariance = np.zeros((len(found), 2, 2))
         covariance[:, [0, 1], [0, 1]] = sure
         covariance[np.isnan(sure[:, 0]) | np.isnan(found[:, 0])] = np.nan
@@ -183,14 +143,14 @@ class WeightedSpots(Extractor):
         NaN where a spot is missing, cut or disagrees with the others, and for the whole of a
         frame in which the pattern is not found. ValueError on wrong input.
         """
-        return self._combine(as_frames(observations))[1]
+        return self._read(as_frames(observations))[0][1]
 
-    def _combine(self, frames: Frames) -> tuple[Floats, Floats, Floats, Pattern]:
-        """Positions (N, 2), centres (N, A, 2), variances of positions (N, 2), and the pattern."""
+    def _locate(
+        self, frames: Frames, levels: Levels, pattern: Pattern
+    ) -> tuple[Floats, Floats, Floats]:
+        """Positions (N, 2), centres (N, A, 2) and variances of positions (N, 2)."""
         from algorithms.extractors.frames.multi_spot import combination_kernel  # noqa: PLC0415 - Numba, at first use
 
-        levels = frame_levels(frames, self.apertures_px, self.threshold)
-        pattern = find_pattern(self, frames, levels)
         centres, variances, misfits = self._centres(frames, levels, pattern.spots)
         known = lattice(self.apertures_px).apertures
         found, sure = np.empty((2, len(frames), 2))
@@ -202,7 +162,7 @@ class WeightedSpots(Extractor):
             found = check_agreement(frames, found + place, longest_px=self.longest_px) - place
             centres[np.isnan(found[:, 0])] = np.nan
             sure[:] = np.nan
-        return found, centres, sure, pattern
+        return found, centres, sure
 
     def _centres(
         self, frames: NDArray[Any], levels: Levels, starts: Floats

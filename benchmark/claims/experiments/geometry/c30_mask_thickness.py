@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from algorithms.chain import Chain, Chained
+from algorithms.chain import Chain, ChainModel
 from algorithms.compensations.interference.shadow import MaskShadow
 from algorithms.contract import Floats
 from algorithms.extractors.currents.photodiode import VoltageBalance
@@ -79,7 +79,7 @@ def _shadow(preset: Preset, share: float) -> Any:
         thickness_mm=share * width,
         aperture_mm=width,
     )
-    return Chained(Chain((MaskShadow,), StandardProjection).about, (shadow,), model)
+    return ChainModel(Chain((MaskShadow,), StandardProjection).about, (shadow,), model)
 
 
 def _places(seen: ConditionView) -> Floats:
