@@ -6,15 +6,17 @@ process is killed they end by themselves (`benchmark.processes`).
 
 from __future__ import annotations
 
+import atexit
 import os
 import signal
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager, suppress
-from functools import partial
+from contextlib import ExitStack, contextmanager, suppress
+from functools import cache, partial
 from itertools import islice
 from multiprocessing import active_children
+from pathlib import Path
 from queue import SimpleQueue
 from typing import Any, TypeVar
 
@@ -23,6 +25,8 @@ from joblib.externals.loky.backend.process import LokyProcess
 
 from benchmark.processes import work_for
 from benchmark.running.cluster import WorkerLostError
+from benchmark.simulator.light.memory import memory
+from files.temporary import temporary_directory
 
 A = TypeVar("A")
 B = TypeVar("B")
@@ -37,6 +41,14 @@ _ONE_THREAD = dict.fromkeys(
     ),
     "1",
 )
+
+
+#: Frames take tens of MB: the C library (glibc) keeps what is freed for the next ones, which costs
+#: less than to have the system clear pages for each.
+_MEMORY = {
+    "MALLOC_MMAP_THRESHOLD_": str(64 * 2**20),
+    "MALLOC_TRIM_THRESHOLD_": str(256 * 2**20),
+}
 
 
 class LocalHands:
@@ -82,10 +94,10 @@ def hands_of(workers: int) -> Iterator[LocalHands]:
         executor = get_reusable_executor(
             workers,
             timeout=_IDLE_S,
-            env=_ONE_THREAD,
+            env=_ONE_THREAD | _MEMORY,
             # as the workers are started, not with their first task: one that waits ends as well
-            initializer=work_for,
-            initargs=(os.getpid(),),
+            initializer=_begin,
+            initargs=(os.getpid(), _tables()),
         )
         hands = LocalHands(executor, workers)
         yield hands
@@ -132,6 +144,20 @@ def as_completed(
             for item in islice(waiting, 1):
                 hands.give(partial(work, item))
             yield result
+
+
+@cache
+def _tables() -> Path:
+    """Directory that workers of this process share tables in; gone when it ends."""
+    held = ExitStack()
+    atexit.register(held.close)
+    return held.enter_context(temporary_directory())
+
+
+def _begin(coordinator: int, tables: Path) -> None:
+    """Begin as a worker."""
+    work_for(coordinator)
+    memory.share_tables(tables)
 
 
 def _kill() -> None:

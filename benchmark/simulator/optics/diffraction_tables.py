@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 
@@ -355,14 +355,16 @@ class RoundPattern:
 
 @memory.tables(40)
 def _tables(pattern: RoundPattern) -> Floats:
+    return memory.mapped(pattern, partial(_filled, pattern))
+
+
+def _filled(pattern: RoundPattern) -> Floats:
     steps, _ = pattern.scales(np.zeros(1))
     across = landing_points(np.zeros(1), pattern.layers())[0, 1]
     wave = min(pattern.spectrum.wavelengths_nm) * 1e-6 / (2.0 * math.pi * pattern.radius_mm)
     widest = min(pattern.reach_mm / across, pattern.radius_mm / across + _OUTSIDE * wave)
     reach = math.ceil(widest / float(steps[0, 0])) + 3
-    tables = pattern.fill(reach)
-    tables.flags.writeable = False
-    return tables
+    return pattern.fill(reach)
 
 
 def layers(height_mm: float, glass: CoverGlass) -> Floats:
