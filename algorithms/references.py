@@ -7,6 +7,7 @@ and from both the pixels that are of no use. One stage serves every method.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -110,14 +111,22 @@ class ReferenceCorrection:
         windows = given.reshape(len(given), *((1, *given.shape[1:])[-2:]))
         found = np.empty(windows.shape, dtype=np.float64)
         scale = np.inf if self.full_scale is None else self.full_scale
-        plateau = scale - float(np.median(self.dark))
         dark, gain = self.dark.reshape(rows), self.gain.reshape(rows)
-        correct(windows, origin, dark, gain, scale, plateau, found)
-        if self.bad.any():
-            bad = self.bad.reshape(rows)
+        correct(windows, origin, dark, gain, scale, scale - self._level, found)
+        if len(self._places):
             reach = (1, 1) if len(shape) == _FRAME else (0, 2)
-            replace_bad(found, origin, bad, np.argwhere(bad), *reach)
+            replace_bad(found, origin, self.bad.reshape(rows), self._places, *reach)
         return found.reshape(given.shape)
+
+    @cached_property
+    def _level(self) -> float:
+        """The median dark reading."""
+        return float(np.median(self.dark))
+
+    @cached_property
+    def _places(self) -> NDArray[np.int64]:
+        """Rows and columns (B, 2) of the bad elements; profiles and currents are one row."""
+        return np.argwhere(self.bad.reshape((1, *self.dark.shape)[-2:]))
 
     def _within(self, shape: tuple[int, ...], origin: NDArray[np.int64]) -> NDArray[np.int64]:
         """Return the places (N, 2) of windows; ValueError where one is not on the detector."""

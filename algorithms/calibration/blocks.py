@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import TypeVar
 
 import numpy as np
@@ -54,7 +55,16 @@ def folds(sun: Floats, count: int = FOLDS) -> NDArray[np.int64]:
     >>> np.bincount(folds(np.repeat(arc, 2, axis=0)))  # each pose taken twice
     array([6, 6, 6, 6, 6])
     """
-    places, inverse = np.unique(np.round(sun, _POSE_DIGITS), axis=0, return_inverse=True)
+    poses = np.round(sun, _POSE_DIGITS)
+    return _folds(poses.tobytes(), count).copy()
+
+
+# every model that chooses a setting asks for those of the same calibration
+@lru_cache(maxsize=16)
+def _folds(poses: bytes, count: int) -> NDArray[np.int64]:
+    """Return `folds` of rounded directions (n, 3), by their bytes."""
+    rounded = np.frombuffer(poses, dtype=np.float64).reshape(-1, 3)
+    places, inverse = np.unique(rounded, axis=0, return_inverse=True)
     rim = _rim(places)
     if (~rim).sum() < 2 * count:
         rim[:] = False

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import pickle
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -18,6 +20,9 @@ _LAGS = 200
 _QUIETEST, _SHARES = 1e-3, 13
 #: Of the readings that any share follows, how many one must: a series may begin a row later.
 _FOLLOWED = 0.99
+#: Answers kept of `heard`, by a digest of what they depend on, and the latest so many.
+_heard: dict[bytes, Floats] = {}
+_KEPT = 16
 
 
 class FittedFilter(Protocol):
@@ -80,6 +85,20 @@ def estimate_noise(
     ndarray, shape (m,)
         Variances, none above the model's.
     """
+    # all that the answer depends on: filters that differ in their rule of update alone share it
+    given = model.space(noise=model.noise_), model.starts_, model.considered()
+    key = hashlib.sha256(pickle.dumps((*given, features, known, apart_s, least))).digest()
+    if key not in _heard:
+        while len(_heard) >= _KEPT:
+            _heard.pop(next(iter(_heard)), None)
+        _heard[key] = _likeliest(model, features, known, apart_s, least)
+    return _heard[key].copy()
+
+
+def _likeliest(
+    model: Learnt, features: Floats, known: Floats, apart_s: Floats, least: Floats
+) -> Floats:
+    """Return what `heard` does, worked out."""
     from algorithms.filtering.filters import ExtendedKalman  # noqa: PLC0415 - Numba
 
     by = ExtendedKalman(model.considered_errors())

@@ -2,25 +2,109 @@
 
 from __future__ import annotations
 
+import math
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import closing
-from functools import partial
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Protocol
 
 from algorithms.extractors.frames.multi_spot.pattern_memory import shared_patterns
 from benchmark.running.cluster import connect
-from benchmark.running.durations import Took
+from benchmark.running.durations import Durations, Took
 from benchmark.running.planned import FollowUp
+from benchmark.running.schedule import (
+    Bundle,
+    Waiting,
+    bundles,
+    cut,
+    longest_of,
+    place_of,
+    total_seconds,
+)
 from benchmark.running.task import Task, TaskResult, measure
-from benchmark.running.workers import as_completed
-
-#: Tasks a worker takes at once when there is too little to give each a whole dataset.
-_BUNDLE = 4
-#: Datasets for every worker from which on each is done by one worker.
-_DATASETS_A_WORKER = 4
+from benchmark.running.workers import hands_of
 
 _Timed = tuple[Task, TaskResult, Took]
+
+
+@dataclass(frozen=True)
+class Done:
+    """What a worker hands back: results with their times, and what it leaves to others."""
+
+    timed: list[_Timed]
+    left: list[tuple[Task, ...]]
+
+
+@dataclass(frozen=True)
+class Work:
+    """A bundle for a worker, and how much of what follows from it the worker goes on with.
+
+    Attributes
+    ----------
+    bundle
+        What to measure first.
+    durations
+        Known ones of its data set.
+    most
+        Seconds that one worker may take with a bundle.
+    """
+
+    bundle: Bundle
+    durations: Durations
+    most: float
+
+    @property
+    def tasks(self) -> tuple[Task, ...]:
+        """What to measure first."""
+        return self.bundle.tasks
+
+    def __call__(self) -> Done:
+        """Measure it all."""
+        left: list[tuple[Task, ...]] = []
+        return Done(list(self.measured(left)), left)
+
+    def measured(self, left: list[tuple[Task, ...]]) -> Iterator[_Timed]:
+        """Measure task by task; what is to be left to other workers is put into `left`."""
+        results, places = [], set()
+
+        def timed(task: Task) -> _Timed:
+            place = place_of(task)
+            started = time.process_time()
+            result = measure(task)
+            seconds = time.process_time() - started
+            took = Took(len(task.models), int(place not in places), round(seconds, 3))
+            places.add(place)
+            return task, result, took
+
+        with shared_patterns():
+            for task in self.tasks:
+                outcome = timed(task)
+                results.append(outcome[1])
+                yield outcome
+            if self.bundle.follow_up is None:
+                return
+            further = self.bundle.follow_up.tasks(results)
+            # what shares data or light with the first tasks is gone on with, up to the limit
+            here, *others = cut([*self.tasks, *further], self.durations.seconds, self.most)
+            left += others
+            yield from map(timed, here[len(self.tasks) :])
+
+
+class Hands(Protocol):
+    """Workers that take bundles and give back what came of them."""
+
+    def free(self) -> bool:
+        """Say whether another bundle can be taken on."""
+
+    def busy(self) -> bool:
+        """Say whether something is still to come back."""
+
+    def give(self, work: Work) -> None:
+        """Have a bundle measured."""
+
+    def take(self) -> Done:
+        """Wait for the next bundle that is done, in any order."""
 
 
 def outcomes(
@@ -28,7 +112,7 @@ def outcomes(
     workers: int,
     scheduler: str | None = None,
     follow_ups: Mapping[str, FollowUp] = MappingProxyType({}),
-    took: Callable[[Task, Took], None] = lambda _task, _took: None,
+    durations: Durations | None = None,
 ) -> Iterator[TaskResult]:
     """Measure tasks and give each result as soon as it is there, in any order.
 
@@ -42,8 +126,8 @@ def outcomes(
         Address of a Dask scheduler, e.g. ``tcp://127.0.0.1:8786``; `workers` is not read then.
     follow_ups
         By data set, what is measured besides where one bundle is all of the data set's tasks.
-    took
-        Told of each task how long it took.
+    durations
+        How long tasks took before, by which they are shared out; takes in how long they took now.
 
     Raises
     ------
@@ -52,89 +136,51 @@ def outcomes(
     WorkerLostError
         When worker processes were killed; of a cluster, one after another over the same tasks.
     """
-    for task, result, seconds in _time(tasks, workers, scheduler, follow_ups):
-        took(task, seconds)
+    known = Durations() if durations is None else durations
+    for task, result, took in _timed(tasks, workers, scheduler, follow_ups, known):
+        known.add(task, took)
         yield result
 
 
-def _time(
+def _timed(
     tasks: Sequence[Task],
     workers: int,
     scheduler: str | None,
     follow_ups: Mapping[str, FollowUp],
+    durations: Durations,
 ) -> Iterator[_Timed]:
     if scheduler is not None:
         with connect(scheduler) as cluster:
-            yield from cluster.outcomes(
-                [
-                    (bundle, partial(_all_measured, bundle, follow_ups.get(bundle[0].preset.name)))
-                    for bundle in bundles(tasks, cluster.workers())
-                ]
-            )
-        return
-    bundled = bundles(tasks, workers)
-    following = [follow_ups.get(bundle[0].preset.name) for bundle in bundled]
-    if workers == 1 or len(tasks) == 1:
-        for bundle, follow_up in zip(bundled, following, strict=True):
-            yield from _measure(bundle, follow_up)
-        return
-    pairs = zip(bundled, following, strict=True)
-    with closing(as_completed(_pair_measured, pairs, workers)) as measured:
-        for results in measured:
-            yield from results
+            yield from shared_out(tasks, cluster, cluster.workers(), follow_ups, durations)
+    elif workers == 1 or len(tasks) == 1:
+        for bundle in bundles(tasks, durations, math.inf, follow_ups):
+            yield from Work(bundle, durations, math.inf).measured([])
+    else:
+        with hands_of(workers) as hands:
+            yield from shared_out(tasks, hands, workers, follow_ups, durations)
 
 
-def bundles(tasks: Sequence[Task], workers: int = 1) -> list[list[Task]]:
-    """Group tasks that follow each other and share samples or light, for one worker to do.
+def shared_out(
+    tasks: Sequence[Task],
+    hands: Hands,
+    workers: int,
+    follow_ups: Mapping[str, FollowUp],
+    durations: Durations,
+) -> Iterator[_Timed]:
+    """Hand bundles out, longest first, and what is left of them as it becomes known."""
+    known = Durations(dict(durations.known))  # who is told of results adds to the other
+    most = longest_of(total_seconds(tasks, known, follow_ups), workers)
+    waiting = Waiting(bundles(tasks, known, most, follow_ups))
 
-    Generating samples and their bound often costs more than the rest. With many datasets to do, a
-    bundle is a dataset, whose conditions see the same light and whose units look it up in the same
-    tables (see `benchmark.simulator.light.memory`); else at most four tasks of a dataset, unit and
-    condition.
-    """
-    many = len({task.preset.name for task in tasks}) >= _DATASETS_A_WORKER * workers
-    found: list[list[Task]] = []
-    for task in tasks:
-        last = found[-1] if found else []
-        if (
-            last
-            and last[0].preset.name == task.preset.name
-            and (many or (len(last) < _BUNDLE and _place(last[0]) == _place(task)))
-        ):
-            last.append(task)
-        else:
-            found.append([task])
-    return found
+    def hand_out() -> None:
+        while len(waiting) and hands.free():
+            bundle = waiting.take()
+            hands.give(Work(bundle, known.of(bundle.tasks[0].preset.name), most))
 
-
-def _place(task: Task) -> tuple[int, str]:
-    return task.unit, task.condition
-
-
-def _measure(bundle: Sequence[Task], follow_up: FollowUp | None) -> Iterator[_Timed]:
-    """Measure a bundle, then what follows from it."""
-    first, places = [], set()
-
-    def timed(task: Task) -> _Timed:
-        place = task.preset.name, *_place(task)
-        started = time.process_time()
-        result = measure(task)
-        seconds = time.process_time() - started
-        took = Took(len(task.models), int(place not in places), round(seconds, 3))
-        places.add(place)
-        return task, result, took
-
-    with shared_patterns():
-        for task in bundle:
-            outcome = timed(task)
-            first.append(outcome[1])
-            yield outcome
-        yield from map(timed, follow_up.tasks(first) if follow_up else ())
-
-
-def _pair_measured(pair: tuple[Sequence[Task], FollowUp | None]) -> list[_Timed]:
-    return _all_measured(*pair)
-
-
-def _all_measured(bundle: Sequence[Task], follow_up: FollowUp | None) -> list[_Timed]:
-    return list(_measure(bundle, follow_up))
+    hand_out()
+    while hands.busy():
+        done = hands.take()
+        for left in done.left:
+            waiting.add(Bundle(left, known.seconds(left)))
+        hand_out()  # before results are kept: no worker waits for that
+        yield from done.timed

@@ -11,11 +11,10 @@ import gc
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
 from importlib.util import find_spec
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from algorithms.chain import Chain
 from benchmark.results.closure import closure_digest
@@ -28,6 +27,7 @@ _PATIENCE_S = 30
 _ONE_AT_A_TIME = threading.Lock()
 
 T = TypeVar("T")
+T_co = TypeVar("T_co", covariant=True)
 
 
 class DaskMissingError(ImportError):
@@ -46,11 +46,19 @@ class WorkerLostError(RuntimeError):
     """Worker processes died over a task, as often as it is tried again."""
 
 
-@dataclass(frozen=True)
-class Cluster:
-    """A cluster that answers.
+class _Work(Protocol[T_co]):
+    """Tasks, and a call that measures them."""
 
-    Attributes
+    @property
+    def tasks(self) -> Sequence[Task]: ...
+
+    def __call__(self) -> T_co: ...
+
+
+class Cluster:
+    """A cluster that answers; its workers take whatever they are given at once.
+
+    Parameters
     ----------
     client
         Of ``distributed``.
@@ -58,22 +66,32 @@ class Cluster:
         Its address.
     """
 
-    client: Any
-    scheduler: str
+    def __init__(self, client: Any, scheduler: str) -> None:
+        self.client = client
+        self.scheduler = scheduler
+        self._given = 0
+        self._done = import_module("distributed").as_completed(loop=client.loop)
 
     def workers(self) -> int:
         """Count the worker processes there are now."""
         return len(self.client.ncores())
 
-    def outcomes(
-        self, bundles: Sequence[tuple[Sequence[Task], Callable[[], list[T]]]]
-    ) -> Iterator[T]:
-        """Give each result as soon as it is there, in any order.
+    def free(self) -> bool:
+        """Say whether there are more workers than things to do; one more each is sent ahead."""
+        return self._given < 2 * self.workers()
 
-        Parameters
-        ----------
-        bundles
-            Tasks, and what measures them on a worker and tells of each.
+    def busy(self) -> bool:
+        """Say whether something is still to come back."""
+        return self._given > 0
+
+    def give(self, work: _Work[Any]) -> None:
+        """Have tasks measured on a worker."""
+        of_it = partial(_measure, code_of(work.tasks), work.tasks, work)
+        self._done.add(self.client.submit(of_it, pure=False))
+        self._given += 1
+
+    def take(self) -> Any:
+        """Wait for the next that is done and return what its worker gives.
 
         Raises
         ------
@@ -85,27 +103,23 @@ class Cluster:
             For anything else that a worker could not do; implementations' errors are results.
         """
         distributed = import_module("distributed")
-        futures = [
-            self.client.submit(partial(_measure, code_of(tasks), tasks, measure), pure=False)
-            for tasks, measure in bundles
-        ]
-        for future in distributed.as_completed(futures, loop=self.client.loop):
-            try:
-                results: list[T] = future.result()
-            except distributed.KilledWorker as error:
-                raise WorkerLostError(
-                    f"workers of {self.scheduler} were killed, or died of what they measured, "
-                    "one after another; what was measured before is kept"
-                ) from error
-            except OtherCodeError:
-                raise
-            except Exception as error:
-                raise ClusterError(
-                    f"a worker of {self.scheduler} could not measure: "
-                    f"{type(error).__name__}: {error}"
-                ) from error
-            future.release()
-            yield from results
+        future = next(self._done)
+        try:
+            result = future.result()
+        except distributed.KilledWorker as error:
+            raise WorkerLostError(
+                f"workers of {self.scheduler} were killed, or died of what they measured, "
+                "one after another; what was measured before is kept"
+            ) from error
+        except OtherCodeError:
+            raise
+        except Exception as error:
+            raise ClusterError(
+                f"a worker of {self.scheduler} could not measure: {type(error).__name__}: {error}"
+            ) from error
+        future.release()
+        self._given -= 1
+        return result
 
 
 @contextmanager
@@ -179,7 +193,7 @@ def code_of(tasks: Sequence[Task]) -> str:
     return closure_digest(*sorted(modules))
 
 
-def _measure(code: str, tasks: Sequence[Task], measure: Callable[[], list[T]]) -> list[T]:
+def _measure(code: str, tasks: Sequence[Task], measure: Callable[[], T]) -> T:
     """Measure on a worker, one bundle at a time however many threads it has."""
     if code_of(tasks) != code:
         raise OtherCodeError(

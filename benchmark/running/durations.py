@@ -6,7 +6,7 @@ worker does also makes the data; it is marked.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from itertools import groupby
 from statistics import fmean, median
@@ -95,8 +95,36 @@ class Durations:
 
     def add(self, task: Task, took: Took) -> None:
         """Take in how long a task took."""
-        name = task.extractor.about.name
-        self.known[ExtractionTask(task.preset.name, task.condition, task.unit, name)] = took
+        self.known[_name_of(task)] = took
+
+    def of(self, dataset: str) -> Durations:
+        """Return what is known of one data set."""
+        return Durations({task: took for task, took in self.known.items() if task[0] == dataset})
+
+    def seconds(self, tasks: Sequence[Task]) -> float:
+        """Say how long tasks of one data set take, their data included.
+
+        By the same tasks; else by their like on the same data set; else by the same extractor on
+        others; else as long as the mean task of all; where nothing is known a second each.
+        """
+        wanted = {_name_of(task): len(task.models) for task in tasks}
+        same = [self.known[task] for task in wanted if task in self.known]
+        if len(same) == len(wanted):
+            return sum(took.seconds for took in same)
+        like = self.of(tasks[0].preset.name).known
+        if like:
+            return _of_dataset(list(wanted), wanted, like)
+        return sum(map(self._elsewhere, wanted))
+
+    def _elsewhere(self, wanted: ExtractionTask) -> float:
+        known = [took for task, took in self.known.items() if task.extractor == wanted.extractor]
+        return fmean(took.seconds for took in known or self.known.values() or [Took(0, 0, 1.0)])
+
+    def following(self, tasks: Sequence[Task]) -> float:
+        """Say how long what else is known of the data set of these tasks takes."""
+        known = self.of(tasks[0].preset.name).known
+        given = {_name_of(task) for task in tasks}
+        return sum(took.seconds for task, took in known.items() if task not in given)
 
     def keep(self, store: Store) -> None:
         """Write all to a store's working directory."""
@@ -117,6 +145,11 @@ class Durations:
                 continue
             seconds += _of_dataset(list(group), tasks, like)
         return Estimate(seconds, len(tasks), unknown)
+
+
+def _name_of(task: Task) -> ExtractionTask:
+    extractor = task.extractor.about.name
+    return ExtractionTask(task.preset.name, task.condition, task.unit, extractor)
 
 
 def _of_dataset(

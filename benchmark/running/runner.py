@@ -148,7 +148,7 @@ def measure_missing(
             for stage in filter(None, stages):
                 tasks = tasks_of(stage, parts, record.pins)
                 durations = Durations.read([record.store])
-                results = outcomes(tasks, workers, scheduler, follow_ups or {}, durations.add)
+                results = outcomes(tasks, workers, scheduler, follow_ups or {}, durations)
                 try:
                     _keep_all(results, record, components, counted)
                 finally:

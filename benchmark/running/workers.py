@@ -6,25 +6,117 @@ process is killed they end by themselves (`benchmark.processes`).
 
 from __future__ import annotations
 
+import atexit
 import os
-import warnings
-from collections.abc import Callable, Generator, Iterable
+import signal
+from collections.abc import Callable, Generator, Iterable, Iterator
+from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import ExitStack, contextmanager, suppress
+from functools import cache, partial
+from itertools import islice
 from multiprocessing import active_children
-from typing import TypeVar
+from pathlib import Path
+from queue import SimpleQueue
+from typing import Any, TypeVar
 
-from joblib import Parallel, delayed, parallel_config
+from joblib.externals.loky import get_reusable_executor
 from joblib.externals.loky.backend.process import LokyProcess
 
 from benchmark.processes import work_for
 from benchmark.running.cluster import WorkerLostError
+from benchmark.simulator.light.memory import memory
+from files.temporary import temporary_directory
 
 A = TypeVar("A")
 B = TypeVar("B")
 
+#: Seconds after which a worker that is given nothing ends.
+_IDLE_S = 300
+#: Each worker computes in one thread, whichever library does.
+_ONE_THREAD = dict.fromkeys(
+    (
+        *("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS"),
+        *("VECLIB_MAXIMUM_THREADS", "NUMBA_NUM_THREADS", "NUMEXPR_NUM_THREADS"),
+    ),
+    "1",
+)
 
-def in_order(work: Callable[[A], B], items: Iterable[A], workers: int) -> Generator[B, None, None]:
-    """Do work in processes and give the results in the order of the items.
+
+#: Frames take tens of MB: the C library (glibc) keeps what is freed for the next ones, which costs
+#: less than to have the system clear pages for each.
+_MEMORY = {
+    "MALLOC_MMAP_THRESHOLD_": str(64 * 2**20),
+    "MALLOC_TRIM_THRESHOLD_": str(256 * 2**20),
+}
+
+
+class LocalHands:
+    """Worker processes, each with one piece of work at a time."""
+
+    def __init__(self, executor: Any, workers: int) -> None:
+        self._executor = executor
+        self._workers = workers
+        self._given = 0
+        self._done: SimpleQueue[Future[Any]] = SimpleQueue()
+
+    def free(self) -> bool:
+        """Say whether a worker has nothing to do."""
+        return self._given < self._workers
+
+    def busy(self) -> bool:
+        """Say whether something is still to come back."""
+        return self._given > 0
+
+    def give(self, work: Callable[[], Any]) -> None:
+        """Have a worker do a piece of work."""
+        self._executor.submit(work).add_done_callback(self._done.put)
+        self._given += 1
+
+    def take(self) -> Any:
+        """Wait for the next piece that is done and return what it gives, or raise its error."""
+        result = self._done.get().result()
+        self._given -= 1
+        return result
+
+
+@contextmanager
+def hands_of(workers: int) -> Iterator[LocalHands]:
+    """Hold worker processes; what is under way when they are left is given up.
+
+    Raises
+    ------
+    WorkerLostError
+        When a worker was killed.
+    """
+    hands = None
+    try:
+        executor = get_reusable_executor(
+            workers,
+            timeout=_IDLE_S,
+            env=_ONE_THREAD | _MEMORY,
+            # as the workers are started, not with their first task: one that waits ends as well
+            initializer=_begin,
+            initargs=(os.getpid(), _tables()),
+        )
+        hands = LocalHands(executor, workers)
+        yield hands
+    except BrokenProcessPool as error:
+        raise WorkerLostError(
+            "a worker process was killed, or died of what it did; what was done before is kept"
+        ) from error
+    finally:
+        if hands is None:
+            _kill()
+        elif hands.busy():
+            _kill()
+            executor.shutdown()
+
+
+def as_completed(
+    work: Callable[[A], B], items: Iterable[A], workers: int
+) -> Generator[B, None, None]:
+    """Do work in processes and give each result as soon as it is there.
 
     Parameters
     ----------
@@ -33,55 +125,48 @@ def in_order(work: Callable[[A], B], items: Iterable[A], workers: int) -> Genera
     items
         Handed out one at a time.
     workers
-        Number of processes; with 1 all happens in this one.
+        Number of processes; with 1 all happens in this one, in the order of the items.
 
     Raises
     ------
     WorkerLostError
         When a worker was killed.
     """
-    return _results(work, items, workers, "generator")
-
-
-def as_completed(
-    work: Callable[[A], B], items: Iterable[A], workers: int
-) -> Generator[B, None, None]:
-    """As `in_order`, but each result as soon as it is there."""
-    return _results(work, items, workers, "generator_unordered")
-
-
-def _results(
-    work: Callable[[A], B], items: Iterable[A], workers: int, order: str
-) -> Generator[B, None, None]:
     if workers == 1:
         yield from map(work, items)
         return
-    # As the workers are started, not with their first task: one that waits ends as well.
-    own = {"initializer": work_for, "initargs": (os.getpid(),)}
-    try:
-        with parallel_config("loky", n_jobs=workers, inner_max_num_threads=1, **own):
-            parallel = Parallel(return_as=order, batch_size=1, pre_dispatch="2*n_jobs")
-            results = parallel(delayed(work)(item) for item in items)
-        try:
-            # "yield from" would close them itself, before their warnings are kept quiet
-            for result in results:  # noqa: UP028
-                yield result
-        finally:
-            with warnings.catch_warnings():
-                # joblib's advice on what was in flight: who asked for it has said what is kept
-                warnings.filterwarnings("ignore", ".*tasks which were still being processed.*")
-                results.close()
-    except BrokenProcessPool as error:
-        raise WorkerLostError(
-            "a worker process was killed, or died of what it did; what was done before is kept"
-        ) from error
-    except KeyboardInterrupt:
-        _end_those_being_started()
-        raise
+    waiting = iter(items)
+    with hands_of(workers) as hands:
+        for item in islice(waiting, 2 * workers):
+            hands.give(partial(work, item))
+        while hands.busy():
+            result = hands.take()
+            for item in islice(waiting, 1):
+                hands.give(partial(work, item))
+            yield result
 
 
-def _end_those_being_started() -> None:
-    """End workers that joblib does not know of yet, where it was broken off while starting them."""
+@cache
+def _tables() -> Path:
+    """Directory that workers of this process share tables in; gone when it ends."""
+    held = ExitStack()
+    atexit.register(held.close)
+    return held.enter_context(temporary_directory())
+
+
+def _begin(coordinator: int, tables: Path) -> None:
+    """Begin as a worker."""
+    work_for(coordinator)
+    memory.share_tables(tables)
+
+
+def _kill() -> None:
+    """Kill workers, those that are being started among them.
+
+    The pool sees that they are gone and makes others for who asks next. To have it kill them ends
+    its thread by an error where it was just given something.
+    """
     for process in active_children():
-        if isinstance(process, LokyProcess):
-            process.kill()
+        if isinstance(process, LokyProcess) and process.pid:  # its own kill() is not made
+            with suppress(ProcessLookupError):
+                os.kill(process.pid, signal.SIGKILL)

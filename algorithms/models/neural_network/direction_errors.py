@@ -210,7 +210,7 @@ def least_squares(design: Floats, wanted: Floats, by: str) -> Floats:
     UnusableDataError
         If the samples do not settle them.
     """
-    from algorithms.models.neural_network.network_kernel import solve  # noqa: PLC0415 - Numba
+    from algorithms.models.neural_network.cholesky_kernel import solve  # noqa: PLC0415 - Numba
     from algorithms.models.neural_network.portable_kernel import products  # noqa: PLC0415 - Numba
 
     terms = design.shape[1]

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.models.neural_network.cholesky_kernel import solve
 
 Layers = NDArray[np.int64]
 
@@ -21,7 +22,7 @@ LINEAR, LOG_SIGMOID, TANH = 0, 1, 2
 
 _BLOCK = 64
 """Samples whose activations stay in the first cache; inner loops run along them."""
-_ROWS = 32
+_ROWS = 16
 """Rows of derivatives that stay in the first cache; a multiple of four that divides a block."""
 _TOGETHER = 8
 """Products are summed up in matrices of a multiple of so many columns."""
@@ -40,37 +41,36 @@ _LEAST, _MOST = 1e-14, 1e10
 
 
 @compiled
-def _respond(sums: Floats, kind: int) -> None:
-    """Turn sums (u, b) into what units of this kind answer, in place."""
+def _respond(row: Floats, kind: int) -> None:
+    """Turn sums (b,) of a unit of this kind into what it answers, in place."""
     if kind == LINEAR:
         return
-    units, size = sums.shape
     scale = 2.0 if kind == TANH else 1.0
-    shares, powers = np.empty(size), np.empty(size)
-    for unit in range(units):
-        row = sums[unit]
-        for i in range(size):
-            x = scale * row[i]
-            # NaN passes both comparisons, as it would not minimum and maximum
-            if x > _FARTHEST:  # noqa: PLR1730
-                x = _FARTHEST
-            if x < -_FARTHEST:  # noqa: PLR1730
-                x = -_FARTHEST
-            shares[i] = -x * _SHARE
-        powers[:] = _SERIES[0]
-        # term by term for all samples: the compiler takes several at a time
-        for term in range(1, 13):
-            for i in range(size):
-                powers[i] = powers[i] * shares[i] + _SERIES[term]
+    for i in range(len(row)):
+        x = scale * row[i]
+        # NaN passes both comparisons, as it would not minimum and maximum
+        x = _FARTHEST if x > _FARTHEST else x  # noqa: FURB136
+        x = -_FARTHEST if x < -_FARTHEST else x  # noqa: FURB136
+        share = -x * _SHARE
+        # spelled out: the compiler takes several samples at a time
+        power = _SERIES[0] * share + _SERIES[1]
+        power = (power * share + _SERIES[2]) * share + _SERIES[3]
+        power = (power * share + _SERIES[4]) * share + _SERIES[5]
+        power = (power * share + _SERIES[6]) * share + _SERIES[7]
+        power = (power * share + _SERIES[8]) * share + _SERIES[9]
+        power = (power * share + _SERIES[10]) * share + _SERIES[11]
+        power = power * share + _SERIES[12]
         for _ in range(_SQUARINGS):
-            powers *= powers
-        for i in range(size):
-            row[i] = scale * (1.0 / (1.0 + powers[i])) - (scale - 1.0)
+            power *= power
+        row[i] = 1.0 + power
+    np.divide(1.0, row, row)  # a quotient by itself is checked, one at a time
+    for i in range(len(row)):
+        row[i] = scale * row[i] - (scale - 1.0)
 
 
 @compiled
 def _forward(inputs: Floats, weights: Floats, widths: Layers, kinds: Layers, units: Floats) -> None:
-    """Answers of all units (sum of widths, b) of samples (b, F), the inputs' own first."""
+    """Answers of all units (sum of widths, _BLOCK) of samples (b, F), the inputs' own first."""
     size = len(inputs)
     for column in range(widths[0]):
         for i in range(size):
@@ -79,17 +79,17 @@ def _forward(inputs: Floats, weights: Floats, widths: Layers, kinds: Layers, uni
     for layer in range(len(kinds)):
         first = before + widths[layer]
         for unit in range(widths[layer + 1]):
-            row = units[first + unit]
+            row = units[first + unit, :size]  # sliced: contiguous for the compiler
             bias = weights[at + widths[layer]]
             for i in range(size):
                 row[i] = bias
             for source in range(widths[layer]):
                 weight = weights[at + source]
-                seen = units[before + source]
+                seen = units[before + source, :size]
                 for i in range(size):
                     row[i] += weight * seen[i]
             at += widths[layer] + 1
-        _respond(units[first : first + widths[layer + 1]], kinds[layer])
+            _respond(row, kinds[layer])
         before = first
 
 
@@ -116,10 +116,9 @@ def network_values(
     units = np.empty((everything, _BLOCK))
     for start in range(0, len(inputs), _BLOCK):
         size = min(_BLOCK, len(inputs) - start)
-        part = units[:, :size]
-        _forward(inputs[start : start + size], weights, widths, kinds, part)
+        _forward(inputs[start : start + size], weights, widths, kinds, units)
         for output in range(outputs):
-            out[start : start + size, output] = part[everything - outputs + output]
+            out[start : start + size, output] = units[everything - outputs + output, :size]
 
 
 @compiled
@@ -145,9 +144,9 @@ def _derivatives(  # noqa: PLR0917 - Numba takes no keyword-only ones
 ) -> None:
     """Derive one output of samples by all weights, rows (b, P): the chain rule backwards.
 
-    `units` and `slopes` (sum of widths, b): answers, and derivatives by what they are answers to.
+    `units` and `slopes` (sum of widths, _BLOCK): answers, and derivatives by what they answer.
     """
-    at, before = len(weights), len(slopes)
+    at, before, size = len(weights), len(slopes), len(rows)
     slopes[before - widths[-1] :] = 0.0
     slopes[before - widths[-1] + output] = 1.0
     for layer in range(len(kinds) - 1, -1, -1):
@@ -157,19 +156,19 @@ def _derivatives(  # noqa: PLR0917 - Numba takes no keyword-only ones
         before -= width
         below = before - sources
         for unit in range(width):
-            slope = slopes[before + unit]
+            slope = slopes[before + unit, :size]
             if last < len(slopes):
                 slope[:] = 0.0
                 for target in range(widths[layer + 2]):
-                    above = slopes[last + target]
+                    above = slopes[last + target, :size]
                     weight = weights[last_at + target * (width + 1) + unit]
                     for i in range(len(slope)):
                         slope[i] += above[i] * weight
-            _lean(slope, units[before + unit], kinds[layer])
+            _lean(slope, units[before + unit, :size], kinds[layer])
             place = at + unit * (sources + 1)
             for source in range(sources):
-                seen = units[below + source]
-                for i in range(len(slope)):
+                seen = units[below + source, :size]
+                for i in range(size):
                     rows[i, place + source] = slope[i] * seen[i]
             rows[:, place + sources] = slope
 
@@ -183,11 +182,10 @@ def network_derivatives(
     units, slopes = np.empty((everything, _BLOCK)), np.empty((everything, _BLOCK))
     for start in range(0, len(inputs), _BLOCK):
         size = min(_BLOCK, len(inputs) - start)
-        seen, falling = units[:, :size], slopes[:, :size]
-        _forward(inputs[start : start + size], weights, widths, kinds, seen)
+        _forward(inputs[start : start + size], weights, widths, kinds, units)
         for output in range(widths[-1]):
             rows = out[start : start + size, output]
-            _derivatives(seen, output, weights, widths, kinds, falling, rows)
+            _derivatives(units, output, weights, widths, kinds, slopes, rows)
 
 
 @compiled
@@ -199,7 +197,7 @@ def _mean_square(  # noqa: PLR0917 - Numba takes no keyword-only ones
     total = 0.0
     for start in range(0, len(inputs), _BLOCK):
         size = min(_BLOCK, len(inputs) - start)
-        _forward(inputs[start : start + size], weights, widths, kinds, units[:, :size])
+        _forward(inputs[start : start + size], weights, widths, kinds, units)
         for output in range(outputs):
             for i in range(size):
                 off = units[everything - outputs + output, i] - wanted[start + i, output]
@@ -247,61 +245,16 @@ def _normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
     units, slopes = np.empty((everything, _BLOCK)), np.empty((everything, _BLOCK))
     for start in range(0, len(inputs), _BLOCK):
         size = min(_BLOCK, len(inputs) - start)
-        seen, falling = units[:, :size], slopes[:, :size]
-        _forward(inputs[start : start + size], weights, widths, kinds, seen)
+        _forward(inputs[start : start + size], weights, widths, kinds, units)
         for output in range(outputs):
             found = rows[:size, output]
-            _derivatives(seen, output, weights, widths, kinds, falling, found[:, :count])
-            answer = seen[everything - outputs + output]
+            _derivatives(units, output, weights, widths, kinds, slopes, found[:, :count])
+            answer = units[everything - outputs + output, :size]
             found[:, count] = answer - wanted[start : start + size, output]
         rows[size:] = 0.0
         for first in range(0, size * outputs, _ROWS):
             _add_products(products, listed[first : first + _ROWS])
     products /= len(inputs)
-
-
-@compiled
-def solve(normal: Floats, added: float, wanted: Floats, factor: Floats, out: Floats) -> bool:
-    """Solve ``(normal + added I) out = wanted`` by Cholesky's factor; whether it could be.
-
-    Parameters
-    ----------
-    normal : ndarray, shape (P, P)
-        Symmetric; only its upper triangle is read.
-    added : float
-        To the diagonal.
-    wanted : ndarray, shape (P,)
-        Right-hand side.
-    factor : ndarray, shape (P, P)
-        Overwritten: U with ``U' U`` the matrix, in the upper triangle.
-    out : ndarray, shape (P,)
-        Overwritten.
-    """
-    count = len(wanted)
-    for p in range(count):
-        factor[p, p:] = normal[p, p:]
-        factor[p, p] += added
-        out[p] = wanted[p]
-    for p in range(count):
-        pivot = factor[p, p]
-        if not pivot > 0.0:
-            return False
-        root = np.sqrt(pivot)
-        factor[p, p:] /= root
-        out[p] /= root
-        for r in range(p + 1, count):
-            share = factor[p, r]
-            # sliced: contiguous for the compiler
-            line, above = factor[r, r:], factor[p, r:]
-            for q in range(len(line)):
-                line[q] -= share * above[q]
-            out[r] -= share * out[p]
-    for p in range(count - 1, -1, -1):
-        value = out[p]
-        for q in range(p + 1, count):
-            value -= factor[p, q] * out[q]
-        out[p] = value / factor[p, p]
-    return True
 
 
 @compiled

@@ -179,21 +179,22 @@ class AssembledFaces(FacesModel):
         vector = self._start(light)
         normal, right, cost = self._equations(vector, light)
         damping = np.full(len(light), _FIRST_DAMPING)
-        resting = ~np.isfinite(vector[:, 0])
+        moving = np.flatnonzero(np.isfinite(vector[:, 0]))
         for _ in range(ITERATIONS):
-            size = damping * (normal[:, 0, 0] + normal[:, 1, 1] + normal[:, 2, 2])
-            step = _solve3(normal + size[:, None, None] * np.eye(3), right)
-            step[resting] = 0.0
-            tried = vector + step
-            found = self._equations(tried, light)
-            better = found[2] <= cost * (1.0 + _EQUAL)
-            small = (step**2).sum(axis=1) <= _AT_REST**2 * (vector**2).sum(axis=1)
-            for kept, new in zip((vector, normal, right, cost), (tried, *found), strict=True):
-                kept[better] = new[better]
-            damping = np.clip(np.where(better, damping / 10.0, damping * 10.0), _LEAST_DAMPING, 1e6)
-            resting |= small
-            if resting.all():
+            if not len(moving):
                 break
+            here, equations, squares = vector[moving], normal[moving], cost[moving]
+            size = damping[moving] * (equations[:, 0, 0] + equations[:, 1, 1] + equations[:, 2, 2])
+            step = _solve3(equations + size[:, None, None] * np.eye(3), right[moving])
+            tried = here + step
+            found = self._equations(tried, light[moving])
+            better = found[2] <= squares * (1.0 + _EQUAL)
+            for kept, new in zip((vector, normal, right, cost), (tried, *found), strict=True):
+                kept[moving[better]] = new[better]
+            times = np.where(better, damping[moving] / 10.0, damping[moving] * 10.0)
+            damping[moving] = np.clip(times, _LEAST_DAMPING, 1e6)
+            small = (step**2).sum(axis=1) <= _AT_REST**2 * (here**2).sum(axis=1)
+            moving = moving[~small]
         sun = normalise(vector)
         inverse = _inverse3(normal)
         along = np.zeros(len(sun))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, cast
 
 from algorithms.contract import Floats
@@ -69,6 +71,35 @@ def posterior_bound(
     single: Bound = preset.bound(condition, "test") if bound is None else bound
     if single.fisher is None:
         raise ValueError("a posterior bound needs a bound with Fisher matrices (cramer_rao)")
+    return _posterior(_Same(preset), condition, _Same(single), sequential, magnetometer, horizon)
+
+
+@dataclass(frozen=True)
+class _Same:
+    """An object that is equal to itself alone, for `lru_cache`."""
+
+    it: Any
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and other.it is self.it
+
+    def __hash__(self) -> int:
+        return id(self.it)
+
+
+# every model of a board that reads the same instruments asks for the same one
+@lru_cache(maxsize=8)
+def _posterior(  # noqa: PLR0917 - lru_cache tells calls by place and by name apart
+    kept_preset: _Same,
+    condition: str,
+    kept_bound: _Same,
+    sequential: bool,
+    magnetometer: bool,
+    horizon: bool,
+) -> Floats:
+    """Return the bound as `posterior_bound`, which says what is known; read-only."""
+    preset, single = kept_preset.it, kept_bound.it
+    flight = preset.flight
     leg = flight.leg("test")
     read = sun_information(single.fisher, irradiance_known=sequential)
     information = attitude_information(leg.sun_body, read)
@@ -78,9 +109,13 @@ def posterior_bound(
     if horizon:
         deviation = math.tan(math.radians(flight.horizon_deg))
         information = information + vector_information(leg.nadir_body, deviation)
-    if not sequential:
-        return single_bound(leg.sun_body, information)
-    return recursive_bound(leg.sun_body, information, Motion(leg.turn, leg.time_s, flight.gyro))
+    if sequential:
+        motion = Motion(leg.turn, leg.time_s, flight.gyro)
+        found = recursive_bound(leg.sun_body, information, motion)
+    else:
+        found = single_bound(leg.sun_body, information)
+    found.flags.writeable = False
+    return found
 
 
 def _true_field_nt(preset: Any, condition: str, leg: Any) -> Floats:

@@ -7,14 +7,22 @@ stands in front of them; the bound moves the Sun alike under each. Nothing is ke
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
+import json
+import os
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
+from contextlib import suppress
 from functools import lru_cache
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
+
+from algorithms.contract import Floats
+from benchmark.canonical import plain
 
 #: A worker's data, tables and code take up to 1.2 GB; with this it stays below 1.5 GB.
 LIMIT_BYTES = 256 * 2**20
@@ -43,6 +51,7 @@ class LightMemory:
         self._kept: dict[Hashable, _Kept] = {}
         self._runs: dict[Hashable, Runs] = {}
         self._latest: OrderedDict[Hashable, Runs] = OrderedDict()
+        self._directory: Path | None = None
 
     def cache_for(self, owner: Hashable, family: Hashable = None) -> None:
         """Keep light from now on; what was kept for another owner is let go.
@@ -66,6 +75,41 @@ class LightMemory:
             return cast("Function", known)
 
         return kept
+
+    def share_tables(self, directory: Path) -> None:
+        """Keep in a directory what `mapped` makes, for all processes that share it.
+
+        They must be of the same code, and the directory no older than they.
+        """
+        self._directory = directory
+
+    def mapped(self, named_by: Any, make: Callable[[], Floats]) -> Floats:
+        """Return what `make` makes of an object, read-only; from a shared directory if it is there.
+
+        Parameters
+        ----------
+        named_by
+            All that the array depends on: a dataclass, as `benchmark.canonical.plain` takes it.
+        make
+            Makes the array.
+        """
+        path = None
+        if self._directory is not None:
+            # to the last bit, unlike digests of the record
+            spelt = json.dumps(plain(named_by, float.hex, _fields))
+            name = hashlib.sha256(f"{type(named_by).__qualname__} {spelt}".encode()).hexdigest()
+            path = self._directory / f"{name}.npy"
+            if path.is_file():
+                return np.asarray(np.load(path, mmap_mode="r"))
+        made = make()
+        made.flags.writeable = False
+        if path is not None:
+            with suppress(OSError):  # a full disk: others make it again
+                part = path.with_name(f"{path.name}.{os.getpid()}")
+                with part.open("wb") as file:
+                    np.save(file, made)
+                part.replace(path)  # whole, or not there, for who looks for it
+        return made
 
     def forget(self) -> None:
         """Let go of everything and keep nothing more."""
@@ -127,6 +171,10 @@ class LightMemory:
             return False
         self.kept_bytes += size
         return True
+
+
+def _fields(value: Any) -> dict[str, object]:
+    return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
 
 
 def _size(runs: Runs) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 
@@ -96,13 +96,24 @@ class RoundPattern:
 
     def layers(self) -> Floats:
         """(L, 2) thickness and index from the aperture down; the first is empty."""
+        return self._layers
+
+    @cached_property
+    def _layers(self) -> Floats:
         return layers(self.height_mm, self.glass)
 
     def numbers(self, sine: Floats, wavelength_mm: float) -> Floats:
         """(N, 2) Fresnel numbers along and across the plane of incidence."""
-        return np.asarray(
-            self.radius_mm**2 / (wavelength_mm * landing_points(sine, self.layers())[:, 1:])
-        )
+        return self.numbers_where(landing_points(sine, self._layers)[:, 1:], wavelength_mm)
+
+    def numbers_where(self, spread: Floats, wavelength_mm: float) -> Floats:
+        """(N, 2) `numbers`, of J_r and J_t (N, 2) that are known already."""
+        return np.asarray(self.radius_mm**2 / (wavelength_mm * spread))
+
+    @cached_property
+    def _upright(self) -> Floats:
+        """(1, 2) `numbers` at normal incidence and the shortest wavelength."""
+        return self.numbers(np.zeros(1), self._wavelength_mm)
 
     def scales(self, sine: Floats) -> tuple[Floats, Floats]:
         """Return direction cosines a step of the tables (N, 2), and the tables' unit (N,).
@@ -110,7 +121,7 @@ class RoundPattern:
         The steps follow the shadow where the aperture is many fringes wide, the far pattern where
         it is not, so that tables of neighbouring incidences resemble each other.
         """
-        normal = self.numbers(np.zeros(1), self._wavelength_mm)
+        normal = self._upright
         here = self.numbers(sine, self._wavelength_mm)
         ratio = np.sqrt(
             (1.0 + (2.0 * math.pi / _AIRY * here) ** 2)
@@ -124,8 +135,7 @@ class RoundPattern:
     @property
     def nodes(self) -> int:
         """How many incidences are tabulated, equally spaced."""
-        normal = float(self.numbers(np.zeros(1), self._wavelength_mm)[0, 0])
-        return 12 + math.ceil(2.5 * normal)
+        return 12 + math.ceil(2.5 * float(self._upright[0, 0]))
 
     def seen(self, sine: Floats) -> Floats:
         """(N, 6) what `diffraction.add_round` takes points of the detector to the tables by.
@@ -345,14 +355,16 @@ class RoundPattern:
 
 @memory.tables(40)
 def _tables(pattern: RoundPattern) -> Floats:
+    return memory.mapped(pattern, partial(_filled, pattern))
+
+
+def _filled(pattern: RoundPattern) -> Floats:
     steps, _ = pattern.scales(np.zeros(1))
     across = landing_points(np.zeros(1), pattern.layers())[0, 1]
     wave = min(pattern.spectrum.wavelengths_nm) * 1e-6 / (2.0 * math.pi * pattern.radius_mm)
     widest = min(pattern.reach_mm / across, pattern.radius_mm / across + _OUTSIDE * wave)
     reach = math.ceil(widest / float(steps[0, 0])) + 3
-    tables = pattern.fill(reach)
-    tables.flags.writeable = False
-    return tables
+    return pattern.fill(reach)
 
 
 def layers(height_mm: float, glass: CoverGlass) -> Floats:
@@ -363,11 +375,15 @@ def layers(height_mm: float, glass: CoverGlass) -> Floats:
 
 def landing_points(sine: Floats, stack: Floats) -> Floats:
     """(N, 3) where rays of these sines of incidence land, and J_r, J_t (see `diffraction`)."""
-    square = stack[:, 1] ** 2 - sine[:, None] ** 2
+    indices = stack[:, 1] ** 2
+    square = indices - sine[:, None] ** 2
     share = stack[:, 0] / np.sqrt(square)
-    across = np.sum(share, axis=1)
-    along = np.sum(share * stack[:, 1] ** 2 / square, axis=1)
-    return np.stack([sine * across, along, across], axis=1)
+    # asked for a few rays at a time, very often: with as few calls of NumPy as there can be
+    found = np.empty((len(sine), 3))
+    across = share.sum(axis=1, out=found[:, 2])
+    (share * indices / square).sum(axis=1, out=found[:, 1])
+    np.multiply(sine, across, out=found[:, 0])
+    return found
 
 
 @lru_cache(maxsize=1)

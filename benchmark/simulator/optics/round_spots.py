@@ -227,7 +227,7 @@ class RoundSpots:
         pattern = group.drawn
         sine = np.sqrt(np.sum(head[:, :2] ** 2, axis=1))
         spread = landing_points(sine, pattern.layers())[:, 1:]
-        numbers = pattern.numbers(sine, self._wave_mm)
+        numbers = pattern.numbers_where(spread, self._wave_mm)
         light = 4.0 * math.pi * numbers[:, 0] * numbers[:, 1] * head[:, 2]
         out = np.array([(float(share) / group.level) ** (1.0 / 3.0) for share in light])
         turned = out[:, None] * self._wave_mm / (2.0 * math.pi * pattern.radius_mm)

@@ -11,6 +11,7 @@ import pytest
 from algorithms.angles import separation_deg
 from algorithms.contract import FeatureKind, UnsuitableDesignError
 from algorithms.discovery import discover_models
+from algorithms.filtering import reading_noise
 from algorithms.filtering.reading_noise import correlated_steps
 from algorithms.filtering.readings import FaceReadings, SpotReadings, earth_columns
 from algorithms.models.filters import (
@@ -157,3 +158,19 @@ def test_what_is_considered_stays_and_makes_the_filter_less_sure(geometry) -> No
     np.testing.assert_allclose(track.drift_deviation[1:, 2:], schmidt.gain_deviation, rtol=1e-9)
     sure = plain.deviation_deg(told["features"], told["context"])
     assert (track.deviation_deg[20:] > sure[20:]).all()
+
+
+def test_noise_is_heard_once_by_filters_of_one_space_and_anew_by_others(
+    geometry, monkeypatch
+) -> None:
+    told = flights.flight(FeatureKind.SPOT, geometry)
+    alone = UnscentedKalmanFilter().fit(**told).noise_
+    monkeypatch.setattr(reading_noise, "_heard", {})
+    heard = reading_noise._heard
+    noise = {}
+    for model in (ExtendedKalmanFilter(), UnscentedKalmanFilter(), RobustKalmanFilter()):
+        noise[type(model)] = model.fit(**told).noise_
+    assert len(heard) == 1
+    assert all(one.tobytes() == alone.tobytes() for one in noise.values())
+    ExtendedKalmanFilter(bias_deg_h=3.0).fit(**told)
+    assert len(heard) == 2

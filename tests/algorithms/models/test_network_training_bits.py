@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
+from algorithms.models.neural_network.cholesky_kernel import solve
 from algorithms.models.neural_network.network_kernel import (
     LINEAR,
     LOG_SIGMOID,
     TANH,
     network_derivatives,
     network_values,
-    solve,
     train,
 )
 

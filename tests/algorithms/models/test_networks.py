@@ -16,6 +16,7 @@ from algorithms.angles import separation_deg, sun_from_angles
 from algorithms.contract import UnsuitableDesignError, UnusableDataError
 from algorithms.models.neural_network import training as settings
 from algorithms.models.neural_network.axis_networks import AxisNetworks
+from algorithms.models.neural_network.cholesky_kernel import solve
 from algorithms.models.neural_network.deep_signals import DeepSignals
 from algorithms.models.neural_network.deep_surface import DeepSurface
 from algorithms.models.neural_network.direction_errors import (
@@ -29,7 +30,6 @@ from algorithms.models.neural_network.network_kernel import (
     LOG_SIGMOID,
     TANH,
     network_derivatives,
-    solve,
     train,
 )
 from algorithms.models.neural_network.portable_kernel import angles_deg

@@ -29,12 +29,37 @@ def tasks(count: int, **named: Any) -> list[Task]:
     ]
 
 
+class Hands:
+    """Two workers that do what they are given here; `seen` is how many tasks each bundle had."""
+
+    def __init__(self) -> None:
+        self.seen: list[Any] = []
+        self.given: list[backend.Work] = []
+
+    def workers(self) -> int:
+        return 2
+
+    def free(self) -> bool:
+        return len(self.given) < 2
+
+    def busy(self) -> bool:
+        return bool(self.given)
+
+    def give(self, work: backend.Work) -> None:
+        self.given.append(work)
+
+    def take(self) -> backend.Done:
+        work = self.given.pop(0)
+        self.seen.append(len(work.tasks))
+        return work()
+
+
 @pytest.fixture
 def here(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """What is measured in this process; other processes are not to be had."""
     measured: list[Any] = []
     monkeypatch.setattr(backend, "measure", lambda task: measured.append(task) or task)
-    monkeypatch.setattr(backend, "as_completed", lambda *_: pytest.fail("other processes"))
+    monkeypatch.setattr(backend, "hands_of", lambda *_: pytest.fail("other processes"))
     return measured
 
 
@@ -49,71 +74,35 @@ def test_one_worker_or_one_task_needs_no_other_process(
 def test_two_tasks_of_two_workers_go_to_other_processes(
     here: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked: list[Any] = []
+    hands = Hands()
 
-    def as_completed(work: Any, items: Any, workers: int) -> Any:
-        asked.append(workers)
-        try:
-            yield from map(work, items)
-        finally:
-            asked.append("closed")
+    @contextmanager
+    def hands_of(workers: int) -> Iterator[Hands]:
+        hands.seen.append(workers)
+        yield hands
+        hands.seen.append("left")
 
-    monkeypatch.setattr(backend, "as_completed", as_completed)
+    monkeypatch.setattr(backend, "hands_of", hands_of)
     some = [*tasks(5), *tasks(1, unit=1)]
     assert list(backend.outcomes(some, 2)) == some == here
-    assert asked == [2, "closed"]
-
-
-def test_bundles_end_with_the_sensor_or_the_condition_and_after_four() -> None:
-    other = fake_atlas.Diodes(name="other")
-    some = [
-        *tasks(4),
-        *tasks(1, condition="noisy"),
-        *tasks(2, condition="noisy", unit=1),
-        *tasks(5, condition="noisy", preset=other),
-    ]
-    assert [len(bundle) for bundle in backend.bundles(some)] == [4, 1, 2, 4, 1]
-    assert backend.bundles([]) == []
-
-
-@pytest.mark.parametrize(
-    ("sets", "workers", "many"), [(4, 1, True), (3, 1, False), (8, 2, True), (7, 2, False)]
-)
-def test_from_four_data_sets_a_worker_on_each_is_one_workers_with_all_its_units(
-    sets: int, workers: int, many: bool
-) -> None:
-    presets = [fake_atlas.Diodes(name=f"set-{n}") for n in range(sets)]
-    some = [
-        one for preset in presets for unit in (1, 2) for one in tasks(6, unit=unit, preset=preset)
-    ]
-    sizes = [len(bundle) for bundle in backend.bundles(some, workers)]
-    assert sizes == ([12] * sets if many else [4, 2, 4, 2] * sets)
+    assert hands.seen == [2, 5, 1, "left"]
 
 
 def test_a_scheduler_is_asked_though_there_is_one_worker_and_one_task(
     here: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked: list[Any] = []
-
-    class Cluster:
-        def workers(self) -> int:
-            return 2
-
-        def outcomes(self, bundled: Any) -> Any:
-            for bundle, do in bundled:
-                asked.append(len(bundle))
-                yield from do()
+    hands = Hands()
 
     @contextmanager
-    def connected(address: str) -> Iterator[Cluster]:
-        asked.append(address)
-        yield Cluster()
-        asked.append("left")
+    def connected(address: str) -> Iterator[Hands]:
+        hands.seen.append(address)
+        yield hands
+        hands.seen.append("left")
 
     monkeypatch.setattr(backend, "connect", connected)
     some = tasks(1)
     assert list(backend.outcomes(some, 1, "tcp://somewhere:1")) == some == here
-    assert asked == ["tcp://somewhere:1", 1, "left"]
+    assert hands.seen == ["tcp://somewhere:1", 1, "left"]
 
 
 def test_a_worker_of_this_machine_that_is_killed_ends_the_run_by_name(

@@ -13,8 +13,7 @@ from benchmark.plan import combinations as plan
 from benchmark.progress import silent, terminal_progress
 from benchmark.results.record import Record
 from benchmark.results.store import Store
-from benchmark.running import cluster, condition_data, runner, task
-from benchmark.running.backend import bundles
+from benchmark.running import cluster, condition_data, runner
 from benchmark.running.cluster import DaskMissingError
 
 pytestmark = pytest.mark.usefixtures("log")
@@ -277,31 +276,6 @@ def test_the_bar_shows_cells_on_a_terminal(monkeypatch, capsys):
     with terminal_progress() as report:
         report(1, 2, "some dataset")
     assert "1/2" in capsys.readouterr().err
-
-
-def tasks(names, conditions, units, count):
-    return [
-        task.Task(fake_atlas.Diodes(name=name), condition, number, (), unit)
-        for name in names
-        for unit in units
-        for condition in conditions
-        for number in range(count)
-    ]
-
-
-def test_tasks_that_share_samples_go_to_one_worker_four_at_most():
-    some = [*tasks("a", "x", [0], 6), *tasks("a", "y", [0], 1), *tasks("a", "y", [1], 1)]
-    some += tasks("b", "y", [1], 1)
-    assert [len(bundle) for bundle in bundles(some)] == [4, 2, 1, 1, 1]
-    assert [one for bundle in bundles(some) for one in bundle] == some
-
-
-def test_with_many_data_sets_each_is_done_by_one_worker():
-    some = tasks("abcdefgh", "xy", [0], 6)
-    assert [len(bundle) for bundle in bundles(some, workers=2)] == [12] * 8
-    assert max(len(bundle) for bundle in bundles(some, workers=3)) == 4
-    # its units, too: they look light up in the same tables
-    assert [len(bundle) for bundle in bundles(tasks("abcdefgh", "x", range(4), 6), 2)] == [24] * 8
 
 
 def test_a_worker_lets_go_of_large_data_before_it_generates_more(monkeypatch):

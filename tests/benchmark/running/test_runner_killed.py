@@ -19,7 +19,7 @@ import sys
 import fake_atlas
 import fake_plan
 from benchmark.plan import combinations as plan
-from benchmark.running import run as runner
+from benchmark.running import runner
 from benchmark.results.store import Store
 
 second = fake_atlas.Diodes(name="fake-second")

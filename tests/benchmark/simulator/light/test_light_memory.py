@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -120,3 +122,35 @@ def test_conditions_that_share_light_give_what_each_gives_alone(name, forgetful)
     shared = list(everything())
     assert shared == alone
     assert forgetful.hits > 0
+
+
+@dataclasses.dataclass(frozen=True)
+class Named:
+    size: float
+
+
+def test_tables_are_made_once_for_all_that_share_a_directory(tmp_path):
+    made = []
+
+    def make():
+        made.append(1)
+        return np.random.default_rng(0).normal(size=(3, 5))
+
+    one, other, alone = LightMemory(), LightMemory(), LightMemory()
+    one.share_tables(tmp_path)
+    other.share_tables(tmp_path)
+    first, second = one.mapped(Named(0.1), make), other.mapped(Named(0.1), make)
+    assert len(made) == 1
+    assert first.tobytes() == second.tobytes()
+    assert not second.flags.writeable
+    other.mapped(Named(np.nextafter(0.1, 1.0).item()), make)
+    assert len(made) == 2, "another by its last bit"
+    alone.mapped(Named(0.1), make)
+    assert len(made) == 3
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_a_directory_that_cannot_be_written_is_done_without(tmp_path):
+    shared = LightMemory()
+    shared.share_tables(tmp_path / "none")
+    assert shared.mapped(Named(1.0), lambda: np.ones(3)).tolist() == [1.0] * 3

@@ -1,0 +1,130 @@
+"""Which tasks go to a worker together, and in which order: longest first, data made once.
+
+Tasks that share data (one data set, condition and unit) are never told apart, as making the data
+often costs more than all else. Conditions of a unit see the same light and units look it up in
+the same tables: these stay together, too, unless they would keep a worker for longer than the
+others.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from heapq import heappop, heappush
+from itertools import count
+
+from benchmark.running.durations import Durations
+from benchmark.running.planned import FollowUp
+from benchmark.running.task import Task, data_condition
+
+#: Parts of a worker's share of all time that a bundle may take: the last ones end nearly together.
+_PARTS = 4
+
+Seconds = Callable[[Sequence[Task]], float]
+_Place = tuple[str, int, str]
+
+
+@dataclass(frozen=True)
+class Bundle:
+    """Tasks of one data set for one worker.
+
+    Attributes
+    ----------
+    tasks
+        In the order in which they are measured.
+    seconds
+        How long they take and all that follows from them, as far as it is known.
+    follow_up
+        What is measured besides once they are.
+    """
+
+    tasks: tuple[Task, ...]
+    seconds: float
+    follow_up: FollowUp | None = None
+
+
+class Waiting:
+    """Bundles that no worker has yet; the longest is taken first, of equal ones the earliest."""
+
+    def __init__(self, bundles: Sequence[Bundle]) -> None:
+        self._order = count()
+        self._heap: list[tuple[float, int, Bundle]] = []
+        for bundle in bundles:
+            self.add(bundle)
+
+    def __len__(self) -> int:
+        return len(self._heap)
+
+    def add(self, bundle: Bundle) -> None:
+        """Put in another one."""
+        heappush(self._heap, (-bundle.seconds, next(self._order), bundle))
+
+    def take(self) -> Bundle:
+        """Take out the longest; IndexError where none is left."""
+        return heappop(self._heap)[2]
+
+
+def place_of(task: Task) -> _Place:
+    """Return what names the data of a task: data set, unit and condition."""
+    return task.preset.name, task.unit, data_condition(task.preset, task.condition)
+
+
+def cut(tasks: Sequence[Task], seconds: Seconds, most: float) -> list[tuple[Task, ...]]:
+    """Cut tasks into bundles of one data set, each of whole data and at most so long if it can be.
+
+    Parameters
+    ----------
+    tasks
+        In the order of their bundles.
+    seconds
+        Says how long tasks take that share data.
+    most
+        Seconds that a bundle may take; one whose data alone take longer does.
+    """
+    shared: dict[_Place, list[Task]] = {}
+    for task in tasks:
+        shared.setdefault(place_of(task), []).append(task)
+    found: list[list[Task]] = []
+    room = 0.0
+    for place, together in shared.items():
+        takes = seconds(together) if most < math.inf else 0.0
+        if found and found[-1][0].preset.name == place[0] and takes <= room:
+            found[-1] += together
+        else:
+            found.append([*together])
+            room = most
+        room -= takes
+    return [tuple(bundle) for bundle in found]
+
+
+def longest_of(total: float, workers: int) -> float:
+    """Return how many seconds a bundle may take, where all workers together take `total`."""
+    return math.inf if workers == 1 else total / (_PARTS * workers)
+
+
+def bundles(
+    tasks: Sequence[Task], durations: Durations, most: float, follow_ups: Mapping[str, FollowUp]
+) -> list[Bundle]:
+    """Cut tasks, as `cut` does, and say what each bundle takes with what follows from it.
+
+    Parameters
+    ----------
+    follow_ups
+        By data set, what is measured besides where one bundle is all of the data set's tasks.
+    """
+    found = []
+    for bundle in cut(tasks, durations.seconds, most):
+        follow_up = follow_ups.get(bundle[0].preset.name)
+        takes = durations.seconds(bundle)
+        if follow_up is not None:
+            takes += durations.following(bundle)
+        found.append(Bundle(bundle, takes, follow_up))
+    return found
+
+
+def total_seconds(
+    tasks: Sequence[Task], durations: Durations, follow_ups: Mapping[str, FollowUp]
+) -> float:
+    """Return how long tasks take and what follows from them, as far as it is known."""
+    return sum(one.seconds for one in bundles(tasks, durations, math.inf, follow_ups))
