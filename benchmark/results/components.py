@@ -16,6 +16,8 @@ from typing import Any
 from benchmark.contract import Cell, Preset
 from benchmark.metrics.score import METRIC_VERSION
 from benchmark.plan.parts import Parts
+from benchmark.results.analyses import Analyses
+from benchmark.results.closure import Sources
 from benchmark.results.digests import dataset_digest, harness_digest, method_digest
 from files.reading import FileRefusedError
 from files.strict_json import read_json, require_members, require_type
@@ -168,12 +170,15 @@ def current(parts: Parts) -> Components:
     parts
         Data sets and implementations.
     """
-    return Components(
-        harness=harness_digest(),
-        datasets={name: _of_dataset(preset) for name, preset in parts.presets.items()},
-        extractors={name: _of_method(method) for name, method in parts.extractors.items()},
-        models={name: _of_method(method) for name, method in parts.models.items()},
+    sources = Sources()
+    found = Components(
+        harness=harness_digest(sources),
+        datasets={name: _of_dataset(one, sources) for name, one in parts.presets.items()},
+        extractors={name: _of_method(one, sources) for name, one in parts.extractors.items()},
+        models={name: _of_method(one, sources) for name, one in parts.models.items()},
     )
+    Analyses.shared().keep()
+    return found
 
 
 #: What the file says of a component of each kind.
@@ -202,21 +207,21 @@ def _require_facts(path: Path, kind: str, name: str, facts: Any) -> None:
         raise FileRefusedError(path, f"{kind}/{name}: unknown member {unknown[0]!r}")
 
 
-def _of_dataset(preset: Preset) -> Facts:
+def _of_dataset(preset: Preset, sources: Sources) -> Facts:
     return {
         "version": preset.version,
         "detector": preset.detector,
         "mask": preset.mask,
         "half_fov_deg": preset.geometry.half_fov_deg,
-        "digest": dataset_digest(preset),
+        "digest": dataset_digest(preset, sources),
     }
 
 
-def _of_method(method: Any) -> Facts:
+def _of_method(method: Any, sources: Sources) -> Facts:
     return {
         "version": method.about.version,
         "taxonomy": method.about.taxonomy,
-        "digest": method_digest(method),
+        "digest": method_digest(method, sources),
     }
 
 

@@ -97,7 +97,7 @@ def test_a_changed_method_is_the_reason_of_its_cells_alone(store: Store, changed
 def test_a_changed_harness_is_the_reason_of_all(
     store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(components, "harness_digest", lambda: "0123")
+    monkeypatch.setattr(components, "harness_digest", lambda *_: "0123")
     found = plan(FINE, [store], parts=parts())
     assert found.missing == dict.fromkeys(FINE, ("harness",))
     both = plan(FINE, [store], parts=parts(seed=8)).missing
