@@ -72,9 +72,10 @@ def _show(name: str) -> str:
     from benchmark import datasets  # noqa: PLC0415 - slow, and not needed to find what is kept
     from benchmark.canonical import digest as digest_of  # noqa: PLC0415 - as above
     from benchmark.results.closure import closure_digest  # noqa: PLC0415 - as above
-    from benchmark.results.digests import dataset_digest  # noqa: PLC0415 - as above
+    from benchmark.results.digests import condition_digests  # noqa: PLC0415 - as above
 
-    return digest_of([dataset_digest(datasets.get(name)), closure_digest(_DRAWN_BY)])[:16]
+    shown = condition_digests(datasets.get(name))["nominal"]
+    return digest_of([shown, closure_digest(_DRAWN_BY)])[:16]
 
 
 class Pictures:

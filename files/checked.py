@@ -14,8 +14,8 @@ from files.temporary import temporary_file_beside
 _DIGEST_BYTES = hashlib.sha256().digest_size
 
 
-def write_checked(path: Path, content: bytes) -> None:
-    """Write a file and the digest of what it holds; directories above it are made.
+def write_checked(path: Path, *parts: bytes | memoryview) -> None:
+    """Write parts one after the other, behind their digest; directories above the file are made.
 
     Of processes that write the same file, the last one's stands.
 
@@ -26,13 +26,16 @@ def write_checked(path: Path, content: bytes) -> None:
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     with temporary_file_beside(path) as scratch:
+        digest = hashlib.sha256()
+        for part in parts:
+            digest.update(part)
         with scratch.open("wb") as file:
-            file.write(hashlib.sha256(content).digest())
-            file.write(content)
+            file.write(digest.digest())
+            file.writelines(parts)
         scratch.replace(path)
 
 
-def read_checked(path: Path) -> bytes | None:
+def read_checked(path: Path) -> memoryview | None:
     """Return what `write_checked` wrote; None where there is no such file, or a damaged one."""
     try:
         held = path.read_bytes()
@@ -41,4 +44,4 @@ def read_checked(path: Path) -> bytes | None:
     content = memoryview(held)[_DIGEST_BYTES:]
     if hashlib.sha256(content).digest() != held[:_DIGEST_BYTES]:
         return None
-    return bytes(content)
+    return content

@@ -14,12 +14,20 @@ from benchmark.results.closure import FIRST_PARTY, Sources
 
 #: Digits of a component's digest: two of a hundred components meet once in 1e15.
 _COMPONENT_DIGITS = 16
-#: What measures: with the data, extractors and models that it is handed it makes numbers.
-_HARNESS = ("benchmark.running.task:measure",)
+#: What makes each stage of the data, extractors and models that it is handed, in order.
+STAGES: Mapping[str, tuple[str, ...]] = {
+    "data": ("benchmark.running.condition_data:rendered",),
+    "features": (
+        "benchmark.running.condition_data:ready",
+        "benchmark.running.condition_data:found_features",
+    ),
+    "predictions": ("benchmark.running.task:predicted",),
+    "scores": ("benchmark.running.task:scored",),
+}
 
 
-def dataset_digest(preset: Preset, sources: Sources | None = None) -> str:
-    """Digest of everything a dataset's data and bounds depend on, under all its conditions.
+def condition_digests(preset: Preset, sources: Sources | None = None) -> dict[str, str]:
+    """Digest of everything a dataset's data and bounds depend on, by condition, in order.
 
     Parameters
     ----------
@@ -28,14 +36,23 @@ def dataset_digest(preset: Preset, sources: Sources | None = None) -> str:
     sources
         As they are now by default.
     """
-    return short_digest(
-        {
-            "dataset": preset.name,
-            "version": preset.version,
-            "parameters": {name: preset.parameters(name) for name in preset.conditions},
-            "code": (sources or Sources()).digest(*entries_of(preset)),
-        }
-    )
+    from benchmark.datasets.corrected import reference_condition  # noqa: PLC0415 - loads Numba
+
+    code = (sources or Sources()).digest(*entries_of(preset))
+    parameters = {name: digest(preset.parameters(name)) for name in preset.conditions}
+    return {
+        name: short_digest(
+            {
+                "dataset": preset.name,
+                "version": preset.version,
+                "parameters": own,
+                # readings are corrected by those of the first condition with the same detector
+                "references": parameters[reference_condition(preset, name)],
+                "code": code,
+            }
+        )
+        for name, own in parameters.items()
+    }
 
 
 def series_digest(series: object) -> str:
@@ -54,9 +71,13 @@ def method_digest(method: type[Extractor] | Scored, sources: Sources | None = No
     )
 
 
-def harness_digest(sources: Sources | None = None) -> str:
-    """Digest of the code between data and numbers: how methods are run, what is computed."""
-    return short_digest((sources or Sources()).digest(*_HARNESS))
+def stage_digests(sources: Sources | None = None) -> dict[str, str]:
+    """Digest of the code between data and numbers, by stage: how methods are run and judged.
+
+    What hands stages on, and keeps them, is not among it: it changes no number.
+    """
+    known = sources or Sources()
+    return {name: short_digest(known.digest(*entries)) for name, entries in STAGES.items()}
 
 
 def short_digest(value: object) -> str:

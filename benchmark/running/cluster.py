@@ -169,7 +169,7 @@ def connect(scheduler: str) -> Iterator[Cluster]:
 
 
 def code_of(tasks: Sequence[Task]) -> str:
-    """Digest of the code that measures these tasks: of the harness, their data and methods."""
+    """Digest of the code that measures these tasks: of all stages, their data and methods."""
     entries = {"benchmark.running.task:measure"}
     for preset in {id(task.preset): task.preset for task in tasks}.values():
         entries.update(entries_of(preset))

@@ -54,9 +54,12 @@ def test_of_other_code_nothing_published_is_shown(
     """Neither of another data set's code or parameters, nor drawn by other code."""
     name = datasets.names()[-1]
     now = previews.published_preview(name)
-    for module, changed in ((digests, "dataset_digest"), (closure, "closure_digest")):
+    for module, changed, made in (
+        (digests, "condition_digests", {"nominal": "another"}),
+        (closure, "closure_digest", "another"),
+    ):
         with monkeypatch.context() as patched:
-            patched.setattr(module, changed, lambda *_: "another")
+            patched.setattr(module, changed, lambda *_, made=made: made)
             previews._show.cache_clear()
             other = previews.published_preview(name)
         assert other != now

@@ -12,10 +12,16 @@ import numpy as np
 import pytest
 
 from benchmark.canonical import canonical_json, digest
+from benchmark.datasets import corrected
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.results.closure import closure_digest
 from benchmark.results.definitions import ClosureError, analyse
-from benchmark.results.digests import dataset_digest, entries_of, method_digest, series_digest
+from benchmark.results.digests import (
+    condition_digests,
+    entries_of,
+    method_digest,
+    series_digest,
+)
 
 
 @pytest.fixture
@@ -234,23 +240,50 @@ def test_the_head_sees_its_own_samples_and_the_whole_sees_all(name, place, in_he
     assert (head_hash(other) != head_hash(whole)) is in_head
 
 
+def data_digest(preset) -> str:
+    """Of its first condition."""
+    return next(iter(condition_digests(preset).values()))
+
+
+def test_a_condition_s_digest_depends_on_its_own_parameters_and_those_of_its_references(
+    monkeypatch,
+):
+    """Readings are corrected by those of the first condition whose detector is theirs."""
+    before = condition_digests(fake_atlas.Diodes())
+    assert list(before) == list(fake_atlas.Diodes().conditions) == ["quiet", "noisy"]
+    monkeypatch.setattr(corrected, "reference_condition", lambda *_: "quiet")
+    before = condition_digests(fake_atlas.Diodes())
+    told = fake_atlas.Diodes.parameters
+    for changed, expected in (("noisy", ["noisy"]), ("quiet", ["quiet", "noisy"])):
+
+        def moved(self, condition, changed=changed):
+            more = {"more": 1} if condition == changed else {}
+            return {**told(self, condition), **more}
+
+        with monkeypatch.context() as patch:
+            patch.setattr(fake_atlas.Diodes, "parameters", moved)
+            after = condition_digests(fake_atlas.Diodes())
+        assert [name for name in before if after[name] != before[name]] == expected
+
+
 def test_a_data_set_s_digest_depends_on_version_parameters_conditions_and_name():
     preset = fake_atlas.Diodes()
     others = [
         replace(preset, version=2),
         replace(preset, seed=8),
-        replace(preset, conditions=("quiet",)),
         replace(preset, name="fake-other"),
     ]
-    found = {dataset_digest(one) for one in (preset, *others)}
+    found = {data_digest(one) for one in (preset, *others)}
     assert len(found) == 1 + len(others)
-    assert dataset_digest(fake_atlas.Diodes()) == dataset_digest(preset)
+    assert data_digest(fake_atlas.Diodes()) == data_digest(preset)
+    fewer = condition_digests(replace(preset, conditions=("quiet",)))
+    assert fewer == {"quiet": data_digest(preset)}
     assert {len(one) for one in found} == {16}
 
 
 def test_a_version_counts_though_the_parameters_do_not_tell_it(monkeypatch):
     monkeypatch.setattr(fake_atlas.Diodes, "parameters", lambda self, condition: {})
-    found = {dataset_digest(fake_atlas.Diodes(version=version)) for version in (1, 2)}
+    found = {data_digest(fake_atlas.Diodes(version=version)) for version in (1, 2)}
     assert len(found) == 2
 
 
@@ -267,11 +300,11 @@ def test_a_data_set_s_digest_depends_on_the_code_of_all_it_is_made_of(plug_in):
         held = entries_of(replace(fake_atlas.Diodes(), repeats=holding))
         assert set(held) >= {"fake_atlas:Diodes", "plugin_pkg.deep.leaf:Part"}
     assert f"{write.__module__}:write" in held, "a function's too"
-    before = dataset_digest(preset)
+    before = data_digest(preset)
     rewrite(part, "passes: int = 4", "passes: int = 4  # a comment")
-    assert dataset_digest(preset) == before
+    assert data_digest(preset) == before
     rewrite(part, "passes: int = 4", "passes: int = 5")
-    assert dataset_digest(preset) != before
+    assert data_digest(preset) != before
 
 
 def test_a_method_s_digest_depends_on_its_name_version_and_code(plug_in):
