@@ -67,11 +67,6 @@ class Chain:
         """Its parts, in the order they are applied."""
         return (*self.compensations, self.model)
 
-    @property
-    def modules(self) -> tuple[str, ...]:
-        """Modules of its parts, and its own."""
-        return (__name__, *(stage.__module__ for stage in self.stages))
-
     def for_sensor(self, geometry: SensorGeometry, kind: FeatureKind) -> Model:
         """Return all parts unfitted; UnsuitableDesignError where one does not suit the sensor."""
         stages, behind = make_stages(self.compensations, geometry, kind)

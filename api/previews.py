@@ -41,11 +41,7 @@ AT_ONCE = 2
 _ROOT = Path(__file__).resolve().parents[1]
 _MAKERS = ("algorithms", "benchmark", "files", "survey_data")
 #: What a picture is made by, beside the data set.
-_DRAWN_BY = (
-    "benchmark.datasets.preview",
-    "benchmark.datasets.preview_sheet",
-    "benchmark.plot_style",
-)
+_DRAWN_BY = "benchmark.datasets.preview:preview_png"
 _DRAWING_WITH = ("matplotlib", "numpy", "scipy", "opencv-python-headless")
 
 
@@ -75,9 +71,11 @@ def published_preview(name: str) -> Path:
 def _show(name: str) -> str:
     from benchmark import datasets  # noqa: PLC0415 - slow, and not needed to find what is kept
     from benchmark.canonical import digest as digest_of  # noqa: PLC0415 - as above
-    from benchmark.results.digests import dataset_digest, modules_digest  # noqa: PLC0415 - as above
+    from benchmark.results.closure import closure_digest  # noqa: PLC0415 - as above
+    from benchmark.results.digests import condition_digests  # noqa: PLC0415 - as above
 
-    return digest_of([dataset_digest(datasets.get(name)), modules_digest(*_DRAWN_BY)])[:16]
+    shown = condition_digests(datasets.get(name))["nominal"]
+    return digest_of([shown, closure_digest(_DRAWN_BY)])[:16]
 
 
 class Pictures:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
+
+from files.user_cache import user_cache
 
 
 def working_directory(given: Path | None = None) -> Path:
@@ -15,8 +16,4 @@ def working_directory(given: Path | None = None) -> Path:
     ----------
     given : a directory to use instead
     """
-    named = os.environ.get("SUNATLAS_STORE")
-    if given is not None or named:
-        return given or Path(str(named))
-    cache = os.environ.get("XDG_CACHE_HOME")
-    return (Path(cache) if cache else Path.home() / ".cache") / "sunatlas"
+    return given or user_cache()

@@ -27,7 +27,7 @@ class Claims(Recorded[str]):
     def keys(self) -> Mapping[str, str]:
         """Return the digests of plan and code, apart so that it shows which has changed."""
         return {
-            name: f"{plan_digest(claims()[name])} {closure_digest(one.module)}"
+            name: f"{plan_digest(claims()[name])} {closure_digest(f'{one.module}:trial')}"
             for name, one in find_experiments().items()
         }
 

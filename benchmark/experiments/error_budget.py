@@ -16,24 +16,15 @@ from benchmark.error_budget.measure import held
 from benchmark.error_budget.record import RECORD, SCORE
 from benchmark.metrics.ranking import order
 from benchmark.metrics.score import store
+from benchmark.results.closure import closure_digest
 from benchmark.results.components import current
-from benchmark.results.digests import modules_digest, short_digest
+from benchmark.results.digests import short_digest
 from benchmark.results.row_file import Row
 from benchmark.results.store import Store
 from benchmark.running.experiment import Recorded
 
-#: Modules between data and methods, and what is made perfect.
-_CODE = (
-    "algorithms.kernels.reference_correction",
-    "algorithms.pipeline",
-    "algorithms.references",
-    "benchmark.datasets.benches",
-    "benchmark.datasets.corrected",
-    "benchmark.datasets.features",
-    "benchmark.error_budget.measure",
-    "benchmark.error_budget.perfected",
-    "benchmark.metrics.score",
-)
+#: What measures the variants of a chain, with the data and methods that it is handed.
+_CODE = "benchmark.error_budget.measure:held"
 #: Less is none: another machine's rounding, and where iterations stop.
 _NOTHING_DEG = 1e-6
 #: Data set, extractor, model.
@@ -68,7 +59,7 @@ class ErrorBudget(Recorded[str]):
             Cell(name, row["condition"], row["extractor"], row["model"])
             for name, row in self.leading.items()
         ]
-        components, code = current(self.parts.only(cells)), modules_digest(*_CODE)
+        components, code = current(self.parts.only(cells)), closure_digest(_CODE)
         return {
             cell.dataset: short_digest(
                 [

@@ -11,24 +11,17 @@ from benchmark.learning_curves.leaders import Leader, leaders
 from benchmark.learning_curves.measure import Task, measure
 from benchmark.learning_curves.outcome import row_of
 from benchmark.learning_curves.record import RECORD
+from benchmark.results.closure import closure_digest
 from benchmark.results.components import current
-from benchmark.results.digests import modules_digest, short_digest
+from benchmark.results.digests import short_digest
 from benchmark.results.row_file import Row
 from benchmark.results.store import Store
 from benchmark.running.experiment import Recorded
 
-#: Modules between data and methods, and what is kept of a curve.
+#: What measures the curves of a data set, with the data and methods that it is handed.
 _CODE = (
-    "algorithms.kernels.reference_correction",
-    "algorithms.pipeline",
-    "algorithms.references",
-    "benchmark.datasets.corrected",
-    "benchmark.datasets.features",
-    "benchmark.learning_curves.draws",
-    "benchmark.learning_curves.floor",
-    "benchmark.learning_curves.measure",
-    "benchmark.learning_curves.outcome",
-    "benchmark.metrics.score",
+    "benchmark.learning_curves.measure:measure",
+    "benchmark.learning_curves.outcome:row_of",
 )
 
 
@@ -53,7 +46,7 @@ class LearningCurves(Recorded[Leader]):
         wanted = self.cells()
         # digests of what leads only: all of them would take seconds
         components = current(self.parts.only(_cell(leader) for leader in wanted))
-        code = modules_digest(*_CODE)
+        code = closure_digest(*_CODE)
         return {
             leader: short_digest(
                 [

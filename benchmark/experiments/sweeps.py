@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby
 
+from benchmark.results.closure import closure_digest
 from benchmark.results.components import current
-from benchmark.results.digests import modules_digest, series_digest, short_digest
+from benchmark.results.digests import series_digest, short_digest
 from benchmark.results.row_file import Row
 from benchmark.running.experiment import Recorded
 from benchmark.sweeps.measure import Task, measure
@@ -15,8 +16,8 @@ from benchmark.sweeps.plan import SERIES, SweepPlan, plan_points
 from benchmark.sweeps.points import Point
 from benchmark.sweeps.record import RECORD, point_of
 
-#: Modules between series and methods.
-_CODE = ("algorithms.pipeline", "benchmark.metrics.score", "benchmark.sweeps.measure")
+#: What measures a point, with the series and methods that it is handed.
+_CODE = "benchmark.sweeps.measure:measure"
 
 
 def series_digests() -> dict[str, str]:
@@ -37,7 +38,7 @@ class Sweeps(Recorded[Point]):
 
     def keys(self) -> Mapping[Point, str]:
         """Digest the code, series and extractor of each."""
-        code, series = modules_digest(*_CODE), series_digests()
+        code, series = closure_digest(_CODE), series_digests()
         extractors = current(self.parts.of_extractors())
         return {
             point: short_digest(

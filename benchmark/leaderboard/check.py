@@ -284,7 +284,7 @@ def _is_of(kind: type[Recorded[Any]], store: Store) -> bool:
 
 def _is_used(name: str, store: Store) -> bool:
     """Say whether a component that is not stored should be; one that nothing reads need not."""
-    return not store.components_path.is_file() or name == "harness"
+    return not store.components_path.is_file() or name.startswith("stages/")
 
 
 def _unlike(

@@ -21,8 +21,9 @@ from benchmark.results.csv_tables import Row
 from benchmark.results.record import open_record
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import experiment, pinning
+from benchmark.running.kept_stages import KeptStages
 from benchmark.running.planned import FollowUp
-from benchmark.running.runner import Summary, failures, measure_missing
+from benchmark.running.runner import Summary, failures, kept_beside, measure_missing
 
 
 def update(
@@ -64,6 +65,7 @@ def update(
     first, studied = scope.first(known), scope.studied_pipelines(known)
     choose = partial(scope.followers, studied=studied)
     store = Store(directory)
+    kept = kept_beside(store, components, scheduler)
     with open_record(store) as record:
         pinned = store.pins()
         _require_heads(store, known, components)
@@ -80,9 +82,10 @@ def update(
                 progress=progress,
                 scheduler=scheduler,
                 follow_ups=follow_ups,
+                kept=kept,
             )
 
-        computed = measured(first, _follow_ups(first, known, choose))
+        computed = measured(first, _follow_ups(first, known, choose, kept))
         followers = choose(record.scores, known)
         computed += measured(followers)
         pins = pinning.pin_missing(record, components, known, workers=workers, progress=progress)
@@ -113,7 +116,10 @@ def update(
 
 
 def _follow_ups(
-    first: Iterable[Cell], parts: Parts, choose: Callable[[Mapping[Cell, Row], Parts], list[Cell]]
+    first: Iterable[Cell],
+    parts: Parts,
+    choose: Callable[[Mapping[Cell, Row], Parts], list[Cell]],
+    kept: KeptStages | None,
 ) -> dict[str, FollowUp]:
     """Say by data set what a worker that has measured its first cells goes on with."""
     return {
@@ -121,6 +127,7 @@ def _follow_ups(
             Parts({name: parts.presets[name]}, parts.extractors, parts.models),
             frozenset(cells),
             choose,
+            kept,
         )
         for name, cells in groupby(first, key=lambda cell: cell.dataset)
     }

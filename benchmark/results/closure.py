@@ -1,75 +1,257 @@
-"""What code a result depends on: the first-party modules reached, digested as syntax trees.
+"""What code a result depends on: the functions, classes and constants reached, digested.
 
-The closure is found without importing anything, by walking import statements (those inside
-functions too). Comments, docstrings, formatting and line numbers do not enter the digest.
-Modules found at run time only (`importlib.import_module`, `pkgutil`) are not followed.
+From entries, definitions are followed that a definition names: in its own module, through
+imports (those in functions, stars and re-exports too) and as attributes of imported modules. A
+class counts whole, with its bases, decorators and defaults; so does a name's every assignment. Of
+a module that is imported on the way, statements count that do something when it is: calls, loops,
+``with``, assignments to parts of things, decorators other than those that do nothing but to what
+they decorate. A module is taken whole where it is used as a value (``getattr(module, name)``),
+asked for a name that it does not visibly define, or reads its own ``globals()``.
+
+Nothing is imported to find out. Not followed are modules found at run time
+(`importlib.import_module` of a computed name, `pkgutil`), what ``__init_subclass__`` collects, and
+classes that only a text names (``cast("Sensor", it)``): objects handed in have digests of their
+own. Packages that a module merely lies in count by what they do, not by what they import.
 """
 
 from __future__ import annotations
 
-import ast
 import hashlib
 import importlib.util
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from pathlib import Path
 
+from benchmark.results.analyses import Analyses
+from benchmark.results.definitions import ClosureError, Definitions
+from benchmark.results.syntax import EVERYTHING, IMPORTED, LOADED
+
 FIRST_PARTY = ("files", "survey_data", "algorithms", "registry", "benchmark", "api")
 
-# Fields of syntax nodes that say how a thing was written, or that only some Python versions have.
-_NOT_CODE = frozenset({"ctx", "kind", "type_comment", "type_ignores"})
+#: What is done when a module is imported, with all that it imports; by the module itself.
+_RUN, _RUN_ALONE = "", "^"
+
+#: Module, and a name in it, `EVERYTHING` or one of the above.
+_Node = tuple[str, str]
 
 
-Import = ast.Import | ast.ImportFrom
+def reached(*entries: str) -> tuple[str, ...]:
+    """Return every definition that entries reach, as ``module:name``, sorted.
 
-
-class ClosureError(ValueError):
-    """A module whose source is needed for a digest was not found or cannot be read."""
-
-
-def closure(*modules: str) -> tuple[str, ...]:
-    """Names of all first-party modules that `modules` import, directly or not, sorted.
-
-    First party are the project's packages and the top-level packages of `modules` themselves, so
-    that a plug-in kept elsewhere is digested too. The packages a module merely lies in
-    (``a`` and ``a.b`` of ``a.b.c``) are not followed: names taken *from* them are.
-
-    Raises
-    ------
-    ClosureError
-        When one of `modules` has no source file.
+    Parameters and errors as `Sources.digest`.
     """
-    for name in modules:
-        if module_path(name) is None:
-            raise ClosureError(f"no source file found for module {name!r}")
-    roots = frozenset(FIRST_PARTY) | {name.partition(".")[0] for name in modules}
-    found: set[str] = set()
-    waiting = list(modules)
-    while waiting:
-        name = waiting.pop()
-        path = module_path(name)
-        if name in found or path is None:
-            continue
-        found.add(name)
-        imported = _imports(path, path.stat().st_mtime_ns, name)
-        waiting.extend(other for other in imported if other.partition(".")[0] in roots)
-    return tuple(sorted(found))
+    found = Sources().walk(entries)
+    return tuple(sorted(f"{module}:{name}" for module, name in found if name.isidentifier()))
 
 
-def closure_digest(*modules: str) -> str:
-    """Digest (32 hexadecimal digits) of the code in `closure(*modules)`."""
-    digest = hashlib.sha256()
-    for name in closure(*modules):
-        path = module_path(name)
-        if path is not None:
-            digest.update(f"{name} {syntax_digest(path)}\n".encode())
-    return digest.hexdigest()[:32]
+def closure_digest(*entries: str) -> str:
+    """Digest (32 hexadecimal digits) of the code that entries reach; see `Sources.digest`."""
+    return Sources().digest(*entries)
 
 
-def syntax_digest(path: Path) -> str:
-    """Digest of one file's code: equal for files that differ in comments or formatting only."""
-    return _read(path, path.stat().st_mtime_ns)[0]
+class Sources:
+    """The sources as they are now: each file is looked at once.
+
+    Parameters
+    ----------
+    analyses
+        What is known of files already.
+    """
+
+    def __init__(self, analyses: Analyses | None = None) -> None:
+        self._analyses = analyses or Analyses.shared()
+        self._roots = set(FIRST_PARTY)
+        self._paths: dict[str, Path | None] = {}
+        self._definitions: dict[str, Definitions] = {}
+        self._edges: dict[_Node, tuple[_Node, ...]] = {}
+        self._lines: dict[_Node, str] = {}
+
+    def digest(self, *entries: str) -> str:
+        """Digest (32 hexadecimal digits) of the code that entries reach.
+
+        Parameters
+        ----------
+        entries
+            ``package.module:name``, or ``package.module`` for all of it, as is a name that the
+            module does not define. Their top-level packages are first party, so that a plug-in
+            kept elsewhere is digested too.
+
+        Raises
+        ------
+        ClosureError
+            When a module of `entries` has no source file, or one that is reached cannot be parsed.
+        """
+        lines = sorted(filter(None, map(self._spelt, self.walk(entries))))
+        return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:32]
+
+    def walk(self, entries: Iterable[str]) -> set[_Node]:
+        """Return all that entries reach."""
+        waiting: list[_Node] = []
+        split = [entry.partition(":")[::2] for entry in entries]
+        if new := {module.partition(".")[0] for module, _ in split} - self._roots:
+            self._roots |= new
+            self._edges.clear()
+        for module, qualified in split:
+            if self._path(module) is None:
+                raise ClosureError(f"no source file found for module {module!r}")
+            name = qualified.partition(".")[0]
+            waiting += self._used(module, name) if name else ()
+            if not name or not self._defines(module, name, set()):
+                waiting.append((module, EVERYTHING))
+        found: set[_Node] = set()
+        while waiting:
+            node = waiting.pop()
+            if node not in found:
+                found.add(node)
+                waiting += self._followed(node)
+        return found
+
+    def _path(self, module: str) -> Path | None:
+        if module not in self._paths:
+            self._paths[module] = module_path(module)
+        return self._paths[module]
+
+    def _of(self, module: str) -> Definitions:
+        if module not in self._definitions:
+            path = self._path(module)
+            if path is None:
+                raise ClosureError(f"no source file found for module {module!r}")
+            self._definitions[module] = self._analyses.of(path)
+        return self._definitions[module]
+
+    def _spelt(self, node: _Node) -> str:
+        """Spell a node's own code, and to what a name of it is bound by imports."""
+        if node not in self._lines:
+            module, name = node
+            known = self._of(module)
+            numbers = known.effects if name == _RUN_ALONE else known.names.get(name, ())
+            said = [known.statements[number].digest for number in numbers]
+            said += (self._absolute(module, target) for target in known.bound.get(name, ()))
+            self._lines[node] = f"{module}:{name} {' '.join(said)}" if said else ""
+        return self._lines[node]
+
+    def _followed(self, node: _Node) -> tuple[_Node, ...]:
+        if node not in self._edges:
+            self._edges[node] = tuple(dict.fromkeys(self._follow(*node)))
+        return self._edges[node]
+
+    def _follow(self, module: str, name: str) -> Iterator[_Node]:
+        known = self._of(module)
+        if name == EVERYTHING:
+            yield from self._all(module)
+        elif name == _RUN:
+            yield module, _RUN_ALONE
+            parts = module.split(".")
+            for end in range(1, len(parts)):
+                if self._path(above := ".".join(parts[:end])) is not None:
+                    yield above, _RUN_ALONE
+            for target in known.imports:
+                yield from self._loaded(module, target)
+        else:
+            alone = name == _RUN_ALONE
+            if not alone:
+                yield module, _RUN
+            for number in known.effects if alone else known.names.get(name, ()):
+                for use in known.statements[number].uses:
+                    yield from self._used(module, use)
+
+    def _all(self, module: str) -> Iterator[_Node]:
+        """Yield everything that a module has, but for what is in modules that it imports."""
+        known = self._of(module)
+        yield module, _RUN
+        yield from ((module, one) for one in known.names)
+        for one, targets in known.bound.items():
+            yield module, one
+            for target in targets:
+                if self._path(self._absolute(module, target)) is None:
+                    yield from self._used(module, target)
+        for star in known.stars:
+            yield from self._used(module, f"{star}.{EVERYTHING}")
+
+    def _used(self, module: str, use: str) -> Iterator[_Node]:
+        """Yield what a use in a module reaches."""
+        if use.startswith(LOADED):
+            yield from self._loaded(module, use.removeprefix(LOADED))
+        elif use.startswith(IMPORTED):
+            yield from self._taken(self._absolute(module, use))
+        elif use == EVERYTHING:
+            yield module, EVERYTHING
+        else:
+            root, dot, rest = use.partition(".")
+            known = self._of(module)
+            if root in known.names or root in known.bound:
+                yield module, root
+                for target in known.bound.get(root, ()):
+                    yield from self._used(module, f"{target}{dot}{rest}")
+                return
+            for star in known.stars:
+                other = self._absolute(module, star)
+                if self._is_ours(other) and self._defines(other, root, set()):
+                    yield module, _RUN
+                    yield from self._used(other, use)
+            # else a built-in one
+
+    def _taken(self, name: str) -> Iterator[_Node]:
+        """Yield what ``package.module.name.attribute`` reaches."""
+        module = self._module_of(name)
+        if module is None:
+            return
+        rest = name[len(module) + 1 :]
+        package, _, last = module.rpartition(".")
+        if package and self._path(package) and self._hides(package, last):
+            yield from self._used(package, last)
+        first = rest.partition(".")[0]
+        if first.startswith("__") and first.endswith("__"):
+            yield module, _RUN
+        elif first and self._defines(module, first, set()):
+            yield from self._used(module, rest)
+        else:
+            yield module, EVERYTHING
+
+    def _hides(self, package: str, name: str) -> bool:
+        """Say whether a package binds a name of one of its modules to something else."""
+        known, module = self._of(package), f"{package}.{name}"
+        targets = (self._absolute(package, target) for target in known.bound.get(name, ()))
+        return name in known.names or any(f"{one}.".find(f"{module}.") != 0 for one in targets)
+
+    def _loaded(self, module: str, target: str) -> Iterator[_Node]:
+        other = self._module_of(self._absolute(module, target))
+        if other is not None:
+            yield other, _RUN
+
+    def _module_of(self, name: str) -> str | None:
+        """Return the longest beginning of a dotted name that is a module of ours."""
+        while name and self._is_ours(name):
+            if self._path(name) is not None:
+                return name
+            name = name.rpartition(".")[0]
+        return None
+
+    def _is_ours(self, name: str) -> bool:
+        return name.partition(".")[0] in self._roots
+
+    def _defines(self, module: str, name: str, asked: set[str]) -> bool:
+        if module in asked or self._path(module) is None:
+            return False
+        asked.add(module)
+        known = self._of(module)
+        if name in known.names or name in known.bound:
+            return True
+        stars = (self._absolute(module, star) for star in known.stars)
+        return any(self._is_ours(star) and self._defines(star, name, asked) for star in stars)
+
+    def _absolute(self, module: str, target: str) -> str:
+        """Return the dotted name of an import's target as seen from a module."""
+        name = target.removeprefix(IMPORTED)
+        bare = name.lstrip(".")
+        if level := len(name) - len(bare):
+            path = self._path(module)
+            is_package = path is not None and path.name == "__init__.py"
+            parts = module.split(".")
+            above = parts[: len(parts) - level + is_package]
+            return ".".join([*above, bare] if bare else above)
+        return name
 
 
 def module_path(name: str) -> Path | None:
@@ -95,83 +277,3 @@ def _package_directories(top: str) -> list[str]:
 @lru_cache(maxsize=1024)
 def _path(name: str) -> Path:
     return Path(name)
-
-
-@lru_cache(maxsize=1024)
-def _tree(path: Path, modified_ns: int) -> ast.Module:  # noqa: ARG001 - the time is the cache's key
-    try:
-        return ast.parse(path.read_bytes(), filename=str(path))
-    except (SyntaxError, ValueError) as error:
-        raise ClosureError(f"{path} cannot be parsed: {error}") from error
-
-
-@lru_cache(maxsize=1024)
-def _read(path: Path, modified_ns: int) -> tuple[str, tuple[Import, ...]]:
-    """Return the digest of a file's syntax, and its imports, in one walk."""
-    pieces: list[str] = []
-    imports: list[Import] = []
-    _spell(_tree(path, modified_ns), pieces, imports)
-    return hashlib.sha256("".join(pieces).encode()).hexdigest(), tuple(imports)
-
-
-@lru_cache(maxsize=1024)
-def _imports(path: Path, modified_ns: int, name: str) -> tuple[str, ...]:
-    package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-    found: list[str] = []
-    for node in _read(path, modified_ns)[1]:
-        if isinstance(node, ast.Import):
-            found.extend(alias.name for alias in node.names)
-        else:
-            found.extend(_imported_from(node, package))
-    return tuple(dict.fromkeys(found))
-
-
-def _imported_from(node: ast.ImportFrom, package: str) -> Iterator[str]:
-    base = node.module or ""
-    if node.level:
-        parents = package.split(".")
-        above = parents[: len(parents) - node.level + 1]
-        base = ".".join([*above, base] if base else above)
-    for alias in node.names:
-        submodule = f"{base}.{alias.name}"
-        yield submodule if alias.name != "*" and module_path(submodule) else base
-
-
-def _spell(node: object, pieces: list[str], imports: list[Import]) -> None:
-    """Append pieces of text that spell a syntax tree, the same under every Python version.
-
-    And the imports that are met.
-    """
-    if isinstance(node, ast.AST):
-        if isinstance(node, Import):
-            imports.append(node)
-        pieces.append(f"({type(node).__name__}")
-        for field in node._fields:
-            value = getattr(node, field, None)
-            if value is None or value == [] or field in _NOT_CODE:
-                continue
-            pieces.append(f" {field}=")
-            _spell(_without_docstring(node, field, value), pieces, imports)
-        pieces.append(")")
-    elif isinstance(node, list):
-        pieces.append("[")
-        for item in node:
-            _spell(item, pieces, imports)
-            pieces.append(",")
-        pieces.append("]")
-    else:
-        pieces.append(f"{type(node).__name__}:{node!r}")
-
-
-def _without_docstring(node: ast.AST, field: str, value: object) -> object:
-    documented = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
-    if field != "body" or not isinstance(node, documented) or not isinstance(value, list):
-        return value
-    first = value[0]
-    if (
-        isinstance(first, ast.Expr)
-        and isinstance(first.value, ast.Constant)
-        and isinstance(first.value.value, str)
-    ):
-        return value[1:]
-    return value

@@ -1,4 +1,4 @@
-"""What results are made of: data sets, extractors, models, harness; facts and digests.
+"""What results are made of: data sets, extractors, models, code of stages; facts and digests.
 
 A stored number belongs to the components as they were when it was measured. One small file holds
 a line for each, so that a change of one component is a change of one line, and tells which of the
@@ -8,23 +8,33 @@ numbers are out of date.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from benchmark.contract import Cell, Preset
+from benchmark.contract import ON_BENCH, Cell, Preset
 from benchmark.metrics.score import METRIC_VERSION
 from benchmark.plan.parts import Parts
-from benchmark.results.digests import dataset_digest, harness_digest, method_digest
+from benchmark.results.analyses import Analyses
+from benchmark.results.closure import Sources
+from benchmark.results.digests import STAGES, condition_digests, method_digest, stage_digests
 from files.reading import FileRefusedError
 from files.strict_json import read_json, require_members, require_type
 
 #: Layout of the stored files; raised when a field changes its meaning.
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 
-#: What a cell's key is made of, in order.
-KEYED = ("harness", "dataset", "extractor", "model")
+#: What a cell's key is made of, in order, with the stage that is the first to depend on it.
+KEYED: Mapping[str, str] = {
+    "code of data": "data",
+    "dataset": "data",
+    "code of features": "features",
+    "extractor": "features",
+    "code of predictions": "predictions",
+    "model": "predictions",
+    "code of scores": "scores",
+}
 
 Facts = Mapping[str, Any]
 _KINDS = ("datasets", "extractors", "models")
@@ -36,21 +46,22 @@ class ComponentsError(ValueError):
 
 @dataclass(frozen=True)
 class Components:
-    """Facts by name; each has the ``digest`` of its code and parameters.
+    """Facts by name, with digests of code and parameters.
 
     Attributes
     ----------
-    harness
-        Digest of the code between data and numbers.
+    stages
+        Digest of the code that makes each stage (`benchmark.results.digests.STAGES`) of data,
+        extractors and models.
     datasets
-        With version, detector, mask and half field of view.
+        With version, detector, mask, half field of view, and a digest of each condition.
     extractors, models
         With version and value of the taxonomy.
     metric
         Version of the metric that the numbers are by.
     """
 
-    harness: str = ""
+    stages: Mapping[str, str] = field(default_factory=dict)
     datasets: Mapping[str, Facts] = field(default_factory=dict)
     extractors: Mapping[str, Facts] = field(default_factory=dict)
     models: Mapping[str, Facts] = field(default_factory=dict)
@@ -58,39 +69,82 @@ class Components:
 
     def cell_key(self, cell: Cell) -> str:
         """Everything a cell's numbers depend on, in one word; ComponentsError naming what lacks."""
-        return "-".join(
-            (
-                self.harness,
-                self.digest("datasets", cell.dataset),
-                self.digest("extractors", cell.extractor),
-                self.digest("models", cell.model),
-            )
-        )
+        return self.stage_key("scores", cell)
+
+    def stage_key(self, stage: str, cell: Cell) -> str:
+        """Everything a stage of a cell depends on, in one word: a beginning of `cell_key`.
+
+        What the stages before know nothing of, extractor and model, may be of any name.
+        """
+        key = [self.stages.get("data", ""), self.condition_digest(cell.dataset, cell.condition)]
+        if stage != "data":
+            key += self.stages.get("features", ""), self.digest("extractors", cell.extractor)
+        if stage in ("predictions", "scores"):
+            key += self.stages.get("predictions", ""), self.digest("models", cell.model)
+        if stage == "scores":
+            key.append(self.stages.get("scores", ""))
+        return "-".join(key)
+
+    def pin_key(self, dataset: str, condition: str) -> str:
+        """Everything that data under a condition depend on, in one word."""
+        return self.stage_key("data", Cell(dataset, condition, "", ""))
 
     def changed(self, key: str, cell: Cell) -> tuple[str, ...]:
         """Return which of `KEYED` are not as in a key that the cell had (`cell_key`)."""
         before, now = (one.split("-") for one in (key, self.cell_key(cell)))
         if len(before) != len(KEYED):  # of no layout that is known
-            return KEYED
+            return tuple(KEYED)
         return tuple(name for name, one, two in zip(KEYED, before, now, strict=True) if one != two)
 
     def digest(self, kind: str, name: str) -> str:
-        """Return the digest of a component; ComponentsError where there is none."""
+        """Return the digest of a component, of a data set those of all its conditions.
+
+        Raises
+        ------
+        ComponentsError
+            Where there is none.
+        """
+        facts = self._facts(kind, name)
+        return str(
+            facts["digest"] if kind != "datasets" else " ".join(facts["conditions"].values())
+        )
+
+    def condition_digest(self, dataset: str, condition: str) -> str:
+        """Return the digest of a data set under a condition; empty under one that it has not.
+
+        Raises
+        ------
+        ComponentsError
+            Where there is no such data set.
+        """
+        digests: Mapping[str, str] = self._facts("datasets", dataset)["conditions"]
+        return digests.get(self.condition_read(dataset, condition), "")
+
+    def condition_read(self, dataset: str, condition: str) -> str:
+        """Return whose readings a condition is about: the first one's on drawn benches, or for "".
+
+        Raises as `condition_digest`.
+        """
+        if condition not in ("", ON_BENCH):
+            return condition
+        return next(iter(self._facts("datasets", dataset)["conditions"]), "")
+
+    def _facts(self, kind: str, name: str) -> Facts:
         found: Mapping[str, Facts] = getattr(self, kind)
         if name not in found:
             raise ComponentsError(f"a result names {name!r}, which is not among the {kind}")
-        return str(found[name]["digest"])
+        return found[name]
 
     def update(self, other: Components) -> Components:
         """Return these with what `other` has in their place."""
         kinds = {kind: {**getattr(self, kind), **getattr(other, kind)} for kind in _KINDS}
-        return Components(other.harness, **kinds, metric=other.metric)
+        return Components(other.stages, **kinds, metric=other.metric)
 
     def only(self, cells: Iterable[Cell]) -> Components:
         """Return what these cells are of."""
         wanted = list(cells)
         return Components(
-            self.harness,
+            self.stages,
             datasets=_name_of(self.datasets, (cell.dataset for cell in wanted)),
             extractors=_name_of(self.extractors, (cell.extractor for cell in wanted)),
             models=_name_of(self.models, (cell.model for cell in wanted)),
@@ -99,14 +153,21 @@ class Components:
 
     def differences(self, other: Components) -> list[tuple[str, str, str]]:
         """Return (component, digest here, digest there) of what is not alike; empty for none."""
-        here, there = self.harness, other.harness
-        found = [] if here == there else [("harness", here, there)]
-        for kind in _KINDS:
-            ours, theirs = getattr(self, kind), getattr(other, kind)
-            for name in sorted(ours.keys() | theirs.keys()):
-                one, two = (known.get(name, {}).get("digest", "") for known in (ours, theirs))
-                if one != two:
-                    found.append((f"{kind}/{name}", one, two))
+        here, there = self._digests(), other._digests()
+        return [
+            (name, one, two)
+            for name in dict.fromkeys((*here, *sorted(there.keys() - here.keys())))
+            if (one := here.get(name, "")) != (two := there.get(name, ""))
+        ]
+
+    def _digests(self) -> dict[str, str]:
+        found = {f"stages/{name}": digest for name, digest in self.stages.items()}
+        for name, facts in sorted(self.datasets.items()):
+            for condition, digest in facts["conditions"].items():
+                found[f"datasets/{name}/{condition}"] = digest
+        for kind in ("extractors", "models"):
+            known: Mapping[str, Facts] = getattr(self, kind)
+            found.update((f"{kind}/{name}", known[name]["digest"]) for name in sorted(known))
         return found
 
     def text(self) -> str:
@@ -114,10 +175,9 @@ class Components:
         lines = [
             f'"schema": {SCHEMA_VERSION}',
             f'"metric": {self.metric}',
-            f'"harness": {json.dumps(self.harness)}',
         ]
-        for kind in _KINDS:
-            facts = sorted(getattr(self, kind).items())
+        for kind in ("stages", *_KINDS):
+            facts = [(name, getattr(self, kind)[name]) for name in _in_order(getattr(self, kind))]
             listed = ",\n".join(f"{json.dumps(name)}: {_format_value(one)}" for name, one in facts)
             lines.append(f'"{kind}": {{\n{listed}\n}}' if listed else f'"{kind}": {{}}')
         return "{\n" + ",\n".join(lines) + "\n}\n"
@@ -149,15 +209,18 @@ class Components:
                 "the directory and run `sunatlas leaderboard update`"
             )
         try:
-            layout = {"schema": int, "metric": int, "harness": str, **dict.fromkeys(_KINDS, dict)}
-            require_members(held, path, layout)
+            layout = dict.fromkeys(("stages", *_KINDS), dict)
+            require_members(held, path, {"schema": int, "metric": int, **layout})
             kinds: dict[str, Any] = {kind: held[kind] for kind in _KINDS}
             for kind, facts in kinds.items():
                 for name, one in facts.items():
                     _require_facts(path, kind, name, one)
+            for kind, digests in [("stages", held["stages"]), *_conditions(held["datasets"])]:
+                for name, digest in digests.items():
+                    require_type(digest, str, path, f"{kind}/{name}")
         except FileRefusedError as error:
             raise ComponentsError(str(error)) from error
-        return cls(harness=held["harness"], **kinds, metric=metric)
+        return cls(stages=held["stages"], **kinds, metric=metric)
 
 
 def current(parts: Parts) -> Components:
@@ -168,12 +231,15 @@ def current(parts: Parts) -> Components:
     parts
         Data sets and implementations.
     """
-    return Components(
-        harness=harness_digest(),
-        datasets={name: _of_dataset(preset) for name, preset in parts.presets.items()},
-        extractors={name: _of_method(method) for name, method in parts.extractors.items()},
-        models={name: _of_method(method) for name, method in parts.models.items()},
+    sources = Sources()
+    found = Components(
+        stages=stage_digests(sources),
+        datasets={name: _of_dataset(one, sources) for name, one in parts.presets.items()},
+        extractors={name: _of_method(one, sources) for name, one in parts.extractors.items()},
+        models={name: _of_method(one, sources) for name, one in parts.models.items()},
     )
+    Analyses.shared().keep()
+    return found
 
 
 #: What the file says of a component of each kind.
@@ -183,7 +249,7 @@ _MEMBERS: Mapping[str, Mapping[str, type | tuple[type, ...]]] = {
         "detector": str,
         "mask": str,
         "half_fov_deg": (int, float, type(None)),
-        "digest": str,
+        "conditions": dict,
     },
     "extractors": {"version": int, "taxonomy": str, "digest": str},
     "models": {"version": int, "taxonomy": str, "digest": str},
@@ -202,21 +268,21 @@ def _require_facts(path: Path, kind: str, name: str, facts: Any) -> None:
         raise FileRefusedError(path, f"{kind}/{name}: unknown member {unknown[0]!r}")
 
 
-def _of_dataset(preset: Preset) -> Facts:
+def _of_dataset(preset: Preset, sources: Sources) -> Facts:
     return {
         "version": preset.version,
         "detector": preset.detector,
         "mask": preset.mask,
         "half_fov_deg": preset.geometry.half_fov_deg,
-        "digest": dataset_digest(preset),
+        "conditions": condition_digests(preset, sources),
     }
 
 
-def _of_method(method: Any) -> Facts:
+def _of_method(method: Any, sources: Sources) -> Facts:
     return {
         "version": method.about.version,
         "taxonomy": method.about.taxonomy,
-        "digest": method_digest(method),
+        "digest": method_digest(method, sources),
     }
 
 
@@ -225,5 +291,17 @@ def _name_of(facts: Mapping[str, Facts], names: Iterable[str]) -> dict[str, Fact
     return {name: known for name, known in facts.items() if name in wanted}
 
 
-def _format_value(facts: Facts) -> str:
-    return json.dumps(facts, sort_keys=False, ensure_ascii=False, allow_nan=False)
+def _in_order(known: Mapping[str, Any]) -> list[str]:
+    """List names sorted, but stages as they follow each other."""
+    return sorted(
+        known, key=lambda name: (list(STAGES).index(name) if name in STAGES else -1, name)
+    )
+
+
+def _conditions(datasets: Mapping[str, Facts]) -> Iterator[tuple[str, Mapping[str, str]]]:
+    for name, facts in datasets.items():
+        yield f"datasets/{name}", facts["conditions"]
+
+
+def _format_value(value: Facts | str) -> str:
+    return json.dumps(value, sort_keys=False, ensure_ascii=False, allow_nan=False)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import weakref
 from collections.abc import Iterator, Mapping
 from types import FunctionType
 
@@ -11,88 +10,74 @@ from algorithms.chain import Chain, Scored
 from algorithms.contract import Extractor
 from benchmark.canonical import digest
 from benchmark.contract import Preset
-from benchmark.results.closure import closure_digest, module_path, syntax_digest
+from benchmark.results.closure import FIRST_PARTY, Sources
 
 #: Digits of a component's digest: two of a hundred components meet once in 1e15.
 _COMPONENT_DIGITS = 16
-#: Modules that turn data and implementations into numbers.
-_HARNESS = (
-    "algorithms.kernels.reference_correction",
-    "algorithms.pipeline",
-    "algorithms.references",
-    "benchmark.datasets.benches",
-    "benchmark.datasets.corrected",
-    "benchmark.datasets.method_bound",
-    "benchmark.metrics.rings",
-    "benchmark.metrics.score",
-    "benchmark.running.condition_data",
-    "benchmark.running.task",
-)
+#: What makes each stage of the data, extractors and models that it is handed, in order.
+STAGES: Mapping[str, tuple[str, ...]] = {
+    "data": ("benchmark.running.condition_data:rendered",),
+    "features": (
+        "benchmark.running.condition_data:ready",
+        "benchmark.running.condition_data:found_features",
+    ),
+    "predictions": ("benchmark.running.task:predicted",),
+    "scores": ("benchmark.running.task:scored",),
+}
 
 
-#: By the identity of a preset, which never changes: itself, digest of the code, digest of all.
-_known: dict[int, tuple[weakref.ref[Preset], str, str]] = {}
+def condition_digests(preset: Preset, sources: Sources | None = None) -> dict[str, str]:
+    """Digest of everything a dataset's data and bounds depend on, by condition, in order.
 
-
-def dataset_digest(preset: Preset) -> str:
-    """Digest of everything a dataset's data and bounds depend on, under all its conditions.
-
-    Spelling a preset's parameters takes longer than finding out whether its code has changed: a
-    process that asks again spells them once.
+    Parameters
+    ----------
+    preset
+        Its parameters and the code of all that it is made of count.
+    sources
+        As they are now by default.
     """
-    code = closure_digest(*modules_of(preset))
-    if (known := _known.get(id(preset))) and known[0]() is preset and known[1] == code:
-        return known[2]
-    found = short_digest(
-        {
-            "dataset": preset.name,
-            "version": preset.version,
-            "parameters": {name: preset.parameters(name) for name in preset.conditions},
-            "code": code,
-        }
-    )
-    _known[id(preset)] = (weakref.ref(preset), code, found)
-    return found
+    from benchmark.datasets.corrected import reference_condition  # noqa: PLC0415 - loads Numba
+
+    code = (sources or Sources()).digest(*entries_of(preset))
+    parameters = {name: digest(preset.parameters(name)) for name in preset.conditions}
+    return {
+        name: short_digest(
+            {
+                "dataset": preset.name,
+                "version": preset.version,
+                "parameters": own,
+                # readings are corrected by those of the first condition with the same detector
+                "references": parameters[reference_condition(preset, name)],
+                "code": code,
+            }
+        )
+        for name, own in parameters.items()
+    }
 
 
 def series_digest(series: object) -> str:
     """Digest of a series of synthetic features: of what it holds, and of the code of it all."""
-    return short_digest({"holds": series, "code": closure_digest(*modules_of(series))})
+    return short_digest({"holds": series, "code": Sources().digest(*entries_of(series))})
 
 
-def method_digest(method: type[Extractor] | Scored) -> str:
+def method_digest(method: type[Extractor] | Scored, sources: Sources | None = None) -> str:
     """Digest of an implementation: its name, its version, the code it reaches."""
-    modules = method.modules if isinstance(method, Chain) else (method.__module__,)
     return short_digest(
         {
             "name": method.about.name,
             "version": method.about.version,
-            "code": closure_digest(*modules),
+            "code": (sources or Sources()).digest(*method_entries(method)),
         }
     )
 
 
-def harness_digest() -> str:
-    """Digest of the code between data and numbers: how methods are run, what is computed."""
-    return modules_digest(*_HARNESS)
+def stage_digests(sources: Sources | None = None) -> dict[str, str]:
+    """Digest of the code between data and numbers, by stage: how methods are run and judged.
 
-
-def modules_digest(*names: str) -> str:
-    """Digest of the code of these modules themselves, not of what they import.
-
-    Raises
-    ------
-    FileNotFoundError
-        When one of them has no source file.
+    What hands stages on, and keeps them, is not among it: it changes no number.
     """
-    return short_digest([_syntax(name) for name in names])
-
-
-def _syntax(module: str) -> str:
-    path = module_path(module)
-    if path is None:
-        raise FileNotFoundError(f"no source file found for module {module!r}")
-    return syntax_digest(path)
+    known = sources or Sources()
+    return {name: short_digest(known.digest(*entries)) for name, entries in STAGES.items()}
 
 
 def short_digest(value: object) -> str:
@@ -100,23 +85,40 @@ def short_digest(value: object) -> str:
     return digest(value)[:_COMPONENT_DIGITS]
 
 
-def modules_of(instance: object) -> tuple[str, ...]:
-    """Modules of an instance's class and of every dataclass instance or function it holds."""
-    return tuple(sorted(set(_modules_of(instance))))
+def method_entries(method: type[Extractor] | Scored) -> tuple[str, ...]:
+    """Return the classes that an implementation is made of, as `benchmark.results.closure` asks."""
+    if isinstance(method, Chain):
+        return (*_entries(Chain), *(entry for part in method.stages for entry in _entries(part)))
+    return tuple(_entries(method))
 
 
-def _modules_of(value: object) -> Iterator[str]:
+def entries_of(instance: object) -> tuple[str, ...]:
+    """Return the class of an instance and of every dataclass instance or function it holds."""
+    return tuple(sorted(set(_entries_of(instance))))
+
+
+def _entries_of(value: object) -> Iterator[str]:
     if value is None or isinstance(value, float | str | int):  # most of what a preset holds
         return
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        yield type(value).__module__
+        yield from _entries(type(value))
         for part in dataclasses.fields(value):
-            yield from _modules_of(getattr(value, part.name))
+            yield from _entries_of(getattr(value, part.name))
     elif isinstance(value, Mapping):
         for item in value.values():
-            yield from _modules_of(item)
+            yield from _entries_of(item)
     elif isinstance(value, list | tuple):
         for item in value:
-            yield from _modules_of(item)
+            yield from _entries_of(item)
     elif isinstance(value, FunctionType):
-        yield value.__module__
+        yield f"{value.__module__}:{value.__qualname__}"
+    elif isinstance(value, type):
+        yield from _entries(value)
+
+
+def _entries(kind: type) -> Iterator[str]:
+    """Yield a class and those of ours that it is derived from, however it was made."""
+    ours = {*FIRST_PARTY, kind.__module__.partition(".")[0]} - {"builtins"}
+    for base in kind.__mro__:
+        if base.__module__.partition(".")[0] in ours:
+            yield f"{base.__module__}:{base.__qualname__}"

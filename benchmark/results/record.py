@@ -63,7 +63,7 @@ class Record:
         self.errors = SampleErrors()
         known = self._components
         self._score_keys = {cell: known.cell_key(cell) for cell in self.scores}
-        self._pin_keys = {place: known.digest("datasets", place[0]) for place in self.pins}
+        self._pin_keys = {place: known.pin_key(*place[:2]) for place in self.pins}
         self._changed = False
         self._read_journal()
 
@@ -81,7 +81,7 @@ class Record:
         -------
         tuple of str
             ``("new",)`` without a score, ``("failed",)`` for one that failed, else those of
-            ``harness``, ``dataset``, ``extractor`` and ``model`` that have changed since.
+            `benchmark.results.components.KEYED` that have changed since.
         """
         if cell not in self._score_keys:
             return ("new",)
@@ -92,7 +92,7 @@ class Record:
 
     def is_pinned(self, place: Place, components: Components) -> bool:
         """Say whether a split's pin is of these components."""
-        return self._pin_keys.get(place) == components.digest("datasets", place[0])
+        return self._pin_keys.get(place) == components.pin_key(*place[:2])
 
     def keep(
         self,
@@ -117,7 +117,7 @@ class Record:
             Samples that the errors are of, by data set.
         """
         records: list[Row] = [
-            {"pin": asdict(pin), "key": components.digest("datasets", pin.dataset)} for pin in pins
+            {"pin": asdict(pin), "key": components.pin_key(*pin.place[:2])} for pin in pins
         ]
         records += [
             {"cell": asdict(cell), "score": row, "key": components.cell_key(cell)}
@@ -169,10 +169,10 @@ class Record:
         pins = [
             pin
             for place, pin in self.pins.items()
-            if self._pin_keys[place] == known.digest("datasets", place[0])
+            if self._pin_keys[place] == known.pin_key(*place[:2])
         ]
         used = Components(
-            harness=known.harness,
+            stages=known.stages,
             datasets=_used(known.datasets, [c.dataset for c in scores] + [p.dataset for p in pins]),
             extractors=_used(known.extractors, [cell.extractor for cell in scores]),
             models=_used(known.models, [cell.model for cell in scores]),

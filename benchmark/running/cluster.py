@@ -16,9 +16,8 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, Protocol, TypeVar
 
-from algorithms.chain import Chain
 from benchmark.results.closure import closure_digest
-from benchmark.results.digests import modules_of
+from benchmark.results.digests import entries_of, method_entries
 from benchmark.running.task import Task
 
 #: Seconds to wait for the scheduler, and then for a worker to be there.
@@ -184,13 +183,13 @@ def connect(scheduler: str) -> Iterator[Cluster]:
 
 
 def code_of(tasks: Sequence[Task]) -> str:
-    """Digest of the code that measures these tasks: of the harness, their data and methods."""
-    modules = {"benchmark.running.task"}
+    """Digest of the code that measures these tasks: of all stages, their data and methods."""
+    entries = {"benchmark.running.task:measure"}
     for preset in {id(task.preset): task.preset for task in tasks}.values():
-        modules.update(modules_of(preset))
+        entries.update(entries_of(preset))
     for method in {method for task in tasks for method in (task.extractor, *task.models)}:
-        modules.update(method.modules if isinstance(method, Chain) else (method.__module__,))
-    return closure_digest(*sorted(modules))
+        entries.update(method_entries(method))
+    return closure_digest(*sorted(entries))
 
 
 def _measure(code: str, tasks: Sequence[Task], measure: Callable[[], T]) -> T:

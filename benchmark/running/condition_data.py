@@ -1,7 +1,12 @@
-"""The data of a data set under one condition, generated once and kept while a worker needs them."""
+"""The data of a data set under one condition, generated once and kept while a worker needs them.
+
+`rendered` is the stage that makes data, `found_features` the one that makes features; what keeps
+them between stages changes no number.
+"""
 
 from __future__ import annotations
 
+import time
 from collections import OrderedDict
 from dataclasses import dataclass, field, replace
 from typing import Any, cast
@@ -13,12 +18,13 @@ from algorithms.contract import Extractor, Floats
 from algorithms.pipeline import extract_features
 from algorithms.references import ReferenceCorrection
 from benchmark.canonical import digest
-from benchmark.contract import SPLITS, Bound, Preset, Samples
+from benchmark.contract import SPLITS, Bound, Cell, Preset, Samples
 from benchmark.datasets.controls import board_facts
 from benchmark.datasets.corrected import correct, correction
 from benchmark.datasets.pins import Pin
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.metrics.score import store
+from benchmark.running.kept_stages import DATA, TRUTH, KeptStages
 from benchmark.simulator.light.memory import memory
 
 #: Datasets under one condition kept per process: the plan hands out a dataset's tasks in a row.
@@ -41,7 +47,8 @@ class ConditionData:
         Of unit 0.
     splits
         Samples by split; another unit than the standard one has no split ``repeat``. They are
-        corrected by the unit's references already where there is no `correction`.
+        corrected by the unit's references already where there is no `correction`. Without
+        observations where only directions and bounds were asked for (`truth`).
     bound_deg, bound_unit_deg
         Cramer-Rao bounds (N,) of the test split, with the unit known and unknown; None for another
         unit, and the second where there is none.
@@ -74,8 +81,21 @@ _kept: OrderedDict[_Place, ConditionData] = OrderedDict()
 _observable: dict[_Place, NDArray[np.bool_]] = {}
 
 
+@dataclass(frozen=True)
+class Rendered:
+    """Data as the sensor reads them, and how they are to be corrected."""
+
+    data: ConditionData
+    correction: ReferenceCorrection | None
+
+
 def generate(
-    preset: Preset, condition: str, unit: int = 0, *, all_observable: bool = False
+    preset: Preset,
+    condition: str,
+    unit: int = 0,
+    *,
+    all_observable: bool = False,
+    kept: KeptStages | None = None,
 ) -> ConditionData:
     """Return the data of a data set under one condition, as a unit of its sensor sees them.
 
@@ -90,23 +110,91 @@ def generate(
     all_observable
         Whether every test sample is known to be observable, so that another unit than the
         standard one needs no bound.
+    kept
+        Where they may be kept between processes.
     """
     place = _place_of(preset, condition, unit)
     if place not in _kept:
         _make_room()
-        # the conditions of a dataset see the same Suns, its units look up the same tables
-        memory.cache_for((preset.name, unit), preset.name)
-        seen_by = preset.for_unit(unit) if unit else preset
-        wanted = SPLITS if not unit else ("calibration", "test")
-        splits = {split: seen_by.generate(condition, split) for split in wanted}
-        if unit:
-            data = _of_another_unit(preset, condition, splits, all_observable)
-        else:  # its bound, which scores need, tells what is observable
-            data = _of_unit_zero(preset, condition, splits)
-        left = _corrected_once(data.splits, correction(seen_by, condition))
-        _kept[place] = replace(data, correction=left)
+        made = _rendered_or_kept(preset, condition, unit, all_observable, kept)
+        _kept[place] = ready(made, preset)
     _kept.move_to_end(place)
     return _kept[place]
+
+
+def truth(
+    preset: Preset,
+    condition: str,
+    unit: int = 0,
+    *,
+    all_observable: bool = False,
+    kept: KeptStages | None = None,
+) -> ConditionData:
+    """Return as `generate`, but without observations where the rest is kept."""
+    if kept is not None and _place_of(preset, condition, unit) not in _kept:
+        found: ConditionData | None = kept.get(TRUTH, _cell(preset, condition, unit))
+        if found is not None:
+            return replace(found, preset=preset)
+    return generate(preset, condition, unit, all_observable=all_observable, kept=kept)
+
+
+def rendered(preset: Preset, condition: str, unit: int, *, all_observable: bool) -> Rendered:
+    """Generate data from nothing. Parameters as `generate`."""
+    # the conditions of a dataset see the same Suns, its units look up the same tables
+    memory.cache_for((preset.name, unit), preset.name)
+    seen_by = preset.for_unit(unit) if unit else preset
+    wanted = SPLITS if not unit else ("calibration", "test")
+    splits = {split: seen_by.generate(condition, split) for split in wanted}
+    if unit:
+        data = _of_another_unit(preset, condition, splits, all_observable)
+    else:  # its bound, which scores need, tells what is observable
+        data = _of_unit_zero(preset, condition, splits)
+    return Rendered(data, correction(seen_by, condition))
+
+
+def ready(made: Rendered, preset: Preset) -> ConditionData:
+    """Return data as extractors get them."""
+    splits = dict(made.data.splits)
+    left = _corrected_once(splits, made.correction)
+    return replace(made.data, preset=preset, splits=splits, correction=left)
+
+
+def _rendered_or_kept(
+    preset: Preset, condition: str, unit: int, all_observable: bool, kept: KeptStages | None
+) -> Rendered:
+    if kept is None:
+        return rendered(preset, condition, unit, all_observable=all_observable)
+    cell = _cell(preset, condition, unit)
+    found: Rendered | None = kept.get(DATA, cell)
+    if found is not None:
+        return found
+    if (
+        unit
+        and not all_observable
+        and (place := _place_of(preset, condition, 0)) not in _observable
+    ):
+        standard: ConditionData | None = kept.get(TRUTH, _cell(preset, condition, 0))
+        if standard is not None:
+            _observable[place] = standard.observable
+    started = time.process_time()
+    made = rendered(preset, condition, unit, all_observable=all_observable)
+    seconds = time.process_time() - started
+    # a preset is the caller's own: it is not kept, but taken from who asks
+    bare = replace(made.data, preset=cast("Preset", None))
+    kept.put(DATA, cell, replace(made, data=bare), seconds)
+    unseen = {split: _unseen(samples) for split, samples in bare.splits.items()}
+    kept.put(TRUTH, cell, replace(bare, splits=unseen), seconds)
+    return made
+
+
+def _cell(preset: Preset, condition: str, unit: int) -> Cell:
+    return Cell(preset.name, condition, "", "", unit)
+
+
+def _unseen(samples: Samples) -> Samples:
+    """Return samples without observations."""
+    nothing = np.empty((len(samples.sun), 0))
+    return cast("Samples", replace(cast("Any", samples), observations=nothing))
 
 
 def found_features(data: ConditionData, extractor: Extractor, split: str) -> Floats:
@@ -118,8 +206,8 @@ def found_features(data: ConditionData, extractor: Extractor, split: str) -> Flo
         if data.correction is not None:
             step = max(1, _BATCH_BYTES // (8 * int(np.prod(samples.observations.shape[1:]))))
         parts = (_part(samples, start, start + step) for start in range(0, len(samples.sun), step))
-        ready = (correct(data.correction, part) for part in parts)
-        found = [extract_features(extractor, one.observations, one.origin_px) for one in ready]
+        seen = (correct(data.correction, part) for part in parts)
+        found = [extract_features(extractor, one.observations, one.origin_px) for one in seen]
         data.features[place] = found[0] if len(found) == 1 else np.concatenate(found)
     return data.features[place]
 

@@ -118,11 +118,14 @@ def changed_heads(pinned: Mapping[Place, Pin], presets: Iterable[Preset]) -> dic
 
 def presets_of_other_code(store: Store, parts: Parts, components: Components) -> list[Preset]:
     """List the datasets whose code or parameters are not those that the store was written with."""
-    stored = store.components().datasets
+    stored = store.components()
+    alike = stored.stages.get("data") == components.stages.get("data")
     return [
         preset
         for name, preset in parts.presets.items()
-        if stored.get(name, {}).get("digest") != components.digest("datasets", name)
+        if not alike
+        or name not in stored.datasets
+        or stored.digest("datasets", name) != components.digest("datasets", name)
     ]
 
 
@@ -238,7 +241,7 @@ def update(
         require_versions(pinned, record.pins.values())
         named = {preset.name for preset, _ in conditions_of(known, datasets)}
         only = {name: facts for name, facts in components.datasets.items() if name in named}
-        record.write(Components(harness=components.harness, datasets=only))
+        record.write(Components(components.stages, datasets=only))
     return done
 
 

@@ -17,6 +17,7 @@ from benchmark.metrics.score import METRICS
 from benchmark.plan.parts import Parts
 from benchmark.results.csv_tables import Row
 from benchmark.results.samples import CONDITION, Directions, SampleErrors
+from benchmark.running.kept_stages import KeptStages
 from benchmark.running.task import Task, TaskResult, data_condition
 
 
@@ -32,11 +33,14 @@ class FollowUp:
         Its first cells: nothing follows from a part of them.
     choose
         From the numbers of the first cells and `parts` to the cells that follow.
+    kept
+        Where stages are kept.
     """
 
     parts: Parts
     first: frozenset[Cell]
     choose: Callable[[Mapping[Cell, Row], Parts], Sequence[Cell]]
+    kept: KeptStages | None = None
 
     def tasks(self, results: Sequence[TaskResult]) -> list[Task]:
         """List the tasks that follow, other units last; none where first cells are missing."""
@@ -49,10 +53,15 @@ class FollowUp:
             return []
         following = [cell for cell in self.choose(scores, self.parts) if cell not in scores]
         pins = {pin.place: pin for result in results for pin in result.pins}
-        return tasks_of(following, self.parts, pins)
+        return tasks_of(following, self.parts, pins, self.kept)
 
 
-def tasks_of(cells: Iterable[Cell], parts: Parts, pins: Mapping[Place, Pin]) -> list[Task]:
+def tasks_of(
+    cells: Iterable[Cell],
+    parts: Parts,
+    pins: Mapping[Place, Pin],
+    kept: KeptStages | None = None,
+) -> list[Task]:
     """Put cells into tasks, those of one dataset, unit and condition in a row: they share samples.
 
     Parameters
@@ -63,6 +72,8 @@ def tasks_of(cells: Iterable[Cell], parts: Parts, pins: Mapping[Place, Pin]) -> 
         Data sets and implementations.
     pins
         What is known of the data already, by place.
+    kept
+        Where stages are kept; nowhere for None.
     """
     return [
         Task(
@@ -72,6 +83,7 @@ def tasks_of(cells: Iterable[Cell], parts: Parts, pins: Mapping[Place, Pin]) -> 
             tuple(parts.model(cell.model) for cell in group),
             unit,
             _all_observable(pins, dataset, data_condition(parts.preset(dataset), condition)),
+            kept,
         )
         for (dataset, unit, _, condition, extractor), group in groupby(
             sorted(cells, key=_order), key=lambda cell: _order(cell)[:5]

@@ -22,6 +22,7 @@ from benchmark.results.record import Record, open_record
 from benchmark.results.store import Store
 from benchmark.running.backend import outcomes
 from benchmark.running.durations import Durations
+from benchmark.running.kept_stages import KeptStages
 from benchmark.running.planned import FollowUp, cells_of, numbers_of, samples_of, tasks_of
 from benchmark.running.task import TaskResult
 
@@ -51,6 +52,7 @@ def run(
     *,
     scheduler: str | None = None,
     parts: Parts | None = None,
+    keep_stages: bool = True,
 ) -> Summary:
     """Measure the cells that the store does not hold yet; what else it holds stays.
 
@@ -74,6 +76,9 @@ def run(
         Address of a Dask scheduler to measure on instead.
     parts
         Datasets and implementations; what is installed by default.
+    keep_stages
+        Whether data, features and predictions are kept beside the store and taken from there.
+        The numbers are the same.
 
     Raises
     ------
@@ -104,6 +109,7 @@ def run(
             workers=workers,
             progress=progress,
             scheduler=scheduler,
+            kept=kept_beside(store, components, scheduler) if keep_stages else None,
         )
         record.write(components.only(wanted))
     return Summary(
@@ -127,6 +133,7 @@ def measure_missing(
     progress: ProgressCallback | None = None,
     scheduler: str | None = None,
     follow_ups: Mapping[str, FollowUp] | None = None,
+    kept: KeptStages | None = None,
 ) -> int:
     """Measure the cells that a record does not hold of these components; returns how many.
 
@@ -136,6 +143,8 @@ def measure_missing(
     ----------
     follow_ups
         By data set, what a worker that measured all its first cells goes on with at once.
+    kept
+        Where stages are kept; nowhere for None.
     """
     missing = [cell for cell in sorted(wanted) if not record.is_scored(cell, components)]
     # the standard units first: what they tell of the directions that can be observed saves every
@@ -146,7 +155,7 @@ def measure_missing(
         with terminal_progress() if progress is None else nullcontext(progress) as report:
             counted = _Count(report, len(missing))
             for stage in filter(None, stages):
-                tasks = tasks_of(stage, parts, record.pins)
+                tasks = tasks_of(stage, parts, record.pins, kept)
                 durations = Durations.read([record.store])
                 results = outcomes(tasks, workers, scheduler, follow_ups or {}, durations)
                 try:
@@ -155,6 +164,13 @@ def measure_missing(
                     durations.keep(record.store)
             done = counted.done
     return done
+
+
+def kept_beside(
+    store: Store, components: Components, scheduler: str | None = None
+) -> KeptStages | None:
+    """Return the stages kept beside a store; None on a cluster, whose disks are its own."""
+    return None if scheduler else KeptStages.beside(store.work_directory, components)
 
 
 def failures(cells: Iterable[Cell], record: Record) -> tuple[tuple[Cell, str], ...]:

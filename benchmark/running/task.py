@@ -1,12 +1,14 @@
 """What one worker does: generate a dataset's samples, extract once, fit and score every model.
 
-A task is a pure function of its specification; it writes nothing. An error of an implementation
-becomes an outcome with its reason.
+A task is a pure function of its specification: what it keeps of its stages for another time changes
+no number. An error of an implementation becomes an outcome with its reason.
 """
 
 from __future__ import annotations
 
 import math
+import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,12 +17,13 @@ from numpy.typing import NDArray
 from algorithms.chain import Scored
 from algorithms.contract import Extractor, Floats, UnusableDataError
 from algorithms.pipeline import Pipeline
-from benchmark.contract import ON_BENCH, Preset
+from benchmark.contract import ON_BENCH, Cell, Preset
 from benchmark.datasets.benches import report
 from benchmark.datasets.method_bound import method_bound_deg
 from benchmark.datasets.pins import Pin
 from benchmark.metrics.score import Score, score, separation_deg
-from benchmark.running.condition_data import ConditionData, found_features, generate
+from benchmark.running.condition_data import ConditionData, found_features, generate, truth
+from benchmark.running.kept_stages import FEATURES, PREDICTIONS, KeptStages
 from benchmark.running.threads import one_thread
 
 #: Benches that each unit of a leading pipeline is calibrated on beside a perfect one.
@@ -40,6 +43,8 @@ class Task:
     all_observable
         Whether the direction is known to be observable from every test sample, so that another
         unit than the standard one needs no bound.
+    kept
+        Where stages are kept; None to make all of them, and keep none.
     """
 
     preset: Preset
@@ -48,6 +53,30 @@ class Task:
     models: tuple[Scored, ...]
     unit: int = 0
     all_observable: bool = False
+    kept: KeptStages | None = None
+
+
+@dataclass(frozen=True)
+class Answers:
+    """What a fitted pipeline answers, before it is judged.
+
+    Attributes
+    ----------
+    test
+        Directions (N, 3) of the test split: of one fit to true directions, or of one to those of
+        each drawn bench.
+    repeat
+        Of the split ``repeat``, or None.
+    found
+        Where (N,) the extractor gave features of the test split.
+    refused
+        Why the model refused its calibration, and there are no answers; empty where it did not.
+    """
+
+    test: tuple[Floats, ...] = ()
+    repeat: Floats | None = None
+    found: NDArray[np.bool_] | None = None
+    refused: str = ""
 
 
 @dataclass(frozen=True)
@@ -69,12 +98,11 @@ class Outcome:
     found: NDArray[np.bool_] | None = None
 
 
-class RefusedError(Exception):
+class _RefusedError(Exception):
     """A model's ``fit`` refused its calibration: a result, unlike a refusal to predict."""
 
     def __init__(self, reason: UnusableDataError) -> None:
-        super().__init__(str(reason))
-        self.reason = reason
+        super().__init__(reason_of(reason))
 
 
 @dataclass(frozen=True)
@@ -93,19 +121,22 @@ class TaskResult:
 
 def measure(task: Task) -> TaskResult:
     """Score every model of a task; never raises for an implementation's error."""
-    condition = data_condition(task.preset, task.condition)
     with one_thread():
         try:
-            data = generate(task.preset, condition, task.unit, all_observable=task.all_observable)
+            data = _data(task, truth)
         except Exception as error:  # noqa: BLE001 - any error of a dataset is a row with its reason
             return _failed(task, error, "generating data")
-        try:
-            extractor = task.extractor.for_sensor(task.preset.geometry_for(condition))
-            features = {split: found_features(data, extractor, split) for split in data.splits}
-        except Exception as error:  # noqa: BLE001 - likewise of an extractor
-            return _failed(task, error, "extracting", data.pins)
+        answers = [_kept_answers(task, model) for model in task.models]
+        if None in answers:
+            try:
+                extractor, features = _extractor(task), _features(task)
+            except Exception as error:  # noqa: BLE001 - likewise of an extractor
+                return _failed(task, error, "extracting", data.pins)
         outcomes = tuple(
-            measured_on(task, extractor, model, features, data) for model in task.models
+            measured_on(task, extractor, model, features, data)
+            if known is None
+            else _judged(task, model, known, data)
+            for model, known in zip(task.models, answers, strict=True)
         )
         directions = None
         if data.bound_deg is not None:
@@ -126,14 +157,76 @@ def measured_on(
     data: ConditionData,
 ) -> Outcome:
     """Calibrate and score one pipeline on the features (N, F) its extractor found, by split."""
-    scored = _on_benches if task.condition == ON_BENCH else _own
-    name = model.about.name
+    started = time.process_time()
     try:
-        return scored(task, extractor, model, features, data)
-    except RefusedError as error:
-        return Outcome(name, reason_of(error.reason), refused=True)
+        answers = predicted(task, extractor, model, features, data)
     except Exception as error:  # noqa: BLE001 - any error of a model is a row with its reason
-        return Outcome(name, reason_of(error))
+        return Outcome(model.about.name, reason_of(error))
+    if task.kept is not None:
+        seconds = time.process_time() - started
+        task.kept.put(PREDICTIONS, _cell(task, model), answers, seconds)
+    return _judged(task, model, answers, data)
+
+
+def _judged(task: Task, model: Scored, answers: Answers, data: ConditionData) -> Outcome:
+    try:
+        return scored(task, model, answers, data)
+    except Exception as error:  # noqa: BLE001 - likewise of what it answers
+        return Outcome(model.about.name, reason_of(error))
+
+
+def _data(task: Task, look: Callable[..., ConditionData]) -> ConditionData:
+    """Return the data of a task, by `generate` or `truth`."""
+    condition = data_condition(task.preset, task.condition)
+    return look(
+        task.preset, condition, task.unit, all_observable=task.all_observable, kept=task.kept
+    )
+
+
+def _extractor(task: Task) -> Extractor:
+    condition = data_condition(task.preset, task.condition)
+    return task.extractor.for_sensor(task.preset.geometry_for(condition))
+
+
+def _features(task: Task) -> dict[str, Floats]:
+    """Return what the extractor finds in every split, as it is kept or found now."""
+    cell = _cell(task)
+    known: dict[str, Floats] | None = None if task.kept is None else task.kept.get(FEATURES, cell)
+    if known is not None:
+        return known
+    data, extractor = _data(task, generate), _extractor(task)
+    started = time.process_time()
+    found = {split: found_features(data, extractor, split) for split in data.splits}
+    if task.kept is not None:
+        task.kept.put(FEATURES, cell, found, time.process_time() - started)
+    return found
+
+
+def _kept_answers(task: Task, model: Scored) -> Answers | None:
+    found: Answers | None = None
+    if task.kept is not None:
+        found = task.kept.get(PREDICTIONS, _cell(task, model))
+    return found
+
+
+def _cell(task: Task, model: Scored | None = None) -> Cell:
+    name = "" if model is None else model.about.name
+    return Cell(task.preset.name, task.condition, task.extractor.about.name, name, task.unit)
+
+
+def predicted(
+    task: Task,
+    extractor: Extractor,
+    model: Scored,
+    features: dict[str, Floats],
+    data: ConditionData,
+) -> Answers:
+    """Fit one pipeline to its calibration and let it answer the other splits."""
+    answers = _on_benches if task.condition == ON_BENCH else _own
+    try:
+        return answers(task, extractor, model, features, data)
+    except _RefusedError as error:
+        return Answers(refused=str(error))
 
 
 def _own(
@@ -142,34 +235,72 @@ def _own(
     model: Scored,
     features: dict[str, Floats],
     data: ConditionData,
-) -> Outcome:
-    """Score a pipeline that was told the true directions of its calibration."""
+) -> Answers:
+    """Let a pipeline answer that was told the true directions of its calibration."""
     pipeline = _pipeline(task, extractor, model)
     _fit(pipeline, features, data, data.splits["calibration"].truth)
     repeated = None
     if "repeat" in features:
-        again = data.splits["repeat"].context
-        repeated = _repeat(pipeline.predict_features(features["repeat"], again), data)
-    test = data.splits["test"]
-    answers = pipeline.predict_features(features["test"], test.context)
+        repeated = pipeline.predict_features(features["repeat"], data.splits["repeat"].context)
+    answers = pipeline.predict_features(features["test"], data.splits["test"].context)
+    found = np.asarray(np.isfinite(features["test"]).all(axis=1))
+    return Answers((answers,), repeated, found)
+
+
+def _on_benches(
+    task: Task,
+    extractor: Extractor,
+    model: Scored,
+    features: dict[str, Floats],
+    data: ConditionData,
+) -> Answers:
+    """Let a pipeline answer that was calibrated with the directions of each drawn bench."""
+    on_bench = task.preset.for_unit(task.unit)
+    known, test = data.splits["calibration"].truth, data.splits["test"]
+    answers = []
+    for draw in range(BENCHES):
+        told = report(on_bench, task.preset.conditions[0], np.asarray(known), draw)
+        pipeline = _pipeline(task, extractor, model)
+        _fit(pipeline, features, data, told)
+        answers.append(pipeline.predict_features(features["test"], test.context))
+    return Answers(tuple(answers))
+
+
+def scored(task: Task, model: Scored, answers: Answers, data: ConditionData) -> Outcome:
+    """Judge what a pipeline answered."""
+    name = model.about.name
+    if answers.refused:
+        return Outcome(name, answers.refused, refused=True)
+    if task.condition == ON_BENCH:
+        return Outcome(name, "", _pooled(answers, data))
+    test, (own,) = data.splits["test"], answers.test
     posterior = _posterior_deg(task, model, data)
     found = score(
-        answers,
+        own,
         test.sun,
         data.bound_deg if posterior is None else posterior,
         data.observable,
-        repeated,
+        None if answers.repeat is None else _repeat(answers.repeat, data),
         bound_unit_deg=data.bound_unit_deg if posterior is None else posterior,
     )
     if task.condition != task.preset.conditions[0]:
-        return Outcome(model.about.name, "", found)
-    return Outcome(
-        model.about.name,
-        "",
-        found,
-        sample_errors_deg=separation_deg(answers, test.sun),
-        found=np.asarray(np.isfinite(features["test"]).all(axis=1)),
+        return Outcome(name, "", found)
+    errors = separation_deg(own, test.sun)
+    return Outcome(name, "", found, sample_errors_deg=errors, found=answers.found)
+
+
+def _pooled(answers: Answers, data: ConditionData) -> Score:
+    """Judge the answers of all benches together; those that are aligned each by itself."""
+    sun = data.splits["test"].sun
+    each = [score(answer, sun, None, data.observable) for answer in answers.test]
+    pooled = score(
+        np.concatenate(answers.test),
+        np.tile(sun, (BENCHES, 1)),
+        None,
+        np.tile(data.observable, BENCHES),
     )
+    aligned = math.sqrt(float(np.mean([one.aligned_deg**2 for one in each])))
+    return replace(pooled, aligned_deg=aligned)
 
 
 def _posterior_deg(task: Task, model: Scored, data: ConditionData) -> Floats | None:
@@ -180,44 +311,17 @@ def _posterior_deg(task: Task, model: Scored, data: ConditionData) -> Floats | N
     return method_bound_deg(task.preset, task.condition, context, data.bound)
 
 
-def _on_benches(
-    task: Task,
-    extractor: Extractor,
-    model: Scored,
-    features: dict[str, Floats],
-    data: ConditionData,
-) -> Outcome:
-    """Score a pipeline calibrated with the directions of drawn benches; errors are pooled."""
-    on_bench = task.preset.for_unit(task.unit)
-    known, test = data.splits["calibration"].truth, data.splits["test"]
-    answers = []
-    for draw in range(BENCHES):
-        told = report(on_bench, task.preset.conditions[0], np.asarray(known), draw)
-        pipeline = _pipeline(task, extractor, model)
-        _fit(pipeline, features, data, told)
-        answers.append(pipeline.predict_features(features["test"], test.context))
-    each = [score(answer, test.sun, None, data.observable) for answer in answers]
-    pooled = score(
-        np.concatenate(answers),
-        np.tile(test.sun, (BENCHES, 1)),
-        None,
-        np.tile(data.observable, BENCHES),
-    )
-    aligned = math.sqrt(float(np.mean([one.aligned_deg**2 for one in each])))
-    return Outcome(model.about.name, "", replace(pooled, aligned_deg=aligned))
-
-
 def _pipeline(task: Task, extractor: Extractor, model: Scored) -> Pipeline:
     geometry = task.preset.geometry_for(data_condition(task.preset, task.condition))
     return Pipeline(extractor, model.for_sensor(geometry, extractor.about.kind))
 
 
 def _fit(pipeline: Pipeline, features: dict[str, Floats], data: ConditionData, sun: Floats) -> None:
-    """Fit to the calibration's features; RefusedError where the model refuses them."""
+    """Fit to the calibration's features; raises where the model refuses them."""
     try:
         pipeline.fit_features(features["calibration"], sun, data.splits["calibration"].context)
     except UnusableDataError as error:
-        raise RefusedError(error) from error
+        raise _RefusedError(error) from error
 
 
 def _repeat(predicted: Floats, data: ConditionData) -> Floats:

@@ -12,6 +12,7 @@ from benchmark.results.csv_tables import Row
 from benchmark.results.record import Record
 from benchmark.results.store import Store
 from benchmark.running.durations import Durations, Estimate
+from benchmark.running.kept_stages import KeptStages, StageCounts, count_stages
 from benchmark.running.runner import known_cells
 from benchmark.suites.selection import Suite
 
@@ -28,14 +29,16 @@ class CellPlan:
         All that were asked for, in order.
     missing
         Those that no store holds as code and data now are, in order, each with the reasons:
-        ``new``, ``failed`` (before), or which of ``harness``, ``dataset``, ``extractor`` and
-        ``model`` changed.
+        ``new``, ``failed`` (before), or which of `benchmark.results.components.KEYED` changed.
+    stages
+        How much of each stage that is, where what is kept beside the last store is used.
     estimate
         How long measuring these takes.
     """
 
     cells: tuple[Cell, ...]
     missing: Mapping[Cell, tuple[str, ...]]
+    stages: StageCounts
     estimate: Estimate
 
 
@@ -47,7 +50,8 @@ def plan(cells: Iterable[Cell], stores: Sequence[Store], *, parts: Parts | None 
     cells
         What is wanted.
     stores
-        Where scores are looked up; a reason is by the first that holds the cell.
+        Where scores are looked up; a reason is by the first that holds the cell. Into the last
+        would be measured.
     parts
         Datasets and implementations; what is installed by default.
 
@@ -68,7 +72,9 @@ def plan(cells: Iterable[Cell], stores: Sequence[Store], *, parts: Parts | None 
         if all(reasons):
             missing[cell] = next((r for r in reasons if r != (NEW,)), (NEW,))
     durations = Durations.read(stores)
-    return CellPlan(tuple(wanted), missing, durations.estimate(missing))
+    kept = KeptStages.beside(stores[-1].work_directory, components)
+    counts = count_stages(missing, components, kept)
+    return CellPlan(tuple(wanted), missing, counts, durations.estimate(missing))
 
 
 def cells_of(suite: Suite, stores: Sequence[Store], *, parts: Parts | None = None) -> list[Cell]:

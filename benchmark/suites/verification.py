@@ -78,7 +78,15 @@ def verify(
     try:
         with temporary_directory() as temporary:
             again = Store(temporary)
-            run(wanted, again, workers, progress, scheduler=scheduler, parts=parts)
+            run(
+                wanted,
+                again,
+                workers,
+                progress,
+                scheduler=scheduler,
+                parts=parts,
+                keep_stages=False,
+            )
             measured, pins = again.scores(), again.pins()
     except KeyboardInterrupt as interrupted:
         raise RunInterruptedError(

@@ -12,7 +12,7 @@ from api import previews
 from api.previews import Pictures, place
 from benchmark import datasets
 from benchmark.datasets.preview import preview_png
-from benchmark.results import digests
+from benchmark.results import closure, digests
 
 
 @pytest.fixture
@@ -54,9 +54,12 @@ def test_of_other_code_nothing_published_is_shown(
     """Neither of another data set's code or parameters, nor drawn by other code."""
     name = datasets.names()[-1]
     now = previews.published_preview(name)
-    for changed in ("dataset_digest", "modules_digest"):
+    for module, changed, made in (
+        (digests, "condition_digests", {"nominal": "another"}),
+        (closure, "closure_digest", "another"),
+    ):
         with monkeypatch.context() as patched:
-            patched.setattr(digests, changed, lambda *_: "another")
+            patched.setattr(module, changed, lambda *_, made=made: made)
             previews._show.cache_clear()
             other = previews.published_preview(name)
         assert other != now

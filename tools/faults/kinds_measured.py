@@ -60,9 +60,10 @@ def _read_calibration(folder: Path) -> Any:
 
 def _journal(folder: Path) -> list[Path]:
     record = Record(Store(folder))
-    sensor = {"version": 1, "detector": "PD", "mask": "Slit", "half_fov_deg": 30.0, "digest": "d"}
+    sensor = {"version": 1, "detector": "PD", "mask": "Slit", "half_fov_deg": 30.0}
+    sensor["conditions"] = {"c": "d"}
     known = Components(
-        "h",
+        {"data": "h"},
         datasets={"d": sensor},
         extractors={"e": {"version": 1, "taxonomy": "BCM", "digest": "e"}},
         models={f"m{k}": {"version": 1, "taxonomy": "LSQ", "digest": f"m{k}"} for k in range(8)},

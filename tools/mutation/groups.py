@@ -100,7 +100,7 @@ GROUPS: Mapping[str, Group] = {
     "results": Group(
         50,
         {
-            "benchmark/results/closure.py": _in(_RESULTS, "digests"),
+            "benchmark/results/closure.py": _in(_RESULTS, "closure"),
             "benchmark/results/digests.py": _in(_RESULTS, "digests"),
             "benchmark/results/components.py": _in(_RESULTS, "components", "record"),
             "benchmark/results/record.py": _in(_RESULTS, "record"),

@@ -42,6 +42,9 @@ def plan(
     --suite` would measure (by default suite standard): new ones, failed ones, and those whose data
     set, extractor, model or measuring code has changed. The time is estimated from earlier runs on
     this machine. Nothing is measured. JSON and CSV list every cell.
+
+    Below stands how much of each stage that is: data to generate, features to extract, models to
+    fit, scores to compute. What is kept beside the local store is not done again.
     """
     chosen = suite_named(str(suite))
     stores = stores_of(store)
@@ -53,6 +56,7 @@ def plan(
         "suite": chosen.name,
         "planned": len(found.cells),
         "missing": rows,
+        "stages": asdict(found.stages),
         "estimate": {**asdict(found.estimate), "workers": workers},
     }
     if form is Format.TABLE:
@@ -82,7 +86,14 @@ def _why(cell: Cell, reasons: tuple[str, ...]) -> str:
 
 def _summary(found: CellPlan, workers: int) -> str:
     count = f"{len(found.missing)} of {len(found.cells)} cells to be measured"
-    return f"{count}; {_time(found.estimate, workers)}" if found.missing else count
+    if not found.missing:
+        return count
+    todo = found.stages
+    stages = (
+        f"{todo.data} data sets to generate, {todo.features} features to extract, "
+        f"{todo.predictions} models to fit, {todo.scores} scores to compute"
+    )
+    return f"{count}: {stages}; {_time(found.estimate, workers)}"
 
 
 def _time(estimate: Estimate, workers: int) -> str:

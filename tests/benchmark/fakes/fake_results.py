@@ -8,6 +8,7 @@ from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin
 from benchmark.metrics.score import METRICS
 from benchmark.results.components import Components
+from benchmark.results.digests import STAGES
 
 
 def numbers(rms: float | None = 0.5, **more: Any) -> dict[str, Any]:
@@ -30,16 +31,23 @@ def pin(split: str = "test", **more: Any) -> Pin:
     return Pin(**{**base, **more})
 
 
-def components(*, harness: str = "hh", **digests: str) -> Components:
-    """Return what `cell` and `pin` name; keywords give other digests by name."""
+def components(**digests: str) -> Components:
+    """Return what `cell` and `pin` name; keywords give other digests by name, of stages too."""
 
     def facts(name: str, **more: Any) -> dict[str, Any]:
-        return {"version": 1, **more, "digest": digests.get(name, f"digest-{name}")}
+        return {"version": 1, **more, "digest": digest(name)}
+
+    def digest(name: str) -> str:
+        return digests.get(name, f"of {name}")
+
+    def dataset(name: str) -> dict[str, Any]:
+        conditions = {one: digest(name) + one for one in ("c", "c2", "other")}
+        return {"version": 1, **sensor, "conditions": conditions}
 
     sensor: dict[str, Any] = {"detector": "PD", "mask": "Slit", "half_fov_deg": 30.0}
     return Components(
-        harness,
-        datasets={name: facts(name, **sensor) for name in ("c", "d", "other")},
+        {stage: digest(stage) for stage in STAGES},
+        datasets={name: dataset(name) for name in ("c", "d", "other")},
         extractors={"e": facts("e", taxonomy="BCM")},
         models={name: facts(name, taxonomy="LSQ") for name in ("a", "b", "m", "z")},
     )

@@ -20,6 +20,7 @@ from benchmark.leaderboard.pages import FORMATS, PAGE, page, render
 from benchmark.leaderboard.scope import UNITS
 from benchmark.leaderboard.update import update, write_page
 from benchmark.progress import silent
+from benchmark.results.digests import stage_digests
 from benchmark.results.store import Store
 from benchmark.running import condition_data
 from benchmark.running.pinning import UnversionedChangeError
@@ -163,7 +164,7 @@ def test_an_extractor_s_new_code_renews_its_own_rows_and_its_digest_alone(tmp_pa
     assert all("/fake-plugged" in line for line in moved["sweeps.json"])
 
 
-def test_a_changed_model_or_harness_renews_what_they_are_in(published, monkeypatch):
+def test_a_changed_model_or_stage_renews_what_they_are_in(published, monkeypatch):
     about = dataclasses.replace(LeastSquares.about, version=2)
     newer = type("Newer", (LeastSquares,), {"about": about, "__module__": "fake_atlas"})
     parts = fake_plan.parts(newer, presets=PRESETS)
@@ -171,11 +172,14 @@ def test_a_changed_model_or_harness_renews_what_they_are_in(published, monkeypat
     done = update(published, progress=silent, parts=parts)
     assert done.computed == done.planned
     assert list(changed_lines(before, states(published))) == ["components.json"]
-    monkeypatch.setattr("benchmark.results.components.harness_digest", lambda: "another")
+    now = stage_digests()
+    monkeypatch.setattr(
+        "benchmark.results.components.stage_digests", lambda *_: {**now, "scores": "another"}
+    )
     done = update(published, progress=silent, parts=parts)
     assert done.computed == done.planned
     (line,) = changed_lines(before, states(published))["components.json"][:1]
-    assert line == '"harness": "another",'
+    assert line == '"scores": "another"'
 
 
 def test_data_that_change_in_silence_are_an_error_before_anything_is_measured(published, log):

@@ -258,11 +258,11 @@ def test_data_that_moved_under_their_version_are_told_before_anything_is_measure
     assert not [line for line in log() if line.startswith(("extract", "fit"))]
 
 
-def test_a_stale_harness_is_named(published):
+def test_stale_code_of_a_stage_is_named(published):
     path = published / "components.json"
-    path.write_text(re.sub(r'"harness": "\w+"', '"harness": "0"', path.read_text()))
+    path.write_text(re.sub(r'"scores": "\w+"', '"scores": "0"', path.read_text()))
     [difference] = check(published, stored_only=True)
-    assert (difference.cell, difference.committed) == ("harness", "0")
+    assert (difference.cell, difference.committed) == ("stages/scores", "0")
 
 
 def test_what_is_stored_and_no_longer_there_is_named(published):

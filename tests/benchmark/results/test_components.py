@@ -2,19 +2,23 @@
 
 import json
 from dataclasses import replace
+from itertools import pairwise
 
 import fake_plan
 import pytest
 from fake_atlas import Diodes
 from fake_results import cell, components
 
+from benchmark.contract import ON_BENCH
 from benchmark.metrics.score import METRIC_VERSION
 from benchmark.results.components import (
+    KEYED,
     SCHEMA_VERSION,
     Components,
     ComponentsError,
     current,
 )
+from benchmark.results.digests import STAGES
 
 
 def test_components_are_read_back_as_they_were_written(tmp_path):
@@ -34,7 +38,7 @@ def test_a_component_is_a_line_so_that_a_change_of_one_is_a_change_of_one():
     assert json.loads("\n".join(before))["schema"] == SCHEMA_VERSION
 
 
-@pytest.mark.parametrize("changed", ["harness", "d", "e", "m"])
+@pytest.mark.parametrize("changed", [*STAGES, "d", "e", "m"])
 def test_a_score_s_key_depends_on_all_it_was_measured_with(changed):
     before = components().cell_key(cell())
     assert components(**{changed: "other"}).cell_key(cell()) != before
@@ -43,7 +47,12 @@ def test_a_score_s_key_depends_on_all_it_was_measured_with(changed):
 
 @pytest.mark.parametrize(
     ("changed", "kind"),
-    [("harness", "harness"), ("d", "dataset"), ("e", "extractor"), ("m", "model")],
+    [
+        *((stage, f"code of {stage}") for stage in STAGES),
+        ("d", "dataset"),
+        ("e", "extractor"),
+        ("m", "model"),
+    ],
 )
 def test_what_has_changed_since_a_key_was_made_is_named(changed, kind):
     known = components(d="1", e="2", m="3")
@@ -51,13 +60,33 @@ def test_what_has_changed_since_a_key_was_made_is_named(changed, kind):
     assert known.changed(key, cell()) == ()
     since = components(**{"d": "1", "e": "2", "m": "3", changed: "0f"})
     assert since.changed(key, cell()) == (kind,)
-    assert components(harness="x", d="1", e="4", m="3").changed(key, cell()) == (
-        "harness",
+    assert components(data="x", d="1", e="4", m="3").changed(key, cell()) == (
+        "code of data",
         "extractor",
     )
-    assert known.changed("a key of another layout", cell()) == (
-        "harness", "dataset", "extractor", "model",
-    )  # fmt: skip
+    assert known.changed("a key of another layout", cell()) == tuple(KEYED)
+
+
+def test_the_key_of_a_stage_begins_that_of_the_next_and_knows_nothing_of_what_follows():
+    keys = [components().stage_key(stage, cell()) for stage in STAGES]
+    assert keys[-1] == components().cell_key(cell())
+    assert all(later.startswith(f"{one}-") for one, later in pairwise(keys))
+    assert [KEYED[name] for name in KEYED] == sorted(KEYED.values(), key=list(STAGES).index)
+    for name, moved in (("d", 0), ("data", 0), ("e", 1), ("features", 1), ("m", 2), ("scores", 3)):
+        other = components(**{name: "x"})
+        now = [other.stage_key(stage, cell()) for stage in STAGES]
+        assert [one != two for one, two in zip(keys, now, strict=True)] == [
+            number >= moved for number in range(len(STAGES))
+        ], name
+
+
+def test_a_condition_s_digest_is_its_own_and_drawn_benches_read_the_first():
+    known = components()
+    assert known.condition_digest("d", "c2") != known.condition_digest("d", "c")
+    assert known.condition_digest("d", ON_BENCH) == known.condition_digest("d", "c")
+    assert known.condition_digest("d", "gone") == ""
+    with pytest.raises(ComponentsError, match="'nobody', which is not among the datasets"):
+        known.condition_digest("nobody", "c")
 
 
 def test_a_component_that_is_not_there_is_named():
@@ -66,18 +95,18 @@ def test_a_component_that_is_not_there_is_named():
 
 
 def test_differences_name_kind_and_component():
-    one, two = components(), components(harness="x", e="y")
+    one, two = components(), components(data="x", e="y")
     assert one.differences(one) == []
-    assert one.differences(two) == [("harness", "hh", "x"), ("extractors/e", "digest-e", "y")]
+    assert one.differences(two) == [("stages/data", "of data", "x"), ("extractors/e", "of e", "y")]
     fewer = replace(one, models={})
-    assert fewer.differences(one)[0] == ("models/a", "", "digest-a")
-    assert one.differences(fewer)[0] == ("models/a", "digest-a", "")
+    assert fewer.differences(one)[0] == ("models/a", "", "of a")
+    assert one.differences(fewer)[0] == ("models/a", "of a", "")
 
 
 def test_some_are_renewed_and_the_others_stay():
-    known = components().update(replace(components(harness="x", d="y"), models={}))
-    assert known.harness == "x"
-    assert known.datasets["d"]["digest"] == "y"
+    known = components().update(replace(components(data="x", d="y"), models={}))
+    assert known.stages["data"] == "x"
+    assert known.condition_digest("d", "c") == "yc"
     assert known.models == components().models
 
 
@@ -97,7 +126,9 @@ def test_current_components_are_of_the_code_as_it_is():
         "version": 1, "detector": "PD", "mask": "Maskless", "half_fov_deg": 25.0,
     }.items()  # fmt: skip
     newer = current(fake_plan.parts(presets=(Diodes(seed=8),)))
-    assert [name for name, *_ in now.differences(newer)] == ["datasets/fake-diodes"]
+    assert [name for name, *_ in now.differences(newer)] == [
+        f"datasets/fake-diodes/{name}" for name in Diodes().conditions
+    ]
 
 
 @pytest.mark.parametrize(
@@ -109,7 +140,10 @@ def test_current_components_are_of_the_code_as_it_is():
         (f'"metric": {METRIC_VERSION}', f'"metric": {METRIC_VERSION - 1}', "expected schema"),
         (f'"metric": {METRIC_VERSION}', '"metric": "3"', "expected schema"),
         ('"extractors": {', '"extractor": {', "the member 'extractors' is missing"),
-        ('"digest": "digest-e"', '"digest": 5', "extractors/e/digest: expected text, got a whole"),
+        ('"digest": "of e"', '"digest": 5', "extractors/e/digest: expected text, got a whole"),
+        ('"data": "of data"', '"data": 5', "stages/data: expected text, got a whole"),
+        ('"c": "of dc"', '"c": 5', "datasets/d/c: expected text, got a whole"),
+        ('"stages": {', '"harness": {', "the member 'stages' is missing"),
     ],
 )
 def test_a_file_of_something_else_is_an_error_that_names_it(tmp_path, old, new, message):

@@ -12,10 +12,16 @@ import numpy as np
 import pytest
 
 from benchmark.canonical import canonical_json, digest
+from benchmark.datasets import corrected
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
-from benchmark.results import digests
-from benchmark.results.closure import ClosureError, closure, closure_digest, syntax_digest
-from benchmark.results.digests import dataset_digest, method_digest, modules_of, series_digest
+from benchmark.results.closure import closure_digest
+from benchmark.results.definitions import ClosureError, analyse
+from benchmark.results.digests import (
+    condition_digests,
+    entries_of,
+    method_digest,
+    series_digest,
+)
 
 
 @pytest.fixture
@@ -59,16 +65,14 @@ def write(path: Path, text: str) -> None:
     os.utime(path, ns=(after, after))
 
 
+def syntax_digest(path: Path) -> str:
+    return repr(analyse(path.read_bytes(), str(path)))
+
+
 def rewrite(path: Path, old: str, new: str) -> None:
     text = path.read_text()
     assert old in text
     write(path, text.replace(old, new))
-
-
-def test_the_closure_follows_absolute_relative_lazy_and_star_imports_and_nothing_else(plug_in):
-    names = ("top", "sibling", "lazy", "deep.leaf", "deep.up", "far")
-    assert set(closure("plugin_pkg.top")) == {f"plugin_pkg.{name}" for name in names}
-    assert "plugin_pkg" not in sys.modules, "a closure is found without importing anything"
 
 
 def test_comments_docstrings_and_formatting_do_not_change_the_digest(plug_in):
@@ -80,14 +84,6 @@ def test_comments_docstrings_and_formatting_do_not_change_the_digest(plug_in):
         plug_in / "top.py", "lazy.value + leaf.value + value", "(lazy.value\n + leaf.value) + value"
     )
     assert closure_digest("plugin_pkg.top") == before
-
-
-@pytest.mark.parametrize("file", ["top.py", "sibling.py", "lazy.py", "deep/leaf.py", "far.py"])
-def test_any_change_of_code_in_the_closure_changes_the_digest(plug_in, file):
-    before = closure_digest("plugin_pkg.top")
-    path = plug_in / file
-    write(path, path.read_text() + "\nadded = 1\n")
-    assert closure_digest("plugin_pkg.top") != before
 
 
 def test_a_plus_that_becomes_a_minus_changes_the_digest_and_back_again(plug_in):
@@ -168,11 +164,6 @@ def test_a_file_that_is_no_python_is_named(tmp_path):
         syntax_digest(tmp_path / "broken.py")
 
 
-def test_a_module_without_source_is_named():
-    with pytest.raises(ClosureError, match="nowhere_at_all"):
-        closure("nowhere_at_all.module")
-
-
 class Colour(Enum):
     RED = "red"
 
@@ -249,23 +240,50 @@ def test_the_head_sees_its_own_samples_and_the_whole_sees_all(name, place, in_he
     assert (head_hash(other) != head_hash(whole)) is in_head
 
 
+def data_digest(preset) -> str:
+    """Of its first condition."""
+    return next(iter(condition_digests(preset).values()))
+
+
+def test_a_condition_s_digest_depends_on_its_own_parameters_and_those_of_its_references(
+    monkeypatch,
+):
+    """Readings are corrected by those of the first condition whose detector is theirs."""
+    before = condition_digests(fake_atlas.Diodes())
+    assert list(before) == list(fake_atlas.Diodes().conditions) == ["quiet", "noisy"]
+    monkeypatch.setattr(corrected, "reference_condition", lambda *_: "quiet")
+    before = condition_digests(fake_atlas.Diodes())
+    told = fake_atlas.Diodes.parameters
+    for changed, expected in (("noisy", ["noisy"]), ("quiet", ["quiet", "noisy"])):
+
+        def moved(self, condition, changed=changed):
+            more = {"more": 1} if condition == changed else {}
+            return {**told(self, condition), **more}
+
+        with monkeypatch.context() as patch:
+            patch.setattr(fake_atlas.Diodes, "parameters", moved)
+            after = condition_digests(fake_atlas.Diodes())
+        assert [name for name in before if after[name] != before[name]] == expected
+
+
 def test_a_data_set_s_digest_depends_on_version_parameters_conditions_and_name():
     preset = fake_atlas.Diodes()
     others = [
         replace(preset, version=2),
         replace(preset, seed=8),
-        replace(preset, conditions=("quiet",)),
         replace(preset, name="fake-other"),
     ]
-    found = {dataset_digest(one) for one in (preset, *others)}
+    found = {data_digest(one) for one in (preset, *others)}
     assert len(found) == 1 + len(others)
-    assert dataset_digest(fake_atlas.Diodes()) == dataset_digest(preset)
+    assert data_digest(fake_atlas.Diodes()) == data_digest(preset)
+    fewer = condition_digests(replace(preset, conditions=("quiet",)))
+    assert fewer == {"quiet": data_digest(preset)}
     assert {len(one) for one in found} == {16}
 
 
 def test_a_version_counts_though_the_parameters_do_not_tell_it(monkeypatch):
     monkeypatch.setattr(fake_atlas.Diodes, "parameters", lambda self, condition: {})
-    found = {dataset_digest(fake_atlas.Diodes(version=version)) for version in (1, 2)}
+    found = {data_digest(fake_atlas.Diodes(version=version)) for version in (1, 2)}
     assert len(found) == 2
 
 
@@ -277,25 +295,25 @@ def test_a_data_set_s_digest_depends_on_the_code_of_all_it_is_made_of(plug_in):
     from plugin_pkg.deep.leaf import Part
 
     preset = replace(fake_atlas.Diodes(), repeats=Part())
-    assert modules_of(preset) == ("fake_atlas", "plugin_pkg.deep.leaf")
+    assert "plugin_pkg.deep.leaf:Part" in entries_of(preset)
     for holding in ({"x": Part()}, [Part()], (1, {"y": ("z", Part())}), {"x": write, "y": Part()}):
-        held = modules_of(replace(fake_atlas.Diodes(), repeats=holding))
-        assert set(held) >= {"fake_atlas", "plugin_pkg.deep.leaf"}
-    assert write.__module__ in held, "a function's too"
-    before = dataset_digest(preset)
+        held = entries_of(replace(fake_atlas.Diodes(), repeats=holding))
+        assert set(held) >= {"fake_atlas:Diodes", "plugin_pkg.deep.leaf:Part"}
+    assert f"{write.__module__}:write" in held, "a function's too"
+    before = data_digest(preset)
     rewrite(part, "passes: int = 4", "passes: int = 4  # a comment")
-    assert dataset_digest(preset) == before
+    assert data_digest(preset) == before
     rewrite(part, "passes: int = 4", "passes: int = 5")
-    assert dataset_digest(preset) != before
+    assert data_digest(preset) != before
 
 
 def test_a_method_s_digest_depends_on_its_name_version_and_code(plug_in):
     method = fake_atlas.Currents
-    same = {"__module__": "fake_atlas"}
+    same = {"__module__": "fake_atlas", "__qualname__": "Currents"}
     others = [
         fake_atlas.Gaps,
         type("Newer", (method,), {"about": replace(method.about, version=2), **same}),
-        type("Elsewhere", (method,), {"__module__": "plugin_pkg.top"}),
+        type("Elsewhere", (method,), {"__module__": "plugin_pkg.top"}),  # all of the module
     ]
     found = {method_digest(one) for one in (method, *others)}
     assert len(found) == 1 + len(others)
@@ -304,20 +322,6 @@ def test_a_method_s_digest_depends_on_its_name_version_and_code(plug_in):
     before = method_digest(elsewhere)
     rewrite(plug_in / "far.py", "value = 3", "value = 4")
     assert method_digest(elsewhere) != before
-
-
-def test_the_harness_is_what_turns_data_into_numbers(monkeypatch):
-    """Each of its modules moves the digest."""
-    before = digests.harness_digest()
-    syntax = digests._syntax
-    for name in digests._HARNESS:
-        with monkeypatch.context() as patch:
-            patch.setattr(
-                digests, "_syntax", lambda one, name=name: "x" if one == name else syntax(one)
-            )
-            assert digests.harness_digest() != before, name
-    assert {"benchmark.metrics.score", "benchmark.running.task"} <= set(digests._HARNESS)
-    assert digests.harness_digest() == before
 
 
 def test_several_modules_have_one_digest_of_what_they_reach(plug_in):

@@ -65,7 +65,10 @@ def test_what_was_measured_with_other_code_is_not_of_the_code_as_it_is(store):
     record = Record(store)
     keep_all(record)
     for name, scored, pinned in (
-        ("harness", False, True),
+        ("data", False, False),
+        ("features", False, True),
+        ("predictions", False, True),
+        ("scores", False, True),
         ("d", False, False),
         ("e", False, True),
         ("a", False, True),

@@ -134,7 +134,7 @@ def test_a_new_store_is_empty(store):
     assert store.query(dataset="x") == []
     assert store.frame().empty
     assert (store.scores(), store.pins()) == ({}, {})
-    assert store.components().harness == ""
+    assert store.components().stages == {}
 
 
 def test_rows_carry_what_is_known_of_what_they_are_of(store):

@@ -107,9 +107,11 @@ def test_data_sets_of_other_code_are_those_whose_digest_is_another(tmp_path: Any
         "fake-diodes",
         "z",
     ]
-    moved = {**now.datasets, "z": {**now.datasets["z"], "digest": "older"}}
-    store.write({}, [], Components(now.harness, datasets=moved))
+    moved = {**now.datasets, "z": {**now.datasets["z"], "conditions": {"noisy": "older"}}}
+    store.write({}, [], Components(now.stages, datasets=moved))
     assert [p.name for p in pinning.presets_of_other_code(store, parts, now)] == ["z"]
+    store.write({}, [], Components({**now.stages, "data": "older"}, datasets=now.datasets))
+    assert len(pinning.presets_of_other_code(store, parts, now)) == 2
 
 
 @pytest.mark.parametrize(

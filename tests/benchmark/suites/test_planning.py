@@ -94,14 +94,15 @@ def test_a_changed_method_is_the_reason_of_its_cells_alone(store: Store, changed
     assert found.missing == dict.fromkeys(expected, (changed,))
 
 
-def test_a_changed_harness_is_the_reason_of_all(
+def test_changed_code_of_a_stage_is_the_reason_of_all(
     store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(components, "harness_digest", lambda: "0123")
+    now = components.stage_digests()
+    monkeypatch.setattr(components, "stage_digests", lambda *_: {**now, "scores": "0123"})
     found = plan(FINE, [store], parts=parts())
-    assert found.missing == dict.fromkeys(FINE, ("harness",))
+    assert found.missing == dict.fromkeys(FINE, ("code of scores",))
     both = plan(FINE, [store], parts=parts(seed=8)).missing
-    assert {cell.dataset for cell, why in both.items() if why == ("harness", "dataset")} == {
+    assert {cell.dataset for cell, why in both.items() if why == ("dataset", "code of scores")} == {
         "fake-second"
     }
 

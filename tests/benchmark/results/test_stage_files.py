@@ -1,0 +1,145 @@
+"""Results of stages on disk: the last bit comes back, the damaged does not, and room is made."""
+
+import os
+import pickle
+import time
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmark.datasets.samples import Samples
+from benchmark.results.stage_files import LIMIT_GB, StageFiles, limit_bytes
+
+LIMIT = 10**6
+
+
+@pytest.fixture
+def files(tmp_path):
+    return StageFiles(tmp_path / "stages", LIMIT)
+
+
+def key(number):
+    return f"{number:02d}" * 20
+
+
+@pytest.mark.parametrize(
+    "array",
+    [
+        np.arange(24, dtype=np.uint16).reshape(2, 3, 4),
+        np.asfortranarray(np.arange(24.0).reshape(4, 6)),
+        np.array([0.0, -0.0, np.nan, np.inf, 5e-324]),
+        np.array([True, False]),
+        np.empty((3, 0)),
+        np.array(1.5),
+        np.arange(3, dtype=">i8"),
+    ],
+)
+def test_an_array_comes_back_to_the_last_bit_in_the_order_it_had(files, array):
+    samples = Samples(array, np.eye(3), None, {"time_s": array})
+    files.put(key(1), {"test": samples}, 1.0)
+    found = files.get(key(1))["test"]
+    for one in (found.observations, found.context["time_s"]):
+        assert one.dtype == array.dtype
+        assert one.size == 0 or one.strides == array.strides
+        assert one.tobytes("A") == array.tobytes("A")
+        assert one.flags.writeable == array.flags.writeable
+
+
+def test_what_would_come_back_otherwise_is_not_kept(files):
+    files.put(key(1), np.arange(24).reshape(4, 6)[:, ::2], 1.0)
+    files.put(key(2), lambda: 1, 1.0)
+    assert files.keys() == set()
+    assert files.get(key(1)) is None
+
+
+def test_a_damaged_file_is_as_one_that_is_not_there(files):
+    files.put(key(1), np.arange(1000), 1.0)
+    (path,) = files.directory.glob("01/*")
+    whole = path.read_bytes()
+    for damaged in (b"", whole[:-1], whole[:40], whole[:50] + b"x" + whole[51:]):
+        path.write_bytes(damaged)
+        assert files.get(key(1)) is None
+    path.write_bytes(whole)
+    assert files.get(key(1)).tolist() == list(range(1000))
+
+
+def test_a_class_that_is_no_longer_there_is_as_nothing(files, monkeypatch):
+    files.put(key(1), Samples(np.eye(3), np.eye(3), None), 1.0)
+
+    def gone(*_):
+        raise AttributeError("no such class")
+
+    monkeypatch.setattr(pickle, "load", gone)
+    assert files.get(key(1)) is None
+
+
+@pytest.mark.parametrize("error", [OSError, KeyboardInterrupt])
+def test_nothing_half_written_is_left(files, monkeypatch, error):
+    """As a full disk or Ctrl-C would leave it."""
+
+    def broken(*_):
+        raise error
+
+    monkeypatch.setattr(Path, "replace", broken)
+    with pytest.raises(error) if error is KeyboardInterrupt else nullcontext():
+        files.put(key(1), np.arange(3), 1.0)
+    assert files.keys() == set()
+    assert not [path for path in files.directory.rglob("*") if path.is_file()]
+
+
+def test_what_costs_most_a_byte_is_kept_longest(files, tmp_path):
+    rng = np.random.default_rng(1)
+    small = StageFiles(tmp_path / "stages", 100_000)
+    for number, seconds in enumerate((5.0, 1.0, 9.0, 3.0)):
+        files.put(key(number), rng.random(5000), seconds)
+    small.make_room()
+    assert small.size() <= small.limit
+    assert small.keys() == {key(0), key(2)}
+
+
+def test_what_was_not_used_for_weeks_is_worth_less(files, tmp_path):
+    rng = np.random.default_rng(1)
+    for number in range(2):
+        files.put(key(number), rng.random(5000), 2.0 - number)
+    long_ago = time.time() - 30 * 86400
+    for path in files.directory.glob("*/*"):
+        os.utime(path, (long_ago, long_ago))
+    assert files.get(key(1)) is not None  # used just now
+    StageFiles(tmp_path / "stages", 50_000).make_room()
+    assert files.keys() == {key(1)}
+
+
+def test_the_limit_is_kept_while_results_come(tmp_path):
+    files = StageFiles(tmp_path, 200_000)
+    rng = np.random.default_rng(1)
+    for number in range(30):
+        files.put(key(number), rng.random(3000), 1.0)
+        assert files.size() < 250_000
+    assert 0 < len(files.keys()) < 10
+    files.put(key(99), rng.random(100_000), 1e6)
+    assert files.get(key(99)) is None, "larger than all there may be"
+
+
+def test_several_may_write_the_same(files):
+    value = np.arange(20_000)
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(lambda _: files.put(key(1), value, 1.0), range(20)))
+        found = list(pool.map(lambda _: files.get(key(1)), range(20)))
+    assert all(np.array_equal(one, value) for one in found)
+
+
+def test_the_limit_is_a_setting(monkeypatch, tmp_path):
+    monkeypatch.delenv(LIMIT_GB, raising=False)
+    assert limit_bytes() == 4 * 2**30
+    monkeypatch.setenv(LIMIT_GB, "0.5")
+    assert limit_bytes() == 2**29
+    for wrong in ("much", "-1", "nan", "inf"):
+        monkeypatch.setenv(LIMIT_GB, wrong)
+        with pytest.raises(ValueError, match=f"{LIMIT_GB} must be a number"):
+            limit_bytes()
+    files = StageFiles(tmp_path / "none", 0)
+    files.put(key(1), 1, 1.0)
+    assert not files.directory.exists()
