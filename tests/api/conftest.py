@@ -12,6 +12,10 @@ import httpx
 import pytest
 from fastapi import FastAPI
 
+from api.cli import asking
+from api.docs import knowledge as of_docs
+from api.http import service
+from api.http.knowledge import Knowledge
 from api.http.service import create_app
 
 
@@ -68,10 +72,19 @@ def _own_working_store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Non
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def knowledge(_own_working_store: None) -> Iterator[Knowledge]:
+    """What is published, read once for the service, the command line and the docs: 5 s each."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(service, "Knowledge", asking.knowledge)
+        patch.setattr(of_docs, "Knowledge", asking.knowledge)
+        yield asking.knowledge()
+
+
 @pytest.fixture(scope="session")
-def atlas() -> Iterator[Client]:
+def atlas(knowledge: Knowledge) -> Iterator[Client]:
     """The service as it is served."""
-    client = Client(create_app())
+    client = Client(create_app(knowledge))
     yield client
     client.close()
 

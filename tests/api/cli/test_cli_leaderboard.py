@@ -8,7 +8,6 @@ import re
 import pytest
 from typer.testing import CliRunner
 
-from api.cli import asking
 from api.cli.boards import architectures_text
 from api.cli.command_line import app
 
@@ -21,16 +20,6 @@ def sunatlas(*arguments):
     )
     assert shown.exit_code == 0, shown.stderr
     return shown.stdout
-
-
-@pytest.fixture(scope="module", autouse=True)
-def known(tmp_path_factory):
-    """Nothing is timed on this machine."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SUNATLAS_STORE", str(tmp_path_factory.mktemp("working") / "store"))
-        asking.knowledge.cache_clear()
-        yield asking.knowledge()
-        asking.knowledge.cache_clear()
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +70,7 @@ def test_what_answers_too_seldom_is_said_below_the_table(rows):
     assert f"{rows[0]['detector']} {rows[0]['mask']} 50 %." in text
 
 
-def test_the_overview_fits_the_width_and_says_how_it_aggregates(known):
+def test_the_overview_fits_the_width_and_says_how_it_aggregates(knowledge):
     document = json.loads(sunatlas("--overview", "--format", "json"))
     lines = sunatlas("--overview").splitlines()
     assert max(map(len, lines)) <= COLUMNS
@@ -140,11 +129,11 @@ def test_a_board_begins_with_the_best_of_each_extractor(atlas):
     assert [row["rank"] for row in best] == sorted(row["rank"] for row in best)
 
 
-def test_people_read_the_best_of_each_extractor_in_a_table_before_the_others(known):
+def test_people_read_the_best_of_each_extractor_in_a_table_before_the_others(knowledge):
     whole = sunatlas("--dataset", "psd-single-aperture", "--condition", "nominal")
     best, others = whole.split("psd-single-aperture: the others")
     assert "psd-single-aperture: the best of each extractor" in best
-    board = known.measurements.board_rows("psd-single-aperture")
+    board = knowledge.measurements.board_rows("psd-single-aperture")
     for row in (row for row in board if row["condition"] == "nominal"):
         where = best if row["best_of_extractor"] else others
         name = rf"\bnominal +{re.escape(row['extractor'])} +{re.escape(row['model'])}\s"

@@ -145,8 +145,8 @@ def test_damaged_facts_are_refused_in_one_line_before_anything_is_served(monkeyp
     monkeypatch.setattr(facts_manifest.changes, "__defaults__", (tmp_path,))
     monkeypatch.setattr(facts_manifest.require_unchanged, "__defaults__", (tmp_path,))
     monkeypatch.setattr(uvicorn.Server, "run", lambda *_, **__: pytest.fail("it serves"))
-    studies._facts.cache_clear()
-    asking.knowledge.cache_clear()
+    monkeypatch.setattr(studies, "_facts", studies._facts.__wrapped__)
+    monkeypatch.setattr(asking, "knowledge", asking.knowledge.__wrapped__)
     for command in (["serve", "--port", "0"], ["studies"], ["recommend"]):
         shown = CliRunner().invoke(app, command)
         assert shown.exit_code == 1
