@@ -6,10 +6,10 @@ import json
 from pathlib import Path
 
 from api.calibrate.calibration import Calibration
-from api.calibrate.code_c import c_files, c_name
-from api.calibrate.code_python import python_module
 from api.calibrate.documents import document
-from api.calibrate.flight_table import FlightTable, NoTableError, flight_table
+from api.calibrate.flight.c_source import c_files, c_name
+from api.calibrate.flight.python_source import python_module
+from api.calibrate.flight.table import FlightTable, NoTableError, flight_table
 from api.calibrate.report import report
 from files.atomic import replace_file
 

@@ -24,6 +24,8 @@ MATRICES: dict[Transform, tuple[tuple[float, float], tuple[float, float]]] = {
     "rotate-270": ((0.0, 1.0), (-1.0, 0.0)),
     "swap-negated-xy": ((0.0, -1.0), (-1.0, 0.0)),
 }
+#: Why rows of a sensor that looks one way are left out.
+BEHIND = "the light is behind the sensor"
 _KINDS = {"spot": FeatureKind.SPOT, "channels": FeatureKind.SIGNALS}
 
 
@@ -88,7 +90,7 @@ class Readings:
         return self if step == 1 else self.only(np.arange(0, len(self), step))
 
 
-def readings_of(table: Table, settings: Settings) -> Readings:
+def readings_of(table: Table, settings: Settings, *, behind: bool = False) -> Readings:
     """Return the samples of a table.
 
     Parameters
@@ -97,6 +99,8 @@ def readings_of(table: Table, settings: Settings) -> Readings:
         As `api.calibrate.table.read_table` gives it.
     settings : Settings
         What its columns are.
+    behind : bool
+        Whether rows whose light is behind the sensor are kept.
 
     Returns
     -------
@@ -128,6 +132,8 @@ def readings_of(table: Table, settings: Settings) -> Readings:
         angles = None if angles is None else angles[kept]
         context = {name: column[kept] for name, column in context.items()}
     reasons = _reasons(raw, told, sun, features, settings)
+    if behind:
+        reasons.pop(BEHIND, None)
     for name, column in context.items():
         reasons[f"{name} is not a number"] = ~np.isfinite(column)
     usable, dropped = np.ones(len(rows), dtype=np.bool_), Counter[str]()
@@ -214,7 +220,7 @@ def _reasons(
         "the signals have no positive sum": ~np.isfinite(features).all(axis=1),
     }
     if settings.readings.kind != "channels":
-        found["the light is behind the sensor"] = ~(sun[:, 2] > 0)
+        found[BEHIND] = ~(sun[:, 2] > 0)
     return found
 
 

@@ -9,7 +9,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from api.calibrate.calibration import Calibration
 from api.calibrate.documents import selection_table
-from api.calibrate.flight_table import FlightTable
+from api.calibrate.flight.table import FlightTable
 from api.calibrate.pictures import pictures
 
 _TEMPLATES = Path(__file__).parent

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from algorithms.contract import Floats
-from api.calibrate.flight_table import FlightTable
+from api.calibrate.flight.table import FlightTable
 
 #: Test vectors inside the hull; eight outside follow them.
 _VECTORS = 64

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from api.calibrate.flight_table import FlightTable
+from api.calibrate.flight.table import FlightTable
 
 
 def python_module(table: FlightTable, said: Mapping[str, str]) -> str:
