@@ -71,7 +71,9 @@ def with_spots(
         colours += coloured
         found = extractor.measure(frame)
         spots[at] = found.features[0]
-        doubts.update(flag.name.lower().replace("_", " ") for flag in QualityFlag(found.doubts[0]))
+        doubts.update(
+            str(flag.name).lower().replace("_", " ") for flag in QualityFlag(found.doubts[0])
+        )
         tick(at + 1, len(names))
     said = [f"{len(names)} frames were read by {settings.readings.extractor}"]
     if colours:

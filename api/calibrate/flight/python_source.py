@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
+
+from api.calibrate.flight.channels import ChannelTable
 from api.calibrate.flight.table import FlightTable
 
 
@@ -18,6 +21,59 @@ def python_module(table: FlightTable, said: Mapping[str, str]) -> str:
         sides=[[float(v) for v in side] for side in table.sides],
     )
 
+
+def channels_module(table: ChannelTable, said: Mapping[str, str]) -> str:
+    """Return the text of a module with ``sun(signals)``, the same numbers as the C code reads."""
+    comment = "\n".join(f"{key}: {value}" for key, value in said.items()).replace('"""', "'''")
+    return _CHANNELS.format(
+        said=comment,
+        first=table.first.tolist(),
+        squared=table.squared,
+        coefficients=table.coefficients.tolist(),
+        expected=table.expected.tolist(),
+        tolerance=np.where(table.used, table.tolerance, -1.0).tolist(),
+        reach=(table.weakest, table.strongest),
+    )
+
+
+_CHANNELS = '''"""Sun direction of a calibrated Sun sensor. Written by sunatlas calibrate.
+
+{said}
+"""
+
+from itertools import combinations_with_replacement
+
+import numpy as np
+
+FIRST = np.array({first})
+SQUARED = {squared}
+COEFFICIENTS = np.array({coefficients})
+EXPECTED = np.array({expected})
+TOLERANCE = np.array({tolerance})
+WEAKEST, STRONGEST = {reach}
+
+
+def sun(signals):
+    """Unit vectors (N, 3) to the Sun of signals (N, n); NaN outside what was measured."""
+    signals = np.atleast_2d(np.asarray(signals, dtype=float))
+    finite = np.isfinite(signals).all(axis=1)
+    signals = np.nan_to_num(signals)
+    length = np.linalg.norm(signals, axis=1)
+    unit = signals / np.maximum(length, 1e-300)[:, None]
+    octant = (unit @ FIRST.T >= 0.0) @ np.array([1, 2, 4])
+    terms = [np.ones(len(unit)), *unit.T]
+    if SQUARED:
+        pairs = combinations_with_replacement(range(unit.shape[1]), 2)
+        terms += [unit[:, i] * unit[:, j] for i, j in pairs]
+    found = np.einsum("nt,ntk->nk", np.column_stack(terms), COEFFICIENTS[octant])
+    found /= np.maximum(np.linalg.norm(found, axis=1), 1e-300)[:, None]
+    of = EXPECTED[octant]
+    away = unit - of[:, :, 0] - np.einsum("nik,nk->ni", of[:, :, 1:], found)
+    known = finite & (length >= WEAKEST) & (length <= STRONGEST)
+    known &= np.linalg.norm(away, axis=1) <= TOLERANCE[octant]
+    found[~known] = np.nan
+    return found
+'''
 
 _MODULE = '''"""Sun direction of a calibrated Sun sensor. Written by sunatlas calibrate.
 

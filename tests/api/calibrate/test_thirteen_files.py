@@ -113,12 +113,22 @@ def test_falling_readings_are_found_and_cost_nothing_once_stated(kind, sound, tm
     assert again.chosen.rms_deg <= 1.1 * sound(kind, 1)
 
 
+def bench_inside(made: mistakes.Made) -> np.ndarray:
+    """Larger of the two tangents of each pose of a file."""
+    angles = np.loadtxt(made.paths[0], delimiter=",", skiprows=1)[:, -2:]
+    sun = bench.sun_of(angles)
+    return np.abs(sun[:, :2] / sun[:, [2]]).max(axis=1)
+
+
 def test_a_fold_is_left_out(tmp_path):
-    found = calibrate(mistakes.beyond_fold(tmp_path / "bench.csv", 1).paths)
+    made = mistakes.beyond_fold(tmp_path / "bench.csv", 1)
+    found = calibrate(made.paths)
     inside = np.abs(found.readings.sun[:, :2] / found.readings.sun[:, [2]]).max(axis=1)
     # the patch of light, 2 mm wide and 1.5 mm away, leaves a quadrant at 33.7 deg
     assert inside.max() < 0.8
-    assert found.fold_deg == pytest.approx(33.7, abs=4.0)
+    assert 25.0 < found.fold_deg < 40.0
+    assert inside.max() > 0.6
+    assert (inside < 0.5).sum() >= 0.99 * (bench_inside(made) < 0.5).sum()
     assert found.chosen.rms_deg < 0.07  # noise is 0.055 deg
 
 
