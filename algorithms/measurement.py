@@ -96,7 +96,10 @@ class Measurement:
 
 
 def as_batch(observations: ArrayLike, observation: str) -> Any:
-    """Return a batch: a single sample becomes a batch of one.
+    """Return a batch: a single sample becomes a batch of one, missing pixels those around them.
+
+    A pixel is missing where it is masked, NaN or infinite: in frames and profiles it gets the
+    median of its nearest good neighbours, as a bad pixel does. A sample without a pixel is NaN.
 
     Parameters
     ----------
@@ -119,6 +122,8 @@ def as_batch(observations: ArrayLike, observation: str) -> Any:
     --------
     >>> as_batch(np.zeros((4, 5)), "frames").shape
     (1, 4, 5)
+    >>> as_batch([[1.0, 2.0, np.nan, 4.0, 5.0]], "profiles")
+    array([[1., 2., 3., 4., 5.]])
     """
     try:
         array = np.asanyarray(observations)
@@ -130,7 +135,26 @@ def as_batch(observations: ArrayLike, observation: str) -> Any:
             f"an array of shape {array.shape} is a picture in colour: frames are grey, (H, W) or "
             "(N, H, W); take its luminance, as cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY) does"
         )
+    whole = array.ndim == _BATCH_DIMENSIONS[observation] and array.size > 0
+    if observation in _WITH_NEIGHBOURS and (single or whole):
+        return _without_missing(array[None] if single else array)
     return array[None] if single else observations
+
+
+def _without_missing(batch: NDArray[Any]) -> NDArray[Any]:
+    masked = isinstance(batch, np.ma.MaskedArray)
+    given = np.ma.getdata(batch)
+    missing = np.ma.getmaskarray(batch) if masked else np.zeros(given.shape, dtype=np.bool_)
+    if given.dtype.kind == "f":
+        missing = missing | ~np.isfinite(given)
+    if not missing.any():
+        return given
+    lost = missing.reshape(len(given), -1).all(axis=1)
+    repaired = given.astype(np.float64) if lost.any() else given.copy()
+    repaired[lost] = np.nan
+    for at in np.flatnonzero(missing.reshape(len(given), -1).any(axis=1) & ~lost):
+        repaired[at] = without_bad(repaired[at][None], missing[at], "measure")[0]
+    return repaired
 
 
 def _in_colour(shape: tuple[int, ...]) -> bool:

@@ -16,6 +16,8 @@ _LEAST_SHARE = 0.1
 #: Samples from which folds are looked for, and the smallest share of samples that is one.
 _FEWEST, _SHARE = 150, 0.01
 _APART_DEG = 5.0
+#: Spread of poses across the line that they lie nearest to, over that along it.
+_ON_A_LINE = 0.1
 #: Samples whose neighbours are held at once.
 _AT_ONCE = 20_000
 
@@ -42,15 +44,18 @@ def folded(features: Floats, sun: Floats) -> NDArray[np.bool_]:
     if features.shape[1] != 2 or len(sun) < _FEWEST:
         return nothing
     near = np.asarray(cKDTree(sun).query(sun, k=_NEIGHBOURS + 1)[1])
-    slope = np.concatenate(
-        [
-            np.linalg.det(_slopes(features, sun, near[start : start + _AT_ONCE]))
-            for start in range(0, len(near), _AT_ONCE)
-        ]
-    )
+    parts = [
+        _slopes(features, sun, near[start : start + _AT_ONCE])
+        for start in range(0, len(near), _AT_ONCE)
+    ]
+    slopes = np.concatenate(parts)
+    slope = slopes[:, 0, 0] * slopes[:, 1, 1] - slopes[:, 0, 1] * slopes[:, 1, 0]
     middle = separation_deg(sun, np.broadcast_to(_middle(sun), sun.shape))
-    usual = float(np.median(slope[middle <= np.percentile(middle, 25)]))
-    flat = slope / usual < _LEAST_SHARE
+    told = np.isfinite(slope)
+    if told.sum() < _FEWEST:
+        return nothing
+    usual = float(np.median(slope[told & (middle <= np.percentile(middle[told], 25))]))
+    flat = slope / usual < _LEAST_SHARE  # False where poses along a line tell no slope
     zone = flat[near].mean(axis=1) > 0.5  # one wrong pose among neighbours decides nothing
     if zone.mean() < _SHARE:
         return nothing
@@ -73,6 +78,7 @@ def _slopes(features: Floats, sun: Floats, near: NDArray[np.int64]) -> Floats:
     """Change (N, 2, 2) of readings with direction cosines over tangents, by the nearest poses."""
     tangents = sun[:, :2] / sun[:, [2]]
     middle = tangents[near[:, :1]]  # each is its own nearest
+    spread = np.linalg.svd(tangents[near] - tangents[near].mean(axis=1, keepdims=True))[1]
     design = np.concatenate([np.ones((*near.shape, 1)), tangents[near] - middle], axis=2)
     aims = features[near]
     weight = np.ones(near.shape)
@@ -84,4 +90,6 @@ def _slopes(features: Floats, sun: Floats, near: NDArray[np.int64]) -> Floats:
         fit = np.linalg.solve(normal, np.einsum("nki,nkc->nic", weighted, aims))
         size = np.linalg.norm(aims - design @ fit, axis=2)
         weight = 1.0 / np.maximum(size, np.median(size, axis=1, keepdims=True) + 1e-15)
-    return np.asarray(fit[:, 1:])
+    found = fit[:, 1:]
+    found[spread[:, 1] < _ON_A_LINE * spread[:, 0]] = np.nan
+    return np.asarray(found)

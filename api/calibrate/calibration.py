@@ -8,17 +8,18 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from algorithms.angles import separation_deg
 from algorithms.chain import Scored
 from algorithms.contract import Floats, Model, SensorGeometry, UnusableDataError
-from api.calibrate.ambiguity import folded
-from api.calibrate.conventions import Finding, change_of, findings
-from api.calibrate.readings import Readings, joined, readings_of
-from api.calibrate.robust import normalised, wrong_poses
+from api.calibrate.conventions import findings
+from api.calibrate.exclusions import Excluded, excluded_of, kept_by_model, sound_of
+from api.calibrate.finding import Finding, change_of
+from api.calibrate.frames import of_spots, table_in, with_spots
+from api.calibrate.readings import BEHIND, Readings, joined, readings_of
+from api.calibrate.robust import wrong_poses
 from api.calibrate.roles import guess
-from api.calibrate.runs import RunOffset, off_runs
+from api.calibrate.runs import RunOffset
 from api.calibrate.selection import (
     Candidate,
     applicable,
@@ -28,13 +29,13 @@ from api.calibrate.selection import (
     fitted,
     fold_of,
     geometry_of,
-    unbounded,
 )
 from api.calibrate.settings import Settings
-from api.calibrate.table import Table, TableError, read_table
+from api.calibrate.table import Table, read_table
 from api.calibrate.uncertainty import (
     Intervals,
     intervals,
+    noise_around,
     noise_deg,
     refits,
     spread_deg,
@@ -42,36 +43,18 @@ from api.calibrate.uncertainty import (
 from api.calibrate.verdict import Verdict, judge, next_poses, patterns_in, with_doubt
 from files.reading import read_bytes
 
-#: Residuals of samples left out, over their robust scale, that list a sample as wrong after all.
-_WRONG_OF_MODEL = 8.0
-#: And below which a sample that no smooth map explains is taken back.
-_RIGHT_OF_MODEL = 4.0
-#: Share of samples that may be wrong, and samples from which they are looked for.
-_MOST_WRONG, _FEWEST_FOR_WRONG = 0.25, 40
+#: Samples from which wrong poses are looked for.
+_FEWEST_FOR_WRONG = 40
 #: Directions that lie this near to one plane through the sensor are those of one axis.
 _ONE_AXIS = 0.02
 #: RMS over the directions' own spread from which a model explains no more than chance does.
 _CHANCE = 0.5
+#: Share of rows with the light behind the sensor from which the angles' own form is doubted.
+_MANY_BEHIND = 0.05
+#: Median error over the smallest up to which models are compared again without wrong poses.
+_CONTENDERS = 1.5
 #: Samples a final fit is made of at most; more are thinned evenly.
 MOST_FITTED = 40_000
-
-
-@dataclass(frozen=True)
-class Excluded:
-    """A sample that was left out of the fit.
-
-    Attributes
-    ----------
-    source : str
-        Its run.
-    row : int
-        In its file.
-    reason : str
-    """
-
-    source: str
-    row: int
-    reason: str
 
 
 @dataclass(frozen=True)
@@ -114,6 +97,8 @@ class Calibration:
         SHA-256 of the files, 32 digits.
     sources : tuple of str
         Names of the files.
+    notes : tuple of str
+        On how pictures were read.
     """
 
     settings: Settings
@@ -135,6 +120,7 @@ class Calibration:
     verdict: Verdict
     digest: str
     sources: tuple[str, ...]
+    notes: tuple[str, ...] = ()
 
     def deviation_deg(self, features: Floats, context: dict[str, Floats] | None = None) -> Floats:
         """Return the 1-sigma (N,) of a tangent axis at features (N, F), degrees."""
@@ -156,7 +142,8 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     Parameters
     ----------
     paths : sequence of Path
-        Of files as `api.calibrate.table.read_table` takes them.
+        Of files as `api.calibrate.table.read_table` takes them, or of directories of pictures with
+        one such table each.
     settings : Settings, optional
         What their columns are; guessed from their names otherwise.
     apply : bool
@@ -179,12 +166,19 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     UnusableDataError
         If the samples settle no model; the message says what would.
     """
+    paths = [table_in(path) if path.is_dir() else path for path in paths]
     tables = [read_table(path) for path in paths]
     stated = settings or guess(tables[0])
-    readings = joined([readings_of(table, stated) for table in tables])
+    notes: list[str] = []
+    if stated.readings.kind == "frames":
+        for at, path in enumerate(paths):
+            tables[at], said = with_spots(
+                tables[at], path.parent, stated, lambda done, all_: progress("frames", done, all_)
+            )
+            notes += said
+        stated = of_spots(stated)
+    readings, found = _read(tables, stated)
     progress("conventions", 0, 1)
-    _require_two_axes(readings)
-    found = findings(readings, stated)
     applied: list[Finding] = []
     while apply and len(applied) < 4:
         certain = next((one for one in found if one.certain and one.change), None)
@@ -192,9 +186,8 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
             break
         stated = change_of(stated, certain)
         applied.append(certain)
-        readings = joined([readings_of(table, stated) for table in tables])
-        found = findings(readings, stated)
-    sound, excluded, runs, fold = _sound(readings)
+        readings, found = _read(tables, stated)
+    sound, excluded, runs, fold = sound_of(readings)
     _require_two_axes(sound)
     readings = sound
     if len(sound) >= _FEWEST_FOR_WRONG:
@@ -216,19 +209,21 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
         count += 1
 
     candidates = [_explained(one, readings) for one in compare(readings, geometry, wanted, tick)]
-    candidates.sort(key=lambda one: (bool(one.refused), one.missing > 0.05, one.rms_deg))
+    candidates.sort(key=_by_error)
     chosen, why = choose(candidates)
-    kept = _kept_by_model(wanted[chosen.name], chosen, sound, readings, geometry)
+    kept = kept_by_model(wanted[chosen.name], chosen, sound, readings, geometry)
     changed = not np.array_equal(sound.rows[kept], readings.rows)
     readings = sound.only(kept)
-    excluded += _excluded(~kept, "wrong pose", sound)
-    if changed:
-        again = _explained(
-            compare(readings, geometry, {chosen.name: wanted[chosen.name]})[0], readings
-        )
-        if not again.refused:
-            candidates = [again if one.name == again.name else one for one in candidates]
-            chosen = again
+    excluded += excluded_of(~kept, "wrong pose", sound)
+    if changed:  # a wrong pose that was not seen may have misled the choice
+        near = [one.name for one in candidates if _near(one, candidates)]
+        again = {
+            one.name: _explained(one, readings)
+            for one in compare(readings, geometry, {name: wanted[name] for name in near})
+        }
+        candidates = [again.get(one.name, one) for one in candidates]
+        candidates.sort(key=_by_error)
+        chosen, why = choose([one for one in candidates if one.name in again])
     tick("fit")
     thinned = readings.only(np.arange(0, len(readings), max(-(-len(readings) // MOST_FITTED), 1)))
     model = fitted(wanted[chosen.name], thinned, geometry)
@@ -237,7 +232,8 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     noise = noise_deg(offsets, readings.sun)
     tick("uncertainty")
     sample = readings.only(np.arange(0, len(readings), max(len(readings) // 2000, 1)))
-    ratio, spread = _split(wanted[chosen.name], sample, geometry, noise, readings)
+    around = noise_around(model.predict(sample.features, sample.context) - sample.sun, sample.sun)
+    ratio, spread = _split(wanted[chosen.name], sample, geometry, around, readings)
     compared = readings.only(np.arange(0, len(readings), _step(readings, chosen)))
     patterns = patterns_in(np.asarray(chosen.offsets), compared)
     verdict = judge(
@@ -251,31 +247,18 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
         stated, (*applied, *found), tuple(applied), readings, tuple(excluded), tuple(runs), fold,
         geometry, tuple(candidates), chosen, why, model, residual, noise,
         intervals(chosen, readings), spread, verdict, _digest(paths), tuple(p.name for p in paths),
+        tuple(notes),
     )  # fmt: skip
 
 
-def _sound(readings: Readings) -> tuple[Readings, list[Excluded], list[RunOffset], float | None]:
-    """Leave out runs that are off, and what lies beyond a fold."""
-    excluded: list[Excluded] = []
-    runs = off_runs(readings)
-    for one in runs:
-        bad = readings.run == one.run
-        excluded += _excluded(bad, f"run off by {one.offset_deg:.2f} deg", readings)
-        readings = readings.only(~bad)
-    bad = folded(readings.features, readings.sun)
-    fold = None
-    if bad.any():
-        fold = float(np.degrees(np.arccos(np.clip(readings.sun[bad, 2], -1.0, 1.0)).min()))
-        excluded += _excluded(bad, "reading that another direction gives too", readings)
-        readings = readings.only(~bad)
-    return readings, excluded, runs, fold
-
-
-def _excluded(bad: NDArray[np.bool_], reason: str, among: Readings) -> list[Excluded]:
-    return [
-        Excluded(among.run_names[among.run[at]], int(among.rows[at]), reason)
-        for at in np.flatnonzero(bad)
-    ]
+def _read(tables: Sequence[Table], settings: Settings) -> tuple[Readings, list[Finding]]:
+    """Return the samples of all tables, and what their conventions seem to be."""
+    readings = joined([readings_of(table, settings) for table in tables])
+    _require_two_axes(readings)
+    every = None
+    if readings.dropped.get(BEHIND, 0) > _MANY_BEHIND * len(readings):
+        every = joined([readings_of(table, settings, behind=True) for table in tables])
+    return readings, findings(readings, settings, every)
 
 
 def _require_two_axes(readings: Readings) -> None:
@@ -301,50 +284,27 @@ def _explained(candidate: Candidate, readings: Readings) -> Candidate:
     )
 
 
-def _kept_by_model(
-    scored: Scored, chosen: Candidate, sound: Readings, readings: Readings, geometry: SensorGeometry
-) -> NDArray[np.bool_]:
-    """Return which sound samples (N,) the chosen model explains; those it cannot answer stay.
-
-    What no smooth map explained may be what only this model explains, and the other way round.
-    """
-    model = unbounded(fitted(scored, readings, geometry))
-    errors = separation_deg(model.predict(sound.features, sound.context), sound.sun)
-    inside = np.isin(_places(sound), _places(readings))
-    left_out = chosen.errors
-    if left_out is not None and len(left_out) == len(readings):
-        known = np.isfinite(left_out)
-        at = np.flatnonzero(inside)[known]
-        errors[at] = left_out[known]
-    usual = 1.4826 * np.maximum(
-        float(np.nanmedian(errors[inside])), _around(sound.features, inside, errors)
-    )
-    kept = errors <= np.where(inside, _WRONG_OF_MODEL, _RIGHT_OF_MODEL) * usual
-    kept |= ~np.isfinite(errors) & inside
-    return inside if kept.mean() < 1.0 - _MOST_WRONG else kept
+def _by_error(one: Candidate) -> tuple[bool, bool, float]:
+    return bool(one.refused), one.missing > 0.05, one.rms_deg
 
 
-def _around(features: Floats, inside: NDArray[np.bool_], errors: Floats) -> Floats:
-    """Return the median error (N,) of the samples inside that are nearest in features."""
-    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
-
-    used = normalised(features)
-    used = used / np.maximum(used.std(axis=0), 1e-12)
-    known = np.flatnonzero(inside & np.isfinite(errors))
-    near = np.asarray(cKDTree(used[known]).query(used, k=min(12, len(known)))[1])
-    return np.asarray(np.median(errors[known][near.reshape(len(used), -1)], axis=1))
+def _near(one: Candidate, candidates: Sequence[Candidate]) -> bool:
+    """Say whether a model's usual error is near the best: wrong poses do not move a median."""
+    usual = [_usual(other) for other in candidates if not other.refused]
+    return not one.refused and _usual(one) <= _CONTENDERS * min(usual)
 
 
-def _places(readings: Readings) -> NDArray[np.int64]:
-    return readings.run * np.int64(10_000_000) + readings.rows
+def _usual(one: Candidate) -> float:
+    errors = np.asarray(one.errors)
+    return float(np.median(errors[np.isfinite(errors)]))
 
 
 def _split(
-    scored: Scored, sample: Readings, geometry: SensorGeometry, noise: float, readings: Readings
+    scored: Scored, sample: Readings, geometry: SensorGeometry, noise: Floats, readings: Readings
 ) -> tuple[float, Floats]:
     """Return the split-half ratio, and the fit's own spread at each sample."""
     nothing = np.full(len(readings), np.nan)
-    if not noise > 0:
+    if not (noise > 0).all():
         return float("nan"), nothing
     fold, _ = fold_of(sample)
     first = np.where(fold < 0, np.arange(len(fold)) % 2 == 0, fold % 2 == 0)
@@ -352,7 +312,7 @@ def _split(
         one = fitted(scored, sample.only(first), geometry).predict(sample.features, sample.context)
         two = fitted(scored, sample.only(~first), geometry).predict(sample.features, sample.context)
         spreads = [
-            spread_deg(refits(scored, sample.only(half), geometry, noise, sample))
+            spread_deg(refits(scored, sample.only(half), geometry, noise[half], sample))
             for half in (first, ~first)
         ]
         whole = spread_deg(refits(scored, sample, geometry, noise, readings))
@@ -382,6 +342,3 @@ def _digest(paths: Sequence[Path]) -> str:
     for path in paths:
         state.update(read_bytes(path, 512 * 1024 * 1024))
     return state.hexdigest()[:32]
-
-
-__all__ = ["Calibration", "Excluded", "Table", "TableError", "calibrate", "folded"]

@@ -7,27 +7,18 @@ low-order map with the sensor's own geometry explains the file then. Nothing is 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import permutations
 from typing import get_args
 
 import numpy as np
 
 from algorithms.angles import tangents_from_sun
 from algorithms.contract import FeatureKind, Floats
-from api.calibrate.face_normals import face_normals
-from api.calibrate.readings import (
-    MATRICES,
-    Readings,
-    quadrant_balances,
-    sun_of_angles,
-)
+from api.calibrate.channels import of_faces, of_light, of_quadrants
+from api.calibrate.finding import BETTER, MUCH_BETTER, Finding
+from api.calibrate.readings import MATRICES, Readings, sun_of_angles
 from api.calibrate.robust import SmoothMap, normalised, robust_map, terms
-from api.calibrate.settings import Form, Settings, Transform
+from api.calibrate.settings import Form, Settings
 
-#: A hypothesis is reported where it leaves less than this share of the residual as stated.
-_BETTER = 0.8
-_MUCH_BETTER = 0.5
 #: Directions up to this far off the boresight tell about axes.
 _WITHIN_DEG = 60.0
 #: Azimuths of a field span more.
@@ -35,8 +26,6 @@ _WIDE_AZIMUTH_DEG = 200.0
 #: Samples that hypotheses are judged by; more are thinned evenly.
 _MOST_JUDGED = 20_000
 _SHIFTS = (-3, -2, -1, 1, 2, 3)
-#: Correlation of all quadrants' sum with the cosine of incidence that says they are inverted.
-_FALLING = 0.5
 _AMBIGUOUS = {
     "rotate-180": "two inverted outputs, a turn by 180 deg and angles of the other sign look alike",
     "mirror-x": "an inverted x output and an angle of the other sign look the same in the file",
@@ -48,37 +37,9 @@ _AMBIGUOUS = {
 }
 
 
-@dataclass(frozen=True)
-class Finding:
-    """A convention that the file seems to follow in place of the one stated.
-
-    Attributes
-    ----------
-    about : str
-        ``axes``, ``boresight``, ``angles``, ``unit``, ``rows``, ``runs``, ``quadrants``, ``faces``,
-        ``light``.
-    found : str
-        What was found, in a sentence.
-    before_deg, after_deg : float
-        RMS of what a low-order map leaves with the file as stated, and with the change.
-    change : dict
-        Settings that would apply it; empty where none can.
-    certain : bool
-        Whether the evidence leaves hardly a doubt.
-    note : str
-        What else would look the same.
-    """
-
-    about: str
-    found: str
-    before_deg: float
-    after_deg: float
-    change: dict[str, object]
-    certain: bool
-    note: str = ""
-
-
-def findings(readings: Readings, settings: Settings) -> list[Finding]:
+def findings(
+    readings: Readings, settings: Settings, every: Readings | None = None
+) -> list[Finding]:
     """Return what the file's conventions seem to be where they are not those stated.
 
     Parameters
@@ -87,6 +48,8 @@ def findings(readings: Readings, settings: Settings) -> list[Finding]:
         As the settings have them.
     settings : Settings
         As stated.
+    every : Readings, optional
+        Those too whose light is behind the sensor as the angles are stated.
 
     Returns
     -------
@@ -95,15 +58,28 @@ def findings(readings: Readings, settings: Settings) -> list[Finding]:
     """
     found = list(_of_rows(readings))
     readings = readings.thinned(_MOST_JUDGED)
-    found += _of_runs(readings)
     if readings.kind is FeatureKind.SIGNALS:
-        found += _of_faces(readings, settings)
+        found += _of_runs(readings)
+        light = list(of_light(readings, settings))
+        found += light or list(of_faces(readings, settings))
     else:
-        found += _of_quadrants(readings, settings)
-        found += _of_axes(readings)
-        found += _of_angles(readings, settings)
+        angles = list(_of_angles((every or readings).thinned(_MOST_JUDGED), settings))
+        found += angles
+        # axes and light are told by directions, which are others under other angles
+        if not any(one.certain and _moves_axes(one, settings) for one in angles):
+            found += _of_runs(readings)
+            light = list(of_light(readings, settings))
+            found += light or list(of_quadrants(readings, settings))
+            found += _of_axes(readings)
     return sorted(
         found, key=lambda one: (not one.certain, one.after_deg / max(one.before_deg, 1e-12))
+    )
+
+
+def _moves_axes(found: Finding, settings: Settings) -> bool:
+    """Say whether a form of angles puts directions elsewhere, not only off by their product."""
+    return found.about == "angles" and (
+        settings.direction.form.startswith("azimuth") or "azimuth" in found.found
     )
 
 
@@ -145,14 +121,14 @@ def _of_axes(readings: Readings) -> Iterator[Finding]:
     as_stated = float(np.linalg.norm(slope / scale - np.eye(2)))
     name = min(distance, key=lambda word: distance[word])
     spread = _spread_deg(readings)
-    if distance[name] < _BETTER * as_stated and as_stated > 0.75:
+    if distance[name] < BETTER * as_stated and as_stated > 0.75:
         yield Finding(
             "axes",
             f"the readings' axes are those of the sensor frame after {name}",
             as_stated / 2**0.5 * spread,
             distance[name] / 2**0.5 * spread,
             {"apply": (name,)},
-            distance[name] < _MUCH_BETTER * as_stated,
+            distance[name] < MUCH_BETTER * as_stated,
             _AMBIGUOUS[name],
         )
         slope = np.asarray(MATRICES[name]) @ slope
@@ -182,11 +158,11 @@ def _of_angles(readings: Readings, settings: Settings) -> Iterator[Finding]:
         if (turned[:, 2] > 0.05).mean() > 0.95:
             after = _left_deg(readings, turned)
             before = left[stated] * 180.0 / np.pi  # the same share of a field 57 times as large
-            if after < _BETTER * before:
+            if after < BETTER * before:
                 yield Finding(
                     "unit",
                     f"the angles seem to be radians: as degrees none exceeds {largest:.3g} deg",
-                    before, after, {"direction": {"unit": "rad"}}, after < _MUCH_BETTER * before,
+                    before, after, {"direction": {"unit": "rad"}}, after < MUCH_BETTER * before,
                     "a sensor of a very narrow field measured in degrees would look alike",
                 )  # fmt: skip
                 return
@@ -200,12 +176,12 @@ def _of_angles(readings: Readings, settings: Settings) -> Iterator[Finding]:
             continue
         left[form] = _left_deg(readings, sun)
     best = min(left, key=lambda word: left[word])
-    if best != stated and left[best] < _BETTER * left[stated]:
+    if best != stated and left[best] < BETTER * left[stated]:
         yield Finding(
             "angles",
             f"the angles seem to be of the form {best}, not {stated}",
             left[stated], left[best], {"direction": {"form": best}},
-            left[best] < _MUCH_BETTER * left[stated],
+            left[best] < MUCH_BETTER * left[stated],
             "only sensors that image tangents (pinholes, slits, quadrants) can tell forms apart",
         )  # fmt: skip
 
@@ -218,7 +194,7 @@ def _of_rows(readings: Readings) -> Iterator[Finding]:
         return
     best = min(found, key=lambda shift: found[shift][1] / max(found[shift][0], 1e-12))
     before, after = found[best]
-    if after < _MUCH_BETTER * before:
+    if after < MUCH_BETTER * before:
         yield Finding(
             "rows",
             f"readings belong to poses {abs(best)} row{'s' if abs(best) > 1 else ''} "
@@ -279,70 +255,6 @@ def _flips(readings: Readings) -> Iterator[tuple[str, Floats]]:
         yield what, centre + (readings.features - centre) * np.asarray(sign)
 
 
-def _of_quadrants(readings: Readings, settings: Settings) -> Iterator[Finding]:
-    if settings.readings.kind != "quadrants":
-        return
-    signals = readings.raw
-    total = signals.sum(axis=1)
-    if np.corrcoef(total, readings.sun[:, 2])[0, 1] < -_FALLING:
-        yield Finding(
-            "light",
-            "readings fall when light rises: say inverted = true, and dark = their level without "
-            "light",
-            np.nan, np.nan, {}, True,
-        )  # fmt: skip
-        return
-    if np.median(total) < 0:
-        yield Finding(
-            "light", "readings fall when light rises: say inverted = true", np.nan, np.nan,
-            {"readings": {"inverted": True}}, True,
-        )  # fmt: skip
-        return
-    left = {}
-    for order in permutations(range(4)):
-        if order[0] == 0:  # turned orders differ by axes alone
-            features = quadrant_balances(signals[:, order])
-            usable = np.isfinite(features).all(axis=1)
-            if usable.all():
-                _, size = robust_map(features, readings.sun)
-                left[order] = float(np.median(size))
-    stated = (0, 1, 2, 3)
-    best = min(left, key=lambda order: left[order])
-    # (0, 1, 2, 3) and (0, 3, 2, 1) go round the same way but for a mirror
-    if best not in (stated, (0, 3, 2, 1)) and left[best] < _MUCH_BETTER * left[stated]:
-        columns = tuple(settings.readings.columns[at] for at in best)
-        yield Finding(
-            "quadrants", f"the quadrants seem to stand in the order {', '.join(columns)}",
-            left[stated], left[best], {"readings": {"columns": columns}},
-            left[best] < 0.3 * left[stated],
-            "which quadrant comes first only the axes tell, once the order is right",
-        )  # fmt: skip
-
-
-def _of_faces(readings: Readings, settings: Settings) -> Iterator[Finding]:
-    normals, explained = face_normals(readings)
-    inverted = [at for at, share in enumerate(explained) if share < -0.3]
-    if len(inverted) == len(explained):
-        yield Finding(
-            "light", "readings fall when light rises: say inverted = true", np.nan, np.nan,
-            {"readings": {"inverted": True}}, True,
-        )  # fmt: skip
-        return
-    stated = settings.sensor.face_normals
-    if stated is None or np.median(explained) < 0.5:
-        return
-    cosine = normals @ np.asarray(stated).T
-    for at, name in enumerate(settings.readings.columns):
-        nearest = int(np.argmax(cosine[at]))
-        if nearest != at and cosine[at, nearest] > 0.8 and cosine[at, at] < 0.5:
-            yield Finding(
-                "faces",
-                f"channel {name} looks where {settings.readings.columns[nearest]} is stated to",
-                float(np.degrees(np.arccos(np.clip(cosine[at, at], -1, 1)))),
-                float(np.degrees(np.arccos(np.clip(cosine[at, nearest], -1, 1)))), {}, True,
-            )  # fmt: skip
-
-
 def _left_deg(readings: Readings, sun: Floats) -> float:
     """RMS residual, degrees, of a projective map with cubic distortion, without the worst tenth."""
     finite = np.isfinite(sun).all(axis=1) & (sun[:, 2] > 0)
@@ -385,16 +297,3 @@ def _median_deg(fitted: SmoothMap, features: Floats, sun: Floats) -> float:
 def _spread_deg(readings: Readings) -> float:
     middle = readings.sun.mean(axis=0)
     return float(np.degrees(np.sqrt(np.mean(((readings.sun - middle) ** 2).sum(axis=1)))))
-
-
-def change_of(settings: Settings, finding: Finding) -> Settings:
-    """Return settings with a finding's change applied; as they are where it has none."""
-    changed = settings
-    for part, values in finding.change.items():
-        if part == "apply":
-            transforms: tuple[Transform, ...] = (*changed.apply, *values)  # type: ignore[misc]
-            changed = changed.model_copy(update={"apply": transforms})
-        else:
-            inner = getattr(changed, part).model_copy(update=values)
-            changed = changed.model_copy(update={part: inner})
-    return changed

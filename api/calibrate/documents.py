@@ -105,6 +105,7 @@ def document(found: Calibration, command: str = "") -> dict[str, Any]:
             "files": list(found.sources),
             "data_sha256": found.digest,
             "rows_dropped": dict(found.readings.dropped),
+            "notes": list(found.notes),
             "command": command,
             "versions": {
                 "sun-sensor-atlas": _version("sun-sensor-atlas"),

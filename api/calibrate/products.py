@@ -5,11 +5,14 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from algorithms.contract import FeatureKind
 from api.calibrate.calibration import Calibration
-from api.calibrate.code_c import c_files, c_name
-from api.calibrate.code_python import python_module
 from api.calibrate.documents import document
-from api.calibrate.flight_table import FlightTable, NoTableError, flight_table
+from api.calibrate.flight.c_source import c_files, c_name
+from api.calibrate.flight.channels import ChannelTable, channel_table
+from api.calibrate.flight.channels_c import channel_files
+from api.calibrate.flight.python_source import channels_module, python_module
+from api.calibrate.flight.table import FlightTable, NoTableError, flight_table
 from api.calibrate.report import report
 from files.atomic import replace_file
 
@@ -23,7 +26,7 @@ def products(found: Calibration, name: str, command: str = "") -> dict[str, str]
     made = {
         f"{prefix}.json": json.dumps(document(found, command), indent=1, allow_nan=False) + "\n"
     }
-    table: FlightTable | None = None
+    table: FlightTable | ChannelTable | None = None
     said = {
         "Files": ", ".join(found.sources),
         "Data SHA-256": found.digest,
@@ -32,15 +35,29 @@ def products(found: Calibration, name: str, command: str = "") -> dict[str, str]
         "Command": command,
     }
     try:
-        table = flight_table(found.model, found.readings.features, found.readings.context)
+        table = _table(found)
     except NoTableError as error:
         made[f"{prefix}_no_code.txt"] = f"No code was written: {error}.\n"
     else:
-        said["Table"] = f"adds at most {table.largest_deg:.2g} deg to the model"
-        made[f"{prefix}.py"] = python_module(table, said)
-        made |= c_files(table, prefix, said)
+        said["Code"] = (
+            f"{table.words}, which add {table.added_deg:.2g} deg RMS to the model "
+            f"and at most {table.largest_deg:.2g} deg"
+        )
+        if isinstance(table, ChannelTable):
+            made[f"{prefix}.py"] = channels_module(table, said)
+            made |= channel_files(table, found.readings.features, prefix, said)
+        else:
+            made[f"{prefix}.py"] = python_module(table, said)
+            made |= c_files(table, prefix, said)
     made[f"{prefix}_report.html"] = report(found, command, table)
     return made
+
+
+def _table(found: Calibration) -> FlightTable | ChannelTable:
+    features, context = found.readings.features, found.readings.context
+    if found.readings.kind is FeatureKind.SIGNALS:
+        return channel_table(found.model, features, context, found.chosen.rms_deg)
+    return flight_table(found.model, features, context)
 
 
 def write_products(found: Calibration, directory: Path, name: str, command: str = "") -> list[Path]:

@@ -24,6 +24,10 @@ MATRICES: dict[Transform, tuple[tuple[float, float], tuple[float, float]]] = {
     "rotate-270": ((0.0, 1.0), (-1.0, 0.0)),
     "swap-negated-xy": ((0.0, -1.0), (-1.0, 0.0)),
 }
+#: Why rows of a sensor that looks one way are left out.
+BEHIND = "the light is behind the sensor"
+#: Share of the usual light below which balances are those of noise.
+_FAINT = 0.1
 _KINDS = {"spot": FeatureKind.SPOT, "channels": FeatureKind.SIGNALS}
 
 
@@ -88,7 +92,7 @@ class Readings:
         return self if step == 1 else self.only(np.arange(0, len(self), step))
 
 
-def readings_of(table: Table, settings: Settings) -> Readings:
+def readings_of(table: Table, settings: Settings, *, behind: bool = False) -> Readings:
     """Return the samples of a table.
 
     Parameters
@@ -97,6 +101,8 @@ def readings_of(table: Table, settings: Settings) -> Readings:
         As `api.calibrate.table.read_table` gives it.
     settings : Settings
         What its columns are.
+    behind : bool
+        Whether rows whose light is behind the sensor are kept.
 
     Returns
     -------
@@ -127,7 +133,9 @@ def readings_of(table: Table, settings: Settings) -> Readings:
         sun, told, rows, run = sun[kept], told[kept], rows[kept], run[kept]
         angles = None if angles is None else angles[kept]
         context = {name: column[kept] for name, column in context.items()}
-    reasons = _reasons(raw, told, sun, features, settings)
+    reasons = _reasons(raw, signals, told, sun, features, settings)
+    if behind:
+        reasons.pop(BEHIND, None)
     for name, column in context.items():
         reasons[f"{name} is not a number"] = ~np.isfinite(column)
     usable, dropped = np.ones(len(rows), dtype=np.bool_), Counter[str]()
@@ -199,10 +207,15 @@ def quadrant_balances(signals: Floats) -> Floats:
     return balances
 
 
-def _reasons(
-    raw: Floats, told: Floats, sun: Floats, features: Floats, settings: Settings
+def _reasons(  # noqa: PLR0917 - what a row is made of
+    raw: Floats, signals: Floats, told: Floats, sun: Floats, features: Floats, settings: Settings
 ) -> dict[str, NDArray[np.bool_]]:
     zeros = (raw == 0).all(axis=1)
+    faint = np.zeros(len(raw), dtype=np.bool_)
+    if settings.readings.kind in ("quadrants", "electrodes"):
+        total = signals.sum(axis=1)
+        usual = np.nanpercentile(total, 95) if np.isfinite(total).any() else np.nan
+        faint = (usual > 0) & (total > 0) & (total < _FAINT * usual)
     if settings.direction.form == "vector":
         zeros |= (told == 0).all(axis=1)
     found = {
@@ -211,10 +224,11 @@ def _reasons(
         ),
         "all readings, or the direction, are zero": zeros,
         "the direction is no unit vector, or 90 deg or more off": ~np.isfinite(sun).all(axis=1),
+        "there is hardly any light": faint,
         "the signals have no positive sum": ~np.isfinite(features).all(axis=1),
     }
     if settings.readings.kind != "channels":
-        found["the light is behind the sensor"] = ~(sun[:, 2] > 0)
+        found[BEHIND] = ~(sun[:, 2] > 0)
     return found
 
 

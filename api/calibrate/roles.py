@@ -44,6 +44,7 @@ _DIRECTIONS: tuple[tuple[Form, tuple[str, ...]], ...] = (
     ),
 )
 _READINGS: tuple[tuple[Kind, tuple[str, ...]], ...] = (
+    ("frames", (r"(frame|image|picture|photo)(_?(file|name|path))?|file_?name",)),
     (
         "balance",
         (

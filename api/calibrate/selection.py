@@ -164,10 +164,11 @@ def compare(
     step = max(-(-len(readings) // MOST_COMPARED), 1)
     used = readings.only(np.arange(0, len(readings), step))
     fold, _ = fold_of(used)
+    judged = _inside(used, fold)
     found = []
     for name, scored in models.items():
         tick(name)
-        found.append(_judged(name, scored, used, geometry, fold))
+        found.append(_judged(name, scored, used, geometry, fold, judged))
     return sorted(found, key=lambda one: (bool(one.refused), one.rms_deg + _unanswered(one)))
 
 
@@ -236,8 +237,31 @@ def deviation_of(model: Model, features: Floats, context: Mapping[str, Floats]) 
     return np.asarray(last.deviation_deg(features, context))
 
 
-def _judged(
-    name: str, scored: Scored, used: Readings, geometry: SensorGeometry, fold: NDArray[np.int64]
+def _inside(used: Readings, fold: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Return which samples (N,) are left out once, and then lie inside the readings that are kept.
+
+    All models are judged by the same samples: one that answers beyond its hull gains nothing.
+    """
+    judged = fold >= 0
+    if used.features.shape[1] != 2:
+        return judged
+    for number in np.unique(fold[judged]):
+        out = fold == number
+        try:
+            hull = Hull.around(used.features[~out], "comparison")
+        except UnusableDataError:
+            continue
+        judged[out] = hull.outside(used.features[out]) <= 0.0
+    return judged
+
+
+def _judged(  # noqa: PLR0917 - what a comparison shares
+    name: str,
+    scored: Scored,
+    used: Readings,
+    geometry: SensorGeometry,
+    fold: NDArray[np.int64],
+    judged: NDArray[np.bool_],
 ) -> Candidate:
     predicted = np.full((len(used), 3), np.nan)
     deviation = np.full(len(used), np.nan)
@@ -253,13 +277,12 @@ def _judged(
             test = used.only(out)
             predicted[out] = model.predict(test.features, test.context)
             deviation[out] = deviation_of(model, test.features, test.context)
-            error = separation_deg(predicted[out], test.sun)
+            error = separation_deg(predicted[out], test.sun)[judged[out]]
             rms.append(float(np.sqrt(np.nanmean(error**2))) if np.isfinite(error).any() else np.nan)
         whole = fitted(scored, used, geometry)
     except (UnusableDataError, UnsuitableDesignError, ValueError) as error:
         return Candidate(name, refused=str(error))
     errors = separation_deg(predicted, used.sun)
-    judged = fold >= 0
     answered = np.isfinite(errors) & judged
     if not answered.any():
         return Candidate(name, refused="no sample left out was answered")

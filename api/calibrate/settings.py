@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from algorithms.contract import SensorGeometry
 from files.reading import read_text
 
-Kind = Literal["spot", "balance", "quadrants", "electrodes", "channels"]
+Kind = Literal["spot", "balance", "quadrants", "electrodes", "channels", "frames"]
 Form = Literal[
     "vector", "projection", "alpha-inner", "beta-inner", "azimuth-elevation", "azimuth-zenith"
 ]
@@ -22,6 +22,7 @@ COLUMNS: dict[str, int | None] = {
     "quadrants": 4,
     "electrodes": 4,
     "channels": None,
+    "frames": 1,
 }
 Transform = Literal[
     "swap-xy", "mirror-x", "mirror-y", "rotate-90", "rotate-180", "rotate-270", "swap-negated-xy"
@@ -42,7 +43,7 @@ class ReadingsSettings(_Strict):
     kind: Kind = Field(
         description="spot: x and y of one spot; balance: two balances in [-1, 1]; quadrants: four "
         "voltages in the order (-x +y, +x +y, +x -y, -x -y); electrodes: x+, x-, y+, y-; channels: "
-        "one reading a photodiode or solar cell."
+        "one reading a photodiode or solar cell; frames: one column with names of picture files."
     )
     columns: tuple[str, ...] = Field(description="Names of the columns, in that order.")
     dark: float | tuple[float, ...] = Field(
@@ -56,10 +57,14 @@ class ReadingsSettings(_Strict):
         description="True where readings fall when light rises, or balances point back.",
     )
 
+    extractor: str = Field(
+        default="mirror", description="Of kind frames: the extractor that finds the spot in each."
+    )
+
     @model_validator(mode="after")
     def _check(self) -> ReadingsSettings:
         count, wanted = len(self.columns), COLUMNS[self.kind]
-        if (wanted is not None and count != wanted) or count < 2:
+        if wanted is not None and count != wanted:
             raise ValueError(
                 f"kind {self.kind} has {wanted or 'three or more'} columns; got {count}"
             )

@@ -19,6 +19,8 @@ from files.reading import FileRefusedError, read_bytes
 LARGEST, MOST_ROWS, MOST_COLUMNS = 256 * 1024 * 1024, 2_000_000, 500
 #: Bytes that an archive may unpack to, and cells of a table.
 _MOST_UNPACKED, _MOST_CELLS = 1024 * 1024 * 1024, 60_000_000
+#: Endings of the files that are read.
+SUFFIXES = (".csv", ".txt", ".tsv", ".parquet", ".npz", ".npy", ".xlsx")
 _DELIMITERS = ",;\t|"
 
 
@@ -98,7 +100,7 @@ def read_table(path: Path) -> Table:
     kind = path.suffix.lower()
     if kind not in readers:
         raise TableError(
-            f"{path.name}: expected a file of {', '.join(readers)}; got {kind or 'none'}"
+            f"{path.name}: expected a file of {', '.join(SUFFIXES)}; got {kind or 'none'}"
         )
     data = read_bytes(path, LARGEST)
     if not data:

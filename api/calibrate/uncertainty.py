@@ -16,6 +16,8 @@ from api.calibrate.selection import Candidate, fitted
 NORMAL_95 = 1.959964
 #: Refits with other noise by which a fit's own spread is told.
 REFITS = 6
+#: Poses around one that tell its noise.
+_AROUND = 16
 _SEED = 20_260_101
 
 
@@ -91,6 +93,22 @@ def noise_deg(offsets: Floats, sun: Floats) -> float:
     return float(np.degrees(np.sqrt(_middle(square) / 2.0)))
 
 
+def noise_around(offsets: Floats, sun: Floats) -> Floats:
+    """Return the RMS noise (N,) of each sample, degrees: as `noise_deg`, of the poses around it."""
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
+
+    whole = noise_deg(offsets, sun)
+    known = np.flatnonzero(np.isfinite(offsets).all(axis=1))
+    if len(known) < 4 * _AROUND:
+        return np.full(len(sun), whole)
+    tree = cKDTree(sun[known])
+    pairs = np.asarray(tree.query(sun[known], k=2)[1])[:, 1]
+    square = ((offsets[known] - offsets[known][pairs]) ** 2).sum(axis=1)
+    near = np.asarray(tree.query(sun, k=_AROUND)[1])
+    around = np.degrees(np.sqrt(np.mean(square[near], axis=1) / 2.0))
+    return np.asarray(around * whole / np.sqrt(np.mean(around[known] ** 2)))
+
+
 def _middle(square: Floats) -> float:
     """Mean of squares without the largest hundredth."""
     kept = np.sort(square)[: max(int(0.99 * len(square)), 1)]
@@ -101,12 +119,12 @@ def refits(  # noqa: PLR0917 - what a fit is made of
     scored: Scored,
     readings: Readings,
     geometry: SensorGeometry,
-    noise: float,
+    noise: Floats,
     at: Readings,
     count: int = REFITS,
     tick: Callable[[], None] = lambda: None,
 ) -> Floats:
-    """Return directions (count, N, 3) at samples `at`, each by a fit to other noise of that size.
+    """Return directions (count, N, 3) at samples `at`, each by a fit to other noise of size (N,).
 
     Raises
     ------
@@ -118,7 +136,7 @@ def refits(  # noqa: PLR0917 - what a fit is made of
     for number in range(count):
         generator = np.random.default_rng(np.random.SeedSequence([_SEED, number]))
         turned = readings.sun + generator.normal(
-            0.0, np.radians(noise) / np.sqrt(2.0), readings.sun.shape
+            0.0, np.radians(noise)[:, None] / np.sqrt(2.0), readings.sun.shape
         )
         turned /= np.linalg.norm(turned, axis=1)[:, None]
         try:

@@ -194,7 +194,9 @@ def next_poses(sun: Floats, count: int = _NEXT) -> tuple[Floats, float]:
         return np.empty((0, 3)), 0.0
     from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
 
-    poses = np.unique(np.round(sun, 6), axis=0)
+    # poses nearer to each other than a hundredth of the field are one, as repeats are
+    cell = max(2.0 * np.sin(np.radians(min(reach, 180.0)) / 2.0), 1e-6) / 50.0
+    poses = np.unique(np.round(sun / cell), axis=0) * cell
     tree = cKDTree(poses)
     step = float(np.median(np.asarray(tree.query(poses, k=2)[0])[:, 1]))
     away = np.asarray(tree.query(inside)[0])
@@ -208,7 +210,7 @@ def next_poses(sun: Floats, count: int = _NEXT) -> tuple[Floats, float]:
 
 
 def _pattern(name: str, design: Floats, errors: Floats) -> Pattern | None:
-    from scipy.stats import f as distribution  # noqa: PLC0415 - SciPy, at the first use
+    from scipy.special import fdtrc  # noqa: PLC0415 - SciPy, at the first use
 
     count = len(errors)
     centred = errors - errors.mean(axis=0)
@@ -223,7 +225,7 @@ def _pattern(name: str, design: Floats, errors: Floats) -> Pattern | None:
     share = 1.0 - rest / total
     expected = rank / (count - 1)  # of errors that go with nothing
     ratio = (total - rest) / rank / max(rest / (count - rank - 1), 1e-300)
-    chance = float(distribution.sf(ratio, 2 * rank, 2 * (count - rank - 1)))
+    chance = float(fdtrc(2 * rank, 2 * (count - rank - 1), ratio))
     return Pattern(name, max(share - expected, 0.0), chance)
 
 

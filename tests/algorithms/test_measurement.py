@@ -93,13 +93,32 @@ def test_a_bad_pixel_becomes_the_median_of_its_good_neighbours():
     assert np.isnan(broken[0][bad]).all()
 
 
-def test_a_nan_under_the_mask_is_no_reason_to_find_nothing():
+@pytest.mark.parametrize("masked", [False, True])
+def test_missing_pixels_are_bad_pixels(case, masked):
+    extractor, observations = case
+    if extractor.about.observation not in {Observation.FRAMES, Observation.PROFILES}:
+        return
+    whole = observations.astype(np.float64)
+    bad = np.zeros(whole.shape[1:], dtype=np.bool_)
+    bad.flat[3] = True
+    broken = np.where(bad, np.nan, whole)
+    if masked:
+        broken = np.ma.masked_array(whole, np.broadcast_to(bad, whole.shape))
+    found = extractor.measure(broken)
+    expected = extractor.measure(without_bad(whole, bad, "any"))
+    np.testing.assert_array_equal(found.features, expected.features)
+    np.testing.assert_array_equal(found.doubts, expected.doubts)
+
+
+def test_a_frame_without_a_pixel_has_no_spot():
     frame = np.zeros((5, 5))
     frame[2, 3], frame[0, 0] = 7.0, np.nan
-    bad = np.isnan(frame)
-    found = BasicCentroid().measure(frame, bad)
-    np.testing.assert_array_equal(found.features, [[3.0, 2.0]])
-    assert QualityFlag(BasicCentroid().measure(frame).doubts[0]) == QualityFlag.NO_SPOT
+    np.testing.assert_array_equal(BasicCentroid().measure(frame).features, [[3.0, 2.0]])
+    np.testing.assert_array_equal(
+        BasicCentroid().measure(frame, np.isnan(frame)).features, [[3.0, 2.0]]
+    )
+    found = BasicCentroid().measure(np.full((5, 5), np.nan))
+    assert QualityFlag(found.doubts[0]) == QualityFlag.NO_SPOT
 
 
 def test_shapes_that_do_not_agree_are_refused():

@@ -18,7 +18,8 @@ def calibrate(
     files: Annotated[
         list[Path],
         typer.Argument(
-            help="CSV, Parquet, NumPy or Excel file; several files are runs of one sensor."
+            help="CSV, Parquet, NumPy or Excel file, or a directory of pictures with one; several "
+            "are runs of one sensor."
         ),
     ],
     config: Annotated[
@@ -65,6 +66,7 @@ def calibrate(
     code. The exit code is 0 for the verdict "good", otherwise 3.
     """
     from api.calibrate.calibration import calibrate as run  # noqa: PLC0415 - SciPy
+    from api.calibrate.frames import table_in  # noqa: PLC0415 - as above
     from api.calibrate.products import write_products  # noqa: PLC0415 - as above
     from api.calibrate.roles import guess  # noqa: PLC0415 - as above
     from api.calibrate.settings import read_settings  # noqa: PLC0415 - as above
@@ -73,7 +75,7 @@ def calibrate(
     from files.atomic import replace_file  # noqa: PLC0415 - as above
 
     if init is not None:
-        table = read_table(files[0])
+        table = read_table(table_in(files[0]) if files[0].is_dir() else files[0])
         replace_file(init, template(guess(table), list(table.columns)))
         typer.echo(
             f"wrote {init}; correct it and run: sunatlas calibrate {files[0]} --config {init}"
@@ -123,6 +125,8 @@ def _print(found: Any, written: list[Path], out: Path) -> None:
             "applied" if one in found.applied else ("--apply would change it" if one.change else "")
         )
         typer.echo(f"found: {one.found}" + (f" ({done})" if done else ""))
+    for note in found.notes:
+        typer.echo(f"read: {note}")
     counts: dict[str, int] = {}
     for one in found.excluded:
         counts[one.reason] = counts.get(one.reason, 0) + 1

@@ -75,3 +75,37 @@ def write(path: Path, header: list[str], *columns: np.ndarray) -> Path:
 
 
 HEADER = ["x_px", "y_px", "theta_x_deg", "theta_y_deg"]
+
+
+def balances(sun: np.ndarray, seed: int) -> np.ndarray:
+    """Balances of two pairs of photodiodes whose gains differ and that saturate softly."""
+    tangents = sun[:, :2] / sun[:, 2:]
+    noise = np.random.default_rng(seed).normal(0.0, 0.003, tangents.shape)
+    return np.tanh(0.55 * tangents + [0.02, -0.01]) * [1.0, 0.96] + noise
+
+
+def electrodes(sun: np.ndarray, seed: int) -> np.ndarray:
+    """Currents x+, x-, y+, y- of a position-sensitive detector behind a hole, with barrel error."""
+    tangents = sun[:, :2] / sun[:, 2:] @ turn("z", 1.0)[:2, :2].T
+    place = 0.4 * tangents * (1.0 - 0.05 * (tangents**2).sum(axis=1))[:, None]
+    light = sun[:, 2]
+    pairs = [1.0 + place[:, 0], 1.0 - place[:, 0], 1.0 + place[:, 1], 1.0 - place[:, 1]]
+    currents = np.column_stack([pair * light for pair in pairs])
+    return currents + np.random.default_rng(seed).normal(0.0, 0.002, currents.shape)
+
+
+def faces(sun: np.ndarray, seed: int) -> np.ndarray:
+    """Currents of six solar cells on a box, each a little askew and of its own gain."""
+    normals = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]])
+    askew = np.random.default_rng(11).normal(0.0, np.radians(1.0), normals.shape)
+    normals = normals + askew
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    gains = np.array([1.0, 0.93, 1.05, 0.98, 1.02, 0.96])
+    light = np.maximum(sun @ normals.T, 0.0) * gains
+    return light + np.random.default_rng(seed).normal(0.0, 0.004, light.shape)
+
+
+def sphere(count: int, seed: int) -> np.ndarray:
+    """Directions (count, 3) drawn over the whole sphere."""
+    drawn = np.random.default_rng(seed).normal(size=(count, 3))
+    return drawn / np.linalg.norm(drawn, axis=1)[:, None]

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from bench import CENTRE, HEADER, grid, quadrants, spots, sun_of, write
 
-from api.calibrate.calibration import change_of, findings, readings_of
+from api.calibrate.conventions import findings
+from api.calibrate.finding import change_of
+from api.calibrate.readings import readings_of
 from api.calibrate.roles import guess
 from api.calibrate.settings import Settings
 from api.calibrate.table import read_table

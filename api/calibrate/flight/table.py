@@ -50,6 +50,11 @@ class FlightTable:
     added_deg: float
     largest_deg: float
 
+    @property
+    def words(self) -> str:
+        """Name what this is, for a report."""
+        return f"a table of {self.nodes.shape[0]} by {self.nodes.shape[1]} nodes"
+
     def predict(self, features: Floats) -> Floats:
         """Return unit vectors (N, 3); NaN rows outside the hull."""
         place = (features - np.asarray(self.low)) / np.asarray(self.step)

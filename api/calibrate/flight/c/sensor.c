@@ -121,33 +121,7 @@ static void weights_q(int64_t t_q16, int64_t w_q16[4])
     w_q16[3] = one - (w_q16[0] + w_q16[1] + w_q16[2]);
 }
 
-/* Largest whole number whose square is no more. */
-static uint32_t root(uint64_t square)
-{
-    uint64_t rest = square;
-    uint64_t found = 0U;
-    uint64_t bit = (uint64_t)1U << 62U;
-
-    while (bit > rest)
-    {
-        bit >>= 2U;
-    }
-    while (bit != 0U)
-    {
-        if (rest >= (found + bit))
-        {
-            rest -= found + bit;
-            found = (found >> 1U) + bit;
-        }
-        else
-        {
-            found >>= 1U;
-        }
-        bit >>= 2U;
-    }
-    return (uint32_t)found;
-}
-
+@ROOT@
 %name%_status_t %name%_sun_q(int32_t x_q16, int32_t y_q16, int32_t sun_q30[3])
 {
     %name%_status_t status = %NAME%_OK;

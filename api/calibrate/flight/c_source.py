@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from algorithms.contract import Floats
-from api.calibrate.flight_table import FlightTable
+from api.calibrate.flight.table import FlightTable
 
 #: Test vectors inside the hull; eight outside follow them.
 _VECTORS = 64
@@ -52,23 +52,23 @@ def c_files(table: FlightTable, name: str, said: Mapping[str, str]) -> dict[str,
         "columns": str(columns),
         "sides": str(len(table.sides)),
         "flash": str(rows * columns * 2 * 8 + len(table.sides) * 3 * 12 + 2048),
-        "said": "\n".join(f" * {key}: {_comment(value)}" for key, value in said.items()),
-        "low_x": _float(table.low[0]), "low_y": _float(table.low[1]),
-        "per_x": _float(1.0 / table.step[0]), "per_y": _float(1.0 / table.step[1]),
+        "said": c_said(said),
+        "low_x": c_float(table.low[0]), "low_y": c_float(table.low[1]),
+        "per_x": c_float(1.0 / table.step[0]), "per_y": c_float(1.0 / table.step[1]),
         "last_x": f"{columns - 1}.0F", "last_y": f"{rows - 1}.0F",
         "vectors": str(_VECTORS + 8),
     }  # fmt: skip
 
     def fill(text: str) -> str:
-        return _filled(text, numbers)
+        return filled(text, numbers)
 
     return {
-        f"{name}.h": fill(_template("sensor.h")),
-        f"{name}.c": fill(_template("sensor.c")),
-        f"{name}_table.c": fill(_template("table.c").replace("@DATA@", _data(table))),
-        f"{name}_vectors.h": fill(_template("vectors.h").replace("@DATA@", _vectors(table))),
-        f"{name}_selftest.c": fill(_template("selftest.c")),
-        f"{name}_example.c": fill(_template("example.c")),
+        f"{name}.h": fill(c_template("sensor.h")),
+        f"{name}.c": fill(c_template("sensor.c").replace("@ROOT@", c_template("root.c"))),
+        f"{name}_table.c": fill(c_template("table.c").replace("@DATA@", _data(table))),
+        f"{name}_vectors.h": fill(c_template("vectors.h").replace("@DATA@", _vectors(table))),
+        f"{name}_selftest.c": fill(selftest("spot")),
+        f"{name}_example.c": fill(c_template("example.c")),
     }
 
 
@@ -99,7 +99,7 @@ def _vectors(table: FlightTable) -> str:
     for place, direction in zip(features, sun, strict=True):
         valid = int(np.isfinite(direction).all())
         cosines = direction if valid else np.zeros(3)
-        numbers = ", ".join(_float(value) for value in (*place, *cosines))
+        numbers = ", ".join(c_float(value) for value in (*place, *cosines))
         lines.append(f"    {{ {numbers}, {valid} }}")
     return ",\n".join(lines)
 
@@ -116,37 +116,55 @@ def _data(table: FlightTable) -> str:
     fixed = np.column_stack(
         [np.round(sides[:, :2] * 2.0**16), np.round(sides[:, 2] * 2.0**16)]
     ).astype(np.int64)
+    nodes, numbers = "[%NAME%_NODES]", "[%NAME%_SIDE_NUMBERS]"
     return "\n\n".join(
         [
-            _array("const float", "nodes_f", [_float(v) for v in flat], "_NODES"),
-            _array("const int32_t", "nodes_q30", [str(int(v)) for v in scaled], "_NODES"),
-            _array("const float", "sides_f", [_float(v) for v in sides.flat], "_SIDE_NUMBERS"),
-            _array("const int32_t", "sides_q16", [f"{v:d}" for v in fixed.flat], "_SIDE_NUMBERS"),
+            c_array("const float", "nodes_f", [c_float(v) for v in flat], nodes),
+            c_array("const int32_t", "nodes_q30", [str(int(v)) for v in scaled], nodes),
+            c_array("const float", "sides_f", [c_float(v) for v in sides.flat], numbers),
+            c_array("const int32_t", "sides_q16", [f"{v:d}" for v in fixed.flat], numbers),
         ]
     )  # fmt: skip
 
 
-def _array(kind: str, name: str, values: list[str], size: str) -> str:
+def c_said(said: Mapping[str, str]) -> str:
+    """Return lines of a comment that name what a header is of."""
+    return "\n".join(f" * {key}: {c_comment(value)}" for key, value in said.items())
+
+
+def selftest(what: str) -> str:
+    """Return the template of a self-test of spots or of channels."""
+    fixed, asked = c_template(f"selftest_{what}.c").split("@@\n")
+    text = c_template("selftest.c").replace("@FIXED@\n", fixed + "\n")
+    return text.replace("@ASKED@\n", asked)
+
+
+def c_array(kind: str, name: str, values: list[str], size: str) -> str:
+    """Return the definition of an array."""
     lines = [
         "    " + ", ".join(values[at : at + _PER_LINE]) for at in range(0, len(values), _PER_LINE)
     ]
-    return f"{kind} %name%_{name}[%NAME%{size}] =\n{{\n" + ",\n".join(lines) + "\n};"
+    return f"{kind} %name%_{name}{size} =\n{{\n" + ",\n".join(lines) + "\n};"
 
 
-def _float(value: float) -> str:
+def c_float(value: float) -> str:
+    """Return a number as C has it, of type float."""
     text = f"{np.float32(value):.9g}"
     return f"{text}F" if any(c in text for c in ".e") else f"{text}.0F"
 
 
-def _comment(text: str) -> str:
+def c_comment(text: str) -> str:
+    """Return text that ends no comment."""
     return text.replace("*/", "* /").replace("/*", "/ *").replace("\n", " ")
 
 
-def _template(name: str) -> str:
+def c_template(name: str) -> str:
+    """Return a template's text."""
     return (_TEMPLATES / name).read_text(encoding="utf-8")
 
 
-def _filled(text: str, numbers: Mapping[str, str]) -> str:
+def filled(text: str, numbers: Mapping[str, str]) -> str:
+    """Return a template with each ``%key%`` replaced."""
     for key, value in numbers.items():
         text = text.replace(f"%{key}%", value)
     return text
