@@ -4,7 +4,7 @@ What `mirror.extractor.MirrorRegistration` does to whole frames, for whoever has
 Stages of compiled loops are run here one after the other, on as many frames at once as the
 processor's cache holds: the light is found (`search_kernel`), the pixels about its middle are
 paired (`pairs_kernel`); then, by turns, the displacement is fitted (`fit_kernel`) and pairs that
-depart are left out (`outlier_kernel`). After the first turn the background's slope is taken off
+depart are left out (`outlier_kernel`). After the first turn the background's slope is subtracted
 (`ring_kernel`); shapes are looked at in the end (`shape_kernel`, `ghost_kernel`), and what speaks
 against an answer is concluded from all that (`doubts_kernel`).
 

@@ -37,7 +37,7 @@ from algorithms.measurement import Measurement
 
 @dataclass(frozen=True)
 class MultipleCentroids(Extractor):
-    """Mean of the thresholded centroids of all whole spots, each less its aperture's place.
+    """Mean of the thresholded centroids of all whole spots, relative to their apertures.
 
     Every aperture of the mask repeats the measurement, so noise falls with the square root of
     their number. Which aperture cast which spot is found from the pattern, so that spots may be
@@ -71,14 +71,14 @@ class MultipleCentroids(Extractor):
 
     Notes
     -----
-    Implements: alg:MCAM (fe:mcam, Rufino2009b): ``I' = max(I - mu I_max, 0)``, ``x_n = sum(x I')
-    / sum(I')`` in each segment n, ``x_avg = sum(x_n) / N``. Survey prints x over rows; corrected
+    Implements: alg:MCAM (fe:mcam, Rufino2009b): ``I' = max(I - mu I_max, 0)``, ``x_n = sum(x I') /
+    sum(I')`` in each segment n, ``x_avg = sum(x_n) / N``. The survey prints x over rows; corrected
     because x runs along columns here. mu counts from the background, the median of every so many
-    pixels, and I_max is a brightness that rows of half a spot reach, so that hot pixels do not
-    set it: ours. Printed are segments of known number; here they are sets of touching pixels.
-    Those at the edge, and those of less than 0.4 of an aperture's area or far more than it with
-    the Sun's image, are left out. Displacements that most pairs of spot and aperture agree on are
-    compared by what the frame shows of every aperture: dark places, unexplained spots.
+    pixels, and I_max is a brightness that rows of half a spot reach, so that hot pixels do not set
+    it: ours. Printed are segments of known number; here they are sets of touching pixels. Those at
+    the edge, and those of less than 0.4 of an aperture's area or far more than it with the Sun's
+    image, are left out. Displacements that most pairs of spot and aperture agree on are compared
+    by what the frame shows of every aperture: dark places, unexplained spots.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers: the
     spot of an aperture over the detector's middle, seen or not.
