@@ -90,7 +90,7 @@ def headline_table() -> str:
             )
         )
         said.append(f"- {row['study']}, {row['kind']}: {row['difference']}")
-    header = ("study", "its number is", "published", "data set", "stands for it", "ours", "ratio")
+    header = ("study", "its number is", "published", "data set", "pipeline", "ours", "ratio")
     return table((*header, "bench adds", "answered"), rows) + "\n\n" + "\n".join(said)
 
 
