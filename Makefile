@@ -72,11 +72,12 @@ test-all: $(COMPILED) ## run every test
 coverage: $(COMPILED) ## run every test and tell which lines and branches of the floors it reached
 	$(TEST) --cov --cov-report=term:skip-covered --cov-report=html:out/coverage
 
-lint: $(DEVELOPING) ## ruff, mypy (strict), the floors, the guide without warnings
+lint: $(DEVELOPING) ## ruff, mypy (strict), the floors, prose, the guide without warnings
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/python -m tools.prose
 	$(BIN)/sunatlas guide build --strict --out out/guide
 
 bench: $(COMPILED) ## every speed and accuracy limit, as ratios measured in the same run; lists the broken ones (SEED=N repeats its frames)

@@ -64,7 +64,7 @@ class NotFittedError(ValueError, AttributeError):
 class UnusableDataError(ValueError):
     """Well-formed data that a method cannot work on: too few samples, or on one line.
 
-    What a model's ``fit`` raises for a calibration that does not settle it: a result of method
+    What a model's ``fit`` raises for a calibration that does not determine it: a result of method
     and data, as repeatable as a score. Any other error, a ValueError too, is a mistake: of the
     caller (a wrong shape) or of the implementation.
     """
@@ -143,7 +143,7 @@ class Compensation(Protocol):
     def fit(self, features: ArrayLike, sun: ArrayLike, context: Context | None = None) -> Self:
         """Learn from features (N, F) and unit vectors (N, 3); NaN feature rows are left out.
 
-        UnusableDataError where they do not settle it; ValueError on wrong input.
+        UnusableDataError where they do not determine it; ValueError on wrong input.
         """
         ...
 
@@ -179,7 +179,7 @@ class Model(Protocol):
         """Learn from features (N, F) and unit vectors (N, 3); NaN feature rows are left out.
 
         `context` holds the columns that ``about.context`` names. UnusableDataError where the
-        samples do not settle the model; ValueError on wrong input.
+        samples do not determine the model; ValueError on wrong input.
         """
         ...
 

@@ -37,9 +37,10 @@ disc_deg : float
 iterations : int
     Steps, at least 1, after which the fit is given up.
 restarts : int
-    Trainings from other weights, 1 to 50, of which the best on samples held out is kept.
+    Number of trainings from different initial weights, 1 to 50; the best on held-out samples is
+    kept.
 seed : int
-    Of the weights that trainings start from, not negative; the same fit for the same seed.
+    Seed of the initial weights, not negative; the same seed gives the same fit.
 
 Attributes
 ----------

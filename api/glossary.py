@@ -14,7 +14,7 @@ from importlib.resources import files
 
 from registry.studies import facts
 
-COLUMNS = ("term", "name", "meaning", "see")
+COLUMNS = ("term", "name", "meaning", "see", "avoid")
 _FILLED = COLUMNS[:3]
 
 #: What a value of an attribute is, where the taxonomy tells a name and a category alone.
@@ -49,6 +49,8 @@ class Term:
         "term" for a word of this project; else the attribute of the survey's that it is a value of.
     see
         Page of the guide, from `docs/`, with an anchor where there is one; empty for none.
+    avoided
+        Words that are not used for it; the prose linter names them.
     """
 
     term: str
@@ -56,10 +58,11 @@ class Term:
     meaning: str
     kind: str
     see: str
+    avoided: tuple[str, ...] = ()
 
     def to_dict(self) -> dict[str, str]:
-        """Return it as plain JSON values."""
-        return asdict(self)
+        """Return it as plain JSON values, without the words that are avoided."""
+        return {name: said for name, said in asdict(self).items() if name != "avoided"}
 
 
 @cache
@@ -93,7 +96,8 @@ def words() -> tuple[Term, ...]:
             raise GlossaryError(f"glossary.csv, line {line}: expected {filled} to be filled")
         if row["term"] in found:
             raise GlossaryError(f"glossary.csv, line {line}: {row['term']!r} stands there twice")
-        found[row["term"]] = Term(kind="term", **row)
+        avoided = tuple(filter(None, row.pop("avoid").split("; ")))
+        found[row["term"]] = Term(kind="term", avoided=avoided, **row)
     return tuple(sorted(found.values(), key=lambda one: one.term.casefold()))
 
 

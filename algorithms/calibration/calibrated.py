@@ -40,7 +40,7 @@ _LOST_DEG, _FEWEST_LOST = 45.0, 10
 
 @dataclass
 class CalibratedModel(Model):
-    """A model that learns from calibration samples, refuses what does not settle it, and doubts.
+    """A model that learns from calibration samples, refuses what does not determine it, and doubts.
 
     A subclass is a dataclass that writes `about`, `learn` and `answer`. It is told only rows with
     features; a refused fit leaves the model as it was. Outside the convex hull of what it was
@@ -49,8 +49,8 @@ class CalibratedModel(Model):
     Parameters
     ----------
     extrapolation : float
-        How far past the hull answers may go, as a share of its half width (of signals: in
-        radians), from 0 up; infinity for anywhere. Half a step between poses is always allowed.
+        Allowed extrapolation beyond the hull, as a share of its half width (signals: radians), at
+        least 0; infinity: unlimited. Half a step between poses is always allowed.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ class CalibratedModel(Model):
 
     @abstractmethod
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Set the fitted attributes; UnusableDataError where the samples do not settle them.
+        """Set the fitted attributes; UnusableDataError where the samples do not determine them.
 
         Parameters
         ----------

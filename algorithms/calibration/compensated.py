@@ -18,7 +18,7 @@ from algorithms.inputs import as_calibration_rows, as_features, require_fitted, 
 
 @dataclass
 class CalibratedCompensation(Compensation):
-    """A compensation that checks what it is given and refuses what does not settle it.
+    """A compensation that checks what it is given and refuses what does not determine it.
 
     A subclass is a dataclass that writes `about`, `apply` and, unless its drawing says all,
     `learn`. It is told only rows with features; a refused fit leaves it as it was.
@@ -42,7 +42,7 @@ class CalibratedCompensation(Compensation):
         return 2
 
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
-        """Set the fitted attributes; UnusableDataError where the samples do not settle them.
+        """Set the fitted attributes; UnusableDataError where the samples do not determine them.
 
         By default nothing is learnt: the drawing says all.
         """

@@ -97,7 +97,7 @@ def tangents_cast(forward: Callable[[Floats], Floats], wanted: Floats, start: Fl
     Returns
     -------
     ndarray, shape (N, 2)
-        NaN where the steps have not come to rest within `SETTLED`, or where `forward` has folded
+        NaN where the steps have not converged within `SETTLED`, or where `forward` has folded
         back: its derivatives' determinant has not the sign it has on the boresight.
 
     Examples

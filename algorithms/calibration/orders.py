@@ -54,7 +54,7 @@ def errors_of_orders(
     Returns
     -------
     ndarray, shape (orders,)
-        Targets added; infinite where a fold does not settle an order.
+        Targets added; infinite where a fold does not determine an order.
 
     Notes
     -----
@@ -122,7 +122,7 @@ def choose_order(errors: Floats, by: str) -> Choice:
     Raises
     ------
     UnusableDataError
-        If the samples do not settle even the smallest order.
+        If the samples do not determine even the smallest order.
     """
     if not np.isfinite(errors).any():
         raise UnusableDataError(

@@ -114,9 +114,9 @@ class SunFilter(Model):
     Failure: a NaN row for a NaN feature row, in eclipse and in the dark, at the first reading of a
     series, and where the 1-sigma is beyond `worst_deg`. A series ends where time does not go on by
     a step. fit raises UnusableDataError for fewer than 60 samples in sunlight, or where these do
-    not settle how the sensor reads a Sun.
+    not determine how the sensor reads a Sun.
 
-    Cost: 40 us a step of the machine this was written on.
+    Cost: 40 us a step on the development machine.
     """
 
     face_normals: Normals = ()

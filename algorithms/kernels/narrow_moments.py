@@ -63,8 +63,8 @@ def whole_moments(frames: NDArray[Any], reach: int, out: Sums) -> None:
 
     Pixels outside the frame count as zero. `out` (N, 6) receives ``sum(B), sum(x B), sum(y B)`` of
     the box sums B, and the same of a frame that is one everywhere. A pixel enters once for each
-    box that holds it; only pixels near the frame's sides are in fewer than the rest, and are taken
-    off the sums of rows and columns.
+    box that holds it; only pixels near the frame's sides are in fewer than the rest, and are
+    subtracted the sums of rows and columns.
     """
     count, height, width = frames.shape
     side = 2 * reach + 1

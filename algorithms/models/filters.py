@@ -25,17 +25,16 @@ _ONLINE: dict[str, Any] = {"taxonomy": "None", "labels": ("model:mnc",), **_READ
 @documented
 @dataclass
 class ExtendedKalmanFilter(SunFilter):
-    """Extended Kalman filter of the Sun in a turning body.
+    """Extended Kalman filter of the Sun direction in a rotating body.
 
-    The gyroscope carries the direction from sample to sample, and each reading corrects it by what
-    the calibration says a Sun there would read. Dynamics and readings are linearised where the
-    estimate is.
+    The gyroscope propagates the direction from sample to sample; each reading corrects it by the
+    calibrated measurement function. Dynamics and measurements are linearised at the estimate.
 
     Notes
     -----
     Implements: the online section's EKF, of the filters that model:mnc names.
 
-    Cost: 20 us a step of the machine this was written on.
+    Cost: 20 us a step on the development machine.
 
     Examples
     --------
@@ -52,10 +51,10 @@ class ExtendedKalmanFilter(SunFilter):
 @documented
 @dataclass
 class CubatureKalmanFilter(SunFilter):
-    """Cubature Kalman filter of the Sun in a turning body.
+    """Cubature Kalman filter of the Sun direction in a rotating body.
 
-    Covariances go through dynamics and readings by the cubature rule of third degree: 2 n points of
-    equal weight, none in the middle. Nothing is to be chosen, and no weight is negative.
+    Covariances go through dynamics and readings by the cubature rule of third degree: 2 n points
+    of equal weight, none in the middle. It has no tuning parameter and no negative weight.
 
     Notes
     -----
@@ -82,7 +81,7 @@ class CubatureKalmanFilter(SunFilter):
 @documented
 @dataclass
 class UnscentedKalmanFilter(SunFilter):
-    """Unscented Kalman filter of the Sun in a turning body.
+    """Unscented Kalman filter of the Sun direction in a rotating body.
 
     Covariances go through dynamics and readings by points on both sides of the estimate, so that
     their curvature counts and no derivative is needed. Points of directions lie on the sphere.
@@ -90,7 +89,7 @@ class UnscentedKalmanFilter(SunFilter):
     Parameters
     ----------
     kappa : float
-        Spread of the points: they stand ``sqrt(n + kappa)`` standard deviations off; from 0 up.
+        Spread of the points: they stand ``sqrt(n + kappa)`` standard deviations off; at least 0.
 
     Notes
     -----
@@ -124,10 +123,10 @@ class UnscentedKalmanFilter(SunFilter):
 @documented
 @dataclass
 class RobustKalmanFilter(SunFilter):
-    """Extended Kalman filter that a wild reading cannot pull away.
+    """Extended Kalman filter with bounded influence of outliers.
 
-    An innovation beyond some of its standard deviations counts with a variance raised in proportion
-    (Huber), so that its pull is bounded however wild it is. Readings within count in full.
+    An innovation beyond a number of standard deviations gets a proportionally larger variance
+    (Huber), so its influence is bounded. Readings within count in full.
 
     Parameters
     ----------
@@ -138,7 +137,7 @@ class RobustKalmanFilter(SunFilter):
     -----
     Implements: the online section's RKF, of the filters that model:mnc names.
 
-    Cost: 30 us a step of the machine this was written on.
+    Cost: 30 us a step on the development machine.
 
     Examples
     --------
@@ -167,10 +166,10 @@ class RobustKalmanFilter(SunFilter):
 @documented
 @dataclass
 class AdaptiveKalmanFilter(SunFilter):
-    """Extended Kalman filter that learns the noise of its readings as it goes.
+    """Extended Kalman filter that estimates the measurement noise while running.
 
-    Residuals and what is still unknown after each update add up to the noise of the readings; their
-    running mean is the noise of the next update. It is too sure where errors last.
+    The measurement noise of the next update is the running mean of squared residuals plus the
+    remaining uncertainty of the state. It is overconfident if errors last.
 
     Parameters
     ----------
@@ -210,10 +209,10 @@ class AdaptiveKalmanFilter(SunFilter):
 @documented
 @dataclass
 class MultipleModelEstimation(SunFilter):
-    """Extended Kalman filters that expect different noise, and their mixture.
+    """Mixture of extended Kalman filters with different measurement noise.
 
-    Each filter takes the noise of readings as another multiple of the calibration's, and counts by
-    how likely it has made all readings so far. The direction is that of their mean.
+    Each filter assumes another multiple of the calibration's noise and is weighted by the
+    likelihood of all readings so far. The direction is that of their mean.
 
     Parameters
     ----------
@@ -224,7 +223,7 @@ class MultipleModelEstimation(SunFilter):
     -----
     Implements: the online section's MMAE, of the filters that model:mnc names: Magill's bank.
 
-    Cost: 50 us a step of the machine this was written on.
+    Cost: 50 us a step on the development machine.
 
     Examples
     --------
@@ -256,11 +255,11 @@ class MultipleModelEstimation(SunFilter):
 @documented
 @dataclass
 class ConsiderKalmanFilter(SunFilter):
-    """Extended Kalman filter that allows for a calibration that is off, and leaves it so.
+    """Extended Kalman filter that accounts for calibration errors without estimating them.
 
     Gains and the Earth's brightness, or focal length and offsets behind a spot, are considered:
-    their covariance, and what they have in common with the direction, enter every gain, but no
-    reading moves them. So the filter is as unsure as it should be of errors that last.
+    their covariance and correlation with the direction enter every gain, but they are not
+    estimated. So the stated covariance includes lasting errors.
 
     Parameters
     ----------
@@ -274,13 +273,13 @@ class ConsiderKalmanFilter(SunFilter):
     Notes
     -----
     Implements: model:mnc (OKeefe2017, eq:mnoise), ``V = C (V_d + V_alpha + nu)`` with the
-    calibration factors C and the strength of the albedo V_alpha considered. Survey prints V_alpha
-    negative; corrected because light adds. V_d and V_alpha are as the calibration found them: a
-    cubic of the cosine in place of the cosine, polynomials of nadir in place of the integral over
-    the Earth (ours). ``K = P H' S^-1`` with the rows of what is considered set to nothing; Joseph's
-    form.
+    calibration factors C and the strength of the albedo V_alpha considered. The survey prints
+    V_alpha negative; corrected because light adds. V_d and V_alpha are as the calibration found
+    them: a cubic of the cosine in place of the cosine, polynomials of nadir in place of the
+    integral over the Earth (ours). ``K = P H' S^-1`` with the rows of what is considered set to
+    nothing; Joseph's form.
 
-    Cost: 30 us a step of the machine this was written on, for six faces.
+    Cost: 30 us a step on the development machine, for six faces.
 
     Examples
     --------
@@ -326,11 +325,11 @@ class ConsiderKalmanFilter(SunFilter):
 @documented
 @dataclass
 class AssemblyDriftFilter(SunFilter):
-    """Extended Kalman filter of the Sun and of the sensor's own assembly.
+    """Extended Kalman filter of the Sun direction and of the sensor's assembly.
 
-    Gains and normals of faces, or turn, focal length and offsets of the head behind a spot, stand
-    in the state beside the direction: what the body's known turning does not explain, they do.
-    Each wanders by its deviation in a day.
+    Gains and normals of faces, or turn, focal length and offsets of the head behind a spot, are in
+    the state beside the direction and explain what the measured rotation of the body does not.
+    Each is a random walk with the given deviation per day.
 
     Parameters
     ----------
@@ -347,7 +346,7 @@ class AssemblyDriftFilter(SunFilter):
     misalignment by EKF, from what the calibration on the ground found (assembled-faces is its half
     on the ground, for faces). The survey gives no equations since every sensor has its own (ours).
 
-    Cost: 40 us a step of the machine this was written on, for six faces.
+    Cost: 40 us a step on the development machine, for six faces.
 
     Examples
     --------

@@ -118,9 +118,8 @@ def _told(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
         _table(
             "resolution",
             "Resolution of the studies",
-            "What runs for each study, with its grade: a row a pipeline and a data set under a "
-            "condition that stand for it, what each part rests on, and by what rule it stands "
-            "there where the study does not state it.",
+            "Runs of each study, with grade: a row per pipeline, data set and condition. Basis of "
+            "each part, and the rule that fills it where the study does not state it.",
             derived_tables.resolution(),
             primary=("study", *_PLACE, "dataset", "condition", "extractor", "model"),
             foreign={**foreign, "study": ("all_studies", "study")},

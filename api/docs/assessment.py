@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Mapping
 from functools import cache, partial
 from typing import Any
 
 from api.docs.markdown import table as _table
 from benchmark.assessment import assess as assessment
-from benchmark.assessment import former
 from benchmark.assessment.definitions import DEFINITIONS
 from benchmark.results.csv_tables import Row
 from benchmark.sweeps import plots as sweep_pictures
@@ -45,45 +43,6 @@ def outcomes() -> str:
     return f"{totals}.\n\n" + _table(("method", *_numbers(), *assessment.VERDICTS), rows)
 
 
-def versions() -> str:
-    """Count the verdicts of both versions of the definitions, a row a property."""
-    pairs = {
-        name: [
-            (former.agreement(method["method"], name, verdict["survey"]), verdict["agreement"])
-            for method in _document()["methods"]
-            for verdict in method["properties"]
-            if verdict["property"] == name
-        ]
-        for name in DEFINITIONS
-    }
-    counts = {name: tuple(map(Counter, zip(*both, strict=True))) for name, both in pairs.items()}
-    everything = [pair for both in pairs.values() for pair in both]
-    counts["all"] = tuple(map(Counter, zip(*everything, strict=True)))
-    rows = [
-        (name, *(f"{first[verdict]} → {second[verdict]}" for verdict in assessment.VERDICTS))
-        for name, (first, second) in counts.items()
-    ]
-    return _table(("property", *assessment.VERDICTS), rows)
-
-
-def first_outcomes() -> str:
-    """Put survey and the first version's outcome side by side, a row a method."""
-    scores = former.scores()
-    rows = []
-    for method in _document()["methods"]:
-        name = method["method"]
-        cells = [
-            _cell(
-                verdict["survey"],
-                former.agreement(name, verdict["property"], verdict["survey"]),
-                scores[name, verdict["property"]],
-            )
-            for verdict in method["properties"]
-        ]
-        rows.append((name, *cells))
-    return _table(("method", *_numbers()), rows)
-
-
 def features() -> str:
     """List the reference series."""
     rows = [
@@ -98,13 +57,15 @@ def features() -> str:
 
 
 def accuracy() -> str:
-    """Write the tables of the reference settings and of the noise sweep."""
-    return _sweep_tables(lambda table: table.title.partition(":")[0] in {"reference", "noise"})
+    """Write the tables of the reference settings."""
+    return _sweep_tables(lambda table: table.title.partition(":")[0] == "reference")
 
 
 def faults() -> str:
     """Write the tables of other shapes, stray light, other lights and broken pixels."""
-    return _sweep_tables(lambda table: table.series == "frames")
+    return _sweep_tables(
+        lambda table: table.series == "frames" and table.title.partition(":")[0] != "radius"
+    )
 
 
 def _sweep_tables(wanted: Callable[[sweep_tables.Table], bool]) -> str:

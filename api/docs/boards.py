@@ -6,11 +6,20 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
+from api.docs.markdown import table
 from benchmark.leaderboard import summaries
 from benchmark.leaderboard.architectures import architectures
 from benchmark.leaderboard.board import board_of
-from benchmark.leaderboard.overview import overview
+from benchmark.leaderboard.overview import ROLES, WITHIN, overview, suffix
 from benchmark.results.store import Store
+
+PARTS = (
+    "A board is a data set under its first condition. A part (extractor, compensation or model) is "
+    "judged on each board by the pipeline with it that is nearest to the bound and has at least "
+    "95 % availability. *Within 1.5*, *3* and *10* count the boards on which the error of that "
+    "pipeline is at most so many times the Cramer-Rao bound on unit 0. Parts run on different "
+    "boards, and on some boards no pipeline is near the bound."
+)
 
 
 def best_per_architecture_table() -> str:
@@ -26,7 +35,22 @@ def how_sure() -> str:
 
 def parts() -> str:
     """Tables of how near the bound each part of a pipeline comes, and how that is counted."""
-    return summaries.overview_tables(overview(_board()))
+    document = overview(_board())
+    said = [PARTS]
+    for role in ROLES:
+        rows = [
+            (
+                f"`{part['part']}`",
+                str(part["boards"]),
+                *(str(part[f"within_{suffix(limit)}"]) for limit in WITHIN),
+                summaries.digits(part["median_over_bound"]),
+            )
+            for part in document["parts"]
+            if part["role"] == role
+        ]
+        within = (f"within {limit:g}" for limit in WITHIN)
+        said += [f"### By {role}", table((role, "boards", *within, "median × bound"), rows)]
+    return "\n\n".join(said)
 
 
 @cache

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Mapping
 from functools import cache, partial
 
-from api.docs.markdown import table
 from benchmark.claims.experiment import find_experiments
 from benchmark.claims.judgement import Judgement
 from benchmark.claims.ledger import Entry, ledger, tally
@@ -28,17 +27,11 @@ def counts() -> str:
 
 
 def verdicts() -> str:
-    """List every claim with its verdict, linked to its trial."""
-    rows = [
-        (
-            _link(entry),
-            entry.claim.statement,
-            entry.claim.study,
-            f"**{entry.verdict or 'not measured'}**",
-        )
-        for entry in _entries()
-    ]
-    return table(("id", "claim", "study", "verdict"), rows)
+    """List the claims by verdict, linked to their trials."""
+    by_verdict: dict[str, list[str]] = {name: [] for name in tally(_entries())}
+    for entry in _entries():
+        by_verdict.setdefault(entry.verdict or "not measured", []).append(_link(entry))
+    return "\n".join(f"- **{name}**: {', '.join(links)}" for name, links in by_verdict.items())
 
 
 def trials() -> str:
@@ -67,27 +60,20 @@ def _section(entry: Entry) -> str:
         f"Measured on: {said.measured_on}. Trials: {said.trials} {said.replicate}s.",
     ]
     if entry.rules:
-        second = {rule.rule.name: rule for rule in entry.second}
-        rows = [_row(rule, second.get(rule.rule.name)) for rule in entry.rules]
-        head = ("statistic", "holds if", "mean [95 %]", "")
-        other = ("second method",) if second else ()
-        lines.append(table((*head, *other), [row[: len(head) + len(other)] for row in rows]))
+        lines.append("\n".join(_rule(one) for one in entry.rules))
     if said.second and entry.second:
-        lines.append(f"Second method: {said.second}.")
+        others = [_rule(one) for one in entry.second if one not in entry.rules]
+        lines.append(f"Second method, {said.second}: {'' if others else 'the same numbers.'}")
+        if others:
+            lines.append("\n".join(others))
     if _has_plot(entry):
         lines.append(f"![{said.up} against {said.across}]({_picture(entry)})")
     return "\n\n".join(lines)
 
 
-def _row(one: Judgement, second: Judgement | None) -> tuple[str, ...]:
+def _rule(one: Judgement) -> str:
     timed = " (run times)" if one.rule.timed else ""
-    return (
-        f"{one.rule.statistic}{timed}",
-        str(one.rule),
-        _numbers(one),
-        one.standing,
-        f"{_numbers(second)}, {second.standing}" if second else "",
-    )
+    return f"- {one.rule.statistic}{timed}: {_numbers(one)}; {one.rule}: **{one.standing}**"
 
 
 def _numbers(one: Judgement) -> str:

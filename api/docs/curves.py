@@ -13,7 +13,10 @@ Row = Mapping[str, Any]
 
 
 def poses_needed() -> str:
-    """List every leader with the poses it needs, its floor, and the poses there are."""
+    """List the first leader of each data set: poses it needs, its floor, poses there are."""
+    first: dict[str, Row] = {}
+    for row in _rows():
+        first.setdefault(row["dataset"], row)
     rows = [
         (
             f"[{row['dataset']}](datasets.md#{row['dataset']})",
@@ -26,7 +29,7 @@ def poses_needed() -> str:
             _floor(row),
             _number(row["over_bound"]),
         )
-        for row in _rows()
+        for row in first.values()
     ]
     header = (
         *("data set", "pipeline", "poses within 10 %", "of the draws", "by error", "by answers"),

@@ -25,7 +25,6 @@ from api.docs.parts import (
     findings,
     http_examples,
     missing_implementations,
-    models,
     resolutions,
 )
 from api.guide import dictionary, measured_facts, words
@@ -43,7 +42,6 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
     "algorithms.md": {
         "extractors": extractors,
         "model-pages": model_pages.index,
-        "models": models,
         "missing": missing_implementations,
     },
     "datasets.md": {"coverage": coverage, "example": export_example, "datasets": datasets},
@@ -72,8 +70,6 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
     "assessment.md": {
         "definitions": assessment.definitions,
         "outcomes": assessment.outcomes,
-        "versions": assessment.versions,
-        "first-outcomes": assessment.first_outcomes,
     },
     "claims.md": {
         "counts": claim_pages.counts,

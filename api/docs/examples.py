@@ -10,16 +10,22 @@ from typing import Any
 from typer.testing import CliRunner
 
 from api.cli.command_line import COMMANDS, app, load
-from api.http.negotiation import PARQUET
-from api.http.reference import columns, target, words
+from api.http.negotiation import CSV, JSON
+from api.http.problems import MEDIA_TYPE
+from api.http.reference import target, words
 from api.http.service import create_app
+from registry.taxonomy import ATTRIBUTES
 
 LONGEST_LIST = 1
+LONGEST_OBJECT = 10
 LONGEST_TEXT = 160
 DEEPEST = 3
 TIMES = ("latency_us", "time_ratio")
 #: Parameters of every table or list, described once at the head of the page.
-COMMON_PARAMETERS = frozenset({"format", "safe", "limit", "cursor", "sort", "fields"})
+COMMON_PARAMETERS = frozenset(
+    {"format", "safe", "limit", "cursor", "sort", "fields", "edition"}
+    | {*ATTRIBUTES, *(f"exclude_{name}" for name in ATTRIBUTES)}
+)
 REFUSED = "/v1/studies?detectr=CMOS"
 _SERVED = "http://127.0.0.1:8000"
 
@@ -41,7 +47,11 @@ def command_line() -> str:
 
 
 #: Options of most commands, described once at the head of the page.
-COMMON = ("--safe", "-h, --help", "--format <table|json|csv>", "--store <dir>", "--scheduler")
+COMMON = (
+    *("--safe", "-h, --help", "--format <table|json|csv>", "--store <dir>", "--scheduler"),
+    *("--workers", "--suite", "--data <path>", "--edition", "--condition"),
+    *(f"--{start}{name} " for name in ATTRIBUTES for start in ("", "exclude-")),
+)
 
 
 def _own_options(text: str) -> str:
@@ -81,22 +91,16 @@ def _operation(service: Any, path: str, method: str, operation: Mapping[str, Any
         return _form(method, path, operation, form)
     address, body = target(path, operation)
     answer = _ask(service, method.upper(), address, body)
-    lines = [f"## {method.upper()} {path}", "", operation.get("summary", "") + ".", ""]
-    if operation.get("description"):
-        lines += [operation["description"], ""]
+    said = operation.get("description") or operation.get("summary", "") + "."
+    lines = [f"## {method.upper()} {path}", "", said, ""]
     rows = [
         parameter
         for parameter in operation.get("parameters", ())
         if parameter["in"] in {"path", "query"} and parameter["name"] not in COMMON_PARAMETERS
     ]
     if rows:
-        lines += ["| parameter | takes | what it does |", "|---|---|---|"]
-        lines += [
-            f"| `{p['name']}` | {_takes(p['schema'])} | {p.get('description', '')} |" for p in rows
-        ]
+        lines += [f"- `{p['name']}` ({_takes(p['schema'])}): {p.get('description')}" for p in rows]
         lines.append("")
-    if said := columns(operation):
-        lines += [f"CSV, columns: {said.removeprefix('Columns: ')}", ""]
     lines.append(_exchange(f"{method.upper()} {address}", body, answer))
     return "\n".join(lines)
 
@@ -133,7 +137,7 @@ def _ask(service: Any, method: str, target: str, body: Any = None) -> tuple[int,
 
 def _exchange(request: str, body: Any, answer: tuple[int, str, str]) -> str:
     status, media_type, text = answer
-    if media_type.startswith(("image/", PARQUET)):
+    if not media_type.startswith((JSON, MEDIA_TYPE, CSV)):
         return f"```http\n{request}\n```\n\n{status}, `{media_type}`."
     asked = "" if body is None else f"\n\n{json.dumps(body, ensure_ascii=False)}"
     if "json" in media_type:
@@ -149,14 +153,16 @@ def _shorten(value: Any, depth: int = 0) -> Any:
         return "…"
     if isinstance(value, dict):
         # Times change with every measuring; the docs should not.
-        return {
+        kept = {
             name: "…" if name in TIMES and member is not None else _shorten(member, depth + 1)
-            for name, member in value.items()
+            for name, member in list(value.items())[:LONGEST_OBJECT]
         }
-    if isinstance(value, list):
-        kept = [_shorten(member, depth + 1) for member in value[:LONGEST_LIST]]
         left = len(value) - len(kept)
-        return [*kept, f"… {left} more"] if left else kept
+        return {**kept, "…": f"{left} more"} if left else kept
+    if isinstance(value, list):
+        items = [_shorten(member, depth + 1) for member in value[:LONGEST_LIST]]
+        left = len(value) - len(items)
+        return [*items, f"… {left} more"] if left else items
     if isinstance(value, str) and len(value) > LONGEST_TEXT:
         return value[:LONGEST_TEXT] + "…"
     return value
@@ -171,7 +177,9 @@ def _pretty(value: Any, indent: str = "", name: str = "", comma: str = "") -> It
     opening, closing = "{}" if isinstance(value, dict) else "[]"
     yield f"{indent}{name}{opening}"
     if isinstance(value, dict):
-        members = [(f"{json.dumps(key)}: ", member) for key, member in value.items()]
+        members = [
+            (f"{json.dumps(key, ensure_ascii=False)}: ", member) for key, member in value.items()
+        ]
     else:
         members = [("", member) for member in value]
     for number, (key, member) in enumerate(members, start=1):
@@ -184,5 +192,5 @@ def _takes(schema: Mapping[str, Any]) -> str:
     some, count, said = words(schema)
     listed = ", ".join(f"`{word}`" for word in some)
     if count > len(some):
-        listed += f", … ({count} values)"
+        listed = f"one of {count} values, such as `{some[0]}`"
     return "; ".join(part for part in (listed, said) if part)

@@ -23,7 +23,6 @@ from api.docs.markdown import table
 from benchmark.leaderboard.board import board_of
 from benchmark.metrics.score import AVAILABLE
 from benchmark.results.store import Store
-from survey_data import labels
 
 DIRECTORY = Path(__file__).resolve().parents[2] / "docs"
 _STARTS = Path(__file__).with_name("starts")
@@ -114,20 +113,22 @@ def categories() -> tuple[str, ...]:
 
 
 def models(category: str) -> str:
-    """List a category's models, and the compensations of the physics-informed one."""
-    rows = [
-        (
-            f"`{i.name}`",
-            knowledge().taxonomy.name("model", i.taxonomy),
-            i.summary,
-            ", ".join(i.accepts or ()),
-            ", ".join(i.studies),
-            ", ".join(map(labels.mention, i.labels)),
-        )
-        for i in _of(category)
-    ]
+    """List a category's models; chains by the compensation ahead of their models."""
+    rows: dict[tuple[str, ...], dict[str, None]] = {}
+    chains: dict[tuple[str, ...], list[str]] = {}
+    for one in _of(category):
+        *ahead, _ = one.name.split(" + ")
+        summary = one.summary.rpartition(" Then ")[0] if ahead else one.summary
+        name = " + ".join(ahead) if ahead else one.name
+        row = (f"`{name}`", knowledge().taxonomy.name("model", one.taxonomy), summary)
+        rows.setdefault(row, {}).update(dict.fromkeys(one.studies))
+        chains.setdefault(row, []).append(f"`{one.name}`")
     return table(
-        ("name", "model of the survey", "what it does", "reads", "studies", "survey"), rows
+        ("name", "model of the survey", "what it does", "studies", "scored as"),
+        [
+            (*row, ", ".join(studies), ", ".join(chains[row]) if " + " in chains[row][0] else "")
+            for row, studies in rows.items()
+        ],
     )
 
 

@@ -11,7 +11,7 @@ from api.docs.examples import command_line, http_examples
 from api.docs.knowledge import knowledge
 from api.docs.markdown import table as _table
 from benchmark.datasets import coverage as simulated
-from registry.fidelity.grading import TALLIED, tally_text
+from registry.fidelity.grading import tally_text
 from registry.fidelity.purposes import PURPOSES
 from registry.fidelity.runnable import ESSENTIAL
 from registry.resolution import Resolution
@@ -19,7 +19,7 @@ from registry.sensors import BASES
 from survey_data import labels
 
 #: Values of a finding whose counts are printed.
-_COUNTS_SHOWN = 8
+_COUNTS_SHOWN = 4
 
 __all__ = [
     "command_line",
@@ -29,7 +29,6 @@ __all__ = [
     "findings",
     "http_examples",
     "missing_implementations",
-    "models",
     "resolutions",
 ]
 
@@ -43,27 +42,10 @@ def extractors() -> str:
             i.summary,
             f"{i.observation} → {i.kind}",
             ", ".join(i.studies),
-            ", ".join(map(labels.mention, i.labels)),
         )
         for i in knowledge().catalogue.implementations("extractor")
     ]
-    return _table(("name", "taxonomy", "what it does", "reads → gives", "studies", "survey"), rows)
-
-
-def models() -> str:
-    """List every model: what it implements, what it reads."""
-    rows = [
-        (
-            f"`{i.name}`",
-            i.taxonomy,
-            i.summary,
-            ", ".join(i.accepts or ()),
-            ", ".join(i.studies),
-            ", ".join(map(labels.mention, i.labels)),
-        )
-        for i in knowledge().catalogue.implementations("model")
-    ]
-    return _table(("name", "taxonomy", "what it does", "reads", "studies", "survey"), rows)
+    return _table(("name", "taxonomy", "what it does", "reads → gives", "studies"), rows)
 
 
 def missing_implementations() -> str:
@@ -81,8 +63,21 @@ def missing_implementations() -> str:
 
 
 def datasets() -> str:
-    """Describe each data set, with the published bound of each condition."""
-    return "\n\n".join(_card(card) for card in knowledge().measurements.cards)
+    """List the data sets in a table, then describe each, with the bound of each condition."""
+    cards = knowledge().measurements.cards
+    rows = [
+        (
+            f"[{card['name']}](#{card['name']})",
+            card["detector"],
+            card["mask"],
+            str(card["observation"]),
+            str(card["version"]),
+            ", ".join(card["follows"]),
+        )
+        for card in cards
+    ]
+    head = ("data set", "detector", "mask", "readings", "version", "based on")
+    return "\n\n".join((_table(head, rows), *map(_card, cards)))
 
 
 def coverage() -> str:
@@ -109,12 +104,10 @@ def findings() -> str:
     rows = [
         (
             finding.id if clause.clause == 1 else "",
-            finding.verdict if clause.clause == 1 else "",
-            finding.statement if clause.clause == 1 else "",
-            f"{clause.given or 'all studies'} → {clause.expects} ({clause.kind})",
             clause.verdict,
+            finding.statement if clause.clause == 1 else "",
             _rank(clause.ranking),
-            clause.settled_by,
+            "" if clause.verdict == "reproduced" else clause.settled_by,
         )
         for finding in report.findings
         for clause in finding.clauses
@@ -124,9 +117,7 @@ def findings() -> str:
         f"{report.studies} studies; the survey states {report.stated}. {report.explanation}\n\n"
         f"{len(report.findings)} findings: {counted}. A finding of several clauses has a row for "
         "each.\n\n"
-        + _table(
-            ("id", "verdict", "finding", "expects", "clause", "counts", "what settles it"), rows
-        )
+        + _table(("id", "verdict", "finding", "counts", "what settles it"), rows)
         + f"\n\nNot tested: {'; '.join(untested)}."
     )
 
@@ -141,39 +132,20 @@ def resolutions() -> str:
         f"{tally_text(found.fidelity.grade for found in resolved.values())}. They are shown on "
         f"{cells} cells (a pipeline on a data set under a condition)."
     )
-    lines = [
-        counted,
-        RULES,
-        f"The {WEAKEST} weakest, by the number of their departures:",
-        _table(("study", "grade", "departures", "sentence"), _weakest(resolved)),
-        "What keeps studies from being faithful, and what would settle it:",
-        _table(("study", "part", "departure", "settled by"), _departures(resolved)),
-        "What studies are run for, by the rules of `survey_data/purposes.csv`:",
-        _table(("purpose", "rule", "studies"), _by_purpose(resolved)),
-        "What the parts of a pipeline rest on, by studies (of several, that of most evidence):",
-        _table(("part", *BASES), _by_basis(resolved)),
-        "By what rules empty cells are filled, and methods stand in for others:",
-        _table(("part", "rule", "studies"), _by_rule(resolved)),
-    ]
-    waiting: Counter[tuple[str, str, str]] = Counter(
-        gap
-        for resolution in resolved.values()
-        for gap in {(g.attribute, g.value, g.reason) for g in resolution.gaps if g.value}
-    )
-    rows = [
-        (attribute, value, reason, str(count))
-        for (attribute, value, reason), count in sorted(
-            waiting.items(), key=lambda item: (-item[1], item[0])
+    return "\n\n".join(
+        (
+            counted,
+            RULES,
+            "What keeps studies from being faithful, and what would settle it:",
+            _table(("departure", "settled by", "studies"), _departures(resolved)),
+            "What studies are run for, by the rules of `survey_data/purposes.csv`:",
+            _table(("purpose", "rule", "studies"), _by_purpose(resolved)),
+            "What the parts of a pipeline rest on, by studies (of several, that of most evidence):",
+            _table(("part", *BASES), _by_basis(resolved)),
         )
-    ]
-    if rows:
-        lines.append("What does not run as the mapping states it, by the number of studies:")
-        lines.append(_table(("attribute", "value", "reason", "studies"), rows))
-    return "\n\n".join(lines)
+    )
 
 
-#: Studies of the table of the weakest.
-WEAKEST = 10
 RULES = (
     "A run has five parts: sensor, condition, extractor, model and compensations. A part departs "
     "from the study where the sensor is recalled, chosen by a rule or a relative's, or a stated "
@@ -195,17 +167,14 @@ def _ranked_departures(resolved: Mapping[str, Resolution]) -> list[tuple[str, Re
     )
 
 
-def _weakest(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
-    for key, found in _ranked_departures(resolved)[:WEAKEST]:
-        graded = found.fidelity
-        yield key, TALLIED[graded.grade], str(len(graded.departures)), graded.sentence
-
-
 def _departures(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
-    """List every departure, those of the weakest first."""
+    """List every departure with its studies, those of the weakest first."""
+    studies: dict[tuple[str, str], list[str]] = {}
     for key, found in _ranked_departures(resolved):
         for departure in found.fidelity.departures:
-            yield key, departure.part, departure.text, departure.settled_by
+            studies.setdefault((departure.text, departure.settled_by), []).append(key)
+    for (text, settled_by), keys in studies.items():
+        yield text, settled_by, ", ".join(keys)
 
 
 def _by_purpose(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
@@ -228,19 +197,6 @@ def _by_basis(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
     yield "the weakest of them", *(str(weakest[basis]) for basis in BASES)
 
 
-def _by_rule(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
-    """List the rules that fill something in, with the studies they do it for."""
-    found: dict[tuple[str, str], dict[str, None]] = {}
-    for key, resolution in resolved.items():
-        for pipeline in resolution.pipelines:
-            for part in ESSENTIAL:
-                if pipeline.basis[part] in ("implied", "defaulted"):
-                    found.setdefault((part, pipeline.assumed[part]), {})[key] = None
-    order = {part: at for at, part in enumerate(ESSENTIAL)}
-    for (part, rule), keys in sorted(found.items(), key=lambda item: (order[item[0][0]], item[0])):
-        yield part, rule, ", ".join(keys)
-
-
 def _rank(ranking: Sequence[tuple[str, int]]) -> str:
     """Write the counts of a finding, the rarest of many left out."""
     shown = ", ".join(f"{value} {count}" for value, count in ranking[:_COUNTS_SHOWN])
@@ -250,13 +206,10 @@ def _rank(ranking: Sequence[tuple[str, int]]) -> str:
 
 def _card(card: Any) -> str:
     bounds = "; ".join(f"{name} {_number(card['bounds'].get(name))}" for name in card["setups"])
-    based = f"; based on {', '.join(card['follows'])}" if card["follows"] else ""
     return (
         f"### {card['name']}\n\n"
         f"{labels.label_of(card['description'])}\n\n"
-        f"{card['detector']}, {card['mask']}; readings: {card['observation']}; version "
-        f"{card['version']}{based}.\n\n"
-        f"Bounds by condition (RMS, deg): {bounds}."
+        f"Bounds (RMS, deg): {bounds}."
     )
 
 

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from api.deposit import errors
 from api.deposit.deposit_tables import measured_tables
-from api.docs.markdown import table
 from benchmark.results.store import PUBLISHED
 from survey_data.descriptor import descriptor
 
 Row = Mapping[str, Any]
+#: Name, path, title, description and schema of a table.
+_Described = tuple[str, str, str, str, Row]
+
+#: Values of a column that are listed; of more, their number is said.
+LISTED = 8
 
 
 def facts() -> str:
     """Describe the survey's tables, from their descriptor."""
-    return "\n\n".join(
-        _table(one["name"], one["path"], one["title"], one["description"], one["schema"])
+    return _tables(
+        (one["name"], one["path"], one["title"], one["description"], one["schema"])
         for one in descriptor()["resources"]
     )
 
@@ -25,55 +29,71 @@ def facts() -> str:
 def measurements() -> str:
     """Describe the measured tables, as the deposit brings them."""
     tables = [
-        _table(one.name, f"{one.name}.csv", one.title, one.description, one.schema)
+        (one.name, f"{one.name}.csv", one.title, one.description, one.schema)
         for one in measured_tables(PUBLISHED)
     ]
     samples = [
-        _table(name, path, title, "Parquet.", schema)
+        (name, path, title, "Parquet.", schema)
         for name, (path, title, schema) in errors.KINDS.items()
     ]
-    return "\n\n".join([*tables, *samples])
+    return _tables([*tables, *samples])
 
 
-def _table(name: str, path: str, title: str, description: str, schema: Row) -> str:
-    fields = schema["fields"]
-    rows = [
-        (f"`{one['name']}`", _type(one), _needs(one), one.get("description", "")) for one in fields
-    ]
+def _tables(described: Iterable[_Described]) -> str:
+    """Describe tables; a column that an earlier table describes in the same words is only named."""
+    known: dict[tuple[str, str], str] = {}
+    return "\n\n".join(_table(known, one) for one in described)
+
+
+def _table(known: dict[tuple[str, str], str], table_of: _Described) -> str:
+    name, path, title, description, schema = table_of
+    lines, above = [], []
+    for field in schema["fields"]:
+        column, holds = field["name"], field.get("description", "")
+        first = known.setdefault((column, holds), name)
+        if first == name:
+            lines.append(f"- `{column}` ({_type(field)}): {holds}{_allowed(field)}")
+        else:
+            above.append(f"`{column}` ([{first}](#{first}))")
     said = [f"### {name}", f"{title}: `{path}`. {description}"]
     key = _keys(schema)
     said += [key] if key else []
-    return "\n\n".join([*said, table(("column", "type", "may be", "what it holds"), rows)])
+    said += ["\n".join(lines)] if lines else []
+    said += [f"Described above: {', '.join(above)}."] if above else []
+    return "\n\n".join(said)
 
 
 def _type(field: Row) -> str:
-    return str(field.get("type", "any"))
+    """Name the type, with a question mark where a cell may be empty."""
+    needed = field.get("constraints", {}).get("required")
+    return f"{field.get('type', 'any')}{'' if needed else '?'}"
 
 
-def _needs(field: Row) -> str:
-    """Say in words what values are allowed."""
+def _allowed(field: Row) -> str:
+    """Say in words what values are allowed; long lists and patterns are in the descriptor."""
     bounds: Row = field.get("constraints", {})
-    said = [] if bounds.get("required") else ["empty"]
-    if "enum" in bounds:
-        said.append(", ".join(f"`{value}`" for value in bounds["enum"]))
-    if "minimum" in bounds or "maximum" in bounds:
-        said.append(f"{bounds.get('minimum', '')} to {bounds.get('maximum', '')}".strip())
-    if "pattern" in bounds:
-        said.append(f"`{bounds['pattern']}`")
-    return "; ".join(said)
+    values = bounds.get("enum", ())
+    said = []
+    if 0 < len(values) <= LISTED:
+        said.append(", ".join(f"`{value}`" for value in values))
+    elif values:
+        said.append(f"one of {len(values)} values")
+    if "minimum" in bounds and "maximum" in bounds:
+        said.append(f"{bounds['minimum']} to {bounds['maximum']}")
+    elif "minimum" in bounds or "maximum" in bounds:
+        side = "minimum" if "minimum" in bounds else "maximum"
+        said.append(f"at {'least' if side == 'minimum' else 'most'} {bounds[side]}")
+    return f" ({'; '.join(said)})" if said else ""
 
 
 def _keys(schema: Row) -> str:
     keys: Sequence[str] = schema.get("primaryKey") or next(iter(schema.get("uniqueKeys", ())), ())
-    said = [f"A row is named by {_columns(keys)}."] if keys else []
+    said = [f"Key: {_columns(keys)}."] if keys else []
     for foreign in schema.get("foreignKeys", ()):
         reference = foreign["reference"]
         target = reference.get("resource") or "this table"
-        said.append(
-            f"{_columns(foreign['fields'])} stands in "
-            f"{f'[{target}](#{target})' if target != 'this table' else target} "
-            f"({_columns(reference['fields'])})."
-        )
+        links = f"[{target}](#{target})" if target != "this table" else target
+        said.append(f"{_columns(foreign['fields'])}: a row of {links}.")
     return " ".join(said)
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterable
 
 from api.docs import front
 from api.docs.markdown import table
+from benchmark.claims.judgement import Judgement
 from benchmark.claims.ledger import Entry, ledger
 from benchmark.error_budget.record import RECORD as ERROR_BUDGET
 from benchmark.error_budget.sentences import NEAR, PARTS, verdict
@@ -25,9 +27,9 @@ def tallies() -> str:
 
 
 def refuted_claims() -> str:
-    """List refuted claims with our results."""
-    return "\n".join(
-        f"- **“{entry.claim.statement}”** ({_where(entry)}). {entry.explanation}"
+    """List refuted claims, each with its first criterion that fails."""
+    return _criteria(
+        (entry, next(rule for rule in entry.rules if rule.standing == "fails"))
         for entry in ledger()
         if entry.verdict == "refuted"
     )
@@ -45,12 +47,7 @@ def useful() -> str:
     changed = [name for name in USEFUL if entries[name].verdict != "reproduced"]
     if changed:
         raise ValueError(f"{', '.join(changed)}: not reproduced any more; choose others")
-    rows = []
-    for entry in (entries[name] for name in USEFUL):
-        first = entry.rules[0]
-        number = f"{first.estimate:.3g} [{first.low:.3g}, {first.high:.3g}]"
-        rows.append((entry.claim.statement, first.rule.statistic, number, _where(entry)))
-    return table(("claim", "criterion", "result [95 % interval]", "page"), rows)
+    return _criteria((entries[name], entries[name].rules[0]) for name in USEFUL)
 
 
 def error_budget() -> str:
@@ -64,6 +61,20 @@ def error_budget() -> str:
         f"{len(judged)} data sets. Largest error source on the others:\n\n"
         + table(("error source", "data sets"), rows)
     )
+
+
+def _criteria(chosen: Iterable[tuple[Entry, Judgement]]) -> str:
+    """Tabulate claims, each with one criterion and its result."""
+    rows = [
+        (
+            entry.claim.statement,
+            one.rule.statistic,
+            f"{one.estimate:.3g} [{one.low:.3g}, {one.high:.3g}]",
+            _where(entry),
+        )
+        for entry, one in chosen
+    ]
+    return table(("claim", "criterion", "result [95 % interval]", "page"), rows)
 
 
 def _most_first(counted: tuple[str, int]) -> tuple[int, str]:

@@ -35,9 +35,9 @@ from survey_data.editions import SURVEY
 Grade = Literal["faithful", "close", "stand-in", "none"]
 
 GRADES: Mapping[Grade, str] = {
-    "faithful": "every part of it is its own, stated or inferred with a reason",
-    "close": "one part departs from it",
-    "stand-in": "more than one part departs from it",
+    "faithful": "sensor, condition and methods are the study's own, stated or inferred",
+    "close": "one part differs from the study",
+    "stand-in": "more than one part differs from the study",
     "none": "nothing of it runs",
 }
 """How near a run is to its study, nearest first, in words."""

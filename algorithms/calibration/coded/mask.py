@@ -96,8 +96,8 @@ class CodedMask(ForwardModel):
     layers : tuple of (thickness mm, index)
         Cover glass, as `algorithms.compensations.optics.refraction` has it.
     tolerance_px : float
-        Largest distance of a spot from its aperture's place along an axis, positive; below half
-        of what tells two spacings of the code apart.
+        Largest distance of a spot from its aperture's place along an axis, positive; below half of
+        what tells two spacings of the code apart.
     size_tolerance : float or None
         Largest relative error of an aperture's width as told by its spot's light, positive; None
         where sizes are no code.
@@ -107,7 +107,7 @@ class CodedMask(ForwardModel):
     agreeing : int
         Spots that must agree on a place, at least 3.
     odds : float
-        By how much likelier than any other the place must make the spots, from 1 up: where these
+        By how much likelier than any other the place must make the spots, at least 1: where these
         lie as far from their places as the code's steps are wide, none is.
     share : float
         Of the spots, and of the apertures in view, that must agree, in (0, 1].
@@ -126,7 +126,7 @@ class CodedMask(ForwardModel):
     Notes
     -----
     Shapes: lists ``(x_px, y_px, light)`` of spots (N, 3 K), light 0 and last for none, to unit
-    vectors (N, 3). No row leans on another: lost in space, in one frame.
+    vectors (N, 3). Rows are independent: each frame is identified alone.
     """
 
     apertures_px: Apertures = field(repr=False)

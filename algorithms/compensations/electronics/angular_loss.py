@@ -37,10 +37,10 @@ _ROUNDS = 20
 @documented
 @dataclass
 class AngularLoss(CalibratedCompensation):
-    """Signals of photodiodes turned into cosines of incidence by their angular response.
+    """Photodiode signals converted to cosines of incidence by the angular response.
 
-    A photodiode reflects more the more askew it is lit; its signal is a cubic of the cosine, with
-    a gain of its own. Both are undone, so that models that take a signal for a cosine may do so.
+    A photodiode reflects more at oblique incidence; its signal is a cubic of the cosine of
+    incidence, times a gain. Both are inverted for models that assume a cosine.
 
     Parameters
     ----------

@@ -23,11 +23,11 @@ ITERATIONS = 4
 @documented
 @dataclass
 class SolarDiscBias(CalibratedCompensation):
-    """Middles of spots' outlines moved to where the Sun's centre falls.
+    """Centres of spot outlines corrected for the size of the solar disc.
 
-    Rays from the Sun's limbs are not parallel: away from the boresight the outer limb's falls
-    farther out than the inner one's falls in, so the middle of the outline lies off the centre's
-    ray, by 0.002 degrees at 60 degrees.
+    Rays from the two limbs of the Sun are not parallel, so away from the boresight the middle of a
+    spot's outline is not at the ray of the Sun's centre; the difference is 0.002 degrees at 60
+    degrees.
 
     Parameters
     ----------
@@ -36,12 +36,13 @@ class SolarDiscBias(CalibratedCompensation):
 
     Notes
     -----
-    Implements: model:solar (Antonello2018), in words there: light that is not parallel alters the
-    spot's shape and moves its centre. With the limbs at ``theta +- rho`` the outline's middle is
-    ``h (tan(theta + rho) + tan(theta - rho)) / 2 = h t (1 + r^2) / (1 - r^2 t^2)``, t = tan(theta),
-    r = tan(rho), solved for t. It holds for methods that find outlines (circles, thresholds). A
-    centroid weighted by light is not moved at all: the disc's rays pass the aperture in proportion
-    to their cosines, and the mean of their tangents with that weight is the centre's own.
+    Implements: model:solar (Antonello2018), described in words: light that is not parallel alters
+    the spot's shape and moves its centre. With the limbs at ``theta +- rho`` the outline's middle
+    is ``h (tan(theta + rho) + tan(theta - rho)) / 2 = h t (1 + r^2) / (1 - r^2 t^2)``, t =
+    tan(theta), r = tan(rho), solved for t. It holds for methods that find outlines (circles,
+    thresholds). A centroid weighted by light is not moved at all: the disc's rays pass the
+    aperture in proportion to their cosines, and the mean of their tangents with that weight is the
+    centre's own.
 
     Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to the same.
 

@@ -33,10 +33,10 @@ _ROUNDS = 10
 @documented
 @dataclass
 class TemperatureDrift(CalibratedCompensation):
-    """Signals brought to one temperature by each face's own temperature coefficient.
+    """Signals converted to one temperature by a temperature coefficient per face.
 
-    A photodiode's current grows by some hundredths of a per cent a kelvin, each a little
-    differently; what is common to all faces drops out of a direction, the differences do not.
+    A photodiode's current grows by some hundredths of a per cent per kelvin, slightly differently
+    for each; the common part cancels in a direction, the differences do not.
 
     Attributes
     ----------

@@ -16,10 +16,10 @@ from algorithms.documented import documented
 @documented
 @dataclass
 class MaximumCurrents(CubeCurrents):
-    """Of every opposite pair the brighter face is kept, the darker one's light is the Earth's.
+    """Brighter face of each opposite pair; light on the darker face is attributed to the Earth.
 
-    Sunlight is stronger than albedo, and never reaches both faces of a pair. What of the Earth's
-    light falls on a sunlit face stays.
+    Sunlight is stronger than albedo, and never reaches both faces of a pair. Earthlight on a
+    sunlit face remains.
 
     Notes
     -----

@@ -35,7 +35,7 @@ _SETTLED = 1e-3
 @documented
 @dataclass
 class PinholeShadow(CalibratedCompensation):
-    """Spots of a thick round hole moved from the middle of their outline to the mask's middle.
+    """Spots of a thick round hole corrected for shadowing of the outline by its rims.
 
     The lower rim ends the spot on its far side and the upper rim on its near side. Lit by one ray
     their mean is the mask's middle, from which drawings count. The Sun is a disc: its outer limb
@@ -54,7 +54,7 @@ class PinholeShadow(CalibratedCompensation):
     Attributes
     ----------
     share_ : float
-        Of the shift that is taken off, in [0, 1]: 1 for a method that finds the very outline, 0
+        Of the shift that is subtracted, in [0, 1]: 1 for a method that finds the very outline, 0
         for one that weighs all light evenly.
 
     Notes

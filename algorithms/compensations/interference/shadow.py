@@ -28,7 +28,7 @@ from algorithms.models.nominal_projection import (
 @documented
 @dataclass
 class MaskShadow(CalibratedCompensation):
-    """Spots brought from the middle of what a thick mask lets through to a thin one's.
+    """Spots of a thick mask converted to those of a thin mask.
 
     Light passes where the projections of the mask's two faces overlap; the middle of that lens is
     the mean of both, so that the spot moves as if a thin aperture stood in the mask's middle.
@@ -49,13 +49,13 @@ class MaskShadow(CalibratedCompensation):
     Notes
     -----
     Implements: eq:shadcomp (model:shad, Antonello2018) with the elevation e: ``R_C0 = (t + h)
-    tan(pi/2 - e)``, ``R_C1 = h tan(pi/2 - e)``, the spot's centre their mean. Survey prints the
-    distance of the arcs' centres as ``h tan(pi/2 - alpha)``; corrected because it is ``R_C0 -
+    tan(pi/2 - e)``, ``R_C1 = h tan(pi/2 - e)``, the spot's centre their mean. The survey prints
+    the distance of the arcs' centres as ``h tan(pi/2 - alpha)``; corrected because it is ``R_C0 -
     R_C1 = t tan(pi/2 - e)``. Features come out as of a mask without thickness at ``drawn_mm``:
     multiplied by ``drawn_mm / (h + t / 2)``. For a centroid that weighs parallel light evenly this
-    is exact. Drawn from the mask's middle, as `SensorGeometry` is, the factor is one, and all
-    that remains is a NaN row where no light passes. `pinhole-shadow` corrects what spot finders
-    other than a centroid leave, `slit-shadow` the light that balances lose.
+    is exact. Drawn from the mask's middle, as `SensorGeometry` is, the factor is one, and all that
+    remains is a NaN row where no light passes. `pinhole-shadow` corrects what spot finders other
+    than a centroid leave, `slit-shadow` the light that balances lose.
 
     Shapes: features ``(x, y)`` (N, 2), in px or dimensionless, to the same.
 

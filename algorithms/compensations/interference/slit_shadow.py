@@ -24,10 +24,10 @@ from algorithms.inputs import require_positive
 @documented
 @dataclass
 class SlitShadow(CalibratedCompensation):
-    """Balances of photodiode pairs behind thick slits, brought to those behind thin ones.
+    """Balances of photodiode pairs behind thick slits, converted to those behind thin slits.
 
-    A wall narrows the strip of light behind its slit without moving its middle from the mask's
-    middle. A balance is a displacement over all light: the less light, the larger the balance.
+    The walls of a thick slit narrow the strip of light without moving its middle. A balance is a
+    displacement over all light: the less light, the larger the balance.
 
     Parameters
     ----------
@@ -38,13 +38,13 @@ class SlitShadow(CalibratedCompensation):
 
     Notes
     -----
-    Implements: model:shad (Chang2006), in words there and in the study's abstract; the equation is
-    ours. Behind a slit of width w the strip is ``w - t abs(T_u)`` wide, ``T_u`` the tangent across
-    the slit; of two slits at 45 deg to the axes the sum of both is ``2 w - sqrt(2) t max(abs(T_x),
-    abs(T_y))``. With ``s = sqrt(2) H T / w`` behind thin walls (alg:VB of a square aperture of
-    width ``sqrt(2) w``), thick ones give ``S = s / (1 - t max(abs(s_a), abs(s_b)) / (2 H))``,
-    inverted by ``s = S / (1 + t max(abs(S_a), abs(S_b)) / (2 H))``. Light lost in the gap between
-    the photodiodes is not in it, as it is not in alg:VB.
+    Implements: model:shad (Chang2006), described in words and in the study's abstract; the
+    equation is ours. Behind a slit of width w the strip is ``w - t abs(T_u)`` wide, ``T_u`` the
+    tangent across the slit; of two slits at 45 deg to the axes the sum of both is ``2 w - sqrt(2)
+    t max(abs(T_x), abs(T_y))``. With ``s = sqrt(2) H T / w`` behind thin walls (alg:VB of a square
+    aperture of width ``sqrt(2) w``), thick ones give ``S = s / (1 - t max(abs(s_a), abs(s_b)) / (2
+    H))``, inverted by ``s = S / (1 + t max(abs(S_a), abs(S_b)) / (2 H))``. Light lost in the gap
+    between the photodiodes is not in it, as it is not in alg:VB.
 
     Shapes: balances ``(s_a, s_b)`` (N, 2), dimensionless, to the same.
 

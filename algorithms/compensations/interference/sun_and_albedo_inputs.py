@@ -22,11 +22,11 @@ _SIDES = tuple(product((1.0, -1.0), repeat=3))
 @documented
 @dataclass
 class SunAndAlbedoInputs(CubeCurrents):
-    """Sun's share of every face's current, in closed form from the Sun's known strength.
+    """Sunlight share of each face's current, in closed form from the known solar strength.
 
-    Where both faces of a pair are lit, one is the Sun's and one the Earth's; where one is, both
-    may share it. The Sun's vector has length one, which settles one shared face; a magnetometer
-    and the almanac settle two; three leave the Sun open.
+    If both faces of a pair are lit, one is lit by the Sun and one by the Earth; if only one is
+    lit, both may light it. Unit length resolves one shared face; a magnetometer and the almanac
+    resolve two; three cannot be resolved.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class SunAndAlbedoInputs(CubeCurrents):
     ``sqrt(1 - sum of the others' squares)``. Type 2, two shared: the Sun lies on a cone around the
     field, ``s . b = s_i . b_i`` with the inertial vectors of almanac and field model; the circle
     that the length leaves cuts it in two points, of which one must be possible. Type 3: no
-    solution, unless currents have length one: then nothing is the Earth's. Survey shows one
+    solution, unless currents have length one: then nothing is the Earth's. The survey shows one
     example a type; sides are tried in turn here, and what two ways explain is no answer.
 
     Shapes: signals (N, 6), in any common unit, to the same. Context: ``magnetic_field_nT``,

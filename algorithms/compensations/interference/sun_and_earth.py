@@ -24,10 +24,10 @@ _AWAY = 0.1
 @documented
 @dataclass
 class SunAndEarth(CubeCurrents):
-    """Differences of opposite faces as Sun and Earth together, less what the Earth sends.
+    """Differences of opposite faces minus the modelled light of the Earth.
 
-    The Earth's light comes from about the nadir, the more of it the fuller the Earth is seen; how
-    much is learnt from the calibration. What is left of the sum is the Sun's.
+    The Earth's light comes from about the nadir and grows with the lit part of the visible Earth;
+    its strength is learnt from the calibration. The rest of the sum is sunlight.
 
     Attributes
     ----------

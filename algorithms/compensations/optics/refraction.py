@@ -34,10 +34,10 @@ _FOUND = 1e-12
 @documented
 @dataclass
 class Refraction(CalibratedCompensation):
-    """Spots moved to where they would be without glass between mask and detector.
+    """Spots corrected for refraction in glass between mask and detector.
 
-    A plate bends light towards its normal, so that spots fall short of ``h tan(theta)``, the more
-    so the larger the angle: at 60 degrees by a quarter of the plate's thickness. The angle is
+    A plate refracts light towards its normal, so that spots fall short of ``h tan(theta)``, the
+    more so the larger the angle: at 60 degrees by a quarter of the plate's thickness. The angle is
     found from the spot by iteration, for any number of layers.
 
     Parameters

@@ -25,10 +25,10 @@ FINE_TRACKS = 4
 @documented
 @dataclass(frozen=True)
 class DialTracks(Extractor):
-    """Calibrated signal of every track of every code dial: dark reading off, gain divided out.
+    """Calibrated signals of all tracks of the code dials: dark reading subtracted, divided by gain.
 
-    The light behind a track says how much of the pattern above it the slit's light meets. The
-    readings are handed on as they come; what the pattern means is the model's knowledge.
+    The light behind a track measures the overlap of its pattern with the light of the slit. The
+    model interprets the pattern.
 
     Parameters
     ----------

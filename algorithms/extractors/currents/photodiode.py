@@ -27,7 +27,7 @@ Normalisation = Literal["none", "sum", "maximum", "length"]
 @documented
 @dataclass(frozen=True)
 class DirectSignals(Extractor):
-    """Calibrated signal of each photodiode: dark reading off, gain divided out, normalised.
+    """Calibrated signal of each photodiode: dark reading subtracted, divided by gain, normalised.
 
     Each reading is proportional to the irradiance projected on its detector; the transimpedance
     amplifier's offset and gain are undone, so that equal light gives equal signals.
@@ -55,7 +55,7 @@ class DirectSignals(Extractor):
 
     Failure: a NaN row where a reading is NaN, infinite or saturated, or where no signal is
     positive, or where the sum to normalise by is not positive. Light from elsewhere (albedo) is
-    not told apart.
+    not distinguished.
 
     Cost: 3 operations an element.
 
@@ -127,7 +127,7 @@ class DirectSignals(Extractor):
 @documented
 @dataclass(frozen=True)
 class VoltageBalance(Extractor):
-    """Balances of a quadrant photodiode: how far the spot's light leans along x and along y.
+    """Balances of a quadrant photodiode: normalised displacement of the spot along x and y.
 
     The difference of two halves over the sum of all four is free of the light's strength, and
     proportional to the tangent of the Sun angle behind a square aperture.
@@ -145,8 +145,8 @@ class VoltageBalance(Extractor):
 
     Notes
     -----
-    Implements: alg:VB (fe:vb, Boslooper2017): ``s_a = (Q2 + Q3 - Q1 - Q4) / sum Q`` along x,
-    ``s_b = (Q1 + Q2 - Q3 - Q4) / sum Q`` along y. Survey prints ``S_A = tan(alpha) /
+    Implements: alg:VB (fe:vb, Boslooper2017): ``s_a = (Q2 + Q3 - Q1 - Q4) / sum Q`` along x, ``s_b
+    = (Q1 + Q2 - Q3 - Q4) / sum Q`` along y. The survey prints ``S_A = tan(alpha) /
     tan(alpha_MAX)`` for its x axis with ``alpha_MAX = d / (2 h)``; corrected because
     ``tan(alpha_MAX) = d / (2 h)``, and because x goes with beta here: ``s_a = 2 h tan(beta) / d``
     and ``s_b = 2 h tan(alpha) / d``, exact for a square aperture of width d.

@@ -27,7 +27,7 @@ Layout = Literal["l-slit", "spot"]
 @documented
 @dataclass(frozen=True)
 class EventCentroid(Extractor):
-    """Mean address of the events, each weighted by the light that its time tells.
+    """Mean address of the events, weighted by the light that their times indicate.
 
     A pixel fires when its charge reaches a threshold, so that the inverse of its time since the
     reset is the light on it: the times rebuild the profile across a line, whose mean resolves
@@ -40,8 +40,9 @@ class EventCentroid(Extractor):
     layout : {"l-slit", "spot"}
         What the events show.
     offset_px : float
-        Where a line falls from the detector's middle when the Sun is on the boresight, px; taken
-        off both coordinates, so that they are those of a spot behind the mask's origin.
+        Where a line falls from the detector's middle when the Sun is on the boresight, px;
+        subtracted from both coordinates, so that they are those of a spot behind the mask's
+        origin.
     margin_px : float
         Events count up to half the width and this far from the line's middle, px. Ours: 1.5 holds
         the pixels that a line touches, penumbra included, wherever it falls on them.
@@ -53,14 +54,14 @@ class EventCentroid(Extractor):
     -----
     Implements: alg:ECM (fe:escm, Farian2022): ``X = sum(x / (t - t_reset)) / sum(1 / (t -
     t_reset))``, for each line over the events near it and away from the other line. Times count
-    from the reset (t_reset = 0). Survey prints one axis of a profile sensor and no way to tell the
-    L's lines apart; here the column and the row with most light start a window of the line's width
-    that is moved onto its own mean until it stays. A lit pixel's light is that of the third
-    quartile along lines, and in a spot of width w that of the brightest pixel after ``pi (w / 2 -
-    sqrt(1/2))^2 / 2`` others: half of those that the spot covers for sure (one at least, and none
-    below 2.2 px, where a single pixel may have all the light). Pixels in little light at a line's
-    edge that have not fired when the array is reset are missing in the mean; taking the last
-    event's light off all others, as thresholded centroids do, doubled the error.
+    from the reset (t_reset = 0). The survey prints one axis of a profile sensor and no way to
+    distinguish the L's lines; here the column and the row with most light start a window of the
+    line's width that is moved onto its own mean until it stays. A lit pixel's light is that of the
+    third quartile along lines, and in a spot of width w that of the brightest pixel after ``pi (w
+    / 2 - sqrt(1/2))^2 / 2`` others: half of those that the spot covers for sure (one at least, and
+    none below 2.2 px, where a single pixel may have all the light). Pixels in little light at a
+    line's edge that have not fired when the array is reset are missing in the mean; taking the
+    last event's light off all others, as thresholded centroids do, doubled the error.
 
     Shapes: events (N, M, 3) ``x_px, y_px, t_us``, rows of NaN after the last, to
     ``(x_px, y_px)`` (N, 2), pixel centres at integers.
@@ -138,10 +139,10 @@ class EventCentroid(Extractor):
 @documented
 @dataclass(frozen=True)
 class EventWinner(Extractor):
-    """Column and row that are the first to gather a number of events: winners take all.
+    """First column and first row to collect a number of events (winner takes all).
 
-    What an array does that puts out its first spikes alone, without their times: whole pixels,
-    for comparison with the mean. A single hot pixel does not win where several events are asked.
+    For arrays that output only their first spikes, without times: whole pixels, for comparison
+    with the mean. A single hot pixel does not win where several events are asked.
 
     Parameters
     ----------
@@ -149,8 +150,8 @@ class EventWinner(Extractor):
         Events that a column or row must gather, at least 1. Ours: along an L's line more than the
         other line is wide, for a spot half of its width.
     offset_px : float
-        Where a line falls from the detector's middle when the Sun is on the boresight, px; taken
-        off both coordinates.
+        Where a line falls from the detector's middle when the Sun is on the boresight, px;
+        subtracted from both coordinates.
 
     Notes
     -----
@@ -162,8 +163,8 @@ class EventWinner(Extractor):
     ``(x_px, y_px)`` (N, 2), whole pixels less the offset.
 
     Failure: a NaN row without events, where an event is incomplete, infinite or at an address
-    below 0, and where no column or no row gathers `winners` events. More hot pixels than that
-    in one column win unseen.
+    below 0, and where no column or no row gathers `winners` events. More hot pixels than that in
+    one column win without notice.
 
     Cost: 4 operations an event.
 

@@ -95,8 +95,8 @@ def five_areas(frames: NDArray[Any], start: Floats, moves: int, out: Floats) -> 
     """Write the balanced position (x, y) of each frame's spot to `out` (N, 2).
 
     `start` (N, 2) are the pixels of the first windows. A NaN row where the window does not
-    settle within `moves`, or does not hold the whole spot. Without moves the balance in the first
-    window stands, where its centre is brighter than its ends on both axes.
+    converge within `moves`, or does not hold the whole spot. Without moves the balance in the
+    first window stands, where its centre is brighter than its ends on both axes.
     """
     count, height, width = frames.shape
     columns = np.empty(2 * _HALF + 1)

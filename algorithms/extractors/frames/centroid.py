@@ -40,13 +40,13 @@ class BasicCentroid(Extractor):
     Notes
     -----
     Implements: alg:BCM (fe:bcm, Chang2008): ``x_c = sum(x I) / sum(I)``, ``y_c = sum(y I) /
-    sum(I)``. Survey prints x over rows; corrected because x runs along columns here.
+    sum(I)``. The survey prints x over rows; corrected because x runs along columns here.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
     Failure: a NaN row for a frame that is dark (sum not positive), without contrast (all dark or
     all saturated) or holds a NaN or infinity, or whose centroid falls outside it (pixels of both
-    signs that almost cancel). A second spot or a cut one is averaged in unseen.
+    signs that almost cancel). A second spot or a cut one is averaged in without notice.
 
     Cost: 4 operations a pixel, one pass.
 
@@ -104,18 +104,17 @@ class ThresholdedCentroid(Extractor):
     Notes
     -----
     Implements: alg:BCTM (fe:bctm, He2005): ``I' = max(I - mu I_max, 0)``, ``x_c = sum(x I') /
-    sum(I')``, ``y_c = sum(y I') / sum(I')``. Survey prints x over rows; corrected because x runs
-    along columns here. With a background b the threshold is ``b + mu (I_max - b)``. Without a
+    sum(I')``, ``y_c = sum(y I') / sum(I')``. The survey prints x over rows; corrected because x
+    runs along columns here. With a background b the threshold is ``b + mu (I_max - b)``. Without a
     fraction it is ``mu I_max = m + 6 s``, m and s the mean and the standard deviation of one of
-    the frame's sides: the second lowest of the four, as light or hot pixels may
-    lie on the others.
+    the frame's sides: the second lowest of the four, as light or hot pixels may lie on the others.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
     Failure: a NaN row for a frame that is dark (maximum not above background or threshold),
     without contrast (all dark or all saturated) or holds a NaN or infinity; without a fraction
     also where light lies along three sides. Pixels brighter than the threshold outside the spot (a
-    second spot, a hot pixel, with a fraction noise at low signal) are averaged in unseen.
+    second spot, a hot pixel, with a fraction noise at low signal) are averaged in without notice.
 
     Cost: 1 operation a pixel for the maxima, 3 a pixel of the sides, 6 a pixel in rows that hold a
     pixel above the threshold; integer sums are exact.
@@ -212,8 +211,8 @@ class FilteredCentroid(Extractor):
     Notes
     -----
     Implements: alg:IFM (fe:ifm, Chang2008): ``I_mn = (1/9) sum_{i=m-1..m+1} sum_{j=n-1..n+1}
-    I_ij`` with zeros outside, then alg:BCM. Survey prints the zero only for ``i, j < 1``;
-    corrected because the far edges need it too. Survey prints x over rows; corrected because x
+    I_ij`` with zeros outside, then alg:BCM. The survey prints the zero only for ``i, j < 1``;
+    corrected because the far edges need it too. The survey prints x over rows; corrected because x
     runs along columns here. The smoothed frame is not formed: a pixel enters the sums with the
     number of boxes that hold it.
 

@@ -40,12 +40,12 @@ _DRIFT = 2.0 * math.log(100.0)
 @documented
 @dataclass(frozen=True)
 class AdaptiveEnergyFilter(Extractor):
-    """Centroid of the pixels' energies above their noise, averaged over frames of a still Sun.
+    """Centroid of pixel energies above the noise, averaged over frames while the Sun is still.
 
-    What varies from frame to frame at a pixel is noise until the light moves. The energies of a
-    sequence are averaged for as long as the spot stays, and start anew when the frames' mean
-    shift against them is more than noise; the threshold falls with their noise.
-    `extract_sequence` does so; `extract` knows of no time and takes each frame alone.
+    While the light is still, variation of a pixel from frame to frame is noise. The energies of a
+    sequence are averaged for as long as the spot stays, and start anew when the frames' mean shift
+    against them is more than noise; the threshold falls with their noise. `extract_sequence` does
+    so; `extract` knows of no time and takes each frame alone.
 
     Parameters
     ----------

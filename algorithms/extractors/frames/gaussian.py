@@ -38,11 +38,11 @@ _MISFIT = 1.5
 
 @dataclass(frozen=True)
 class GaussianFit(Extractor):
-    """Least-squares fit of a Gaussian on a background to the whole frame.
+    """Least-squares fit of a Gaussian plus background to the whole frame.
 
-    What astronomers' libraries offer as their precise centroid: six parameters, amplitude,
-    centre, a width along each axis and background, every pixel of equal weight. On spots that
-    are no Gaussian it is still centred, but above the bound.
+    The precise centroid of astronomical libraries: six parameters, amplitude, centre, a width
+    along each axis and background, every pixel of equal weight. On other symmetric spots it is
+    unbiased, but above the bound.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class GaussianFit(Extractor):
     light above the background, to a centre inside the frame and to widths below its sides; and
     where registration (`algorithms.extractors.frames.mirror`) does not find one whole symmetric
     light within half a pixel of the centre. Where `light` is "any", only hot pixels and noise are
-    refused: a second light draws the fit unseen, one cut by the edge is fitted as such.
+    refused: a second light shifts the fit without notice, one cut by the edge is fitted as such.
 
     Cost: 10 operations a pixel and step, some 8 steps, and that of registration.
 

@@ -23,10 +23,10 @@ class PixelMax(Extractor):
 
     Notes
     -----
-    Implements: alg:PM (fe:pm, Coutinho2022): ``r_i = sum_j I_ij``, ``c_j = sum_i I_ij``,
-    ``y_c = argmax r``, ``x_c = argmax c``. Survey prints x_c from the row profile; corrected
-    because x runs along columns here. Of several equal maxima the first counts: the survey's
-    text stops at the first, its loop would keep the last.
+    Implements: alg:PM (fe:pm, Coutinho2022): ``r_i = sum_j I_ij``, ``c_j = sum_i I_ij``, ``y_c =
+    argmax r``, ``x_c = argmax c``. The survey prints x_c from the row profile; corrected because x
+    runs along columns here. Of several equal maxima the first counts: the survey's text stops at
+    the first, its loop would keep the last.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), whole numbers, pixel centres
     at integers.

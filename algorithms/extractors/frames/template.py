@@ -33,7 +33,7 @@ Candidates = Literal["search", "brightest"]
 @documented
 @dataclass(frozen=True)
 class TemplateMatch(Extractor):
-    """Position at which the aperture's outline differs in fewest pixels from the lit ones.
+    """Position at which the aperture's outline differs from the lit pixels in the fewest pixels.
 
     Both frame and template have two levels only, so neither the light within the spot nor noise
     below the threshold matters; what remains is the pixels' grid, which is searched to 1/16 px.
@@ -51,7 +51,7 @@ class TemplateMatch(Extractor):
         The fraction mu of the maximum, in (0, 1), taken above the background. Ours: at half the
         light a blurred rim lies where the sharp one would.
     background : {"none", "border", "median"}
-        Level below which the fraction counts. The published method takes none off.
+        Level below which the fraction counts. The published method subtracts none.
     binarise : bool
         Compare with the lit pixels, as published. False goes on from there to where the outline
         holds most of the grey frame's light: ours, and some eight times finer on a clean disc.
@@ -59,9 +59,9 @@ class TemplateMatch(Extractor):
         Positions compared. The published ones are the brightest pixels: whole numbers, which noise
         chooses within even light, though the survey counts the method among the sub-pixel ones.
     most_different : float or None
-        Pixels in which lit pixels and template may differ, as a fraction of the template's: beyond,
-        the light is taken for another shape, two spots or noise. None, as published, asks for
-        nothing.
+        Pixels in which lit pixels and template may differ, as a fraction of the template's:
+        beyond, the light is taken for another shape, two spots or noise. None, as published, asks
+        for nothing.
 
     Notes
     -----
@@ -82,7 +82,7 @@ class TemplateMatch(Extractor):
     Failure: a NaN row for a frame that is dark (maximum not above the background), without
     contrast (all dark or all saturated) or holds a NaN or infinity, and where the template leaves
     the frame (spot cut by the edge). Another shape, two spots and noise give the place that fits
-    best unseen, unless `most_different` is given.
+    best without notice, unless `most_different` is given.
 
     Cost: 3 operations a pixel, and some 1600 positions of 10 operations a row of the template;
     a grey frame 36 more of 60 operations a row.

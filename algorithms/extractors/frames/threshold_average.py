@@ -40,15 +40,15 @@ class MultipleThresholdCentroid(Extractor):
     Implements: alg:MTACM1, alg:MTACM2 (fe:mtacm, Massari2004): ``N_TH > sigma sqrt(e) / dx``,
     ``x_ml = (h_l + k_l) / 2``, ``x_c = mean_l x_ml``, in pixels (Delta X = 1). h_l is the first
     rise from the left, k_l the first from the right; a threshold that one side does not cross is
-    left out. Survey prints x over the row sums; corrected because x runs along columns here. The
-    floor is the profile's median, sigma its area above that over ``sqrt(2 pi)`` of its height.
+    left out. The survey prints x over the row sums; corrected because x runs along columns here.
+    The floor is the profile's median, sigma its area above that over ``sqrt(2 pi)`` of its height.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
     Failure: a NaN row for a frame that is dark (no profile entry positive), without contrast (all
     dark or all saturated) or holds a NaN or infinity, for spots wider than half of the frame, and
-    where the edge cuts the spot so that no threshold has a rise from both sides. Two spots
-    give the middle between their outer flanks unseen.
+    where the edge cuts the spot so that no threshold has a rise from both sides. Two spots give
+    the middle between their outer flanks without notice.
 
     Cost: 2 operations a pixel for the profiles, the median of each, and 4 a threshold.
 

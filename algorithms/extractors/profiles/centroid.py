@@ -32,7 +32,7 @@ class ProfileCentroid(SlitLines):
     Parameters
     ----------
     subtract_dark : bool
-        Whether the line's median is taken off first; residuals below it count negative. The
+        Whether the line's median is subtracted first; residuals below it count negative. The
         published method subtracts nothing.
 
     Notes
@@ -44,7 +44,7 @@ class ProfileCentroid(SlitLines):
 
     Failure: a NaN row for a profile without light (sum not positive), without contrast (all dark
     or all saturated) or with a NaN or infinity. Behind slits of one slant a missing or cut spot, a
-    second Sun and noise alone are averaged in unseen; behind two slants they give NaN.
+    second Sun and noise alone are averaged in without notice; behind two slants they give NaN.
 
     Cost: 4 operations a pixel.
 
@@ -104,7 +104,8 @@ class ProfileThresholdedCentroid(SlitLines):
 
     Failure: a NaN row for a profile without light (maximum not positive), without contrast (all
     dark or all saturated) or with a NaN or infinity. Behind slits of one slant a missing or cut
-    spot, a second Sun and noise alone are averaged in unseen; behind two slants they give NaN.
+    spot, a second Sun and noise alone are averaged in without notice; behind two slants they give
+    NaN.
 
     Cost: 5 operations a pixel.
 
@@ -174,7 +175,7 @@ class ProfileThresholdAverage(SlitLines):
     Failure: a NaN row for a profile without contrast (all dark or all saturated), with a NaN or
     infinity, or whose light is cut by both ends of the line or one so that no threshold has a rise
     from both sides. Behind slits of one slant a missing outer spot, a second Sun and noise alone
-    give the middle between the outermost flanks unseen; behind two slants they give NaN.
+    give the middle between the outermost flanks without notice; behind two slants they give NaN.
 
     Cost: the median of each line, 2 operations a pixel and 4 a threshold.
 

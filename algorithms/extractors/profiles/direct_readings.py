@@ -25,9 +25,9 @@ _NEEDS = ("line_axes", "line_pixels", "slits")
 @documented
 @dataclass(frozen=True)
 class DirectProfile(Extractor):
-    """Light of every pixel of every line: the reading less what is dark on its line.
+    """Light of every pixel of every line: reading minus the dark level of the line.
 
-    Nothing is located; a model that knows the pattern of the slits correlates with it.
+    No position is computed; a model correlates the signal with the pattern of the slits.
 
     Notes
     -----
@@ -78,10 +78,10 @@ class DirectProfile(Extractor):
 @documented
 @dataclass(frozen=True)
 class ThresholdProfile(Extractor):
-    """Light of every pixel above a fraction of its line's brightest, zero elsewhere.
+    """Light of every pixel above a fraction of the line's maximum; zero elsewhere.
 
-    What BCTM takes a first moment of; a model that knows where the marks of a ruler are takes it
-    mark by mark.
+    The thresholded light before its first moment is taken; the vernier model evaluates it mark by
+    mark.
 
     Parameters
     ----------

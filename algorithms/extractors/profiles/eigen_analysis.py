@@ -21,7 +21,7 @@ _PASSES = 2
 @documented
 @dataclass(frozen=True)
 class EigenAnalysis(SlitLines):
-    """Shift whose model spectrum has the least part in the noise subspace.
+    """Shift whose model spectrum has the smallest projection on the noise subspace.
 
     The cross-spectrum of a shifted spot with its reference is a tone along frequency. The
     eigenvectors of its covariance but the strongest span what is noise only, and the tone of the
@@ -31,22 +31,22 @@ class EigenAnalysis(SlitLines):
     ----------
     frequencies : int or None
         How many frequencies above zero make the series. The published one has them all. None,
-        ours, ends it at the last whose power stands out of the noise, nine times, as the spectrum
-        itself tells that from a quarter of the sampling on: beyond, it is noise and aliased light.
+        ours, ends it at the last whose power exceeds nine times the noise, estimated from the
+        spectrum above a quarter of the sampling frequency: beyond, it is noise and aliased light.
 
     Notes
     -----
     Implements: alg:eigen (fe:eigena, Enright2006b): zero-padding of the N pixels to ``K_x = 2 N -
     1``; cross-spectrum ``R_r12[k]`` of the light with its reference; its own correlation over
-    frequency ``R_x[l]``; the Toeplitz covariance of its first lags; ``b(tau) = |S[k]|^2 exp(-2
-    pi j k tau / K_x)``, as many entries; ``tau = argmin |b^H E_n|^2`` over the noise eigenvectors
-    E_n, one spot leaving all but one. Survey prints argmax; corrected because the model of the
-    right shift is orthogonal to noise. Survey prints the correlation's exponent without its j;
-    corrected because the transform has one. ``R_x`` is summed directly: the printed detour over
-    a padded transform gives the same lags. The shift is first found to about a pixel as the
-    place where the pattern of slits is brightest (as PD does, on means over a slit's width), and
-    the N pixels are those of a window about each spot; the cross-spectra of slits of one slant
-    are summed. The minimum is searched on a grid and then off it, by Newton's method.
+    frequency ``R_x[l]``; the Toeplitz covariance of its first lags; ``b(tau) = |S[k]|^2 exp(-2 pi
+    j k tau / K_x)``, as many entries; ``tau = argmin |b^H E_n|^2`` over the noise eigenvectors
+    E_n, one spot leaving all but one. The survey prints argmax; corrected because the model of the
+    right shift is orthogonal to noise. The survey prints the correlation's exponent without its j;
+    corrected because the transform has one. ``R_x`` is summed directly: the printed detour over a
+    padded transform gives the same lags. The shift is first found to about a pixel as the place
+    where the pattern of slits is brightest (as PD does, on means over a slit's width), and the N
+    pixels are those of a window about each spot; the cross-spectra of slits of one slant are
+    summed. The minimum is searched on a grid and then off it, by Newton's method.
 
     Cost: 2 operations a pixel and slit, the median of each line, 8 a frequency and pixel of the
     windows, the eigenvectors of a matrix, 5 to 30 a side, and its side times 4 tries a pixel.

@@ -33,7 +33,7 @@ _PASSES = 2
 @documented
 @dataclass(frozen=True)
 class LinearPhase(SlitLines):
-    """Shift of the slits' light by the slope of its phase against a reference's.
+    """Shift of the slits' light from the slope of its phase relative to a reference.
 
     A shift multiplies a spectrum by a phase that grows linearly with frequency. Light blurred or
     narrowed evenly on both sides keeps its phase, so the reference need not have its width right.
@@ -42,22 +42,22 @@ class LinearPhase(SlitLines):
     ----------
     frequencies : int or None
         How many frequencies from the lowest on are fitted. The study gives no limit. None, ours,
-        takes those whose power stands out of the noise, nine times, as the spectrum itself tells
-        that from a quarter of the sampling on.
+        takes those whose power exceeds nine times the noise, estimated from the spectrum above a
+        quarter of the sampling frequency.
 
     Notes
     -----
     Implements: alg:linearphase (fe:linearphase, Enright2007b): ``Y[k] = S_a[k] / S_0[k]``, its
     phase ``Psi[k] = -2 pi a k / N``, the slope a by least squares, ``tau = a`` in pixels (Delta X
-    = 1). Survey prints a plain fit over all k; corrected because bins without signal hold phases
-    of noise only: each counts by ``|S_a[k]|^2``, less the noise's, and only those above it do.
-    The reference S_0 is the spectrum of even light over the slit's width, known from the design;
-    ``S_a conj(S_0)`` has the phase of the ratio and no division. Beyond the reference's first
-    zero a little less width turns the sign, so that phases there are known to half a turn. The
-    shift is first found to about a pixel as the place where the pattern of slits is brightest (as
-    PD does, on means over a slit's width), and the transform is that of a window about each spot,
-    whose phases are summed over the slits of one slant: what is left to unwrap is a fraction of a
-    turn, and the other spots stay out.
+    = 1). The survey prints a plain fit over all k; corrected because bins without signal hold
+    phases of noise only: each counts by ``|S_a[k]|^2``, less the noise's, and only those above it
+    do. The reference S_0 is the spectrum of even light over the slit's width, known from the
+    design; ``S_a conj(S_0)`` has the phase of the ratio and no division. Beyond the reference's
+    first zero a little less width turns the sign, so that phases there are known to half a turn.
+    The shift is first found to about a pixel as the place where the pattern of slits is brightest
+    (as PD does, on means over a slit's width), and the transform is that of a window about each
+    spot, whose phases are summed over the slits of one slant: what is left to unwrap is a fraction
+    of a turn, and the other spots stay out.
 
     Cost: 2 operations a pixel and slit, the median of each line, and 8 a frequency and pixel of
     the windows, half as many as pixels.
@@ -103,7 +103,7 @@ class LinearPhase(SlitLines):
 @documented
 @dataclass(frozen=True)
 class FrameLinearPhase(Extractor):
-    """Position of a spot by the slopes of the phases of its column and row sums.
+    """Position of a spot from the phase slopes of its column and row sums.
 
     As `LinearPhase`, once for each axis. The sums of a symmetric spot, blurred or not, have the
     phase of their shift alone.
@@ -121,8 +121,8 @@ class FrameLinearPhase(Extractor):
 
     Notes
     -----
-    Implements: alg:linearphase (fe:linearphase, Enright2007b) on the sums by columns and rows.
-    Survey prints a plain fit over all k; corrected because bins without signal hold phases of
+    Implements: alg:linearphase (fe:linearphase, Enright2007b) on the sums by columns and rows. The
+    survey prints a plain fit over all k; corrected because bins without signal hold phases of
     noise only: each counts by ``|S_a[k]|^2``, as in `LinearPhase`. The reference S_0 is the
     spectrum of the aperture's even light, summed. The spot is first found to about a pixel where
     the sums over half of its width are largest; the transform is that of the sums over a square

@@ -25,11 +25,11 @@ from algorithms.inputs import as_frames, require_positive
 @documented
 @dataclass(frozen=True)
 class PeakDetection(SlitLines):
-    """Brightest pixel of a line behind one slit; behind several, their pattern's brightest place.
+    """Brightest pixel of a line; behind several slits, the brightest position of their pattern.
 
-    The pattern is where its darkest pixel is brightest: one slit missed by a wrong place darkens
-    that place, so equal and equally spaced slits are not taken for each other. No finer than
-    a pixel, and within a spot of even light wherever noise is largest.
+    The pattern is at the shift that maximises its darkest pixel: a wrong shift misses a slit, so
+    equally spaced slits are not confused. The resolution is one pixel; within a uniformly lit spot
+    noise decides.
 
     Parameters
     ----------
@@ -47,10 +47,10 @@ class PeakDetection(SlitLines):
     those that a Sun in the field explains and that keep all spots apart. Of maxima that are
     equal within a slit's width (a saturated spot) the middle of the first and the last counts.
 
-    Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
-    a NaN or infinity, and behind two slants where no Sun in the field explains two patterns apart.
+    Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds a
+    NaN or infinity, and behind two slants where no Sun in the field explains two patterns apart.
     Noise alone, a second Sun, a hot pixel, and a slit's spot that is missing, off the line or
-    covered by another's give a place unseen, unless `alone` is asked for.
+    covered by another's give a place without notice, unless `alone` is asked for.
 
     Cost: 1 operation a pixel and slit, and the median of each line.
 
@@ -88,8 +88,8 @@ class PeakDetection(SlitLines):
 class FramePeak(Extractor):
     """Brightest pixel of a frame with one spot.
 
-    The simplest feature there is, and the baseline of the others: within a spot of even light it
-    stops wherever noise is largest, so it is no finer than the spot.
+    The simplest feature, and the baseline of the others: within a uniformly lit spot noise
+    decides, so it is no finer than the spot.
 
     Parameters
     ----------
@@ -104,9 +104,9 @@ class FramePeak(Extractor):
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
-    Failure: a NaN row for a frame that is dark (maximum not positive), without contrast (all
-    dark or all saturated) or holds a NaN or infinity, and where equal maxima are further apart
-    than `width_px`. A second spot that is darker, a hot pixel and noise alone cannot be told.
+    Failure: a NaN row for a frame that is dark (maximum not positive), without contrast (all dark
+    or all saturated) or holds a NaN or infinity, and where equal maxima are further apart than
+    `width_px`. A second spot that is darker, a hot pixel and noise alone cannot be recognised.
 
     Cost: 1 operation a pixel, and a second look at rows that hold the maximum.
 

@@ -33,11 +33,11 @@ SLIT_IMAGE: Coefficients = (0.0, -0.26, 1.0, 0.98, -0.42, 1.0)
 @documented
 @dataclass(frozen=True)
 class PeakPositionEstimate(SlitLines):
-    """Least-squares fit of all peaks of a line together, each the image of its slit.
+    """Joint least-squares fit of all peaks of a line, one per slit.
 
     Peaks of one slant keep their known distances and move by one shift; each has its own
-    amplitude. Every lit pixel has its say, not the brightest alone, and overlapping peaks are
-    told apart by what is left when the others are taken off.
+    amplitude. Every lit pixel counts, not only the brightest; overlapping peaks are separated by
+    subtracting the others.
 
     Parameters
     ----------
@@ -56,17 +56,17 @@ class PeakPositionEstimate(SlitLines):
 
     Notes
     -----
-    Implements: alg:PPE (fe:ppe, Enright2007a): ``I(tau) = a_1 A + a_2 B + b_1 C + b_2 D``, A and
-    B the image about ``m_x`` and ``m_x + 2 L_x``, C and D about ``m_y`` and ``m_y + 2 L_y``, the
-    image ``(c_1 u^4 + c_2 u^2 + c_3) / (c_4 u^4 + c_5 u^2 + c_6)``, Q its derivatives and
-    ``(Q^T Q) d_lambda = Q^T d_beta``. Survey prints no update of the parameters; corrected
-    because they move by ``lambda + d_lambda``. The image types are read from the shifts, at the
-    start and once more when fitted: 0 where peaks are apart, 1 to 4 where A and C, B and C, A and
-    D, or B and D overlap, which then have one amplitude. Shifts are found to a pixel first, as
-    the maxi-min of the pattern; a step is held to half a half width. A line's median is taken
-    off. Ours: any number of slits a slant, lines that see one slant only, and two means to make
-    the steps end: which pixels count is told at the start and where they end, and steps that
-    shrink by a constant ratio are summed at once.
+    Implements: alg:PPE (fe:ppe, Enright2007a): ``I(tau) = a_1 A + a_2 B + b_1 C + b_2 D``, A and B
+    the image about ``m_x`` and ``m_x + 2 L_x``, C and D about ``m_y`` and ``m_y + 2 L_y``, the
+    image ``(c_1 u^4 + c_2 u^2 + c_3) / (c_4 u^4 + c_5 u^2 + c_6)``, Q its derivatives and ``(Q^T
+    Q) d_lambda = Q^T d_beta``. The survey prints no update of the parameters; corrected because
+    they move by ``lambda + d_lambda``. The image types are read from the shifts, at the start and
+    once more when fitted: 0 where peaks are apart, 1 to 4 where A and C, B and C, A and D, or B
+    and D overlap, which then have one amplitude. Shifts are found to a pixel first, as the
+    maxi-min of the pattern; a step is held to half a half width. A line's median is subtracted.
+    Ours: any number of slits a slant, lines that see one slant only, and two means to make the
+    steps end: which pixels count is told at the start and where they end, and steps that shrink by
+    a constant ratio are summed at once.
 
     Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
     a NaN or infinity, where a slit's spot is missing or off the line, where light elsewhere is
@@ -181,7 +181,7 @@ class PeakPositionEstimate(SlitLines):
 @documented
 @dataclass(frozen=True)
 class FramePeakPositionEstimate(Extractor):
-    """Least-squares fit of a known peak to the sums of a frame's columns and of its rows.
+    """Least-squares fit of a known peak shape to the column sums and row sums of a frame.
 
     One spot casts one peak on each profile; its position and amplitude are fitted there. All
     pixels count, the noise of dark ones too.
@@ -202,16 +202,16 @@ class FramePeakPositionEstimate(Extractor):
 
     Notes
     -----
-    Implements: alg:PPE (fe:ppe, Enright2007a) with the single peaks ``a_1 A`` along x and
-    ``b_1 C`` along y; see `PeakPositionEstimate`. Ours: the printed method reads a line of pixels
-    behind crossed pairs of slits. The median of each profile is taken off.
+    Implements: alg:PPE (fe:ppe, Enright2007a) with the single peaks ``a_1 A`` along x and ``b_1
+    C`` along y; see `PeakPositionEstimate`. Ours: the printed method reads a line of pixels behind
+    crossed pairs of slits. The median of each profile is subtracted.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
     Failure: a NaN row for a frame without contrast (all dark or all saturated), one that holds a
     NaN or infinity, and where the fit does not end, or not within a spot's width of the profile's
-    largest value with a positive amplitude. A second spot draws it unseen; noise alone may be
-    fitted.
+    largest value with a positive amplitude. A second spot shifts it without notice; noise alone
+    may be fitted.
 
     Cost: 2 operations a pixel, 20 a pixel of the profiles and step, some 8 steps.
 

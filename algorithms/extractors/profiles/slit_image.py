@@ -43,11 +43,11 @@ _BENT = 40
 @documented
 @dataclass(frozen=True)
 class SlitImage(SlitLines):
-    """Place of each slit's image by least squares on what the slit casts, diffraction included.
+    """Position of each slit's image by least squares on a diffraction model of the image.
 
     The image follows from the design and from the direction that the spot itself tells: Fresnel
-    diffraction of sunlight at both edges, blurred by the Sun's disc and summed over pixels. Its
-    light, its background and its width are fitted beside the place.
+    diffraction of sunlight at both edges, blurred by the Sun's disc and summed over pixels. Light,
+    background, width and position are fitted together.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ class SlitImage(SlitLines):
     cubic term of the phase is left out, which moves spots as smoothly with direction as the model
     learns.
 
-    Failure: a NaN row where `LinearPhase` has one and where a fit does not settle.
+    Failure: a NaN row where `LinearPhase` has one and where a fit does not converge.
 
     Cost: that of `LinearPhase`, and for each spot 12 Fresnel integrals and 12 chords for each of
     some 500 places, and 10 operations a pixel and step, 4 to 20 of them.

@@ -201,7 +201,7 @@ def _shift(  # noqa: C901, PLR0917 - one fit; Numba takes no keyword-only ones
     terms: Floats,
     lit: Bools,
 ) -> float:
-    """How far spots lie from their `starts` by least squares; NaN where that does not settle.
+    """How far spots lie from their `starts` by least squares; NaN where that does not converge.
 
     `widths` are the first to be tried, the least and the largest.
     """
@@ -261,7 +261,7 @@ def add_shifts(  # noqa: PLR0917 - Numba takes no keyword-only ones
     Parameters
     ----------
     shifts
-        Of the spots of each slant; NaN where no light is, or where a fit does not settle.
+        Of the spots of each slant; NaN where no light is, or where a fit does not converge.
     slits
         (S, 3): place at zero shift, slant's number in G, and 1 where the height of the pixels
         widens the spot, else 0.

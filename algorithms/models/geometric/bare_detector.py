@@ -18,10 +18,10 @@ from algorithms.documented import documented
 @documented
 @dataclass
 class BareDetector(ProjectionModel, ForwardModel):
-    """Homography of a detector that stands any way behind its mask, after a radial stretch.
+    """Homography between mask and a detector at any orientation, after a radial distortion.
 
-    Eight numbers hold all that a plane behind a pinhole can do: scales, turns, tilts, skew, and a
-    mirror. Refraction and the aperture's depth stretch tangents about the mask's normal before.
+    Eight parameters describe any plane behind a pinhole: scale, rotation, tilt, skew and mirror
+    image. Refraction and the aperture's depth stretch tangents about the mask's normal before.
 
     Attributes
     ----------
@@ -37,9 +37,9 @@ class BareDetector(ProjectionModel, ForwardModel):
     about its optical axis, a bare sensor's before the detector's tilt, about the mask's normal.
     Hence a class of its own. The start is the affine map that fits best.
 
-    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
-    to rest within 6e-8 deg. fit raises UnusableDataError below 6 samples, where they do not settle
-    the parameters, or do not belong together.
+    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not
+    converged within 6e-8 deg. fit raises UnusableDataError below 6 samples, where they do not
+    determine the parameters or are inconsistent.
 
     Cost: 36 times 30 operations a sample; the fit, some ten times 21 passes of 30.
 

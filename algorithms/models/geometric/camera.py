@@ -21,8 +21,8 @@ from algorithms.models.nominal_projection import nominal_projection
 class LensCamera(ProjectionModel, ForwardModel):
     """Camera with OpenCV's intrinsics: two focal lengths, principal point, lens distortion.
 
-    A lens images tangents with a stretch that grows off its axis, and shifts them where its
-    elements are not on one axis. All is fitted to known Suns, with the turns of the camera.
+    A lens images tangents with radial distortion, and with decentring distortion if its elements
+    are misaligned. All parameters are fitted to known Sun directions, with the camera's rotation.
 
     Parameters
     ----------
@@ -46,10 +46,10 @@ class LensCamera(ProjectionModel, ForwardModel):
     target stands, which of the Sun at infinity nothing tells. In a narrow field tilts, principal
     point and p1, p2 act nearly alike; their standard errors then say so.
 
-    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
-    to rest within 6e-8 deg, as where the distortion folds the picture back. fit raises
-    UnusableDataError below 6 samples, where they do not settle the parameters, or do not belong
-    together.
+    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not
+    converged within 6e-8 deg, as where the distortion folds the picture back. fit raises
+    UnusableDataError below 6 samples, where they do not determine the parameters or are
+    inconsistent.
 
     Cost: 36 times 40 operations a sample; the fit, some ten times 23 passes of 40.
 

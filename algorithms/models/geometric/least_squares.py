@@ -22,9 +22,9 @@ from algorithms.models.nominal_projection import (
 @documented
 @dataclass
 class LeastSquaresGeometry(ProjectionModel, ParametricModel):
-    """Pinhole projection with focal length, two boresight offsets and zero point calibrated.
+    """Pinhole projection with calibrated focal length, two boresight offsets and zero point.
 
-    The five numbers that carry most of a built sensor's error are found by nonlinear least
+    The five parameters that cause most of a built sensor's error are found by nonlinear least
     squares on the measured rotation angles, starting from the drawing.
 
     Parameters
@@ -44,12 +44,12 @@ class LeastSquaresGeometry(ProjectionModel, ParametricModel):
     Notes
     -----
     Implements: eq:lsq (model:lsq, Rufino2004a). With ``F' = F + Delta F`` and the spot's
-    displacement ``(X, Y)`` in mm from the zero point,
-    ``beta_m = -beta_0 + arctan((X + F' tan(beta_0)) / F')`` and
-    ``alpha_m = -alpha_0 + arctan[(1 / F') cos(beta_m + beta_0) (Y + F' tan(alpha_0) /
-    cos(beta_0))]``. Survey prints the last bracket without its plus; corrected because the zero
-    point must give zero angles. Survey prints ``x_zp - x``; here ``X = (x - x_zp) unit_mm``,
-    because the detector's axes are flipped so that a spot falls at ``X = h tan(beta)``.
+    displacement ``(X, Y)`` in mm from the zero point, ``beta_m = -beta_0 + arctan((X + F'
+    tan(beta_0)) / F')`` and ``alpha_m = -alpha_0 + arctan[(1 / F') cos(beta_m + beta_0) (Y + F'
+    tan(alpha_0) / cos(beta_0))]``. The survey prints the last bracket without its plus; corrected
+    because the zero point must give zero angles. The survey prints ``x_zp - x``; here ``X = (x -
+    x_zp) unit_mm``, because the detector's axes are flipped so that a spot falls at ``X = h
+    tan(beta)``.
 
     The angles are rotations, ``s = (sin(beta_m) cos(alpha_m), sin(alpha_m), cos(beta_m)
     cos(alpha_m))``, as the two axes of a turntable give them. The offsets are added to those
@@ -57,8 +57,8 @@ class LeastSquaresGeometry(ProjectionModel, ParametricModel):
     head turned about x is matched only near beta = 0.
 
     Failure: a NaN row for a NaN feature row and outside the hull. fit raises UnusableDataError
-    below 3 samples, where the samples do not settle the five parameters (all in one place, or one
-    axis swept alone), where it does not converge, or where its residuals are as large as the
+    below 3 samples, where the samples do not determine the five parameters (all in one place, or
+    one axis swept alone), where it does not converge, or where its residuals are as large as the
     field: with swapped or mirrored axes, which it does not know (`pinhole` does).
 
     Cost: 5 transcendental functions and 20 operations a sample; the fit, some ten times eleven

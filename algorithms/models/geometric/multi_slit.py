@@ -17,10 +17,10 @@ from algorithms.documented import documented
 @documented
 @dataclass
 class MultiSlit(SlitModel):
-    """Spots of many slits whose two edges come from the lower and the upper rim of the mask.
+    """Spots of several slits whose edges come from the lower and the upper rim of the mask.
 
-    Light that falls askew is cut by the upper rim on one side and by the lower on the other; what
-    a method makes of both edges is one height, or one for each side of the boresight.
+    Oblique light is cut by the upper rim on one side and by the lower rim on the other; methods
+    then see one height, or one for each side of the boresight.
 
     Parameters
     ----------
@@ -45,9 +45,9 @@ class MultiSlit(SlitModel):
     tan(slant) tan(v)``. Ours: a focal length and a zero a line or slant, the head's turns, plates
     of the drawing by Snell's law (eq:refcomp1).
 
-    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
-    to rest within 6e-8 deg. fit raises UnusableDataError below 5 samples, where they do not settle
-    the parameters, or do not belong together. An inclined mask is left as a residual (`slit`).
+    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not
+    converged within 6e-8 deg. fit raises UnusableDataError below 5 samples, where they do not
+    determine the parameters or are inconsistent. An inclined mask is left as a residual (`slit`).
 
     Cost: 30 times 40 operations a sample; the fit, some ten times twenty passes of 40.
 

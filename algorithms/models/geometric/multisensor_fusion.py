@@ -22,7 +22,7 @@ from algorithms.row_arithmetic import normalise
 @documented
 @dataclass
 class SixFaces(DrawnModel):
-    """Sun vector whose components are the brighter face of each opposite pair of a cube.
+    """Sun vector from the brighter face of each opposite pair of a cube.
 
     Each face's signal is the cosine of its angle to the Sun, so the lit one of a pair is that
     axis's component and its side the sign; the length is then scaled to one.

@@ -20,7 +20,7 @@ _SAME_SLANT_DEG = 1e-6
 @documented
 @dataclass
 class NSlit(SlitModel):
-    """One line under an N of slits, its refraction factor, slant, place and turns fitted.
+    """One line under an N of slits; refraction factor, slant, position and rotation are fitted.
 
     The middle spot moves with the angle along the line alone, the mean of both outer ones with
     both angles; the difference, over the tangent of the slant, is the other angle's.
@@ -50,9 +50,9 @@ class NSlit(SlitModel):
     where there are none. Ours: the line's place and turns under the mask (see `v-slit`) and the
     head's turns; the reference centroids are the shifts.
 
-    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
-    to rest within 6e-8 deg. fit raises UnusableDataError below 5 samples, where they do not settle
-    the parameters, or do not belong together.
+    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not
+    converged within 6e-8 deg. fit raises UnusableDataError below 5 samples, where they do not
+    determine the parameters or are inconsistent.
 
     Cost: 30 times 60 operations a sample; the fit, some ten times twenty passes of 60.
 

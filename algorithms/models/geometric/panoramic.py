@@ -34,10 +34,10 @@ FLATTEST = 1e-6
 @documented
 @dataclass
 class WeightedCells(FacesModel):
-    """Sun vector that fits the cosines of all lit cells best, by weighted least squares.
+    """Sun vector by weighted least squares over the cosines of all lit cells.
 
-    Cells spread over a sphere see the Sun from every side, several at a time; each contributes
-    the more, the more squarely it is lit, and those at grazing incidence are left out.
+    Of cells spread over a sphere several are always lit; each is weighted by its illumination, and
+    those at grazing incidence are excluded.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class WeightedCells(FacesModel):
     Notes
     -----
     Implements: eq:msfpano (model:pano, Zhang2022b): ``s = (A^T W A)^-1 A^T W (I_i / I_max,i)``
-    over lit cells, A their installation vectors. Survey prints ``W A^T`` as the last factor;
+    over lit cells, A their installation vectors. The survey prints ``W A^T`` as the last factor;
     corrected because only ``A^T W`` is weighted least squares (and of the right shape). The
     temperature term ``K (T_i - T_0)`` needs a thermometer on every cell, which signals do not
     hold: it is left out, and ``I_max`` is learnt, one a cell, by least squares of the calibration

@@ -23,10 +23,10 @@ _STEPS = 20
 @documented
 @dataclass
 class WarmCells(WeightedCells):
-    """Weighted least squares over the lit cells, their reference currents led by temperature.
+    """Weighted least squares over all lit cells, with temperature-dependent reference currents.
 
-    Warm cells give other currents in the same light; where they are not told so, cells near the
-    edge of what counts as lit come and go. One thermometer serves all cells.
+    The current of a cell depends on temperature; without a correction cells near the limit of
+    incidence are included or excluded wrongly. One thermometer serves all cells.
 
     Parameters
     ----------
@@ -48,13 +48,13 @@ class WarmCells(WeightedCells):
     Notes
     -----
     Implements: eq:msfpano (model:pano, Zhang2022b): ``s = (A^T W A)^-1 A^T W (I_i / (I_max,T0 - K
-    (T_i - T_0)))`` over lit cells. Survey prints ``W A^T`` as the last factor; corrected because
-    only ``A^T W`` is weighted least squares. T_i is there a cell's own, here the one temperature
-    of the context's ``temperature_K``. I_max,T0 is learnt for every cell, and K in proportion to
-    it, as one amplifier's gain scales both: ``K = coefficient I_max,T0``; both by least squares of
-    the calibration signals on the cosines up to `largest_incidence_deg`. A common factor of all
-    signals leaves the direction as it is, so temperature tells through the reference currents of
-    the calibration and through which cells count as lit.
+    (T_i - T_0)))`` over lit cells. The survey prints ``W A^T`` as the last factor; corrected
+    because only ``A^T W`` is weighted least squares. T_i is there a cell's own, here the one
+    temperature of the context's ``temperature_K``. I_max,T0 is learnt for every cell, and K in
+    proportion to it, as one amplifier's gain scales both: ``K = coefficient I_max,T0``; both by
+    least squares of the calibration signals on the cosines up to `largest_incidence_deg`. A common
+    factor of all signals leaves the direction as it is, so temperature tells through the reference
+    currents of the calibration and through which cells count as lit.
 
     Shapes: signals (N, K), in any common unit, to unit vectors (N, 3), all directions; context
     ``temperature_K`` (N,).

@@ -24,7 +24,7 @@ from algorithms.row_arithmetic import normalise
 @documented
 @dataclass
 class BuiltPinhole(ProjectionModel, ParametricModel):
-    """Pinhole with everything an assembly can do to it: seven numbers and a mirror.
+    """Pinhole projection with all assembly errors: seven parameters and a mirror image.
 
     The detector may be turned about the boresight, mounted from its back, and have another scale
     along either axis; the head may be tilted. What no such sensor explains is left as residual.
@@ -44,7 +44,7 @@ class BuiltPinhole(ProjectionModel, ParametricModel):
     standard errors then say so, and directions hold all the same.
 
     Failure: a NaN row for a NaN feature row and outside the hull. fit raises UnusableDataError
-    below 4 samples, where they do not settle the parameters, or do not belong together.
+    below 4 samples, where they do not determine the parameters or are inconsistent.
 
     Cost: 25 operations and one root a sample; the fit, some ten times fifteen passes.
 

@@ -33,11 +33,11 @@ Coefficient = Literal["common", "each"]
 @documented
 @dataclass
 class RegularPyramid(FacesModel):
-    """Each component of the Sun vector is the signals' mean, weighted by the faces' normals.
+    """Sun vector from signals weighted by the normals of a pyramid's faces.
 
     The columns of a regular pyramid's normals are orthogonal, so least squares over all faces
-    falls apart into three weighted sums. A constant added to all faces cancels in the two
-    horizontal ones, and noise averages out over the faces.
+    separates into three weighted sums. A constant added to all faces cancels in the two horizontal
+    ones, and noise averages out over the faces.
 
     Parameters
     ----------
@@ -58,9 +58,9 @@ class RegularPyramid(FacesModel):
 
     Notes
     -----
-    Implements: eq:msfpyra1, eq:msfpyra2 (model:pyra, Wang2019): ``s = xi (b_x^T / b_x^T b_x,
-    b_y^T / b_y^T b_y, b_z^T / b_z^T b_z) e``, e the signals of the M illuminated faces, b_x, b_y
-    and b_z the components of their normals. Survey prints b_x in all three rows; corrected because
+    Implements: eq:msfpyra1, eq:msfpyra2 (model:pyra, Wang2019): ``s = xi (b_x^T / b_x^T b_x, b_y^T
+    / b_y^T b_y, b_z^T / b_z^T b_z) e``, e the signals of the M illuminated faces, b_x, b_y and b_z
+    the components of their normals. The survey prints b_x in all three rows; corrected because
     each row gives its own component. Azimuths are counted there from +y towards +x; the normals
     here hold them. The length is scaled to one, so a common xi drops out of the direction.
 

@@ -25,10 +25,10 @@ from algorithms.models.geometric.pyramidal import RegularPyramid
 @documented
 @dataclass
 class SteadyPyramid(FacesModel):
-    """Sun vector of a pyramid whose two horizontal components are sums in which constants cancel.
+    """Sun vector of a pyramid from two horizontal sums in which constant light cancels.
 
-    The horizontal parts of a regular pyramid's normals add up to nothing, so what all faces see
-    alike drops out of x and y. The third component is what a vector of length one leaves.
+    The horizontal components of a regular pyramid's normals sum to zero, so light common to all
+    faces cancels in x and y. The third component follows from unit length.
 
     Parameters
     ----------
@@ -51,10 +51,10 @@ class SteadyPyramid(FacesModel):
     Implements: eq:msfpyra1, eq:msfpyra2 (model:pyra, Wang2019) with their first two rows, ``x = xi
     b_x^T e / b_x^T b_x`` and ``y = xi b_y^T e / b_y^T b_y``, and ``z = sqrt(1 - x^2 - y^2)``: the
     survey says that the model makes up for constant interference, which the printed third row
-    carries into z whole (`pyramidal`). Survey prints b_x in all three rows; corrected because each
-    row gives its own component. xi counts here, where a common scale drops out of three rows, and
-    is learnt from the two rows alone by least squares. So the Sun must be as bright as it was
-    then. It is another mathematics, with another failure, hence a class beside `pyramidal`.
+    carries into z whole (`pyramidal`). The survey prints b_x in all three rows; corrected because
+    each row gives its own component. xi counts here, where a common scale drops out of three rows,
+    and is learnt from the two rows alone by least squares. So the Sun must be as bright as it was
+    then. Equations and failures differ, hence a class of its own beside `pyramidal`.
 
     Shapes: signals (N, M), in any common unit, to unit vectors (N, 3), those with ``z > 0``.
 

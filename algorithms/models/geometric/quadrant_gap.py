@@ -23,10 +23,10 @@ _FLATTEST = 0.05
 @documented
 @dataclass
 class QuadrantGap(ForwardModel):
-    """Spot behind one aperture on four photodiodes with a gap between, which is fitted.
+    """Spot of one aperture on four photodiodes with a fitted gap between them.
 
-    The light in the gap is missing from the signals, more of it the nearer the spot's middle is to
-    the gap. The lit areas of the quadrants say which spot gives the balances measured.
+    Light in the gap is missing from the signals, most of it when the spot is centred on the gap.
+    The lit areas of the quadrants say which spot gives the balances measured.
 
     Parameters
     ----------
@@ -49,19 +49,19 @@ class QuadrantGap(ForwardModel):
     Implements: eq:gapcomp (model:qpd, Faizullin2017): ``G_i = S_Gi / k_G (A + B + C + D) / (S_A +
     S_B + S_C + S_D)`` is the light that falls into a piece of the gap: its lit area, times the
     signals over the lit areas of the quadrants. Added to the signals it gives the balance of the
-    whole spot. All areas follow from the spot's place, which is what is asked; so the equation is
-    solved, by Newton's method, for the place whose ``S_A .. S_D`` have the balances measured,
-    ``s_a = (S_B + S_C - S_A - S_D) / (S_A + S_B + S_C + S_D)`` and as much for ``s_b`` (alg:VB).
-    The coefficient k_G makes up for a gap that is not known; here its width is fitted instead.
-    Behind a square aperture the balance is ``2 X / (d - gap)``, exactly linear: focal length and
-    gap have one effect between them, and the gap stays as drawn. Ours: the head's turns.
+    whole spot. All areas follow from the spot's place, which is wanted; so the equation is solved,
+    by Newton's method, for the place whose ``S_A .. S_D`` have the balances measured, ``s_a = (S_B
+    + S_C - S_A - S_D) / (S_A + S_B + S_C + S_D)`` and as much for ``s_b`` (alg:VB). The
+    coefficient k_G makes up for a gap that is not known; here its width is fitted instead. Behind
+    a square aperture the balance is ``2 X / (d - gap)``, exactly linear: focal length and gap have
+    one effect between them, and the gap stays as drawn. Ours: the head's turns.
 
     Shapes: balances ``(s_a, s_b)`` (N, 2), dimensionless, to unit vectors (N, 3).
 
     Failure: a NaN row for a NaN feature row, outside the hull, where a balance is not within (-1,
-    1) (all light on one half) and where the steps have not come to rest within 6e-8 deg. fit
-    raises UnusableDataError below 4 samples, where they do not settle the parameters, or do not
-    belong together. A detector that cuts the spot off, and walls of the aperture, are not known.
+    1) (all light on one half) and where the steps have not converged within 6e-8 deg. fit raises
+    UnusableDataError below 4 samples, where they do not determine the parameters or are
+    inconsistent. A detector that cuts the spot off, and walls of the aperture, are not known.
 
     Cost: of a round aperture 30 times 150 operations a sample, of a square one 30 times 20.
 

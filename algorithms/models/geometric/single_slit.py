@@ -17,10 +17,10 @@ from algorithms.documented import documented
 @documented
 @dataclass
 class DeflectedSlits(SlitModel):
-    """Slits at another height, not square to their lines and with one end higher than the other.
+    """Slits with errors of height, deflection and inclination over their lines.
 
-    Each line measures one angle; a slit that is deflected or inclined lets the other one in. The
-    three errors of each slit, both zero points and the head's tilts are fitted together.
+    Each line measures one angle; a deflected or inclined slit couples in the other. The three
+    errors of each slit, both zero points and the head's tilts are fitted together.
 
     Parameters
     ----------
@@ -44,10 +44,10 @@ class DeflectedSlits(SlitModel):
     axes alike (a turn about the boresight is both deflections); plates of the drawing, which take
     ``t (1 - 1 / sqrt(n^2 + (n^2 - 1) tan^2))`` off each focal length (eq:refcomp1).
 
-    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
-    to rest within 6e-8 deg. fit raises UnusableDataError below 6 samples, where they do not settle
-    the parameters, or do not belong together. In a narrow field a tilt moves spots as the centre
-    does; standard errors then say so.
+    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not
+    converged within 6e-8 deg. fit raises UnusableDataError below 6 samples, where they do not
+    determine the parameters or are inconsistent. In a narrow field a tilt moves spots as the
+    centre does; standard errors then say so.
 
     Cost: 30 times 60 operations a sample; the fit, some ten times twenty passes of 60.
 

@@ -21,7 +21,7 @@ _DIAGONAL = math.sqrt(0.5)  # sine and cosine of 45 deg
 
 @dataclass
 class DeflectedSlitPairs(ForwardModel):
-    """Slits over pairs of photodiodes, at another height, deflected or inclined.
+    """Slits over photodiode pairs, with errors of height, deflection and inclination.
 
     A strip of light lies over each pair; the balance says how far its middle is from the gap, as a
     line of pixels would. Both slits' errors, zero points and the head's tilts are fitted together.
@@ -33,8 +33,8 @@ class DeflectedSlitPairs(ForwardModel):
     unit_mm : float
         Displacement for one unit of balance, positive: a slit's width over sqrt(2).
     extrapolation : float
-        How far past the convex hull of the calibrated features answers may go, as a share of its
-        half width, from 0 up; infinity for anywhere.
+        Allowed extrapolation beyond the convex hull of the calibrated features, as a share of its
+        half width, at least 0; infinity: unlimited.
 
     Attributes
     ----------
@@ -68,9 +68,9 @@ class DeflectedSlitPairs(ForwardModel):
 
     Shapes: balances ``(s_a, s_b)`` (N, 2), dimensionless, to unit vectors (N, 3).
 
-    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
-    to rest within 6e-8 deg. fit raises UnusableDataError below 6 samples, where they do not settle
-    the parameters, or do not belong together.
+    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not
+    converged within 6e-8 deg. fit raises UnusableDataError below 6 samples, where they do not
+    determine the parameters or are inconsistent.
 
     Cost: 30 times 60 operations a sample; the fit, some ten times twenty passes of 60.
 

@@ -33,9 +33,9 @@ class SolarPanels(DrawnModel):
     Notes
     -----
     Implements: eq:msfsc (model:solarpanel, Nurgizat2021): ``n = sum_i n_i I_i / sqrt(sum_i
-    I_i^2)`` over lit panels. Survey prints ``sum_i n_i I_0 / sum_i I_i^2``; corrected because
-    that ratio has a unit and no panel's direction weighs more than another's. The corrected one
-    is a unit vector where one panel of each pair is lit; the length is scaled to one where stray
+    I_i^2)`` over lit panels. The survey prints ``sum_i n_i I_0 / sum_i I_i^2``; corrected because
+    that ratio has a unit and no panel's direction weighs more than another's. The corrected one is
+    a unit vector where one panel of each pair is lit; the length is scaled to one where stray
     light or albedo lights both. A panel is lit whose signal is positive.
 
     Shapes: signals (N, 6), in any common unit, to unit vectors (N, 3), all directions.

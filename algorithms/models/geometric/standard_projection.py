@@ -20,10 +20,10 @@ from algorithms.models.nominal_projection import (
 @documented
 @dataclass
 class StandardProjection(ProjectionModel, DrawnModel):
-    """Direction from the aperture's centre through the spot, by the nominal geometry.
+    """Direction from the spot through the centre of the aperture, with the nominal geometry.
 
-    One multiplication an axis turns the spot's place into the tangents of the Sun angles; errors
-    of focal length, centre and alignment go straight into the result.
+    One multiplication per axis converts the spot's position to tangents of the Sun angles; errors
+    of focal length, centre and alignment are not corrected.
 
     Parameters
     ----------

@@ -17,10 +17,10 @@ from algorithms.documented import documented
 @documented
 @dataclass
 class VSlit(SlitModel):
-    """One line under a V of two slits, with its place and turns, and the glass between, fitted.
+    """One line under a V of two slits; position and rotation of the line and the glass are fitted.
 
-    Both angles come from one line, so every error of how it stands under the mask mixes them. Five
-    numbers place the line, two the glass, and three turn the head against the outer frame.
+    Both angles come from one line, so every error of its position and rotation couples them. Five
+    parameters describe the line, two the glass, and three the rotation of the head.
 
     Parameters
     ----------
@@ -43,15 +43,15 @@ class VSlit(SlitModel):
     the slanted one (eq:vslit2, whose angle v counts the other way). Six structural and two
     refraction parameters in the survey. Of R's three turns, that about the line itself is a turn
     of the head with a shift T_2: with angles counted in the mask's frame, as printed, no sample
-    tells them apart. So five are left here, T and two turns, and the head has three of its own,
+    distinguishes them. So five are left here, T and two turns, and the head has three of its own,
     which the survey leaves out. X is counted without refraction in print; here a plate takes ``t
     (1 - 1 / sqrt(n^2 + (n^2 - 1) tan^2))`` off the height (Snell's law, eq:refcomp1), for all
     plates together, starting from their whole thickness and mean index.
 
-    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not come
-    to rest within 6e-8 deg. fit raises UnusableDataError below 5 samples (6 with glass), where
-    they do not settle the parameters, or do not belong together. Thickness and index act alike but
-    far off the boresight: their standard errors are large together, those of directions are not.
+    Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not
+    converged within 6e-8 deg. fit raises UnusableDataError below 5 samples (6 with glass), where
+    they do not determine the parameters or are inconsistent. Thickness and index act alike but far
+    off the boresight: their standard errors are large together, those of directions are not.
 
     Cost: 30 times 60 operations a sample; the fit, some ten times twenty passes of 60.
 

@@ -49,10 +49,10 @@ DEGREES = (2, 4, 6, 8, 12)
 @documented
 @dataclass
 class BlendedPolynomials(ProjectionModel):
-    """Nominal angles corrected by polynomials of one angle, blended between rows of the other.
+    """Nominal angles corrected by polynomials of one angle, interpolated along the other angle.
 
-    A table of polynomial coefficients takes far less room than one of nodes; weighting the two
-    neighbouring polynomials keeps the correction smooth from row to row.
+    A table of polynomial coefficients is much smaller than one of nodes; interpolation between
+    neighbouring polynomials keeps the correction smooth.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class BlendedPolynomials(ProjectionModel):
         calibration samples by cross-validation, with the smoothing.
     smoothing : float, optional
         Weight of the squared second differences of coefficients from row to row against one
-        sample's squared error, positive; 1e-3 only fills rows no sample settles. None: chosen.
+        sample's squared error, positive; 1e-3 only fills rows no sample determines. None: chosen.
 
     Attributes
     ----------
@@ -78,13 +78,13 @@ class BlendedPolynomials(ProjectionModel):
 
     Notes
     -----
-    Implements: model:lut (He2013), in words there: for nominal angles (eq:stdproj) between rows k
-    and k + 1, ``e = (1 - w) P_k(beta) + w P_{k+1}(beta)`` with w the fraction of the interval. All
-    rows are fitted at once to samples anywhere, in Chebyshev polynomials, which span the same
-    functions without the loss of digits.
+    Implements: model:lut (He2013), described in words: for nominal angles (eq:stdproj) between
+    rows k and k + 1, ``e = (1 - w) P_k(beta) + w P_{k+1}(beta)`` with w the fraction of the
+    interval. All rows are fitted at once to samples anywhere, in Chebyshev polynomials, which span
+    the same functions without the loss of digits.
 
     Failure: a NaN row for a NaN feature row, outside the hull, or where an angle reaches 90
-    degrees. fit raises UnusableDataError below 2 (n + 1) samples, where they do not settle a
+    degrees. fit raises UnusableDataError below 2 (n + 1) samples, where they do not determine a
     polynomial on two rows, where they settle the rows so badly that rounding would show, or past
     250,000 coefficients.
 

@@ -38,10 +38,10 @@ from algorithms.models.non_physical.regression_axes import sun_from_target
 @documented
 @dataclass
 class ErrorTable(ProjectionModel):
-    """Nominal angles corrected by a table of their errors, interpolated between its nodes.
+    """Nominal angles corrected by an interpolated table of their errors.
 
-    Whatever the error comes from, the table holds it as measured over the field of view; its
-    accuracy is that of the calibration samples and of the interval between nodes.
+    The table stores the measured error over the field of view, whatever its cause; accuracy
+    depends on the calibration samples and the interval between nodes.
 
     Parameters
     ----------
@@ -49,8 +49,8 @@ class ErrorTable(ProjectionModel):
         Distance between nodes, positive; the study's is 1.
     smoothing : float, optional
         Weight of the table's squared second differences against one sample's squared error,
-        positive; 1e-3 only fills nodes that no sample settles. None: chosen from the calibration
-        samples by cross-validation, on a table as coarse as their poses.
+        positive; 1e-3 only fills nodes that no sample determines. None: chosen from the
+        calibration samples by cross-validation, on a table as coarse as their poses.
 
     Attributes
     ----------
@@ -63,9 +63,9 @@ class ErrorTable(ProjectionModel):
 
     Notes
     -----
-    Implements: model:lut (He2013), in words there: ``angle = nominal + e(nominal)``, nominal by
-    eq:stdproj, e bilinear between the nodes of a two-dimensional table of 1 degree interval. The
-    nodes are the least-squares ones for samples anywhere, so repeats are averaged.
+    Implements: model:lut (He2013), described in words: ``angle = nominal + e(nominal)``, nominal
+    by eq:stdproj, e bilinear between the nodes of a two-dimensional table of 1 degree interval.
+    The nodes are the least-squares ones for samples anywhere, so repeats are averaged.
 
     Failure: a NaN row for a NaN feature row, outside the hull, or where an angle reaches 90
     degrees. fit raises UnusableDataError below 3 samples, for samples on one line, or for a table

@@ -13,10 +13,10 @@ from algorithms.documented import documented
 @documented
 @dataclass
 class CodedCorrelation(CodedMask):
-    """The part of a coded mask where the correlation peaks, then one direction from all spots.
+    """Visible part of a coded mask by correlation, then one direction from all spots.
 
-    Spots and apertures are correlated over all displacements of the mask; the highest peak tells
-    the sub-field. All spots that fit there give the direction together.
+    Spots and apertures are correlated over all displacements of the mask; the highest peak gives
+    the sub-field. All spots that match there give one direction.
 
     Notes
     -----

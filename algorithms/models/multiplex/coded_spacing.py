@@ -13,28 +13,29 @@ from algorithms.documented import documented
 @documented
 @dataclass
 class CodedSpacing(CodedMask):
-    """The part of a coded mask that spacings name, then one direction from all spots.
+    """Visible part of a coded mask by spacings of spots, then one direction from all spots.
 
-    Which sub-field is seen, the spacings of neighbouring spots tell, and their sizes where the mask
-    codes by size. All spots that fit there give the direction together.
+    Spacings of neighbouring spots identify the visible sub-field; sizes do, too, if the mask codes
+    by size. All spots that match there give one direction.
 
     Notes
     -----
-    Implements: model:multiplex, model:code. The survey tells the masks and no algorithm: groups of
-    three whose distances are unique (Wei2013, Wei2014), distances and sizes (Wang2015), apertures
-    placed obliquely without symmetry (Wei2017). Here a table holds the pairs of neighbouring
-    apertures by their spacing (x, y), in cells of the tolerance; the rarest of the spacings seen
-    name places of the mask, and the place with the fewest faults is looked at again.
-    That place is compared with every other one that is nearly as likely, decided exactly, not among
-    those tried: ``p = t(r) (100 A)^-left (0.9 0.01^dark + 0.1 0.2^dark)``, r what the n spots it
-    explains are from their apertures less their mean, t the density of residuals of the design's
-    deviation (a fifth of the tolerance) or, of one list in ten thousand, of one that the list alone
-    tells; A the detector's area. It is kept if it is `odds` times as likely as any other. Then ``D
-    = sum(p_i - a_i - o_i) / n`` over the n spots that agree is the least-squares displacement, and
-    so direction, of all of them: parallel light moves every spot alike. Spots far from the median
-    are left out. o_i are offsets of the built apertures, predicted from how spots of one frame lie
-    to each other (best linear unbiased; no error of the turntable enters); focal length, centre,
-    turns and tilts are fitted to D by least squares of the angles, through the cover glass.
+    Implements: model:multiplex, model:code. The survey describes the masks, but no algorithm:
+    groups of three whose distances are unique (Wei2013, Wei2014), distances and sizes (Wang2015),
+    apertures placed obliquely without symmetry (Wei2017). Here a table holds the pairs of
+    neighbouring apertures by their spacing (x, y), in cells of the tolerance; the rarest of the
+    spacings seen name places of the mask, and the place with the fewest faults is looked at again.
+    That place is compared with every other one that is nearly as likely, decided exactly, not
+    among those tried: ``p = t(r) (100 A)^-left (0.9 0.01^dark + 0.1 0.2^dark)``, r what the n
+    spots it explains are from their apertures less their mean, t the density of residuals of the
+    design's deviation (a fifth of the tolerance) or, of one list in ten thousand, of one that the
+    list alone tells; A the detector's area. It is kept if it is `odds` times as likely as any
+    other. Then ``D = sum(p_i - a_i - o_i) / n`` over the n spots that agree is the least-squares
+    displacement, and so direction, of all of them: parallel light moves every spot alike. Spots
+    far from the median are left out. o_i are offsets of the built apertures, predicted from how
+    spots of one frame lie to each other (best linear unbiased; no error of the turntable enters);
+    focal length, centre, turns and tilts are fitted to D by least squares of the angles, through
+    the cover glass.
 
     Failure: a NaN row for a NaN feature row, outside the cone of calibrated directions, beyond the
     field of view, where fewer than `agreeing` spots agree, and where another place explains the

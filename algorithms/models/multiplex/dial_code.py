@@ -177,7 +177,7 @@ def fit_tangents(predictor: Predictor, start: Floats, sun: Floats, by: str) -> F
     Raises
     ------
     UnusableDataError
-        Where the samples do not settle every parameter, or the fit does not converge.
+        Where the samples do not determine every parameter, or the fit does not converge.
     """
     from scipy.optimize import least_squares  # noqa: PLC0415 - SciPy, at the first fit only
 

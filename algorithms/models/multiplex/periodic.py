@@ -24,11 +24,11 @@ _START = (0.0, 0.0, 0.0, 1.0, 0.0)
 @documented
 @dataclass
 class PeriodicCode(DialModel):
-    """Coarse cell and fine phase of each dial, its periodic error and its assembly taken out.
+    """Coarse cell and fine phase of each dial, corrected for periodic error and assembly.
 
-    The Gray code tells which period of the fine rows the light falls on, their phase where in
-    it. Rows displaced against each other make the phase err twice a period; a dial off centre,
-    tilted or too far away bends the scale of tangents into a fraction of straight lines.
+    The Gray code gives the period of the fine rows, their phase the position within the period.
+    Rows displaced against each other give the phase an error of two cycles per period; a dial off
+    centre, tilted or too far away bends the scale of tangents into a fraction of straight lines.
 
     Attributes
     ----------
@@ -40,18 +40,18 @@ class PeriodicCode(DialModel):
 
     Notes
     -----
-    Implements: eq:pamulti, eq:fourier (model:periodic, Fan2013): ``alpha_s = alpha_1 + alpha_2 +
-    k sin(4 pi alpha / theta_0 + t)``, ``alpha_comp = arctan((b - d tan(alpha_s)) / (c
-    tan(alpha_s) - a))``, the fine phase from ``F3 - F1`` and ``F4 - F2``. Survey prints
-    ``sin(4 pi alpha + t)``; corrected because the error repeats twice per fine period theta_0.
-    The tracks of a flat dial are even in the tangent, so alpha_1, alpha_2 and k add up there and
-    the period is the phase's. (a, b, c, d) are one number too many: only their ratios count. They
-    and (k, t) are fitted by least squares of the angles, an axis at a time.
+    Implements: eq:pamulti, eq:fourier (model:periodic, Fan2013): ``alpha_s = alpha_1 + alpha_2 + k
+    sin(4 pi alpha / theta_0 + t)``, ``alpha_comp = arctan((b - d tan(alpha_s)) / (c tan(alpha_s) -
+    a))``, the fine phase from ``F3 - F1`` and ``F4 - F2``. The survey prints ``sin(4 pi alpha +
+    t)``; corrected because the error repeats twice per fine period theta_0. The tracks of a flat
+    dial are even in the tangent, so alpha_1, alpha_2 and k add up there and the period is the
+    phase's. (a, b, c, d) are one number too many: only their ratios count. They and (k, t) are
+    fitted by least squares of the angles, an axis at a time.
 
     Failure: a NaN row for a NaN feature row, for fine rows without contrast, where cell and phase
     contradict each other, and where the direction would lie behind the detector. What couples the
     axes (dials turned against the reference, slits askew) is not in the equation and stays. fit
-    raises UnusableDataError where the samples do not settle the ten parameters.
+    raises UnusableDataError where the samples do not determine the ten parameters.
 
     Cost: 2 arc tangents, 2 sines and 60 operations a sample.
 

@@ -20,10 +20,10 @@ from algorithms.documented import documented
 @documented
 @dataclass
 class ReticlePhase(RulerModel):
-    """A reticle of equal slits over a line of pixels, placed by the phase of all of its light.
+    """Reticle of equal slits over a line of pixels, located by the phase of its light.
 
     All slits are read together: the light is correlated with the reticle's period, so that N slits
-    are as precise as N measurements of one. The reticle's ends tell which slit is which.
+    are as precise as N measurements of one. The ends of the reticle identify the slits.
 
     Parameters
     ----------
@@ -45,8 +45,8 @@ class ReticlePhase(RulerModel):
 
     Failure: a NaN row for a NaN feature row, outside the cone of calibrated directions, where no
     place of the reticle has most light by 0.4 of a slit's, where a slit has less than 0.3 of their
-    mean light, as beyond the end of a line, and where the phase has no contrast.
-    fit raises UnusableDataError below 6 samples, and where they do not settle the parameters.
+    mean light, as beyond the end of a line, and where the phase has no contrast. fit raises
+    UnusableDataError below 6 samples, and where they do not determine the parameters.
 
     Cost: 12 operations a pixel.
 

@@ -22,10 +22,10 @@ from algorithms.documented import documented
 @documented
 @dataclass
 class OpticalVernier(RulerModel):
-    """Slits a little farther apart than the marks of a ruler, which three pixels each make.
+    """Vernier: slits slightly farther apart than marks of three pixels each.
 
-    Slits cross the marks one after the other as the light moves, so that few and large pixels tell
-    fine steps. Slits left out are the position code, which tells by how many marks.
+    Slits cross the marks one after the other as the light moves, so few large pixels resolve fine
+    steps. The omitted slits are the position code, which gives the number of whole marks.
 
     Parameters
     ----------
@@ -37,17 +37,18 @@ class OpticalVernier(RulerModel):
     -----
     Implements: model:multiplex, model:periodic (Chen2006). The survey prints no equation. The
     position code ``sum(I at slits) - sum(I at gaps)`` tells the primary place to a pixel. Of each
-    slit k at ``x_k`` the phase among marks of m pixels, m the whole pixels of its period, is
-    ``arg sum(I(u) exp(2 pi j u / m))``; less what the vernier has gained, ``2 pi x_k / m``, it is
-    the same for all slits, and their sum the pinpoint place. A slit's light in so few pixels errs
-    with its phase; the slits of a vernier stand evenly over all phases, which cancels that.
-    The shifts of both lines make a spot, and height, deflection and inclination of the slits over
-    each line, zero points and tilts are fitted to it as in the slit model (eq:slit).
+    slit k at ``x_k`` the phase among marks of m pixels, m the whole pixels of its period, is ``arg
+    sum(I(u) exp(2 pi j u / m))``; less what the vernier has gained, ``2 pi x_k / m``, it is the
+    same for all slits, and their sum the pinpoint place. A slit's light in so few pixels has an
+    error that depends on its phase; the slits of a vernier stand evenly over all phases, which
+    cancels that. The shifts of both lines make a spot, and height, deflection and inclination of
+    the slits over each line, zero points and tilts are fitted to it as in the slit model
+    (eq:slit).
 
     Failure: a NaN row for a NaN feature row, outside the cone of calibrated directions, where no
     place shows the code by 0.4 of a slit's light more than all others, where a slit has less than
-    0.3 of their mean light, and where the phase has no contrast. fit raises UnusableDataError below
-    6 samples, and where they do not settle the parameters.
+    0.3 of their mean light, and where the phase has no contrast. fit raises UnusableDataError
+    below 6 samples, and where they do not determine the parameters.
 
     Cost: 20 operations a slit and place, a place a pixel: some 20 000 of 16 slits on 100 pixels.
 

@@ -30,10 +30,10 @@ _STEPS = 400
 @documented
 @dataclass
 class AxisNetworks(CalibratedModel):
-    """Each Sun angle by a network of its own, of sigmoids of both features.
+    """Each Sun angle by its own network of sigmoid units with both features as inputs.
 
-    It needs to know nothing of the sensor: distortion, tilt, and light that does not fall as
-    drawn are learnt as they come, as far as poses show them.
+    No sensor model is needed: distortion, tilt and other deviations from the drawing are learnt,
+    as far as the poses show them.
 
     Parameters
     ----------
@@ -53,14 +53,14 @@ class AxisNetworks(CalibratedModel):
 
     Notes
     -----
-    Implements: model:ann (model:nn, Rufino2009b), in words there: ``alpha = v_0 + sum_j v_j /
+    Implements: model:ann (model:nn, Rufino2009b), described in words: ``alpha = v_0 + sum_j v_j /
     (1 + exp(-(w_j . (x, y) + b_j)))`` and the same for beta, each with weights of its own. The
-    study's inputs are the mean centroid of the spots that its mask casts, always as many (S-FOV) or
-    as many as are seen (X-FOV); here features are the displacement of the whole pattern, whatever
-    was seen of it, so that no input jumps where a spot drops out, and both modes are one network
-    that was shown other poses. How many units the study has is not in what was mapped; twelve are
-    ours. Trained by Levenberg and Marquardt's method on four fifths of the poses until the error on
-    the other fifth, in blocks, no longer falls.
+    study's inputs are the mean centroid of the spots that its mask casts, always as many (S-FOV)
+    or as many as are seen (X-FOV); here features are the displacement of the whole pattern,
+    whatever was seen of it, so that no input jumps where a spot drops out, and both modes are one
+    network that was shown other poses. How many units the study has is not known; twelve are ours.
+    Trained by Levenberg and Marquardt's method on four fifths of the poses until the error on the
+    other fifth, in blocks, no longer falls.
 
     Failure: a NaN row for a NaN feature row, outside the hull, or where an angle reaches 90
     degrees. fit raises UnusableDataError for fewer poses than a network has weights, 49 for twelve

@@ -35,11 +35,11 @@ MAX_SIGNALS = 8
 @documented
 @dataclass
 class DeepSignals(Corrected, FacesModel):
-    """A Sun direction from all signals in common proportion, corrected by a deep network.
+    """Sun direction linear in all signals, corrected by a deep network.
 
-    The network learns from the signals themselves how far the direction is off: by light from the
-    Earth, by responses that are no cosine, by faces in the dark. No model of any of these is
-    needed, only samples that show them.
+    From the signals the network learns the error of the direction: by Earthlight, by responses
+    that are not a cosine, by unlit faces. No model of any of these is needed, only samples that
+    show them.
 
     Parameters
     ----------
@@ -56,23 +56,22 @@ class DeepSignals(Corrected, FacesModel):
 
     Notes
     -----
-    Implements: model:dnn (model:nn, Soken2023), in words there: a network of the photodiodes'
+    Implements: model:dnn (model:nn, Soken2023), described in words: a network of the photodiodes'
     voltages gives the errors of the two Sun angles, trained on attitudes known from elsewhere in
     orbit or on the ground. Its layers are the study's, 4-n-n-2: units as many as voltages with a
-    log-sigmoid, two layers of hyperbolic tangents, linear outputs. The study does not give n in
-    what was mapped; eight is ours. So is the direction that is corrected, linear in the signals by
-    least squares, where the study's is its sensor's own. Errors are tangents along two axes across
-    the direction; of a sensor that was calibrated with Suns behind it too, the three components of
-    the vector to be added, for no two axes are smooth on a whole sphere. Signals are not
-    normalised: their strength beside the Sun's tells of other light. Trained by Levenberg and
-    Marquardt's method on four fifths of the poses until the error on the other fifth, in blocks, no
-    longer falls.
+    log-sigmoid, two layers of hyperbolic tangents, linear outputs. n is not known from the study;
+    eight is ours. So is the direction that is corrected, linear in the signals by least squares,
+    where the study's is its sensor's own. Errors are tangents along two axes across the direction;
+    of a sensor that was calibrated with Suns behind it too, the three components of the vector to
+    be added, for no two axes are smooth on a whole sphere. Signals are not normalised, because
+    their strength shows light other than the Sun's. Trained by Levenberg and Marquardt's method on
+    four fifths of the poses until the error on the other fifth, in blocks, no longer falls.
 
-    Failure: a NaN row for a NaN feature row, and outside the cone. What the calibration never
-    showed, such as the Earth's light to one made on the ground, is corrected wrongly. Faces that
-    all see Sun and Earth measure little but the sum of both: where the Earth stands differently for
-    the same sum, as on a satellite that tumbles, no network can tell. fit raises
-    UnusableDataError for fewer samples than the network has weights an output, 75 of four signals.
+    Failure: a NaN row for a NaN feature row, and outside the cone. Effects that are absent in the
+    calibration, such as Earthlight in one made on the ground, are corrected wrongly. Faces that
+    all see Sun and Earth measure little but their sum: if the same sum fits several positions of
+    the Earth, as on a tumbling satellite, no network can resolve it. fit raises UnusableDataError
+    for fewer samples than the network has weights an output, 75 of four signals.
     UnsuitableDesignError for more than eight detectors.
 
     Cost: 1200 operations a sample for four signals. A fit takes some 10 ms a sample and start.

@@ -29,10 +29,10 @@ _CUBIC = tuple((total - j, j) for total in range(4) for j in range(total + 1))
 @documented
 @dataclass
 class DeepSurface(Corrected, CalibratedModel):
-    """Cubic surfaces of both features, and a deep network for what they leave.
+    """Cubic surfaces of both features, with a deep network for the residuals.
 
-    The surfaces take up what is smooth, the network what is not: a spot that is cut off at the
-    field's edge bends a response more than a few powers follow.
+    The surfaces fit the smooth part and the network the rest, such as a spot cut off at the edge
+    of the field.
 
     Attributes
     ----------

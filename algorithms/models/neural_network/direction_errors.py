@@ -208,7 +208,7 @@ def least_squares(design: Floats, wanted: Floats, by: str) -> Floats:
     Raises
     ------
     UnusableDataError
-        If the samples do not settle them.
+        If the samples do not determine them.
     """
     from algorithms.models.neural_network.cholesky_kernel import solve  # noqa: PLC0415 - Numba
     from algorithms.models.neural_network.portable_kernel import products  # noqa: PLC0415 - Numba

@@ -77,7 +77,7 @@ def fit_axes(
     Raises
     ------
     UnusableDataError
-        If the samples do not settle the terms, or do not spread along an axis.
+        If the samples do not determine the terms, or do not spread along an axis.
     """
     middle, half = feature_scaling(features, by)
     scaled = (features - middle) / half

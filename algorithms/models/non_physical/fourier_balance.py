@@ -30,10 +30,10 @@ _FUNDAMENTAL = np.pi / 2.0
 @documented
 @dataclass
 class FourierBalance(CalibratedModel):
-    """Each Sun angle as a straight line on its axis' balance and a Fourier series of the rest.
+    """Each Sun angle as a linear function of its balance plus a Fourier series.
 
-    What a quadrant's balance departs from a line is smooth, and periodic where the light itself
-    is, as behind interference or in gaps of a mask; sines and cosines follow either.
+    The departure of a quadrant's balance from a line is smooth, and periodic if the light is
+    (interference, gaps of a mask); sines and cosines follow both.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class FourierBalance(CalibratedModel):
 
     Notes
     -----
-    Implements: model:fourier (Pentke2022), in words there: ``alpha = a_0 + a_1 u + sum_n A_n
+    Implements: model:fourier (Pentke2022), described in words: ``alpha = a_0 + a_1 u + sum_n A_n
     cos(n w u) + B_n sin(n w u)``, ``beta`` alike. The line is ours, and so is the period of twice
     the calibrated range: a series of the range's own period must come back at one end to where it
     began at the other, which an angle does not, nor its error.
@@ -65,7 +65,7 @@ class FourierBalance(CalibratedModel):
 
     Failure: a NaN row for a NaN feature row, outside the hull, or where an angle reaches 90
     degrees. fit raises UnusableDataError below 2 + 2 N different balances an axis, or where the
-    samples do not settle every term.
+    samples do not determine every term.
 
     Cost: 4 tangents, 4 divisions and 14 N operations a sample.
 

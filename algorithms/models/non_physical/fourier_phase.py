@@ -24,11 +24,11 @@ MAX_HARMONICS = 16
 @documented
 @dataclass
 class FourierPhase(DialModel):
-    """Coarse cell and fine phase of each dial, the phase error a Fourier series of the phase.
+    """Coarse cell and fine phase of each dial; the phase error is a Fourier series.
 
-    Whatever the fine rows are like, their phase errs periodically: once a period by gains that
-    differ, twice by rows displaced, four times by windows with plain edges. The series holds it
-    all, and one projection of the plane takes both dials' assembly out together.
+    The phase of the fine rows has a periodic error: one cycle per period from unequal gains, two
+    from displaced rows, four from plain windows. The series fits all of them, and one projective
+    transformation corrects the assembly of both dials.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class FourierPhase(DialModel):
 
     Failure: a NaN row for a NaN feature row, for fine rows without contrast, where cell and phase
     contradict each other, and where the direction would lie behind the detector. fit raises
-    UnusableDataError where the samples do not settle every parameter.
+    UnusableDataError where the samples do not determine every parameter.
 
     Cost: 2 arc tangents, 4 sines a harmonic and 60 operations a sample.
 

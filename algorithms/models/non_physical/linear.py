@@ -25,10 +25,10 @@ from algorithms.models.non_physical.regression_axes import (
 @documented
 @dataclass
 class LinearFit(CalibratedModel):
-    """Each Sun angle as a straight line on the feature of its axis.
+    """Each Sun angle as a linear function of the feature of its axis.
 
-    Two numbers an axis make the smallest and fastest calibration there is; it holds over a
-    narrow field of view, where the sensor's response is straight.
+    Two parameters per axis: the smallest and fastest calibration. It holds over a narrow field of
+    view, where the response is linear.
 
     Parameters
     ----------
@@ -46,8 +46,8 @@ class LinearFit(CalibratedModel):
 
     Notes
     -----
-    Implements: model:linear (Faizullin2017), in words there: ``alpha = c_0 + c_1 y``,
-    ``beta = d_0 + d_1 x`` by ordinary least squares.
+    Implements: model:linear (Faizullin2017), described in words: ``alpha = c_0 + c_1 y``, ``beta =
+    d_0 + d_1 x`` by ordinary least squares.
 
     Failure: a NaN row for a NaN feature row, outside the hull or where an angle reaches 90 degrees.
     fit raises UnusableDataError below 3 samples, where they lie on one line, or where a line

@@ -30,10 +30,10 @@ from algorithms.row_arithmetic import normalise
 @documented
 @dataclass
 class AveragedPanelCurves(FacesModel):
-    """One trigonometric curve for both panels of a pair; the lit one's gives an angle, its sign.
+    """One trigonometric curve for both panels of a pair; the lit panel gives angle and sign.
 
-    Averaging opposite panels leaves three curves to keep and to invert, and lets the panels'
-    differences through. Which panels are lit says which of the inverses' quadrants is meant.
+    Averaging opposite panels leaves only three curves to invert, but does not correct differences
+    between panels. The lit panels determine the quadrant.
 
     Parameters
     ----------
@@ -53,11 +53,11 @@ class AveragedPanelCurves(FacesModel):
 
     Notes
     -----
-    Implements: model:trig (Richie2015, averaged combined panel curves), in words there: the scaled
-    measurements of opposite panels, merged, are fitted with ``m = a + b cos(theta) + c cos(2
-    theta)``, theta the angle of incidence, over the samples that light them. Along each pair the
-    brighter panel is the lit one; its curve's inverse is ``cos(theta)``, with the panel's sign a
-    component of the Sun vector. In the plane of a slew two of them are the four estimates of its
+    Implements: model:trig (Richie2015, averaged combined panel curves), described in words: the
+    scaled measurements of opposite panels, merged, are fitted with ``m = a + b cos(theta) + c
+    cos(2 theta)``, theta the angle of incidence, over the samples that light them. Along each pair
+    the brighter panel is the lit one; its curve's inverse is ``cos(theta)``, with the panel's sign
+    a component of the Sun vector. In the plane of a slew two of them are the four estimates of its
     angle, arc cosines and arc sines, of which the lit sides leave one each; the vector's direction
     is what they agree on, weighted (ours, for Suns off the plane too).
 
@@ -65,7 +65,7 @@ class AveragedPanelCurves(FacesModel):
 
     Failure: a NaN row for a NaN feature row, where no panel shows more than its curve at grazing
     light, past a curve's turning point, and outside the cone. fit raises UnusableDataError where a
-    pair is lit by fewer than eight samples or by some that do not settle its curve, or where a
+    pair is lit by fewer than eight samples or by some that do not determine its curve, or where a
     curve turns back among them.
 
     Cost: 30 operations and 4 roots a sample.

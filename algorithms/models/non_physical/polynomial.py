@@ -67,8 +67,7 @@ class _Polynomial(CalibratedModel):
 class AxisPolynomial(_Polynomial):
     """Each Sun angle as a polynomial of the feature of its own axis.
 
-    Compact and fast, it follows any smooth response of one axis, but not what the other axis does
-    to it.
+    Compact and fast; it follows any smooth response of one axis, but not coupling between axes.
 
     Parameters
     ----------
@@ -88,7 +87,7 @@ class AxisPolynomial(_Polynomial):
 
     Notes
     -----
-    Implements: model:poly (You2011), in words there: ``alpha = sum_k a_k y^k``, ``beta = sum_k
+    Implements: model:poly (You2011), described in words: ``alpha = sum_k a_k y^k``, ``beta = sum_k
     b_k x^k``, k = 0..n. The study sweeps one axis while the other is held; here each axis is
     fitted to all samples given. Fitted in Chebyshev polynomials, which span the same functions
     without their loss of digits.
@@ -170,8 +169,8 @@ class AxisPolynomial(_Polynomial):
 class SurfacePolynomial(_Polynomial):
     """Each Sun angle as a polynomial surface over both features.
 
-    The cross terms take up what turns one axis into the other: in-plane rotation, tilt and
-    distortion away from the axes.
+    The cross terms model coupling between axes: in-plane rotation, tilt and distortion away from
+    the axes.
 
     Parameters
     ----------
@@ -191,13 +190,13 @@ class SurfacePolynomial(_Polynomial):
 
     Notes
     -----
-    Implements: model:poly (Chang2006), in words there: ``alpha = sum a_ij x^i y^j``, ``beta = sum
-    b_ij x^i y^j``, i + j <= n. Fitted in products of Chebyshev polynomials, which span the same
-    functions without their loss of digits.
+    Implements: model:poly (Chang2006), described in words: ``alpha = sum a_ij x^i y^j``, ``beta =
+    sum b_ij x^i y^j``, i + j <= n. Fitted in products of Chebyshev polynomials, which span the
+    same functions without their loss of digits.
 
     Failure: a NaN row for a NaN feature row, outside the hull, or where an angle reaches 90
-    degrees. fit raises UnusableDataError below (n + 1)(n + 2) / 2 samples or where they lie so that
-    they do not settle every term.
+    degrees. fit raises UnusableDataError below (n + 1)(n + 2) / 2 samples or where they lie so
+    that they do not determine every term.
 
     Cost: 2.5 (n + 1)(n + 2) operations and 2 tangents a sample.
 

@@ -74,7 +74,7 @@ def solve_regression(design: Floats, wanted: Floats, by: str) -> Floats:
     Raises
     ------
     UnusableDataError
-        If the samples do not settle every term, or so badly that rounding would show, naming
+        If the samples do not determine every term, or so badly that rounding would show, naming
         both numbers.
     """
     solution, _, rank, _ = np.linalg.lstsq(design, wanted, rcond=1.0 / WORST_CONDITION)

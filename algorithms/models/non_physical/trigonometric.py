@@ -36,10 +36,10 @@ FEWEST_LIT = 8
 @documented
 @dataclass
 class TrigonometricPanels(FacesModel):
-    """Each panel's signal a cosine with amplitude, phase and offset; the lit ones give the Sun.
+    """Each panel's signal as a cosine with amplitude, phase and offset; the Sun from lit panels.
 
-    The sine and cosine of the slew angle come out as they are, so that the arc tangent of both
-    knows its quadrant. Every panel keeps its own gain and the way it was mounted.
+    The fit gives sine and cosine of the slew angle, so the arc tangent has the right quadrant.
+    Each panel has its own gain and mounting.
 
     Parameters
     ----------
@@ -61,19 +61,19 @@ class TrigonometricPanels(FacesModel):
 
     Notes
     -----
-    Implements: model:trig (Richie2015, the direct relation of the scaled measurement), in words
-    there: the measurements are fitted to a trigonometric function of the slew angle alike to
+    Implements: model:trig (Richie2015, the direct relation of the scaled measurement), described
+    in words: the measurements are fitted to a trigonometric function of the slew angle alike to
     their curves. A panel's is ``m = o + A cos(theta - phi) = o + a cos(theta) + b sin(theta)``;
     off the plane of the slew ``m = o + a s_x + b s_y + c s_z`` (ours), by least squares over the
     samples that light it. Of each pair the panel with the larger part counts; their three
-    equations give ``A (cos(theta), sin(theta))`` and the component across, and with them
-    ``theta = atan2``, no quadrant to be checked. Directions leave the solution's length alone.
+    equations give ``A (cos(theta), sin(theta))`` and the component across, and with them ``theta =
+    atan2``, no quadrant to be checked. Directions leave the solution's length alone.
 
     Shapes: signals (N, 6), in any common unit, to unit vectors (N, 3), all directions.
 
     Failure: a NaN row for a NaN feature row, where no panel shows more than its offset, and
     outside the cone. fit raises UnusableDataError where a pair is lit by fewer than eight samples
-    or by some that do not settle its cosine, or where three cosines lie in one plane.
+    or by some that do not determine its cosine, or where three cosines lie in one plane.
 
     Cost: 40 operations, 9 looked-up numbers and one root a sample.
 

@@ -43,11 +43,11 @@ _WORST_RAD = 0.1
 @documented
 @dataclass
 class AssembledFaces(FacesModel):
-    """Direction that explains all faces' signals best, each face as the calibration found it.
+    """Direction that best explains the signals of all faces, each with its calibrated response.
 
-    Of every face the calibration gives where it really looks and how its signal goes with the
-    angle of incidence; a direction is then the least-squares one over all faces, dark ones too,
-    with the light's strength left free within what it may be.
+    The calibration gives each face's true normal and its angular response; a direction is then the
+    least-squares fit to all faces, dark ones included, with the strength of the light as a bounded
+    parameter.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class AssembledFaces(FacesModel):
 
     Failure: a NaN row for a NaN feature row, where no face is lit, where the lit ones leave the
     direction open, and outside the cone. Albedo is taken for Sun. fit raises UnusableDataError
-    where a face is lit by fewer than 12 samples, or they do not settle its six numbers.
+    where a face is lit by fewer than 12 samples, or they do not determine its six numbers.
 
     Cost: some ten steps of 30 operations a face and 60 a sample; the fit, some twenty passes of
     seven over the samples a face.

@@ -95,7 +95,7 @@ class FacesFit:
         Raises
         ------
         UnusableDataError
-            If the samples do not settle every number.
+            If the samples do not determine every number.
         """
         from scipy.optimize import least_squares  # noqa: PLC0415 - SciPy, at the first fit only
 

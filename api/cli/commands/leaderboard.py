@@ -146,12 +146,12 @@ def leaderboard(
 ) -> None:
     """Show the leaderboard, update it or check it.
 
-    Without options: the best pipeline of each architecture with its error, its ratio to the
-    Cramer-Rao bound and its standard error. --overview counts how often each extractor and model is
-    near the bound. --dataset lists all pipelines of a data set; --each lists the best of every data
-    set. --field uses the error within an angle of the boresight, so that data sets with different
-    fields of view can be compared; --max-error compares them by field of view. --check measures all
-    published numbers again; a difference is printed with file and cell, and the exit code is 1.
+    Without options: the best pipeline of each architecture with its error and its ratio to the
+    Cramer-Rao bound. --overview counts how often each extractor and model is near the bound.
+    --dataset lists all pipelines of a data set; --each lists the best of every data set. --field
+    uses the error within an angle of the boresight, so that data sets with different fields of view
+    can be compared. --max-error compares them by field of view. --check measures all published
+    numbers again; a difference is printed with file and cell, and the exit code is 1.
     """
     if context.invoked_subcommand is not None:
         _require_no_options(context)

@@ -62,7 +62,8 @@ class TableQuestion(Question):
     format: Annotated[Literal["json", "csv"] | None, GIVEN] = Field(
         None,
         description=(
-            "Response format; must be one the Accept header allows. By default the header decides."
+            "Response format; must be one the Accept header allows. "
+            "By default the Accept header selects it."
         ),
     )
     safe: bool = Field(

@@ -27,14 +27,11 @@ PRESET = lens_camera(
     setups=blooming(_CAMERA),
     follows=("Liu2016", "Minor2010", "TrebiOllennu2001"),
     description=(
-        "A webcam-like CCD camera behind a dark filter (Minor2010), without anti-blooming drains: "
-        "the Sun's overflow runs up and down its columns (Liu2016). Neither gives its geometry in "
-        "what was mapped; round numbers instead. 3 mm of focal length with barrel distortion hold "
-        "+-20 deg on 256 x 256 pixels of 10 um, the Sun 2.8 px wide; behind the filter its middle "
-        "gets some 60 full wells, so that trails are a hundred pixels long and more, as wide as "
-        "the blurred Sun. Half of the overflow goes either way; what reaches the end of a column "
-        "is lost. The bound is that of the pixels' own charges, cut at the full well, and the "
-        "columns' overflows, which make up the picture: pixels under a trail count as if it did "
-        "not cover them."
+        "A CCD camera with a lens behind a dark filter (Minor2010). It has no anti-blooming "
+        "drains, so charge of the saturated Sun spills along its columns (Liu2016). Neither "
+        "study gives dimensions. Assumed: focal length 3 mm with barrel distortion, 256 x 256 "
+        "pixels of 10 um, field +-20 deg. The Sun is 2.8 px wide and 60 times the full well; "
+        "trails are 100 px or longer. Half of the overflow goes each way. The bound uses the "
+        "charges of all pixels, cut at the full well, and the overflow of each column."
     ),
 )

@@ -26,16 +26,12 @@ PRESET = many_spots(
     without=("hot",),
     follows=("Liebe2001", "Mobasser2001"),
     description=(
-        "Full frames of 512 x 512 px behind 18 x 18 round holes. A CCD, several hundred holes in "
-        "one foil and 0.75 mm from foil to detector are those of Liebe2001; holes of 50 um in a "
-        "film of metal, which counts as thin, are those of the JPL sensor that was qualified for "
-        "flight later. Round numbers without a model: 12 um pixels, and holes 0.235 mm apart, so "
-        "that no two neighbours fall alike on them. The Fresnel number is 1.5: light gathers to "
-        "1.9 times the open light in spots four pixels wide, each with a faint skirt that reaches "
-        "its neighbours. All 324 spots are whole on the detector over the field of +-50 deg, so "
-        "that no direction looks like another one shifted by a hole. Holes are off by 1 um in "
-        "position, 1 um in size (the unit as a whole) and 0.5 um an edge. Pixels are those of "
-        "ccd-single-aperture with 1 % gain spread; exposure keeps them below the full well: no "
-        "blooming. Few samples, because a frame is 0.5 MB with 324 spots to render."
+        "Full frames of 512 x 512 px behind 18 x 18 round holes. From Liebe2001: a CCD, "
+        "several hundred holes in one foil, 0.75 mm from foil to detector. From the later JPL "
+        "sensor: holes of 50 um in a thin metal film. Assumed: 12 um pixels, holes 0.235 mm "
+        "apart, tolerances of 1 um in position, 1 um in size (per unit) and 0.5 um per edge. "
+        "The Fresnel number is 1.5: spots are four pixels wide and their peak is 1.9 times "
+        "the open light. All 324 spots stay on the detector over +-50 deg. Exposure keeps "
+        "pixels below the full well."
     ),
 )

@@ -16,14 +16,12 @@ PRESET = line_arrays(
     half_fov_deg=60.0,
     follows=("Enright2007a", "Enright2006b", "Enright2007b", "Enright2008b", "Radan2019"),
     description=(
-        "Two pairs of narrow slits at right angles to each other over one linear CCD, as the "
-        "studies of the peak position estimate describe: the peaks of one pair move with tan(beta) "
-        "- tan(alpha), those of the other with tan(beta) + tan(alpha), both at 45 deg to the "
-        "array. The sensors they are about (SS-411, NFSS-411 after it) have slits etched into a "
-        "metal film under a window; nobody publishes dimensions. Round numbers instead: slits of "
-        "0.1 mm, two or three times what light spreads 1.8 mm below; spacings of 0.7 and 0.9 mm "
-        "tell the pairs apart; 9.2 mm between the pairs keep their slits from crossing in the "
-        "mask, and so their peaks from overlapping anywhere in the field (image type 0 of "
-        "alg:PPE); 2048 pixels of 14 um hold them."
+        "Two pairs of narrow slits at right angles to each other over one linear CCD, as in "
+        "the studies of the peak position estimate. Peaks of one pair move with tan(beta) - "
+        "tan(alpha), those of the other with tan(beta) + tan(alpha). The sensors of these "
+        "studies (SS-411, NFSS-411) have slits in a metal film under a window; no dimensions "
+        "are published. Assumed: slits of 0.1 mm, 1.8 mm above 2048 pixels of 14 um; spacings "
+        "of 0.7 and 0.9 mm tell the pairs apart; 9.2 mm between the pairs keeps their peaks "
+        "apart over the whole field."
     ),
 )

@@ -18,15 +18,13 @@ PRESET = in_orbit(
     step_s=20.0,
     follows=("Radan2019", "Enright2007a"),
     description=(
-        "The sensor of ccd-multi-slit flown on a sun-synchronous orbit of 600 km, on a satellite "
-        "whose nutation takes the Sun from the boresight to 48 deg and back in 24 min. Error "
-        "sources are Radan2019's (model:assem): installation, shift of the CCD's centre, "
-        "misalignment, and a filter in front, which an extended Kalman filter follows in orbit; "
-        "that its mask has several slits is inferred. It gives no amounts: those of ccd-orbit, "
-        "whose distance from mask to detector is nearly the same (spacer, bracket, creep). "
-        "Calibration: sunlight of the first three orbits; test: three whole orbits a quarter of a "
-        "year on. The sensor relaxes towards 35 deg C in sunlight and -25 deg C in eclipse with a "
-        "time constant of 2000 s. The sunlit Earth shines through the slits, too, where it is "
-        "ahead. The drawing names the filter (0.5 mm, index 1.52)."
+        "The sensor of ccd-multi-slit in a sun-synchronous orbit of 600 km. Nutation moves "
+        "the Sun from the boresight to 48 deg and back in 24 min. From Radan2019 (model:assem): "
+        "errors of installation, a shift of the CCD's centre, misalignment, and a filter in "
+        "front (0.5 mm, index 1.52). That its mask has several slits is inferred; amounts of "
+        "drift are those of ccd-orbit. Calibration: sunlight of the first three orbits. Test: "
+        "three orbits a quarter of a year later. The temperature approaches 35 deg C in "
+        "sunlight and -25 deg C in eclipse (time constant 2000 s). Earthlight enters through "
+        "the slits."
     ),
 )

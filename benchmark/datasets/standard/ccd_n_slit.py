@@ -17,12 +17,10 @@ PRESET = line_arrays(
     half_fov_deg=60.0,
     follows=("Wei2011", "Maji2015", "Kohli2019"),
     description=(
-        "Both angles from one linear CCD, which lies along y: the middle slit is square to it and "
-        "gives alpha, both outer ones are slanted and add beta (model:nslit as the survey states "
-        "it after Maji2015). The field of +-60 deg, the cover glass of the CCD and a mask without "
-        "thickness, micromachined, are those of Wei2011; nobody publishes the rest. Round numbers "
-        "instead: slits of 0.1 mm, two or three times what light spreads 1.8 mm below; a slant of "
-        "45 deg makes both angles weigh alike; 4 mm between slits keep the three spots in order "
-        "over the field; 2048 pixels of 14 um hold them. Glass: 0.5 mm of index 1.52."
+        "Both angles from one linear CCD along y behind an N of slits: the middle slit gives "
+        "alpha, the two slanted outer ones add beta (model:nslit, Maji2015). From Wei2011: "
+        "field +-60 deg, cover glass, thin micromachined mask. Assumed: slits of 0.1 mm, 1.8 "
+        "mm above 2048 pixels of 14 um; a slant of 45 deg; 4 mm between slits, which keeps "
+        "the three spots in order; glass of 0.5 mm, index 1.52."
     ),
 )

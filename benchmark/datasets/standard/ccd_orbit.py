@@ -18,17 +18,14 @@ PRESET = in_orbit(
     step_s=20.0,
     follows=(),
     description=(
-        "The sensor of ccd-single-aperture flown on a sun-synchronous orbit of 600 km, on a "
-        "satellite whose nutation takes the Sun from the boresight to 48 deg and back in 24 min. "
-        "Error sources are Radan2019's (model:assem): installation, shift of the CCD's centre, "
-        "misalignment, and a filter in front; its mask is not known for certain (several slits, by "
-        "inference) and is not followed. It gives no amounts: an aluminium spacer of 2 mm (23 "
-        "ppm/K) lengthens by 46 nm/K, unequal expansion (15 ppm/K over 2 mm) shifts the mask by 30 "
-        "and -20 nm/K, the bracket bends by 0.5 and -0.3 mdeg/K; creep of one to two um and "
-        "hundredths of a degree a year. Calibration: sunlight of the first three orbits; test: "
-        "three whole orbits a quarter of a year on. The sensor relaxes towards 35 deg C in "
-        "sunlight and -25 deg C in eclipse with a time constant of 2000 s. In eclipse the window "
-        "stays where the Sun was last seen. The sunlit Earth shines through the hole, too, where "
-        "it is ahead: onto the window about a ten-thousandth of sunlight at most."
+        "The sensor of ccd-single-aperture in a sun-synchronous orbit of 600 km. Nutation "
+        "moves the Sun from the boresight to 48 deg and back in 24 min. From Radan2019 "
+        "(model:assem): installation, shift of the CCD's centre, misalignment, a filter in "
+        "front; its mask is not known. Assumed drifts: an aluminium spacer of 2 mm lengthens "
+        "by 46 nm/K; the mask shifts by 30 and -20 nm/K; the bracket bends by 0.5 and -0.3 "
+        "mdeg/K; creep of 1 to 2 um and hundredths of a degree a year. Calibration: sunlight "
+        "of the first three orbits. Test: three orbits a quarter of a year later. The "
+        "temperature approaches 35 deg C in sunlight and -25 deg C in eclipse (time constant "
+        "2000 s). Earthlight is at most 1/10,000 of sunlight."
     ),
 )

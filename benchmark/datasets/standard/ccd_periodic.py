@@ -19,12 +19,11 @@ PRESET = line_arrays(
     half_fov_deg=60.0,
     follows=("Tsuno2019", "Kondo2024"),
     description=(
-        "A reticle of 16 equally spaced slits over a linear CCD (Tsuno2019, Kondo2024), once an "
-        "axis. The taxonomy value is the one the survey files these studies under. Period and "
-        "height are not given. Round numbers instead: a half-open reticle in a metal film, slits "
-        "of 0.2 mm at twice that period, which the Sun's disc and diffraction leave a contrast at "
-        "60 deg, 1.8 mm up; 1024 pixels of 14 um hold the whole pattern at 60 deg, so its ends "
-        "tell which slit is which and the phase needs no coarse sensor."
+        "A reticle of 16 equally spaced slits over a linear CCD, one per axis (Tsuno2019, "
+        "Kondo2024; the survey files them under multi-slit). Period and height are not "
+        "published. Assumed: slits of 0.2 mm at a period of 0.4 mm, 1.8 mm above 1024 pixels "
+        "of 14 um. The pattern keeps its contrast and stays on the array at 60 deg; its ends "
+        "identify the slits, so the phase needs no coarse sensor."
     ),
     more=seen_with(_SENSOR, "albedo-clouds", "ghosts", "stray-gradient"),
     kind=UnevenPreset,

@@ -22,13 +22,11 @@ PRESET = pixels.windows(
     directions=AngleField(50.0),
     follows=(),
     description=(
-        "64 x 64 px windows of a 512 x 512 px CCD behind one square hole. No mapped study pairs a "
-        "CCD with a single aperture and no built sensor is known that does; it stands beside "
-        "cmos-single-aperture to tell the detector from the mask, with a square hole as one "
-        "quadrant sensor has it (Caltech's, which gives no size). Round numbers: 13 um pixels "
-        "with deep wells (100,000 electrons), 0.5 % gain spread, 20 electrons of read noise and "
-        "12 bits, as area CCDs have; a 0.2 mm hole in a foil of 10 um, 2 mm up, its sides along "
-        "the pixel rows: a Fresnel number of 9, edges as soft as 33 um; 512 px hold the spot at "
-        "50 deg. Exposure keeps pixels below the full well: no blooming."
+        "Windows of 64 x 64 px of a 512 x 512 px CCD behind one square hole. No mapped study "
+        "and no known sensor pairs a CCD with a single aperture; it separates the effect of "
+        "the detector from that of the mask, beside cmos-single-aperture. Assumed: 13 um "
+        "pixels of 100,000 electrons, 0.5 % gain spread, read noise of 20 electrons, 12 bits; "
+        "a hole of 0.2 mm in a foil of 10 um, 2 mm up; field +-50 deg. The Fresnel number is "
+        "9: edges are 33 um soft. Exposure keeps pixels below the full well."
     ),
 )

@@ -17,13 +17,11 @@ PRESET = line_arrays(
     half_fov_deg=60.0,
     follows=("Chum2003", "KeQiang2020", "Godard2006", "Enright2008a", "Enright2008c"),
     description=(
-        "One slit over each of two linear CCDs at right angles (Chum2003), with the slit "
-        "deflection and inclination that the slit model corrects (KeQiang2020). Chum2003 has lines "
-        "of 2048 pixels and a field of +-60 deg; nobody publishes slit or height. Here 1024 pixels "
-        "of 14 um, 14 mm as 2048 of 7 um would be, which the light fills at 3.5 mm; a slit of 0.1 "
-        "mm, twice what light spreads there, as a narrower one gains no sharper a spot. The slit "
-        "is as long as the Sun needs at the edge of the field. The focal length counts to the "
-        "middle of the foil. Each array measures one angle; together they see both."
+        "One slit over each of two linear CCDs at right angles; each array measures one "
+        "angle. From Chum2003: lines of 2048 pixels, field +-60 deg. From KeQiang2020: slit "
+        "deflection and inclination, which the slit model corrects. Slit and height are not "
+        "published. Assumed: 1024 pixels of 14 um, 3.5 mm below a slit of 0.1 mm that is long "
+        "enough for the whole field. The focal length counts to the middle of the foil."
     ),
     more={"saturated": saturate(_SENSOR)},
 )

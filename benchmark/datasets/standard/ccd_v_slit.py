@@ -17,11 +17,10 @@ PRESET = line_arrays(
     half_fov_deg=60.0,
     follows=("Fan2015", "Fan2016"),
     description=(
-        "Both angles from one linear CCD, which lies along y: a slit square to it gives alpha, one "
-        "slanted by 45 deg adds beta (Fan2015, Fan2016; model:vslit). The studies give the shape "
-        "and the refraction that must be corrected, nobody the dimensions. Round numbers instead: "
-        "slits of 0.1 mm in a metal film, two or three times what light spreads 1.8 mm below; 3.8 "
-        "mm between them keep the two spots in order over the field; 2048 pixels of 8 um hold "
-        "them. Glass: 0.5 mm of index 1.52."
+        "Both angles from one linear CCD along y: a slit square to it gives alpha, one "
+        "slanted by 45 deg adds beta (Fan2015, Fan2016; model:vslit). The studies give the "
+        "shape and the refraction, no dimensions. Assumed: slits of 0.1 mm, 1.8 mm above 2048 "
+        "pixels of 8 um; 3.8 mm between them keeps the two spots in order; glass of 0.5 mm, "
+        "index 1.52."
     ),
 )

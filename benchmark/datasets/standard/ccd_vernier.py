@@ -16,11 +16,10 @@ PRESET = line_arrays(
     half_fov_deg=64.0,
     follows=("Chen2006",),
     description=(
-        "An optical vernier (Chen2006): slits of the moving ruler 0.32 mm apart, 16/15 of the "
-        "three pixels that make a mark of the fixed ruler, so that the slits cross the marks one "
-        "after the other as the light moves by a fifteenth of a mark; two of 16 slits are left out "
-        "as position code. Few, large pixels, as the abstract claims. The field of +-64 deg is the "
-        "study's; it gives no dimensions. Round numbers instead: slits of 0.15 mm, half a mark, 1 "
-        "mm up; 104 pixels of 0.1 mm, 90 percent of it sensitive, hold the pattern."
+        "An optical vernier (Chen2006): slits 0.32 mm apart over marks of three pixels each, "
+        "16/15 of a mark apart, so that slits cross the marks one after the other. Two of 16 "
+        "slits are left out as position code. From Chen2006: field +-64 deg, few large "
+        "pixels. Assumed: slits of 0.15 mm, 1 mm above 104 pixels of 0.1 mm, 90 % of each "
+        "sensitive."
     ),
 )

@@ -29,12 +29,10 @@ PRESET = many_spots(
     directions=ConeField(60.0, calibration_samples=150, test_samples=150),
     follows=("Zhang2021", "Zhang2022a"),
     description=(
-        "A round pattern of 1026 holes of varying size in 37 sub-eyes over a cone of 120 deg, the "
-        "counts and field of Zhang2021 and Zhang2022a; sub-eyes of long focal length in a mask "
-        "etched in one piece are Zhang2022a's, their sizes are not in what was mapped. As in "
-        "cmos-encoded, h = 6 mm and holes of 0.12 mm near the Fresnel number of 1, growing "
-        "outwards with the slant ray to 0.16 mm. A triangular lattice of 0.655 mm lets 1026 holes "
-        "cover what a detector of 192 x 192 px of 10 um sees over the whole cone; each is moved by "
-        "25 um in a direction drawn for its sub-eye, so that the pattern seen tells the sub-eye."
+        "A round pattern of 1026 holes of varying size in 37 sub-eyes over a cone of 120 deg "
+        "(counts and field: Zhang2021, Zhang2022a; one-piece mask of long focal length: "
+        "Zhang2022a). Sizes are not known. Assumed: 192 x 192 px of 10 um, 6 mm below holes "
+        "of 0.12 mm (Fresnel number 1) that grow outwards to 0.16 mm on a triangular lattice "
+        "of 0.655 mm. Each hole is moved by 25 um in a direction that encodes its sub-eye."
     ),
 )

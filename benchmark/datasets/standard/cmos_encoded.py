@@ -24,17 +24,13 @@ PRESET = many_spots(
     directions=AngleField(52.5, steps=13, test_samples=150),
     follows=("Wei2014", "Wang2015"),
     description=(
-        "13 x 13 sub-fields over 105 x 105 deg, each with a group of three holes whose two "
-        "spacings name it (Wei2014; sizes as a second code, Wang2015, are `size_coded`). The "
-        "studies' sizes are not in what was mapped, but for a long focal length and spots that "
-        "diffraction rules (Wang2015). A detector that shows one whole group wherever the Sun is "
-        "must be two groups wide, and groups are 2 h tan(52.5 deg) / 13 apart: 256 px of 10 um "
-        "ask for h = 6 mm and groups 1.2 mm apart, a mask of 16 mm. Holes of 0.12 mm are near the "
-        "Fresnel number of 1, where a pinhole's spot is narrowest: ten pixels at normal incidence, "
-        "and 1.9 times the open light in the middle. At the field's corners spots are 40 px long "
-        "and twenty times as dim. Spacings are 0.46 mm + 11 um times the sub-field's number: 1.1 "
-        "px a step. The foil is 10 um thick; holes are off by 1 um in position, 1 um in size (the "
-        "unit as a whole) and 0.5 um an edge: round numbers without a model."
+        "13 x 13 sub-fields over 105 x 105 deg, each with three holes whose two spacings "
+        "encode it (Wei2014; codes by size, Wang2015, are in cmos-encoded-sizes). From "
+        "Wang2015: long focal length, diffraction-limited spots. Assumed: 256 x 256 px of 10 "
+        "um, 6 mm below groups 1.2 mm apart, so that one whole group is always visible; holes "
+        "of 0.12 mm (Fresnel number 1), spacings of 0.46 mm + 11 um per sub-field; foil of 10 "
+        "um; tolerances of 1 um in position, 1 um in size (per unit) and 0.5 um per edge. "
+        "Spots are 10 px wide at normal incidence; in the corners 40 px, and 20 times as dim."
     ),
     known={"subfields": 13},
 )

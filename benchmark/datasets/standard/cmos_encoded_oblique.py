@@ -23,13 +23,11 @@ PRESET = many_spots(
     directions=ConeField(50.0, calibration_samples=150, test_samples=150),
     follows=("Wei2017",),
     description=(
-        "Seven sub-fields over a cone of 100 deg, each with a group of holes placed obliquely and "
-        "without symmetry (Wei2017): the counts are the study's, its dimensions are not in what "
-        "was mapped, and neither is the code. Its detector reads out sums over rows and over "
-        "columns; here the whole frame is read. Round numbers instead: groups of five holes of "
-        "0.066 mm, Fresnel number 1.1, no two in a row or a column of cells of 0.14 mm that widen "
-        "to one side, each group in another order. Groups are 1.86 mm apart, seven discs that "
-        "cover the cone at h = 1.8 mm, and 272 px of 10 um show one whole wherever the Sun is. "
-        "Foil and tolerances as cmos-encoded."
+        "Seven sub-fields over a cone of 100 deg, each with an oblique, asymmetric group of "
+        "holes (counts: Wei2017; dimensions and code are not known). Wei2017's detector reads "
+        "sums over rows and columns; here whole frames are read. Assumed: 272 x 272 px of 10 "
+        "um, 1.8 mm below groups of five holes of 0.066 mm (Fresnel number 1.1), 1.86 mm "
+        "apart; no two holes share a row or column of cells of 0.14 mm. Foil and tolerances "
+        "as in cmos-encoded."
     ),
 )

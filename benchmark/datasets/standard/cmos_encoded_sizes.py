@@ -24,14 +24,12 @@ PRESET = many_spots(
     directions=AngleField(60.0, steps=13, test_samples=150),
     follows=("Wang2015",),
     description=(
-        "13 x 13 sub-fields over 120 x 120 deg, each with a group of three holes that two spacings "
-        "and two sizes name, sizes growing with incidence as diffraction asks (Wang2015). Counts "
-        "and field are the study's, its dimensions are not in what was mapped. Round numbers "
-        "instead: 256 px of 10 um show one whole group wherever the Sun is if groups are 1.2 mm "
-        "apart, h = 4.5 mm. Spacings are 0.46 mm + 20 um times half the sub-field's number; of "
-        "each pair of numbers the odd one has a hole of 0.15 mm, the even one of 0.105 mm "
-        "(Fresnel number 1.1), times the root of 1/cos of incidence to a tenth. Foil and "
-        "tolerances as cmos-encoded."
+        "13 x 13 sub-fields over 120 x 120 deg, each with three holes encoded by two spacings "
+        "and two sizes that grow with incidence (Wang2015; dimensions are not known). "
+        "Assumed: 256 x 256 px of 10 um, 4.5 mm below groups 1.2 mm apart; spacings of 0.46 "
+        "mm + 20 um per two sub-fields; odd sub-fields have a hole of 0.15 mm, even ones of "
+        "0.105 mm (Fresnel number 1.1), times the square root of 1/cos of incidence. Foil and "
+        "tolerances as in cmos-encoded."
     ),
     known={"subfields": 13},
 )

@@ -27,14 +27,11 @@ PRESET = pixels.windows(
     directions=AngleField(60.0, steps=13, test_samples=400),
     follows=("Jing2016",),
     description=(
-        "96 x 96 px windows of a 512 x 512 px array behind two slits at right angles, one an "
-        "axis: the one along y tells x (beta), the one along x tells y (alpha). Slits, pixel "
-        "array and windowed read-out are those of Jing2016, which gives no dimensions in what was "
-        "mapped. Round numbers: slits of 0.1 mm by 0.57 mm, 1.2 mm up in a foil of 10 um, within "
-        "what such slits have (tens of um to 0.2 mm), have a Fresnel number of 3.8 and sides as "
-        "soft as 26 um; a web of 0.1 mm where the L's corner would be keeps the foil in one piece "
-        "(light that both slits share is left out: the Sun is coherent over some 60 um only); "
-        "512 px hold both at 60 deg. Windows miss the true spot by up to 8 whole px an axis."
+        "Windows of 96 x 96 px of a 512 x 512 px array behind an L of two slits: the one "
+        "along y gives beta, the one along x gives alpha. From Jing2016: slits, pixel array, "
+        "windowed read-out; no dimensions. Assumed: slits of 0.1 x 0.57 mm, 1.2 mm up in a "
+        "foil of 10 um, 0.1 mm apart at the corner; field +-60 deg. The Fresnel number is "
+        "3.8: sides are 26 um soft. Windows miss the spot by up to 8 px per axis."
     ),
     more=seen_with(_SENSOR, "albedo-clouds", "ghosts"),
 )

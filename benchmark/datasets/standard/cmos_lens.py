@@ -27,13 +27,11 @@ PRESET = lens_camera(
     setups=black_sun(_CAMERA),
     follows=("Saleem2017", "Saleem2019", "Kim2021"),
     description=(
-        "A micro camera that looks into the Sun without a filter: the Sun's image is black within "
-        "a saturated halo. Saleem2019 gives a CMOS chip of 1 mm and 250 x 250 px; its 3 um pixels "
-        "make that 0.75 mm of image. The rest is set: 0.4 mm of focal length with barrel "
-        "distortion holds +-40 deg on both axes; at f/4 and 0.1 ms the middle of the image gets "
-        "some 5000 times the full well. The reset level is sampled after a tenth of the exposure "
-        "and gives way beyond one full well of charge, so that pixels with 10 to 20 full wells of "
-        "light go from white to black. The bound counts, pixel by pixel, what is neither white nor "
-        "black. Dark current at 0.1 ms is too little at any temperature for a hot condition."
+        "A micro camera without a filter: the Sun is black within a saturated halo. From "
+        "Saleem2019: a CMOS chip of 1 mm with 250 x 250 px. Assumed: 3 um pixels, focal "
+        "length 0.4 mm with barrel distortion, f/4, exposure 0.1 ms, field +-40 deg. The "
+        "middle of the Sun gets 5000 times the full well. The reset level is sampled after a "
+        "tenth of the exposure, so pixels with 10 to 20 full wells turn from white to black. "
+        "The bound uses pixels that are neither white nor black."
     ),
 )

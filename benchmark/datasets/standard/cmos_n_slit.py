@@ -17,15 +17,11 @@ PRESET = line_arrays(
     half_fov_deg=64.0,
     follows=("He2013",),
     description=(
-        "Both angles from one linear active pixel sensor behind an N of slits; it lies along y: "
-        "the middle slit is square to it and gives alpha, both outer ones are slanted and add beta "
-        "(model:nslit). Detector, N and the field of +-64 deg on both axes are those of He2013, "
-        "and so is refraction among the errors: 0.5 mm of glass of index 1.52 here. Nobody "
-        "publishes the rest. Round numbers instead: slits of 0.1 mm in a metal film, three times "
-        "what light spreads 1.2 mm below; a slant of 45 deg makes both angles weigh alike; 3 mm "
-        "between slits keep the three spots in order over the field; 2048 pixels of 8 um hold "
-        "them. Pixels "
-        "of 60,000 electrons, 2 % gain spread, 60 electrons of read noise, 10 bits: noisier than "
-        "ccd-n-slit's, as active pixels of 2013 are."
+        "Both angles from one linear active pixel sensor along y behind an N of slits: the "
+        "middle slit gives alpha, the two slanted outer ones add beta (model:nslit). From "
+        "He2013: detector, mask, field +-64 deg, refraction. Assumed: slits of 0.1 mm, 1.2 mm "
+        "above 2048 pixels of 8 um; a slant of 45 deg; 3 mm between slits; glass of 0.5 mm, "
+        "index 1.52; pixels of 60,000 electrons, 2 % gain spread, read noise of 60 electrons, "
+        "10 bits."
     ),
 )

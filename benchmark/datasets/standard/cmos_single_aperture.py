@@ -25,13 +25,11 @@ PRESET = pixels.windows(
     directions=AngleField(60.0),
     follows=("Chang2008", "Xie2012"),
     description=(
-        "64 x 64 px windows of a 512 x 512 px array behind one round hole. 512 px are the "
-        "micro-DSS's (Xie2012, the paper's predecessor Xie2010), pixels of 6.5 um its flown "
-        "heir's (TNO miniDSS: 368 px of 6.5 um, 102 deg), a hole of 0.1 mm that of Foresail-1p, "
-        "the one such sensor that publishes it. None publishes the height: 0.75 mm, near the 0.97 "
-        "mm that miniDSS cannot exceed, so that the array holds the spot at 60 deg. Its Fresnel "
-        "number is 6: the spot is a shadow whose edge is as soft as it is wide, some 15 px "
-        "(Xie2010: about 10), drawn out at the field's edge. Windows are placed from the true "
-        "spot, rounded, plus a uniform whole offset of up to 8 px an axis."
+        "Windows of 64 x 64 px of a 512 x 512 px array behind one round hole. From the TU "
+        "Delft micro-DSS (Xie2012): 512 px. From its successor, the TNO miniDSS: pixels of "
+        "6.5 um. From Foresail-1p: a hole of 0.1 mm. Height 0.75 mm, assumed below the 0.97 "
+        "mm that the miniDSS's field permits; field +-60 deg. The Fresnel number is 6: the "
+        "spot is a soft shadow some 15 px wide (Xie2010: about 10). Windows miss the spot by "
+        "up to 8 px per axis."
     ),
 )

@@ -26,15 +26,12 @@ PRESET = pixels.windows(
     directions=AngleField(30.0),
     follows=("Antonello2018",),
     description=(
-        "64 x 64 px windows of a 448 x 448 px array behind the one pinhole a mapped study "
-        "publishes: 20 um wide, 7 mm above a commercial CMOS detector (Antonello2018). Its Fresnel "
-        "number is 0.026: the spot is no image of the hole but its diffraction pattern, 0.47 mm "
-        "from dark ring to dark ring at 550 nm, seven times the Sun's image. The study's abstract "
-        "gives no pixels and no field. Round numbers: 24 um pixels, so that a window holds the "
-        "pattern and its stretching by oblique light; a field of 30 deg an axis (39 deg in the "
-        "corners), where it is twice as long; 448 px hold it. No filter: the pattern's peak has "
-        "1/180 of full sunlight, exposed to 17,000 electrons. The foil counts as thin. Windows are "
-        "placed from the true spot, rounded, plus a uniform whole offset of up to 8 px an axis."
+        "Windows of 64 x 64 px of a 448 x 448 px array behind the one pinhole that a mapped "
+        "study publishes: 20 um wide, 7 mm above a commercial CMOS detector (Antonello2018). "
+        "The Fresnel number is 0.026: the spot is a diffraction pattern of 0.47 mm between "
+        "dark rings, seven times the image of the Sun. Assumed: 24 um pixels, field of 30 deg "
+        "per axis, no filter, a thin foil. The peak is 1/180 of full sunlight, exposed to "
+        "17,000 electrons. Windows miss the spot by up to 8 px per axis."
     ),
     kind=UnevenPreset,
 )

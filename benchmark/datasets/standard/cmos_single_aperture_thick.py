@@ -25,13 +25,11 @@ PRESET = pixels.windows(
     directions=AngleField(50.0),
     follows=("Antonello2018",),
     description=(
-        "The sensor of cmos-single-aperture with a mask half as thick as its hole is wide, so that "
-        "the mask shades its own hole: what is lit is where the shadows of both rims overlap "
-        "(model:shad, Antonello2018). At 45 deg half of the hole's width is left, at 63.4 deg "
-        "nothing; the field ends at 50 deg an axis (59 deg in the corners). The study's own "
-        "pinhole of 20 um, 7 mm up, makes a pattern of diffraction that no rim shapes "
-        "(cmos-single-aperture-pinhole, whose foil counts as thin); its thickness is not in what "
-        "was mapped. Here the hole is 0.1 mm at 0.75 mm, where shadows have edges. Light is "
-        "diffracted at what the rims leave open."
+        "The sensor of cmos-single-aperture with a mask half as thick as its hole is wide, "
+        "which shades its own hole: lit is where the shadows of both rims overlap "
+        "(model:shad, Antonello2018). At 45 deg half of the width is left, at 63.4 deg none; "
+        "the field ends at 50 deg per axis. Antonello2018's own pinhole "
+        "(cmos-single-aperture-pinhole) is too small for such shadows; here the hole is 0.1 "
+        "mm at 0.75 mm. Light is diffracted at the open part."
     ),
 )

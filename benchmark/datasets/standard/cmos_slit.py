@@ -24,13 +24,11 @@ PRESET = pixels.windows(
     directions=AngleField(60.0),
     follows=("Chum2003",),
     description=(
-        "64 x 96 px windows (columns x rows) of a 512 x 512 px array behind one slit along y. "
-        "Chum2003 is a slit sensor of +-60 deg on CCD or CMOS; it gives no width and no height in "
-        "what was mapped, and its two lines of pixels are an area array here, so that the slit's "
-        "ends give the second angle, less well than its sides give the first. Round numbers: a "
-        "slit of 0.1 mm by 0.72 mm, 1.2 mm up in a foil of 10 um, within what such slits have "
-        "(tens of um to 0.2 mm), has a Fresnel number of 3.8 and sides as soft as 26 um; 12 um "
-        "pixels make it 8 by 60 px; 512 px hold it at 60 deg. Windows are placed from the true "
-        "spot, rounded, plus a uniform whole offset of up to 8 px an axis."
+        "Windows of 64 x 96 px of a 512 x 512 px array behind one slit along y. From "
+        "Chum2003: a slit sensor of +-60 deg on CCD or CMOS, without dimensions; its two "
+        "lines of pixels are one array here, so the ends of the slit give the second angle, "
+        "less accurately. Assumed: a slit of 0.1 x 0.72 mm, 1.2 mm up in a foil of 10 um, 12 "
+        "um pixels. The Fresnel number is 3.8: sides are 26 um soft. Windows miss the spot by "
+        "up to 8 px per axis."
     ),
 )

@@ -28,16 +28,12 @@ PRESET = event_array(
     directions=AngleField(40.0, steps=13, test_samples=400),
     follows=("Farian2018", "Farian2022"),
     description=(
-        "64 x 64 integrate-and-fire pixels in time-to-first-spike mode behind an L of two slits; "
-        "the line along y tells x (beta), the one along x tells y (alpha). The studies followed "
-        "give the architecture, no geometry in what was mapped, and no built sensor publishes "
-        "one. Round numbers: pixels of 50 um (such pixels are large); slits of 0.15 mm 1 mm up "
-        "have a Fresnel number of 10 and make lines three pixels wide, their sides as soft as 23 "
-        "um; a web of 0.1 mm parts them; the corner lies 0.58 mm off both axes so that it stays "
-        "on the array over +-40 deg with at least 25 pixels of either arm. The mask has no "
-        "thickness (chrome on glass, its refraction left out). The array is reset after 384 "
-        "events, which is all fully lit pixels and most of the lines' edges, or after 5 ms, "
-        "before pixels in stray light fire. The bound is that of the times of the pixels that "
-        "fire before the reset, with what the silence of the others tells."
+        "64 x 64 integrate-and-fire pixels in time-to-first-spike mode behind an L of two "
+        "slits: the line along y gives beta, the one along x gives alpha (Farian2018, "
+        "Farian2022, without dimensions). Assumed: pixels of 50 um, slits of 0.15 mm, 1 mm "
+        "up, 0.1 mm apart, the corner 0.58 mm off both axes; field +-40 deg. Lines are three "
+        "pixels wide. The array is reset after 384 events or 5 ms, before pixels in stray "
+        "light fire. The bound uses the times of all pixels that fire before the reset, and "
+        "the silence of the others."
     ),
 )

@@ -17,13 +17,11 @@ PRESET = event_array(
     directions=AngleField(50.0, steps=21),
     follows=("Bardallo2017a", "Bardallo2017b", "Merchan2023"),
     description=(
-        "64 x 64 integrate-and-fire pixels in time-to-first-spike mode behind one round hole. The "
-        "studies followed give the architecture, no geometry in what was mapped, and no built "
-        "sensor publishes one. Round numbers: pixels of 25 um (such pixels are large); a 0.1 mm "
-        "hole, as Foresail-1p's, 0.6 mm up lights about twenty of them, its edge as soft as 18 um "
-        "and, at the field's edge, 35 um; 64 of them hold the spot at 50 deg. The array is reset "
-        "after 20 events or "
-        "after 5 ms, before pixels in stray light fire. The bound is that of the times of the "
-        "pixels that fire before the reset, with what the silence of the others tells."
+        "64 x 64 integrate-and-fire pixels in time-to-first-spike mode behind one round hole "
+        "(Bardallo2017a, Bardallo2017b, Merchan2023, without dimensions). Assumed: pixels of "
+        "25 um, a hole of 0.1 mm (Foresail-1p's), 0.6 mm up; field +-50 deg. The spot lights "
+        "about twenty pixels. The array is reset after 20 events or 5 ms, before pixels in "
+        "stray light fire. The bound uses the times of all pixels that fire before the reset, "
+        "and the silence of the others."
     ),
 )

@@ -28,13 +28,12 @@ PRESET = faces(
     directions=SphereField(),
     follows=(),
     description=(
-        "One converter a face, Sun from anywhere on the sphere. No mapped study is known to use "
-        "light-to-frequency converters, and no sun sensor of that kind was found: an idealisation, "
-        "in Allgeier2009's arrangement. The converter is that of a data sheet (TI TSL230B): up to "
-        "1 MHz, frequencies within 5 % from part to part, taken as two standard deviations, 0.2 % "
-        "short of proportion at 100 kHz, 100 ppm/K, 1.4 mm2 of silicon, whose 5 pC a pulse average "
-        "the light's noise away. Round numbers: full sunlight at 100 kHz, behind a neutral filter; "
-        "a dark frequency of 1 Hz; a gate of 20 ms and a hundredth of a pulse of jitter."
+        "A light-to-frequency converter on each face of a cube; the Sun may be anywhere. No "
+        "mapped study and no known sun sensor uses such converters; the arrangement is "
+        "Allgeier2009's. From the data sheet of the TI TSL230B: up to 1 MHz, frequencies "
+        "within 5 % (two sigma), nonlinearity 0.2 % at 100 kHz, 100 ppm/K, 1.4 mm2. Assumed: "
+        "100 kHz in full sunlight behind a neutral filter, 1 Hz in the dark, a gate of 20 ms, "
+        "jitter of 0.01 pulse."
     ),
     unit="hertz",
 )

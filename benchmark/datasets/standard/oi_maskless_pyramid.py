@@ -26,13 +26,10 @@ PRESET = faces(
     directions=ConeField(55.0),
     follows=(),
     description=(
-        "The phototransistors of four opto-isolators, opened towards the Sun, in Wang2019's "
-        "pyramid. No mapped study is known to use opto-isolators (the survey lists them among its "
-        "detectors), and no sun sensor of that kind was found: an idealisation, of a "
-        "phototransistor by Gummel and Poon's law. Its numbers are round: recombination halves the "
-        "gain in a tenth of sunlight, as the current transfer ratio of such parts falls at small "
-        "currents; gains spread by a factor e^0.3 = 1.35, as those ratios do within one type; 1 mA "
-        "in full sunlight, four times that before the converter is full; mounting within 1 deg. "
-        "Tilt and field as in pd-maskless-pyramid."
+        "Four phototransistors of opto-isolators in Wang2019's pyramid. The survey lists "
+        "opto-isolators among detectors, but no mapped study and no known sun sensor uses "
+        "them. Assumed: a Gummel-Poon phototransistor whose gain halves at a tenth of "
+        "sunlight, gains spread by a factor of 1.35, 1 mA in full sunlight, converter range "
+        "four times that, mounting within 1 deg. Tilt and field as in pd-maskless-pyramid."
     ),
 )

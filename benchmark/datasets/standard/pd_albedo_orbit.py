@@ -19,13 +19,13 @@ _FLOWN = in_orbit(
     step_s=30.0,
     follows=(),
     description=(
-        "The four photodiodes of qpd-maskless-pyramid flown on a sun-synchronous orbit of 600 km, "
-        "on a satellite whose nutation takes the Sun from the boresight to 48 deg and back in 24 "
-        "min. Soken2023 corrects an analog sensor by a network of four voltages, trained in orbit "
-        "on attitudes of other instruments; its geometry, orbit and training set are not in what "
-        "was mapped, and are not followed. Calibration: the sunlight of one day, fifteen orbits, "
-        "Earth in view; test: three whole orbits a week later, which the study gives as how long "
-        "its network holds. Thermal cycle and drift as in pd-orbit."
+        "The four photodiodes of qpd-maskless-pyramid in a sun-synchronous orbit of 600 km. "
+        "Nutation moves the Sun from the boresight to 48 deg and back in 24 min. It tests "
+        "Soken2023's idea, a network of four voltages trained in orbit on attitudes of other "
+        "instruments; the study's geometry, orbit and training set are not known. "
+        "Calibration: sunlight of one day (fifteen orbits), Earth in view. Test: three orbits "
+        "a week later, the time that Soken2023's network holds. Temperature and drift as in "
+        "pd-orbit."
     ),
 )
 

@@ -34,12 +34,10 @@ PRESET = code_dial(
     half_fov_deg=60.0,
     follows=("Fan2013",),
     description=(
-        "A slit over a code dial with photodiodes behind its tracks, once an axis: coarse rows "
-        "tell the cell, four fine rows in quadrature the phase in it (Fan2013, eq:fourier). The "
-        "study gives the principle and the field of +-60 deg; its semi-cylindrical lens, which "
-        "keeps rays of the measured plane straight, is left out. No dimensions are given. Round "
-        "numbers instead: a 0.32 mm slit 2.5 mm up; a fine period of twice the slit's width keeps "
-        "its contrast at 2/pi; Gray cells of half a period leave a quarter of it for coarse "
-        "errors; 32 of them span the field."
+        "A slit over a code dial with photodiodes behind its tracks, one per axis: coarse "
+        "rows give the cell, four fine rows in quadrature the phase in it (Fan2013, "
+        "eq:fourier). From Fan2013: the principle, field +-60 deg; its semi-cylindrical lens "
+        "is left out. Assumed: a slit of 0.32 mm, 2.5 mm up; a fine period of twice the "
+        "slit's width (contrast 2/pi); 32 Gray cells of half a period."
     ),
 )

@@ -21,8 +21,9 @@ PRESET = faces(
     directions=SphereField(),
     follows=("Allgeier2009", "Frezza2022"),
     description=(
-        "One photodiode a face, Sun from anywhere on the sphere. The studies followed give the "
-        "arrangement and the angular response (Kelly cosine: Yousefian2017), no electronics: full "
-        "sunlight is set to 100 uA, the converter to twice that so that Sun and Earth together fit."
+        "A photodiode on each face of a cube; the Sun may be anywhere. From Allgeier2009 and "
+        "Frezza2022: the arrangement. From Yousefian2017: the angular response (Kelly "
+        "cosine). Assumed: 100 uA in full sunlight; converter range twice that, for Sun and "
+        "Earth together."
     ),
 )

@@ -19,9 +19,9 @@ PRESET = faces(
     directions=ConeField(55.0),
     follows=("Wang2019", "Yousefian2017"),
     description=(
-        "Photodiodes on the lateral faces of a regular pyramid (eq:msfpyra1, Wang2019); their "
-        "number, six, the Kelly cosine and the field, a cone of 110 deg, are Yousefian2017's. The "
-        "tilt is not given in what was mapped: 30 deg from the boresight is the largest round "
-        "number that leaves all six lit within that cone. Electronics as in pd-maskless-cube."
+        "Photodiodes on the six lateral faces of a regular pyramid (eq:msfpyra1, Wang2019). "
+        "From Yousefian2017: six faces, Kelly cosine, a field of a cone of 110 deg. Assumed: "
+        "a tilt of 30 deg from the boresight, with which all faces are lit over the field. "
+        "Electronics as in pd-maskless-cube."
     ),
 )

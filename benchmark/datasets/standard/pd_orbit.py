@@ -18,14 +18,13 @@ PRESET = in_orbit(
     step_s=10.0,
     follows=("Frezza2022", "OKeefe2017"),
     description=(
-        "The cube of pd-maskless-cube flown on a sun-synchronous orbit of 600 km (node at 10:30, a "
-        "third of every orbit in eclipse) on a satellite that tumbles slowly, as after detumbling, "
-        "so that the Sun passes over nearly the whole sphere. Six cosine-type photodiodes aided by "
-        "a magnetometer are Frezza2022's arrangement; albedo that ends with eclipse and "
-        "calibration in orbit are OKeefe2017's (eq:mnoise). Neither gives orbit or drift in what "
-        "was mapped: round numbers instead. Calibration: sunlight of the first three orbits, Earth "
-        "in view as later; test: three whole orbits a quarter of a year on, the same unit aged. "
-        "The sensor relaxes towards 35 deg C in sunlight and -25 deg C in eclipse with a time "
-        "constant of 2000 s."
+        "The cube of pd-maskless-cube in a sun-synchronous orbit of 600 km (node at 10:30, a "
+        "third of each orbit in eclipse) on a slowly tumbling satellite, so that the Sun "
+        "passes over nearly the whole sphere. From Frezza2022: six photodiodes aided by a "
+        "magnetometer. From OKeefe2017: albedo that ends with eclipse, calibration in orbit "
+        "(eq:mnoise). Orbit and drift are assumed. Calibration: sunlight of the first three "
+        "orbits, Earth in view. Test: three orbits a quarter of a year later, the same unit "
+        "aged. The temperature approaches 35 deg C in sunlight and -25 deg C in eclipse (time "
+        "constant 2000 s)."
     ),
 )

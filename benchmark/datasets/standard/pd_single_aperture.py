@@ -33,10 +33,10 @@ PRESET = diodes.masked_photodiodes(
     },
     follows=("Ortega2009", "Ortega2010"),
     description=(
-        "Four silicon photodiodes on one die, a metallised cover glass with one window glued on "
-        "top, a field of +-60 deg: Ortega2010. Sizes are not in what was mapped; round numbers: "
-        "0.5 mm of glass (index 1.52) is also the distance from window to die, both as drawn, and "
-        "a window of 0.8 mm keeps light on all four photodiodes to 60 deg inside it."
+        "Four photodiodes on one die under a metallised cover glass with one window, field "
+        "+-60 deg (Ortega2010). Sizes are not known. Assumed: glass of 0.5 mm (index 1.52), "
+        "directly on the die; a window of 0.8 mm, with which light reaches all four "
+        "photodiodes up to 60 deg."
     ),
     regime=measured_geometric(0.01, (1.0, 1.0, 1.01)),
 )

@@ -29,10 +29,9 @@ PRESET = diodes.masked_photodiodes(
     setups=diodes.usual(_SENSOR, _NOMINAL, _OFF, misalign(0.0125)) | seen_with(_SENSOR, "albedo"),
     follows=("Hales2002",),
     description=(
-        "The photodiodes and slits of pd-slit with a cover glass on the die, which an optical "
-        "compensation is for: Hales2002's, of whose sensor (two axes on one die, slits mounted "
-        "over it) nothing but the survey's optical model is in what was mapped. Round numbers: 0.3 "
-        "mm of glass (index 1.52) of the 0.5 mm from slits to die; slits count as thin."
+        "The photodiodes and slits of pd-slit with a cover glass on the die, for Hales2002's "
+        "optical compensation. The survey states only Hales2002's optical model. Assumed: "
+        "glass of 0.3 mm (index 1.52) within the 0.5 mm from slits to die; thin slits."
     ),
     regime=measured_geometric(0.0005, (1.0, 1.0, 1.0)),
 )

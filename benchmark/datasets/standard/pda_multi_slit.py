@@ -17,12 +17,11 @@ PRESET = line_arrays(
     half_fov_deg=51.5,
     follows=("Bolshakov2020",),
     description=(
-        "Five slits over a linear photodiode array (Bolshakov2020, model:mslit), once an axis. The "
-        "field of +-51.5 deg and the growing distance from slit to slit are those reported for it; "
-        "one edge of each spot comes from the foil's lower rim at h, the other from its upper rim "
-        "at h + t, as the model has it (the focal length here counts to the middle, h + t/2). "
-        "Dimensions are not given. Round numbers instead: 144 pixels of 50 um; slits of 0.2 mm, "
-        "four pixels, 1.2 mm up; distances of 0.5, 0.6, 0.7 and 0.8 mm; 8 bits as in the same "
-        "laboratory's later work (Diriker2021)."
+        "Five slits over a linear photodiode array, one per axis (Bolshakov2020, "
+        "model:mslit). From reports of it: field +-51.5 deg, growing distances between slits. "
+        "Assumed: 144 pixels of 50 um, 1.2 mm below slits of 0.2 mm, at distances of 0.5, "
+        "0.6, 0.7 and 0.8 mm; 8 bits (Diriker2021, same laboratory). One edge of each spot "
+        "comes from the lower rim of the foil, the other from the upper rim; the focal length "
+        "counts to the middle."
     ),
 )

@@ -16,12 +16,11 @@ PRESET = line_arrays(
     half_fov_deg=50.0,
     follows=("Post2013",),
     description=(
-        "Both angles from one linear photodiode array behind an N of slits; it lies along y: the "
-        "middle slit is square to it and gives alpha, both outer ones are slanted and add beta "
-        "(model:nslit). Post2013 puts a slit mask on a photodiode array; its second method, "
-        "orthogonal solar cells without a mask, is pva-maskless-panels. What was mapped gives no "
-        "dimensions. Round numbers: 256 pixels of 50 um, 90 percent of it sensitive; slits of 0.2 "
-        "mm, four pixels, 1.3 mm up; a slant of 45 deg makes both angles weigh alike; 2.2 mm "
-        "between slits keep the three spots in order over +-50 deg; 10 bits."
+        "Both angles from one linear photodiode array along y behind an N of slits: the "
+        "middle slit gives alpha, the two slanted outer ones add beta (model:nslit). From "
+        "Post2013: a slit mask on a photodiode array, without dimensions (its solar cells are "
+        "pva-maskless-panels). Assumed: 256 pixels of 50 um, 90 % of each sensitive, 1.3 mm "
+        "below slits of 0.2 mm; a slant of 45 deg; 2.2 mm between slits; field +-50 deg; 10 "
+        "bits."
     ),
 )

@@ -16,10 +16,10 @@ PRESET = line_arrays(
     half_fov_deg=60.0,
     follows=("Alvi2014", "Diriker2021", "Strietzel2002"),
     description=(
-        "Two linear photodiode arrays at right angles (Alvi2014), a slit over each (Strietzel2002, "
-        "Diriker2021). The studies give the arrangement, no dimensions. Round numbers instead: 256 "
-        "pixels of 50 um, 90 percent of it sensitive, hold the light 2.5 mm below at 60 deg; a "
-        "slit of 0.2 mm, four of them, so that interpolation within a pixel (Diriker2021) has "
-        "full pixels between two edges; 10 bits."
+        "Two linear photodiode arrays at right angles (Alvi2014), a slit over each "
+        "(Strietzel2002, Diriker2021). No dimensions are known. Assumed: 256 pixels of 50 um, "
+        "90 % of each sensitive, 2.5 mm below a slit of 0.2 mm (four pixels, so that "
+        "interpolation has full pixels between two edges, Diriker2021); field +-60 deg; 10 "
+        "bits."
     ),
 )

@@ -30,14 +30,12 @@ PRESET = diodes.masked_photodiodes(
     },
     follows=("Lin2016",),
     description=(
-        "One aperture over a position-sensitive device with electrodes at its corners, so that the "
-        "voltage balance of quadrants gives both positions: a balance S is a spot at S L / 2, and "
-        "the active length L stands in the geometry as the aperture's width d. Lin2016 gives a "
-        "pinhole, a 120 x 120 deg field and an aperture of V-shaped cross-section, here an edge "
-        "without thickness, but no lengths in what was mapped. These are the design document's of "
-        "the Foresail-1 sensor: a hole of 0.56 mm 1.5 mm above a device of 4 x 4 mm. Its field is "
-        "+-50 deg; +-45 deg keep the whole spot on the device in every corner, misaligned too. "
-        "Currents and noise are round numbers: 100 uA are what such a hole lets through."
+        "One aperture over a position-sensitive device with electrodes at its corners; the "
+        "balance S of quadrants gives the position S L / 2, with the active length L as the "
+        "geometry's aperture width d. From Lin2016: a pinhole and a field of 120 x 120 deg, "
+        "without lengths. From the Foresail-1 sensor: a hole of 0.56 mm, 1.5 mm above a "
+        "device of 4 x 4 mm. Its field is +-50 deg, here +-45 deg, so that the whole spot "
+        "stays on the device. Assumed: 100 uA and the noise."
     ),
     regime=measured_geometric(0.06, (1.0, 1.0, 1.0)),
 )

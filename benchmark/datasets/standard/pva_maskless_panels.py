@@ -17,10 +17,10 @@ PRESET = faces(
     directions=SphereField(),
     follows=("Nurgizat2021", "Lu2017b", "Post2013", "Hermoso2022b"),
     description=(
-        "The short-circuit currents of body-mounted panels (eq:msfsc), Sun from anywhere on the "
-        "sphere. The studies followed give the arrangement and the errors: angular response, "
-        "temperature, Earth, degradation. Round numbers for the rest: a panel is two cells of 0.5 "
-        "A, the large cells of a small satellite's face; 0.06 % a kelvin is typical of "
-        "multi-junction cells; 40 K lie between a panel's sunlit and dark sides."
+        "Short-circuit currents of solar panels on the body of a satellite (eq:msfsc); the "
+        "Sun may be anywhere. From the studies: the arrangement and the errors (angular "
+        "response, temperature, Earth, degradation). Assumed: two cells of 0.5 A per panel, "
+        "0.06 %/K (typical of multi-junction cells), 40 K between the sunlit and the dark "
+        "side."
     ),
 )

@@ -17,10 +17,9 @@ PRESET = faces(
     directions=ConeField(55.0),
     follows=("Pita2014", "Wang2019"),
     description=(
-        "Single solar cells on the lateral faces of a regular pyramid (eq:msfpyra1): those of the "
-        "truncated pyramids of NANOSAT-1B, which Pita2014 calibrates anew, and the reused cells "
-        "that Wang2019 suggests beside photodiodes. How many faces, how they tilt and what the "
-        "cells give is not in what was mapped: four faces, 30 deg from the boresight, lit together "
-        "within a cone of 110 deg as in pd-maskless-pyramid; cells as in pva-maskless-sphere."
+        "Single solar cells on the lateral faces of a regular pyramid (eq:msfpyra1), as on "
+        "NANOSAT-1B (Pita2014) and as Wang2019 suggests. Number and tilt of faces are not "
+        "known. Assumed: four faces, 30 deg from the boresight, all lit within a cone of 110 "
+        "deg; cells as in pva-maskless-sphere."
     ),
 )

@@ -19,10 +19,10 @@ PRESET = faces(
     directions=SphereField(test_samples=1000),
     follows=("Zhang2022b",),
     description=(
-        "Single cells all over a sphere, several of them lit whatever the attitude (eq:msfpano). "
+        "Sixteen single solar cells over a sphere, several of them always lit (eq:msfpano). "
         "Zhang2022b reads 16 of the 991 cells of a spherical satellite and compensates their "
-        "temperature; which 16 is not in what was mapped: here a Fibonacci lattice, the evenest "
-        "simple spread. Round numbers for the rest: 50 mA a cell, otherwise as in "
-        "pva-maskless-panels. Barnes2014 covers a hemisphere in the same way, with photodiodes."
+        "temperature; which ones is not known. Assumed: a Fibonacci lattice, 50 mA per cell, "
+        "otherwise as in pva-maskless-panels. Barnes2014 covers a hemisphere with photodiodes "
+        "in the same way."
     ),
 )

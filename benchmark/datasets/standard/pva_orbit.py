@@ -21,10 +21,10 @@ PRESET = in_orbit(
     step_s=10.0,
     follows=("Zhang2022b",),
     description=(
-        "The cells of pva-maskless-sphere flown with a thermometer, for Zhang2022b's temperature "
-        "term (eq:msfpano) and its albedo: its satellite has flown since 2020, its orbit, attitude "
-        "and drift are not in what was mapped. Orbit, tumbling, spans and thermal cycle as in "
-        "pd-orbit; a cell in full sunlight is 40 K warmer than the body, whose temperature the "
-        "thermometer tells. Round numbers: 0.06 %/K is typical of multi-junction cells."
+        "The cells of pva-maskless-sphere with a thermometer, in orbit, for Zhang2022b's "
+        "temperature term (eq:msfpano) and albedo. Its satellite has flown since 2020; orbit, "
+        "attitude and drift are not known. Orbit, tumbling, calibration, test and temperature "
+        "as in pd-orbit. Assumed: a cell in full sunlight is 40 K warmer than the body; 0.06 "
+        "%/K (typical of multi-junction cells)."
     ),
 )

@@ -26,9 +26,9 @@ PRESET = faces(
     directions=ConeField(55.0),
     follows=("Zhuo2020",),
     description=(
-        "Four photodiodes that lean outwards into the four quadrants, read by their balances: with "
-        "cosine responses and a tilt of t they are ``tan(t) / sqrt(2)`` times the tangents of the "
-        "Sun angles. Zhuo2020 is filed under voltage balance and the pyramidal model; no geometry "
-        "in what was mapped. Tilt, field and electronics as in pd-maskless-pyramid."
+        "Four photodiodes that lean outwards into the four quadrants, read by their balances: "
+        "with cosine responses and a tilt t, a balance is tan(t) / sqrt(2) times the tangent "
+        "of the Sun angle. Zhuo2020 is filed under voltage balance and the pyramidal model; "
+        "no geometry is known. Tilt, field and electronics as in pd-maskless-pyramid."
     ),
 )

@@ -18,14 +18,12 @@ PRESET = in_orbit(
     step_s=20.0,
     follows=("Wu2001", "Wu2002"),
     description=(
-        "The quadrants of qpd-single-aperture flown on a sun-synchronous orbit of 600 km, on a "
-        "satellite whose nutation takes the Sun from the boresight to 36 deg and back in 24 min. "
-        "An analogue sensor of two axes, calibrated in orbit by its polynomial and by its geometry "
-        "(assembly and electronics), is Wu2002's; sensor and orbits have no numbers in what was "
-        "mapped. Drifts are those of the other flights: the head's of ccd-orbit (spacer, bracket, "
-        "creep), the gains' of pd-orbit. Calibration: sunlight of the first three orbits; test: "
-        "three whole orbits a quarter of a year on. The sensor relaxes towards 35 deg C in "
-        "sunlight and -25 deg C in eclipse with a time constant of 2000 s. The sunlit Earth shines "
-        "through the opening, too, where it is ahead."
+        "The quadrants of qpd-single-aperture in a sun-synchronous orbit of 600 km. Nutation "
+        "moves the Sun from the boresight to 36 deg and back in 24 min. Wu2002 calibrates a "
+        "two-axis analogue sensor in orbit by its polynomial and by its geometry; no numbers "
+        "are known. Assembly drifts as in ccd-orbit, gain drifts as in pd-orbit. Calibration: "
+        "sunlight of the first three orbits. Test: three orbits a quarter of a year later. "
+        "The temperature approaches 35 deg C in sunlight and -25 deg C in eclipse (time "
+        "constant 2000 s). Earthlight enters through the opening."
     ),
 )

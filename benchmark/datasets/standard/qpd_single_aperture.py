@@ -30,11 +30,10 @@ PRESET = diodes.masked_photodiodes(
     follows=("Boslooper2017", "Faizullin2017"),
     description=(
         "Four photodiodes under one aperture: square as in Boslooper2017, round as in "
-        "Faizullin2017. Neither gives its geometry in what was mapped, nor does any maker of "
-        "quadrant sensors that was looked up; round numbers instead. A 2 mm aperture 1 mm up makes "
-        "tan(alpha_max) = d / (2 h) = 1 (alg:VB), so the balance saturates at 45 deg and the field "
-        "stops at 40 deg; a detector of 3.6 mm cuts the spot off in the last degree of it (from "
-        "38.7 deg), as small detectors do. Reflectances of the ghosts are round numbers."
+        "Faizullin2017. Neither study, nor any maker of quadrant sensors, gives the geometry. "
+        "Assumed: an aperture of 2 mm, 1 mm up, so that the balance saturates at 45 deg "
+        "(alg:VB); a field of +-40 deg; a detector of 3.6 mm, which cuts the spot from 38.7 "
+        "deg on."
     ),
     regime=measured_geometric(0.25, (1.0, 1.0, 1.0)),
 )

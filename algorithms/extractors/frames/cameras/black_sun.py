@@ -52,8 +52,8 @@ class BlackSunCentroid(Extractor):
     Notes
     -----
     Implements: alg:BCSM (fe:bscm, Saleem2019): blur; masks ``I > T + f`` for falling f; contours;
-    corners, refined to sub-pixels, inside the contour and off its edge; of those that survive,
-    the one of largest radius above a minimum. Survey prints in words ``I`` lower than the
+    corners, refined to sub-pixels, inside the contour and off its edge; of those that survive, the
+    one of largest radius above a minimum. The survey prints in words ``I`` lower than the
     threshold; corrected because the pseudocode's ``I > T + f`` is what leaves the black Sun a
     hole. Holes in every contour are tried, not in the largest alone, which under broken cloud is
     not the Sun's; a hole must be about round. The corner's refinement is that of structure

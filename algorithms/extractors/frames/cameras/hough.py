@@ -29,12 +29,12 @@ _TURNED = [1, 0, 3, 2, 4, 6, 5]
 @documented
 @dataclass(frozen=True)
 class HoughLines(Extractor):
-    """Blooming line of a saturated Sun, and the place on it that the light around points to.
+    """Blooming line of a saturated Sun, and the position on it from gradients of its halo.
 
     Charge that a CCD's pixels cannot hold runs up and down their columns: a line through the Sun,
-    far longer than its image and symmetric across it. Where on the line the Sun is, a second line
-    must tell: here every pixel of the halo gives one, along its gradient, and in
-    `sun_from_blooming_lines` other cameras do.
+    far longer than its image and symmetric across it. A second line gives the position on it: here
+    every pixel of the halo gives one, along its gradient; in `sun_from_blooming_lines` other
+    cameras do.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class HoughLines(Extractor):
     without a line of `least_votes` rows that is four times longer than wide (no blooming: a disc,
     noise), and where the line is found and the Sun on it not: other saturated light covers it
     (cloud), or the two sides' gradients meet the line in places 1 px apart. `lines` has the line
-    then. Of two Suns the longer line wins unseen.
+    then. Of two Suns the longer line wins without notice.
 
     Cost: 6 operations a pixel for the runs, 4 a run and angle (720 of them) and 1 a cell and angle,
     80 a pixel within reach.
@@ -172,7 +172,7 @@ class HoughLines(Extractor):
 @documented
 @dataclass(frozen=True)
 class HoughCircle(Extractor):
-    """Circle of unknown radius that most edges agree on.
+    """Circle of unknown radius that most edge pixels vote for.
 
     Every edge pixel votes for the centres that lie along its gradient, one for each radius; the
     circle's centre gathers the votes of its whole rim, whatever else the frame holds and though
@@ -210,10 +210,10 @@ class HoughCircle(Extractor):
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
-    Failure: a NaN row for a frame that is dark or without contrast or holds a NaN or infinity,
-    and where no circle has enough of its rim (noise, lines, a spot more than half cut). Of two
-    Suns the one with the stronger rim is found unseen, unless `sure` is asked for. A bright round
-    cloud can beat a white Sun, and blooming breaks its rim.
+    Failure: a NaN row for a frame that is dark or without contrast or holds a NaN or infinity, and
+    where no circle has enough of its rim (noise, lines, a spot more than half cut). Of two Suns
+    the one with the stronger rim is found without notice, unless `sure` is asked for. A bright
+    round cloud can beat a white Sun, and blooming breaks its rim.
 
     Cost: 30 operations a pixel for edges, 4 an edge and radius, 500 an edge for the candidates.
 

@@ -23,7 +23,7 @@ from algorithms.measurement import Measurement
 
 @dataclass(frozen=True)
 class MirrorRegistration(Extractor):
-    """Centre of a point-symmetric spot, found by registering it against its own mirror image.
+    """Centre of a point-symmetric spot, found by registration with its own mirror image.
 
     Discs, ellipses, squares, Gaussians and Airy patterns have such a centre; no other shape is
     assumed. Hot and dead pixels and a sloping or bent background are found and left out.
@@ -48,11 +48,12 @@ class MirrorRegistration(Extractor):
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
-    Failure: a NaN row where there is no light (NO_SPOT), where there are two (SEVERAL_SPOTS), where
-    the edge cuts the spot (CUT) and where it has no such centre (NOT_SYMMETRIC). Not told apart
-    from one spot: two equal lights closer than two of their widths, and a ghost closer than one.
-    Ellipses a few pixels wide and over 2.2 times as long may be taken for two lights. Rims sharper
-    than a pixel are found to some thousandths of a pixel, along rows or columns to hundredths.
+    Failure: a NaN row where there is no light (NO_SPOT), where there are two (SEVERAL_SPOTS),
+    where the edge cuts the spot (CUT) and where it has no such centre (NOT_SYMMETRIC). Not
+    distinguished from one spot: two equal lights closer than two of their widths, and a ghost
+    closer than one. Ellipses a few pixels wide and over 2.2 times as long may be taken for two
+    lights. Rims sharper than a pixel are found to some thousandths of a pixel, along rows or
+    columns to hundredths.
 
     Cost: 10 operations a pixel, some 300 in single precision a pixel of the spot's surroundings.
 

@@ -215,7 +215,7 @@ def _common_noise(level: int, d: float) -> float:
 
 @compiled
 def _solve(sums: Sums, product_x: float, product_y: float, square: float, state: State) -> bool:
-    """Solve ``sum w h (d + d_x g_x + d_y g_y) = 0``; what noise adds to the products is taken off.
+    """Solve ``sum w h (d + d_x g_x + d_y g_y) = 0``; what noise adds to the products is subtracted.
 
     To `state` go displacement and covariance, noise's share in h and how the sums move the centre.
     """

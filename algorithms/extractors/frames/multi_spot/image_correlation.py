@@ -46,9 +46,9 @@ _LONGEST = 8.0
 class ImageCorrelation(MaskSpots, Extractor):
     """Middle of the summed correlations of all spots with their templates.
 
-    Windows stand where the spots are predicted. Each is correlated with the image its aperture
-    should cast, and because all spots move alike, the sum of the correlations is one hill with
-    the noise of one measurement of all the light. A missing spot adds next to nothing to it.
+    Windows are placed at the predicted spots. Each is correlated with the image its aperture
+    should cast, and because all spots move alike, the sum of the correlations is one peak that
+    uses the light of all spots. A missing spot adds almost nothing.
 
     Parameters
     ----------
@@ -65,14 +65,14 @@ class ImageCorrelation(MaskSpots, Extractor):
     Notes
     -----
     Implements: alg:FEIC (fe:feic, Xing2008): ``x_s = int(Dx + x_s + 0.5)``, ``C_s(m, n) = sum_ij
-    P_s(m + i, n + j) T_s(i, j)``, ``x_c = Dx + sum C_s (m - N_c / 2) / sum C_s``. Survey prints
-    (m - 4); corrected because the middle of 0..N_c is N_c / 2. Survey adds to Dx what windows at
-    whole pixels give; corrected because their fractions do not cancel: the windows' own mean
-    distance from the apertures, weighted by the light in them, takes its place. Survey takes the
-    centroid of all of C; corrected because of a hill cut off by the matrix it moves less than
-    the hill: the lowest value is taken off, and the gain is what leaving out the first or the
-    last column, known to be a pixel, changes. Windows are moved until they stand within half a
-    pixel of the result. Survey prints m with x, over rows; corrected because x runs along
+    P_s(m + i, n + j) T_s(i, j)``, ``x_c = Dx + sum C_s (m - N_c / 2) / sum C_s``. The survey
+    prints (m - 4); corrected because the middle of 0..N_c is N_c / 2. The survey adds to Dx what
+    windows at whole pixels give; corrected because their fractions do not cancel: the windows' own
+    mean distance from the apertures, weighted by the light in them, takes its place. The survey
+    takes the centroid of all of C; corrected because of a hill cut off by the matrix it moves less
+    than the hill: the lowest value is subtracted, and the gain is what leaving out the first or
+    the last column, known to be a pixel, changes. Windows are moved until they stand within half a
+    pixel of the result. The survey prints m with x, over rows; corrected because x runs along
     columns here.
 
     The study's templates are images of an earlier frame; here they are drawn from the design.

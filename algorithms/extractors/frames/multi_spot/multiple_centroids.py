@@ -43,14 +43,14 @@ class MultipleCentroids(MaskSpots, Extractor):
 
     Notes
     -----
-    Implements: alg:MCAM (fe:mcam, Rufino2009b): ``I' = max(I - mu I_max, 0)``, ``x_n = sum(x I')
-    / sum(I')`` in each segment n, ``x_avg = sum(x_n) / N``. Survey prints x over rows; corrected
+    Implements: alg:MCAM (fe:mcam, Rufino2009b): ``I' = max(I - mu I_max, 0)``, ``x_n = sum(x I') /
+    sum(I')`` in each segment n, ``x_avg = sum(x_n) / N``. The survey prints x over rows; corrected
     because x runs along columns here. mu counts from the background, the median of every so many
-    pixels, and I_max is a brightness that rows of half a spot reach, so that hot pixels do not
-    set it: ours. Printed are segments of known number; here they are sets of touching pixels.
-    Those at the edge, and those of less than 0.4 of an aperture's area or far more than it with
-    the Sun's image, are left out. Displacements that most pairs of spot and aperture agree on are
-    compared by what the frame shows of every aperture: dark places, unexplained spots.
+    pixels, and I_max is a brightness that rows of half a spot reach, so that hot pixels do not set
+    it: ours. Printed are segments of known number; here they are sets of touching pixels. Those at
+    the edge, and those of less than 0.4 of an aperture's area or far more than it with the Sun's
+    image, are left out. Displacements that most pairs of spot and aperture agree on are compared
+    by what the frame shows of every aperture: dark places, unexplained spots.
 
     Failure: a NaN row for a frame that is dark, without contrast, holds a NaN or infinity, or
     whose spots rise less than five times its noise; where fewer than 0.3 of the apertures that

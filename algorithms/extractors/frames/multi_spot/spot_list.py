@@ -40,11 +40,10 @@ _ROOM = 4
 
 @dataclass(frozen=True)
 class SpotList(Extractor):
-    """Thresholded centroid and light of every whole spot, whichever aperture cast it.
+    """Thresholded centroid and total light of every whole spot of a frame.
 
-    The threshold that BCTM takes for one spot makes segments of a frame of many; each is located
-    by itself. Which aperture cast which spot, and so where the Sun is, a model of the mask's code
-    tells.
+    The threshold of BCTM divides a frame into segments; the spot of each is located separately. A
+    model of the mask's code then matches spots with apertures.
 
     Parameters
     ----------

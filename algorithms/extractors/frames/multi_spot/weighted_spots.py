@@ -44,11 +44,11 @@ _RIM_PX = 2.0
 class WeightedSpots(MaskSpots, Extractor):
     """Mean of the centres of all whole spots, each by the image that all of them share.
 
-    The pattern tells which aperture cast which spot. Light against distance from the middle is
-    averaged over all spots, and each is moved to where it fits this profile best; spots are
-    weighted by their variances, and those that disagree are left out. Because the fit is not
-    biased by where a spot falls on its pixels, N spots are sqrt(N) times as precise as one also
-    where all of them fall alike.
+    The pattern tells which aperture cast which spot. The radial profile is averaged over all
+    spots, and each spot is located by its best fit to this profile; spots are weighted by their
+    variances, and those that disagree are left out. Because the fit is not biased by where a spot
+    falls on its pixels, N spots are sqrt(N) times as precise as one also where all of them fall
+    alike.
 
     Parameters
     ----------
