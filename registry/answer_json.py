@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import hashlib
 import weakref
-from collections.abc import Mapping
+from collections.abc import Iterable, Sequence
 from functools import cached_property, lru_cache
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic_core import to_json
 
 from registry.answer import Answer, RankedPlace
@@ -21,12 +23,13 @@ from registry.designs import DesignTable
 from registry.judging import Question, advice_for
 from registry.path_arrays import MOST_SETS, StudySets, path_arrays, unpacked
 from registry.paths import PATH_LEVELS, path_table
-from registry.pipelines import PipelineErrors
+from registry.pipelines import NOT_COUNTED, PipelineErrors
 from registry.ranking import TaskMeasure, support
 from registry.requirements import Requirements
 
-#: Texts that are kept of each kind: some 16 MB of calibrations, which are the longest.
-MOST_TEXTS = 8192
+#: Texts that are kept of each kind: some 16 MB of calibrations, and as much of architectures, which
+#: are longer.
+MOST_TEXTS, MOST_ARCHITECTURES = 8192, 2048
 
 
 def encoded(value: Any) -> bytes:
@@ -49,6 +52,16 @@ class AnswerTexts:
         self._table = path_table(table.facts)
         self._left_out = encoded([left.to_dict() for left in self._table.left_out])
         self._places = table.places
+        self._keys = [encoded(key) for key in table.facts.keys]
+        self._path_heads = [_head(zip(PATH_LEVELS, p, strict=True)) for p in self._table.paths]
+        self._node_heads = [
+            b'%b,"count":' % _head(id=f"{level}:{value}", level=level, value=value, name=name)
+            for level, value, name in self._table.nodes
+        ]
+        self._link_heads = [
+            b'%b,"value":' % _head(source=source, target=target)
+            for source, target in self._table.links
+        ]
         self._studies = lru_cache(MOST_TEXTS)(self._studies_text)
         self._behind = lru_cache(MOST_SETS)(self._behind_text)
         self._path = lru_cache(MOST_TEXTS)(self._path_text)
@@ -56,10 +69,11 @@ class AnswerTexts:
         self._link = lru_cache(MOST_TEXTS)(self._link_text)
         self._head = lru_cache(MOST_TEXTS)(self._head_text)
         self._measures = lru_cache(MOST_TEXTS)(_measures_text)
+        self._architecture = lru_cache(MOST_ARCHITECTURES)(self._architecture_text)
         self._contradiction = lru_cache(MOST_TEXTS)(self._contradiction_text)
         self._calibration = lru_cache(MOST_TEXTS)(self._calibration_text)
         self._design = lru_cache(None)(self._design_text)
-        self._measured = lru_cache(MOST_TEXTS)(self._measured_text)
+        self._best_rows = lru_cache(MOST_TEXTS)(self._rows_on_datasets)
         self._pipeline = lru_cache(MOST_TEXTS)(self._pipeline_text)
 
     @cached_property
@@ -95,50 +109,103 @@ class AnswerTexts:
     def _architectures(
         self, answer: Answer, limit: int | None, calibrations: int | None
     ) -> list[bytes]:
-        question, best, first_row = answer.question, answer.best, self.arrays.first_row
-        errors, finer, advising = best.errors, question.finer, question.advice_key
-        units = errors.units_within(question.asked.largest_deg).tobytes()
-        rows: list[int] = best.row.tolist()
+        question, places = answer.question, answer.places[:limit]
+        errors, advising = answer.best.errors, question.advice_key
         ends = {
-            (measured, studied): b',"basis":%b}'
-            % encoded(question.basis(measured=measured, studied=studied))
-            for measured in (True, False)
+            studied: {
+                key: b',"basis":%b}'
+                % encoded(question.basis(measured=key == b"measured", studied=studied))
+                for key in (b"measured", b"stated")
+            }
             for studied in (True, False)
         }
         parts: list[bytes] = []
-        calibration = self._calibration
-        for rank, place in enumerate(answer.places[:limit], 1):
-            studies, stated, start = place.studies, place.stated, place.start
-            last = place.end if calibrations is None else min(place.end, start + calibrations)
-            finest = finer.get(place.number, -1)
-            end = {measured: ends[measured, bool(studies)] for measured in (True, False)}
-            shown: list[int] = answer.designs[start:last].tolist()
-            of_shown: list[bytes] = []
-            for at, design in enumerate((place.best_at, *shown)):
-                row = rows[design]
-                if row < 0:
-                    text = calibration(design, row, stated, studies, None, -1, b"")
-                else:
-                    within = units[first_row[design] : first_row[design + 1]]
-                    text = calibration(design, row, studies, studies, errors, finest, within)
-                of_shown += (
-                    b',{"rank":%d' % (at or answer.rank_of_best(place)),
-                    text,
-                    end[row >= 0],
-                )
-            of_shown[0], of_shown[3] = of_shown[0][1:], of_shown[3][1:]
-            parts += (
-                b'%b{"rank":%d,' % (b"," if rank > 1 else b"", rank),
-                self._head(place.number, studies, advising),
-                *of_shown[:3],
-                b',"pareto":true' if rank - 1 in answer.pareto else b',"pareto":false',
-                *(b',"contradiction":', self._against(answer, place)),
-                *(b',"measures":', self._measures(place.measures)),
-                b',"count":%d,"calibrations":[' % (place.end - start),
-                *of_shown[3:],
-                b"]}",
+        shown = zip(places, *self._shown(answer, places, calibrations), strict=True)
+        for rank, (place, packed, units) in enumerate(shown, 1):
+            template = self._architecture(errors, place.studies, place.stated, packed, units)
+            parts.append(
+                template
+                % {
+                    b"rank": b'%b{"rank":%d,' % (b"," if rank > 1 else b"", rank),
+                    b"head": self._head(place.number, place.studies, advising),
+                    b"pareto": b"true" if rank - 1 in answer.pareto else b"false",
+                    b"measures": self._measures(place.measures),
+                    **ends[bool(place.studies)],
+                }
             )
         return parts
+
+    def _shown(
+        self, answer: Answer, places: Sequence[RankedPlace], calibrations: int | None
+    ) -> tuple[list[bytes], list[bytes]]:
+        """Return what the text of each architecture depends on beside studies and errors, packed.
+
+        First integers: the number of its designs, the rank of the best of them, the finest
+        pipeline that answers too seldom, the design that most studies used and its pipeline; the
+        best design and those that are shown, then the pipelines of these; all by position, -1 for
+        none. Second of all pipelines of these designs how many units keep the limit on the error;
+        nothing where none is asked.
+        """
+        if not places:
+            return [], []
+        question, best, designs = answer.question, answer.best, answer.designs
+        finer, usual = question.finer, answer.usual
+        of_places = [
+            (p.start, p.end, p.best_at, finer.get(p.number, -1), usual.get(p.number, -1))
+            for p in places
+        ]
+        start, end, best_at, finest, used = np.array(of_places).T
+        count, numbers = end - start, self.arrays.numbers
+        at = start[:, None] + numbers[: count.max() if calibrations is None else calibrations]
+        shown = np.where(at < end[:, None], designs.take(at, mode="clip"), -1)
+        shown = np.concatenate((best_at[:, None], shown), axis=1)
+        place_in = np.empty_like(numbers)
+        place_in[designs] = numbers[: len(designs)]
+        used_row = np.where(used < 0, -1, best.row[used])
+        alone = np.stack((count, place_in[best_at] - start + 1, finest, used, used_row), axis=1)
+        rows = np.where(shown < 0, -1, best.row[shown])
+        packed = np.concatenate((alone, shown, rows), axis=1)
+        limit = question.asked.largest_deg
+        if limit is None:
+            return _bytes_of_each(packed), [b""] * len(places)
+        units = np.append(best.errors.units_within(limit), np.uint8(NOT_COUNTED))
+        return _bytes_of_each(packed), _bytes_of_each(units[self.arrays.rows_of[shown]])
+
+    def _architecture_text(
+        self, errors: PipelineErrors, studies: int, stated: int, packed: bytes, units: bytes
+    ) -> bytes:
+        """Return an architecture as a template, into which goes what hangs on the whole answer.
+
+        Parameters
+        ----------
+        errors : of all pipelines
+        studies : studies of the architecture with what is asked of studies (bits)
+        stated : those of them whose stated numbers keep the limits, too
+        packed, units : as `_shown` packs them
+        """
+        count, rank_of_best, finest, used, used_row, *more = np.frombuffer(packed, int).tolist()
+        designs, rows = more[: len(more) // 2], more[len(more) // 2 :]
+        size = len(units) // len(designs)
+        texts = []
+        for at, (design, row) in enumerate(zip(designs, rows, strict=True)):
+            if design < 0:
+                continue
+            if row < 0:
+                end, text = b"stated", self._calibration(design, row, stated, studies)
+            else:
+                within = units[at * size : (at + 1) * size]
+                of_row = (errors, finest, within)
+                end, text = b"measured", self._calibration(design, row, studies, studies, *of_row)
+            texts.append(b'{"rank":%d%b%%(%b)b' % (at or rank_of_best, text, end))
+        contradiction = b"null"
+        if used >= 0:
+            best = designs[0], rows[0], studies if rows[0] >= 0 else stated
+            contradiction = self._contradiction(errors, studies, used, used_row, *best)
+        return (
+            b'%%(rank)b%%(head)b%b,"pareto":%%(pareto)b,"contradiction":%b,"measures":%%(measures)b'
+            b',"count":%d,"calibrations":[%b]}'
+            % (texts[0], contradiction, count, b",".join(texts[1:]))
+        )
 
     def _head_text(
         self, number: int, studies: int, advising: tuple[tuple[str, ...] | None, ...]
@@ -165,17 +232,6 @@ class AnswerTexts:
         }
         return b'%b,"studies":[%b],"best":' % (encoded(members)[1:-1], self._studies(studies))
 
-    def _against(self, answer: Answer, place: RankedPlace) -> bytes:
-        """Return the sentence where measurement contradicts the literature; null for none."""
-        usual = answer.usual.get(place.number)
-        if usual is None:
-            return b"null"
-        rows, best = answer.best.row, place.best_at
-        return self._contradiction(
-            *(answer.best.errors, place.studies, usual, int(rows[usual]), best, int(rows[best])),
-            place.studies if rows[best] >= 0 else place.stated,
-        )
-
     def _contradiction_text(  # noqa: PLR0917 - by these it is kept
         self,
         errors: PipelineErrors,
@@ -186,6 +242,10 @@ class AnswerTexts:
         best_row: int,
         best_studies: int,
     ) -> bytes:
+        """Return the sentence where measurement contradicts the literature, as part of a template.
+
+        It is of the calibration that most studies used and the one with the smallest error.
+        """
         arrays = self.arrays
         designs = arrays.designs
         said = against_literature(
@@ -194,7 +254,7 @@ class AnswerTexts:
             arrays.candidate(best, best_row, errors),
             (designs[best].taken & best_studies).bit_count(),
         )
-        return encoded(said)
+        return encoded(said).replace(b"%", b"%%")
 
     def _calibration_text(  # noqa: PLR0917 - by these it is kept
         self,
@@ -202,30 +262,40 @@ class AnswerTexts:
         row: int,
         studies: int,
         of_place: int,
-        errors: PipelineErrors | None,
-        finer: int,
-        units_within: bytes,
+        errors: PipelineErrors | None = None,
+        finer: int = -1,
+        units_within: bytes = b"",
     ) -> bytes:
-        """Return the members of a calibration between its rank and the basis.
+        """Return the members of a calibration between its rank and the basis, as a template.
 
         Parameters
         ----------
         design, row : its position, and that of its best pipeline; -1 for none
         studies : studies of its architecture that count (bits)
         of_place : studies of its architecture with what is asked of studies (bits)
-        errors, finer, units_within : as `PipelineErrors.document` takes them, of all its
-            pipelines; errors are None for none
+        errors, finer : as `PipelineErrors.document` takes them; errors are None for no pipeline
+        units_within : units of each of its pipelines that keep the limit, nothing without one
         """
         of = self.arrays.designs[design]
         with_model, taken = of.with_model & studies, of.taken & studies
         counts = (of_place.bit_count(), with_model.bit_count(), taken.bit_count())
-        return b'%b%b],"with_model":%d,"support":%b,"measured":%b' % (
+        measured = [b"null"]
+        if errors is not None:
+            first = self.arrays.first_row[design]
+            measured = []
+            for at in self._best_rows(design, row, errors):
+                units = units_within[at - first] if units_within else NOT_COUNTED
+                number = b"null" if units == NOT_COUNTED else b"%d" % units
+                measured.append(number.join(self._pipeline(at, errors, finer)))
+        text = b'%b%b],"with_model":%d,"support":%b,"measured":%b,"other_datasets":[%b]' % (
             self._design(design),
             self._studies(taken),
             counts[1],
             encoded(round(support(*counts), 4)),
-            self._measured(design, row, errors, finer, units_within),
+            measured[0],
+            b",".join(measured[1:]),
         )
+        return text.replace(b"%", b"%%")
 
     def _design_text(self, design: int) -> bytes:
         of = self.arrays.designs[design]
@@ -237,34 +307,27 @@ class AnswerTexts:
         }
         return b',%b,"studies":[' % encoded(members)[1:-1]
 
-    def _measured_text(
-        self, design: int, row: int, errors: PipelineErrors | None, finer: int, units_within: bytes
-    ) -> bytes:
-        """Return the best pipeline of a calibration, and its best on each other data set."""
-        if errors is None:
-            return b'null,"other_datasets":[]'
-        arrays, first = self.arrays, self.arrays.first_row[design]
+    def _rows_on_datasets(self, design: int, row: int, errors: PipelineErrors) -> tuple[int, ...]:
+        """Return a pipeline of a calibration, and its best on each other data set."""
+        arrays = self.arrays
         others: dict[str, int] = {}
-        for at in range(first, arrays.first_row[design + 1]):
+        for at in range(arrays.first_row[design], arrays.first_row[design + 1]):
             dataset = arrays.rows[at].dataset
             known = others.get(dataset)
             if known is None or errors.error_deg[at] < errors.error_deg[known]:
                 others[dataset] = at
         del others[arrays.rows[row].dataset]
-        texts = [
-            self._pipeline(at, errors, finer, units_within[at - first])
-            for at in (row, *others.values())
-        ]
-        return b'%b,"other_datasets":[%b]' % (texts[0], b",".join(texts[1:]))
+        return row, *others.values()
 
-    def _pipeline_text(
-        self, row: int, errors: PipelineErrors, finer: int, units_within: int
-    ) -> bytes:
-        return encoded(errors.document(row, units_within, finer))
+    def _pipeline_text(self, row: int, errors: PipelineErrors, finer: int) -> list[bytes]:
+        """Return a pipeline in two parts, between them the number of units that keep a limit."""
+        text = encoded(errors.document(row, finer))
+        return text.replace(b'"meeting":null', b'"meeting":\0').split(b"\0")
 
     def _studies_text(self, studies: int) -> bytes:
         """Return the keys of studies (bits), with commas between them."""
-        return encoded(self._table.studies(studies))[1:-1]
+        flags = bin(studies)[:1:-1]
+        return b",".join([key for key, flag in zip(self._keys, flags, strict=False) if flag == "1"])
 
     def _behind_text(self, sets: StudySets) -> bytes:
         """Return paths, nodes and links."""
@@ -276,24 +339,29 @@ class AnswerTexts:
 
     def _path_text(self, packed: bytes) -> bytes:
         at, studies = unpacked(packed)
-        return self._with_studies(
-            dict(zip(PATH_LEVELS, self._table.paths[at], strict=True)), studies
-        )
+        return b'%b,"studies":[%b]}' % (self._path_heads[at], self._studies(studies))
 
     def _node_text(self, packed: bytes) -> bytes:
-        at, studies = unpacked(packed)
-        level, value, name = self._table.nodes[at]
-        about = {"id": f"{level}:{value}", "level": level, "value": value, "name": name}
-        return self._with_studies({**about, "count": studies.bit_count()}, studies)
+        return self._counted(self._node_heads, packed)
 
     def _link_text(self, packed: bytes) -> bytes:
-        at, studies = unpacked(packed)
-        source, target = self._table.links[at]
-        about = {"source": source, "target": target, "value": studies.bit_count()}
-        return self._with_studies(about, studies)
+        return self._counted(self._link_heads, packed)
 
-    def _with_studies(self, members: Mapping[str, object], studies: int) -> bytes:
-        return b'%b,"studies":[%b]}' % (encoded(members)[:-1], self._studies(studies))
+    def _counted(self, heads: Sequence[bytes], packed: bytes) -> bytes:
+        at, studies = unpacked(packed)
+        return b'%b%d,"studies":[%b]}' % (heads[at], studies.bit_count(), self._studies(studies))
+
+
+def _head(members: Iterable[tuple[str, str]] = (), **more: str) -> bytes:
+    """Return the beginning of an object that goes on."""
+    return encoded({**dict(members), **more})[:-1]
+
+
+def _bytes_of_each(values: NDArray[Any]) -> list[bytes]:
+    """Return the bytes of each row of an array."""
+    data = values.tobytes()
+    size = len(data) // len(values)
+    return [data[at : at + size] for at in range(0, len(data), size)]
 
 
 def _measures_text(measures: tuple[TaskMeasure, ...]) -> bytes:

@@ -134,6 +134,17 @@ class DesignArrays(PipelineTable):
             )
 
     @cached_property
+    def rows_of(self) -> Positions:
+        """Pipelines of each design, shape (designs + 1, most of one); none is `len(rows)`.
+
+        The last design has none: it stands for no design, whose position is -1.
+        """
+        counts = np.diff(self.first_row, append=self.first_row[-1])
+        along = np.arange(counts.max(initial=0))
+        at = np.array(self.first_row)[:, None] + along
+        return np.where(along < counts[:, None], at, len(self.rows))
+
+    @cached_property
     def _designs_with(self) -> Mapping[tuple[str, str], Flags]:
         """Designs with each value of detector, mask, extractor and model."""
         found: dict[tuple[str, str], Flags] = {}

@@ -58,7 +58,8 @@ class PathArrays:
         leading = [sum(1 << at for at in table.of(d)) if d.taken else 0 for d in arrays.designs]
         size = 8 * (self._size // WORD_BITS + 1)
         data = b"".join(paths.to_bytes(size, "little") for paths in leading)
-        self._leading = np.frombuffer(data, "<u8").reshape(len(leading), size // 8)
+        words = np.frombuffer(data, "<u8").reshape(len(leading), size // 8)
+        self._leading = np.ascontiguousarray(words.T)
         self._of_task: dict[str, Flags] = {}
         for at, (task, *_) in enumerate(table.paths):
             self._of_task.setdefault(task, np.zeros(self._size, bool))[at] = True
@@ -93,7 +94,7 @@ class PathArrays:
 
     def _led_to(self, designs: Flags) -> Flags:
         """Return the paths that lead to one of some designs."""
-        found = np.bitwise_or.reduce(self._leading[designs], axis=0).view(np.uint8)
+        found = np.bitwise_or.reduce(np.where(designs, self._leading, 0), axis=1).view(np.uint8)
         return np.unpackbits(found, count=self._size, bitorder="little").view(bool)
 
     def _of_tasks(
