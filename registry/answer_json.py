@@ -9,11 +9,10 @@ from __future__ import annotations
 import hashlib
 import weakref
 from collections.abc import Iterable, Sequence
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import to_json
 
 from registry.answer import Answer, RankedPlace
@@ -54,19 +53,19 @@ class AnswerTexts:
         self._places = table.places
         self._keys = [encoded(key) for key in table.facts.keys]
         self._path_heads = [_head(zip(PATH_LEVELS, p, strict=True)) for p in self._table.paths]
-        self._node_heads = [
+        node_heads = [
             b'%b,"count":' % _head(id=f"{level}:{value}", level=level, value=value, name=name)
             for level, value, name in self._table.nodes
         ]
-        self._link_heads = [
+        link_heads = [
             b'%b,"value":' % _head(source=source, target=target)
             for source, target in self._table.links
         ]
         self._studies = lru_cache(MOST_TEXTS)(self._studies_text)
         self._behind = lru_cache(MOST_SETS)(self._behind_text)
         self._path = lru_cache(MOST_TEXTS)(self._path_text)
-        self._node = lru_cache(MOST_TEXTS)(self._node_text)
-        self._link = lru_cache(MOST_TEXTS)(self._link_text)
+        self._node = lru_cache(MOST_TEXTS)(partial(self._counted_text, node_heads))
+        self._link = lru_cache(MOST_TEXTS)(partial(self._counted_text, link_heads))
         self._head = lru_cache(MOST_TEXTS)(self._head_text)
         self._measures = lru_cache(MOST_TEXTS)(_measures_text)
         self._architecture = lru_cache(MOST_ARCHITECTURES)(self._architecture_text)
@@ -91,7 +90,7 @@ class AnswerTexts:
             for hazard, pairs in answer.untried.items()
         }
         return [
-            *(b'{"requirements":', encoded(answer.question.asked.to_dict())),
+            *(b'{"requirements":', answer.question.asked_json),
             b',"sort":"%b","count":%d,"designs":%d,"architectures":['
             % (answer.sort.encode(), len(answer.places), answer.count),
             *self._architectures(answer, limit, calibrations),
@@ -157,19 +156,29 @@ class AnswerTexts:
         start, end, best_at, finest, used = np.array(of_places).T
         count, numbers = end - start, self.arrays.numbers
         at = start[:, None] + numbers[: count.max() if calibrations is None else calibrations]
-        shown = np.where(at < end[:, None], designs.take(at, mode="clip"), -1)
-        shown = np.concatenate((best_at[:, None], shown), axis=1)
+        # Columns as above: five numbers, then designs, then pipelines.
+        width = 1 + at.shape[1]
+        packed = np.empty((len(places), 5 + 2 * width), int)
+        shown, rows = packed[:, 5 : 5 + width], packed[:, 5 + width :]
+        shown[:, 0] = best_at
+        shown[:, 1:] = designs.take(at, mode="clip")
+        shown[:, 1:][at >= end[:, None]] = -1
+        rows[:] = best.row[shown]
+        rows[shown < 0] = -1
         place_in = np.empty_like(numbers)
         place_in[designs] = numbers[: len(designs)]
-        used_row = np.where(used < 0, -1, best.row[used])
-        alone = np.stack((count, place_in[best_at] - start + 1, finest, used, used_row), axis=1)
-        rows = np.where(shown < 0, -1, best.row[shown])
-        packed = np.concatenate((alone, shown, rows), axis=1)
+        packed[:, 0] = count
+        packed[:, 1] = place_in[best_at] - start + 1
+        packed[:, 2] = finest
+        packed[:, 3] = used
+        packed[:, 4] = best.row[used]
+        packed[:, 4][used < 0] = -1
         limit = question.asked.largest_deg
         if limit is None:
-            return _bytes_of_each(packed), [b""] * len(places)
+            return [row.tobytes() for row in packed], [b""] * len(places)
         units = np.append(best.errors.units_within(limit), np.uint8(NOT_COUNTED))
-        return _bytes_of_each(packed), _bytes_of_each(units[self.arrays.rows_of[shown]])
+        of_rows = units[self.arrays.rows_of[shown]]
+        return [row.tobytes() for row in packed], [row.tobytes() for row in of_rows]
 
     def _architecture_text(
         self, errors: PipelineErrors, studies: int, stated: int, packed: bytes, units: bytes
@@ -341,13 +350,7 @@ class AnswerTexts:
         at, studies = unpacked(packed)
         return b'%b,"studies":[%b]}' % (self._path_heads[at], self._studies(studies))
 
-    def _node_text(self, packed: bytes) -> bytes:
-        return self._counted(self._node_heads, packed)
-
-    def _link_text(self, packed: bytes) -> bytes:
-        return self._counted(self._link_heads, packed)
-
-    def _counted(self, heads: Sequence[bytes], packed: bytes) -> bytes:
+    def _counted_text(self, heads: Sequence[bytes], packed: bytes) -> bytes:
         at, studies = unpacked(packed)
         return b'%b%d,"studies":[%b]}' % (heads[at], studies.bit_count(), self._studies(studies))
 
@@ -355,13 +358,6 @@ class AnswerTexts:
 def _head(members: Iterable[tuple[str, str]] = (), **more: str) -> bytes:
     """Return the beginning of an object that goes on."""
     return encoded({**dict(members), **more})[:-1]
-
-
-def _bytes_of_each(values: NDArray[Any]) -> list[bytes]:
-    """Return the bytes of each row of an array."""
-    data = values.tobytes()
-    size = len(data) // len(values)
-    return [data[at : at + size] for at in range(0, len(data), size)]
 
 
 def _measures_text(measures: tuple[TaskMeasure, ...]) -> bytes:
@@ -392,8 +388,8 @@ def answer_digest(answer: Answer, *shown: object) -> bytes:
     answer : the answer
     shown : what else the JSON depends on
     """
-    asked = encoded((answer.question.asked.to_dict(), answer.sort, *shown))
-    return _texts(answer).digest + asked
+    told = encoded((answer.sort, *shown))
+    return b"%b[%b,%b" % (_texts(answer).digest, answer.question.asked_json, told[1:])
 
 
 def _texts(answer: Answer) -> AnswerTexts:

@@ -7,6 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from pydantic_core import to_json
+
 from registry.designs import DesignTable, Limits, Place
 from registry.mapping.advice import ADVISING, Advice
 from registry.requirements import EXCLUDE, Requirements
@@ -62,6 +64,11 @@ class Question:
             requirements.draws,
             requirements.exclude_needs,
         )
+
+    @cached_property
+    def asked_json(self) -> bytes:
+        """The requirements as JSON."""
+        return to_json(self.asked.to_dict())
 
     @cached_property
     def best(self) -> BestPipelines:

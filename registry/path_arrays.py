@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 import weakref
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -51,6 +51,7 @@ class PathArrays:
     def __init__(self, table: PathTable, arrays: DesignArrays) -> None:
         self.arrays = arrays
         self._size = len(table.paths)
+        self._of_tasks = lru_cache(MOST_SETS)(self._from_tasks)
         self._among = lru_cache(MOST_SETS)(self._studies_among)
         self._sets = lru_cache(MOST_SETS)(self._present)
         self._studies = arrays.words_of(table.sets)
@@ -81,7 +82,8 @@ class PathArrays:
         if not self._size:
             return StudySets((), (), ())
         question, measured = answer.question, self.arrays.measured
-        among = self._of_tasks(question.asked.include, question.asked.exclude)
+        include, exclude = question.asked.include, question.asked.exclude
+        among = self._of_tasks(include.get("task"), exclude.get("task", ()))
         if question.studies == question.all_stated:
             parts = [(question.matching_designs, question.studies)]
         else:
@@ -97,11 +99,9 @@ class PathArrays:
         found = np.bitwise_or.reduce(np.where(designs, self._leading, 0), axis=1).view(np.uint8)
         return np.unpackbits(found, count=self._size, bitorder="little").view(bool)
 
-    def _of_tasks(
-        self, include: Mapping[str, Iterable[str]], exclude: Mapping[str, Iterable[str]]
-    ) -> Flags:
-        """Return the paths from a task that is asked for."""
-        tasks = set(include.get("task", self._of_task)) - set(exclude.get("task", ()))
+    def _from_tasks(self, include: tuple[str, ...] | None, exclude: tuple[str, ...]) -> Flags:
+        """Return the paths from a task that is asked for; None asks for every one."""
+        tasks = set(self._of_task if include is None else include) - set(exclude)
         found = np.zeros(self._size, bool)
         for task in tasks & self._of_task.keys():
             found |= self._of_task[task]

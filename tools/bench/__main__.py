@@ -29,7 +29,7 @@ NAMES = (
     "service",
 )
 #: Those of them that draw what they measure on: `run(seed)`.
-SEEDED = frozenset({"robustness", "covariances"})
+SEEDED = frozenset({"robustness", "covariances", "service"})
 
 Harness = Callable[[], Sequence[Verdict]]
 
