@@ -16,7 +16,7 @@ from typing import TypeVar
 from joblib import Parallel, delayed, parallel_config
 from joblib.externals.loky.backend.process import LokyProcess
 
-from benchmark.processes import work_for
+from benchmark.processes import end_if_told, work_for
 from benchmark.running.cluster import WorkerLostError
 
 A = TypeVar("A")
@@ -54,7 +54,10 @@ def _results(
     work: Callable[[A], B], items: Iterable[A], workers: int, order: str
 ) -> Generator[B, None, None]:
     if workers == 1:
-        yield from map(work, items)
+        for item in items:
+            result = work(item)
+            end_if_told()  # what a signal broke off, though a library took it, is no result
+            yield result
         return
     # As the workers are started, not with their first task: one that waits ends as well.
     own = {"initializer": work_for, "initargs": (os.getpid(),)}
@@ -64,7 +67,7 @@ def _results(
             results = parallel(delayed(work)(item) for item in items)
         try:
             # "yield from" would close them itself, before their warnings are kept quiet
-            for result in results:  # noqa: UP028
+            for result in results:
                 yield result
         finally:
             with warnings.catch_warnings():
