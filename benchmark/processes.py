@@ -30,7 +30,7 @@ INTERRUPTED, TERMINATED = 128 + signal.SIGINT, 128 + signal.SIGTERM
 _PR_SET_PDEATHSIG = 1
 _EVERY_S = 0.5
 #: How long a process has to end tidily, seconds.
-_TIDY_S = 1.5
+_TIDY_S = 1.0
 
 #: Signals that told this process to end.
 _told: list[int] = []
@@ -44,6 +44,7 @@ def terminate_as_interrupt() -> None:
     Either ends it for certain within two seconds.
     """
     _end_for_certain()
+    sys.unraisablehook = _ignore_interrupt
     signal.signal(signal.SIGTERM, _tell)
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is to be ignored
         signal.signal(signal.SIGINT, _tell)
@@ -101,6 +102,12 @@ def _end_for_certain() -> None:
         os._exit(128 + number)
 
     threading.Thread(target=wait, daemon=True, name="end for certain").start()
+
+
+def _ignore_interrupt(raised: sys.UnraisableHookArgs) -> None:
+    """Say nothing of an interrupt that a callback ignores: what it was to end is ended later."""
+    if not issubclass(raised.exc_type, KeyboardInterrupt):
+        sys.__unraisablehook__(raised)
 
 
 def _tell(number: int, _: FrameType | None) -> None:

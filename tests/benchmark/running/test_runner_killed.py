@@ -147,8 +147,8 @@ def test_what_is_told_to_end_at_any_moment_ends_and_is_no_result(
     took = time.monotonic() - told
     assert process.returncode == 128 + number
     assert took < 2.0 + 8.0 * (os.getloadavg()[0] > (os.cpu_count() or 1))
-    assert "interrupted" in said.splitlines()[-1]
-    assert before or said.count("\n") == 1
+    assert "interrupted" in said
+    assert said.count("\n") == 1
     lines = [line for line in journal.read_text().splitlines() if '"score"' in line]
     kept = [json.loads(line)["score"] for line in lines]
     assert 1 <= len(kept) < 8
