@@ -36,7 +36,7 @@ class BestPipelines:
     ----------
     row : position of the pipeline, shape (designs,); -1 where none keeps the limits
     error : its error; infinite where there is none
-    rank : of the error; equal errors share a rank
+    rank : of the error among those of all designs; equal errors share a rank
     order : place of each design by error, measured ones first among equals, shape (designs,)
     at_order : the design at each place of that order
     """
@@ -54,9 +54,7 @@ class BestPipelines:
         self.row[has] = first
         self.error = np.full(len(arrays.designs), np.inf)
         self.error[has] = self.errors.error_deg[first]
-        self.rank = np.full(len(arrays.designs), len(arrays.rows))
-        self.rank[has] = self.errors.rank[first]
-        self.rank[np.isinf(self.error)] = len(arrays.rows)
+        self.rank = np.unique(self.error, return_inverse=True)[1]
         key = ((self.rank << 1 | ~arrays.measured) << arrays.design_bits) | arrays.numbers
         key.sort()
         self.at_order = key & ((1 << arrays.design_bits) - 1)
@@ -125,7 +123,7 @@ class DesignArrays(PipelineTable):
         self.stated = lru_cache(MOST_BEST)(self._stated)
         self.untried = lru_cache(None)(self._untried)
         self.design_bits = max(1, len(self.designs).bit_length())
-        self.rank_bits = len(rows).bit_length()
+        self.rank_bits = len(self.designs).bit_length()
         self.support_bits = max(1, (studies**3).bit_length())
         bits = self.support_bits + self.rank_bits + self.design_bits
         if 2 + len(places).bit_length() + bits > _LARGEST_KEY:

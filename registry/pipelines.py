@@ -159,7 +159,6 @@ class PipelineErrors:
     error_deg : the same on calibration benches, as `MeasuredPipeline.judged` computes it
     nominal_deg : error of the first condition alone
     by_error : positions of the pipelines, by design and then by error
-    rank : position of each error among all different ones; equal errors share a rank
     """
 
     def __init__(
@@ -183,7 +182,6 @@ class PipelineErrors:
             share = draws[1]
             self.error_deg = at_confidence(self.own_deg, table.unit_ratios, self.bench_deg, share)
         self.by_error = np.lexsort((self.error_deg, table.design_of))
-        self.rank = np.unique(self.error_deg, return_inverse=True)[1]
         self.own = lru_cache(None)(self._own)
         self.of = lru_cache(None)(self._judged)
 

@@ -27,6 +27,7 @@ NAMES = (
     "recommendations",
     "startup",
     "service",
+    "growth",
 )
 #: Those of them that draw what they measure on: `run(seed)`.
 SEEDED = frozenset({"robustness", "covariances", "service"})
