@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import hashlib
 import weakref
-from collections.abc import Iterable, Sequence
-from functools import cached_property, lru_cache, partial
+from collections.abc import Sequence
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -19,16 +19,18 @@ from registry.answer import Answer, RankedPlace
 from registry.contradiction import against_advice, against_literature, regret_words
 from registry.design_arrays import design_arrays
 from registry.designs import DesignTable
-from registry.judging import Question, advice_for
-from registry.path_arrays import MOST_SETS, StudySets, path_arrays, unpacked
-from registry.paths import PATH_LEVELS, path_table
+from registry.judging import OF_STUDIES, Question, advice_for
+from registry.path_arrays import MOST_SETS, PathTexts, path_arrays
+from registry.paths import path_table
 from registry.pipelines import NOT_COUNTED, PipelineErrors
 from registry.ranking import TaskMeasure, support
 from registry.requirements import Requirements
 
-#: Texts that are kept of each kind: some 16 MB of calibrations, and as much of architectures, which
-#: are longer.
-MOST_TEXTS, MOST_ARCHITECTURES = 8192, 2048
+#: Texts that are kept of each kind, some 16 MB of calibrations, and architectures made of these.
+MOST_TEXTS, MOST_ARCHITECTURES = 8192, 4096
+#: Places for what hangs on the whole answer; JSON has no such byte.
+_RANK, _HEAD, _PARETO, _MEASURES = b"\0rank", b"\0head", b"\0pareto", b"\0measures"
+_MEASURED, _STATED = b"\0measured", b"\0stated"
 
 
 def encoded(value: Any) -> bytes:
@@ -52,25 +54,14 @@ class AnswerTexts:
         self._left_out = encoded([left.to_dict() for left in self._table.left_out])
         self._places = table.places
         self._keys = [encoded(key) for key in table.facts.keys]
-        self._path_heads = [_head(zip(PATH_LEVELS, p, strict=True)) for p in self._table.paths]
-        node_heads = [
-            b'%b,"count":' % _head(id=f"{level}:{value}", level=level, value=value, name=name)
-            for level, value, name in self._table.nodes
-        ]
-        link_heads = [
-            b'%b,"value":' % _head(source=source, target=target)
-            for source, target in self._table.links
-        ]
         self._studies = lru_cache(MOST_TEXTS)(self._studies_text)
-        self._behind = lru_cache(MOST_SETS)(self._behind_text)
-        self._path = lru_cache(MOST_TEXTS)(self._path_text)
-        self._node = lru_cache(MOST_TEXTS)(partial(self._counted_text, node_heads))
-        self._link = lru_cache(MOST_TEXTS)(partial(self._counted_text, link_heads))
+        self._paths_text = PathTexts(self._table, self._studies).text
         self._head = lru_cache(MOST_TEXTS)(self._head_text)
         self._measures = lru_cache(MOST_TEXTS)(_measures_text)
-        self._architecture = lru_cache(MOST_ARCHITECTURES)(self._architecture_text)
+        self._architecture = lru_cache(MOST_ARCHITECTURES)(self._architecture_pieces)
         self._contradiction = lru_cache(MOST_TEXTS)(self._contradiction_text)
         self._calibration = lru_cache(MOST_TEXTS)(self._calibration_text)
+        self._ends = lru_cache(MOST_SETS)(_ends_text)
         self._design = lru_cache(None)(self._design_text)
         self._best_rows = lru_cache(MOST_TEXTS)(self._rows_on_datasets)
         self._pipeline = lru_cache(MOST_TEXTS)(self._pipeline_text)
@@ -101,8 +92,8 @@ class AnswerTexts:
             ),
             encoded(None if regret is None else regret.to_dict(regret_words(regret))),
             *(b',"untried":', encoded(untried), b',"untimed":%d' % answer.untimed),
-            *(b',"paths":[', self._behind(sets), b'],"left_out":', self._left_out),
-            *(b',"blocked":', encoded(None if blocked is None else blocked.to_dict()), b"}"),
+            *(b',"paths":[', self._paths_text(sets), b'],"left_out":', self._left_out),
+            *(b',"blocked":', b"null" if blocked is None else encoded(blocked.to_dict()), b"}"),
         ]
 
     def _architectures(
@@ -110,28 +101,19 @@ class AnswerTexts:
     ) -> list[bytes]:
         question, places = answer.question, answer.places[:limit]
         errors, advising = answer.best.errors, question.advice_key
-        ends = {
-            studied: {
-                key: b',"basis":%b}'
-                % encoded(question.basis(measured=key == b"measured", studied=studied))
-                for key in (b"measured", b"stated")
-            }
-            for studied in (True, False)
-        }
+        ends = [self._ends(question.judged, studied) for studied in (False, True)]
         parts: list[bytes] = []
         shown = zip(places, *self._shown(answer, places, calibrations), strict=True)
         for rank, (place, packed, units) in enumerate(shown, 1):
-            template = self._architecture(errors, place.studies, place.stated, packed, units)
-            parts.append(
-                template
-                % {
-                    b"rank": b'%b{"rank":%d,' % (b"," if rank > 1 else b"", rank),
-                    b"head": self._head(place.number, place.studies, advising),
-                    b"pareto": b"true" if rank - 1 in answer.pareto else b"false",
-                    b"measures": self._measures(place.measures),
-                    **ends[bool(place.studies)],
-                }
-            )
+            filled = {
+                _RANK: b',{"rank":%d,' % rank if rank > 1 else b'{"rank":1,',
+                _HEAD: self._head(place.number, place.studies, advising),
+                _PARETO: b"true" if rank - 1 in answer.pareto else b"false",
+                _MEASURES: self._measures(place.measures),
+                **ends[bool(place.studies)],
+            }
+            pieces = self._architecture(errors, place.studies, place.stated, packed, units)
+            parts += [filled.get(piece, piece) for piece in pieces]
         return parts
 
     def _shown(
@@ -180,10 +162,10 @@ class AnswerTexts:
         of_rows = units[self.arrays.rows_of[shown]]
         return [row.tobytes() for row in packed], [row.tobytes() for row in of_rows]
 
-    def _architecture_text(
+    def _architecture_pieces(
         self, errors: PipelineErrors, studies: int, stated: int, packed: bytes, units: bytes
-    ) -> bytes:
-        """Return an architecture as a template, into which goes what hangs on the whole answer.
+    ) -> list[bytes]:
+        """Return an architecture in pieces, with places for what hangs on the whole answer.
 
         Parameters
         ----------
@@ -195,26 +177,27 @@ class AnswerTexts:
         count, rank_of_best, finest, used, used_row, *more = np.frombuffer(packed, int).tolist()
         designs, rows = more[: len(more) // 2], more[len(more) // 2 :]
         size = len(units) // len(designs)
-        texts = []
-        for at, (design, row) in enumerate(zip(designs, rows, strict=True)):
-            if design < 0:
-                continue
-            if row < 0:
-                end, text = b"stated", self._calibration(design, row, stated, studies)
-            else:
-                within = units[at * size : (at + 1) * size]
-                of_row = (errors, finest, within)
-                end, text = b"measured", self._calibration(design, row, studies, studies, *of_row)
-            texts.append(b'{"rank":%d%b%%(%b)b' % (at or rank_of_best, text, end))
         contradiction = b"null"
         if used >= 0:
             best = designs[0], rows[0], studies if rows[0] >= 0 else stated
             contradiction = self._contradiction(errors, studies, used, used_row, *best)
-        return (
-            b'%%(rank)b%%(head)b%b,"pareto":%%(pareto)b,"contradiction":%b,"measures":%%(measures)b'
-            b',"count":%d,"calibrations":[%b]}'
-            % (texts[0], contradiction, count, b",".join(texts[1:]))
-        )
+        pieces = [_RANK, _HEAD]
+        for at, (design, row) in enumerate(zip(designs, rows, strict=True)):
+            if design < 0:
+                break
+            if row < 0:
+                end, text = _STATED, self._calibration(design, row, stated, studies)
+            else:
+                within = units[at * size : (at + 1) * size]
+                of_row = (errors, finest, within)
+                end, text = _MEASURED, self._calibration(design, row, studies, studies, *of_row)
+            pieces += (b'%b{"rank":%d' % (b"," if at > 1 else b"", at or rank_of_best), text, end)
+            if not at:
+                pieces += (
+                    *(b',"pareto":', _PARETO, b',"contradiction":', contradiction),
+                    *(b',"measures":', _MEASURES, b',"count":%d,"calibrations":[' % count),
+                )
+        return [*pieces, b"]}"]
 
     def _head_text(
         self, number: int, studies: int, advising: tuple[tuple[str, ...] | None, ...]
@@ -251,7 +234,7 @@ class AnswerTexts:
         best_row: int,
         best_studies: int,
     ) -> bytes:
-        """Return the sentence where measurement contradicts the literature, as part of a template.
+        """Return the sentence where measurement contradicts the literature; null for none.
 
         It is of the calibration that most studies used and the one with the smallest error.
         """
@@ -263,7 +246,7 @@ class AnswerTexts:
             arrays.candidate(best, best_row, errors),
             (designs[best].taken & best_studies).bit_count(),
         )
-        return encoded(said).replace(b"%", b"%%")
+        return encoded(said)
 
     def _calibration_text(  # noqa: PLR0917 - by these it is kept
         self,
@@ -275,7 +258,7 @@ class AnswerTexts:
         finer: int = -1,
         units_within: bytes = b"",
     ) -> bytes:
-        """Return the members of a calibration between its rank and the basis, as a template.
+        """Return the members of a calibration between its rank and the basis.
 
         Parameters
         ----------
@@ -296,7 +279,7 @@ class AnswerTexts:
                 units = units_within[at - first] if units_within else NOT_COUNTED
                 number = b"null" if units == NOT_COUNTED else b"%d" % units
                 measured.append(number.join(self._pipeline(at, errors, finer)))
-        text = b'%b%b],"with_model":%d,"support":%b,"measured":%b,"other_datasets":[%b]' % (
+        return b'%b%b],"with_model":%d,"support":%b,"measured":%b,"other_datasets":[%b]' % (
             self._design(design),
             self._studies(taken),
             counts[1],
@@ -304,7 +287,6 @@ class AnswerTexts:
             measured[0],
             b",".join(measured[1:]),
         )
-        return text.replace(b"%", b"%%")
 
     def _design_text(self, design: int) -> bytes:
         of = self.arrays.designs[design]
@@ -338,26 +320,22 @@ class AnswerTexts:
         flags = bin(studies)[:1:-1]
         return b",".join([key for key, flag in zip(self._keys, flags, strict=False) if flag == "1"])
 
-    def _behind_text(self, sets: StudySets) -> bytes:
-        """Return paths, nodes and links."""
-        texts = (
-            b",".join(map(text, packed))
-            for text, packed in zip((self._path, self._node, self._link), sets, strict=True)
-        )
-        return b'%b],"nodes":[%b],"links":[%b' % tuple(texts)
 
-    def _path_text(self, packed: bytes) -> bytes:
-        at, studies = unpacked(packed)
-        return b'%b,"studies":[%b]}' % (self._path_heads[at], self._studies(studies))
+def _ends_text(judged: tuple[str, ...], studied: bool) -> dict[bytes, bytes]:
+    """Return the end of a calibration, measured or stated: what each requirement is judged on.
 
-    def _counted_text(self, heads: Sequence[bytes], packed: bytes) -> bytes:
-        at, studies = unpacked(packed)
-        return b'%b%d,"studies":[%b]}' % (heads[at], studies.bit_count(), self._studies(studies))
-
-
-def _head(members: Iterable[tuple[str, str]] = (), **more: str) -> bytes:
-    """Return the beginning of an object that goes on."""
-    return encoded({**dict(members), **more})[:-1]
+    Parameters
+    ----------
+    judged : names of the requirements
+    studied : whether a study of the architecture has what is asked of studies
+    """
+    of_studies = "studies" if studied else "advised"
+    known = {**dict.fromkeys(OF_STUDIES, of_studies), "properties": "assessed"}
+    return {
+        kind: b',"basis":%b}'
+        % encoded({name: known.get(name, kind[1:].decode()) for name in judged})
+        for kind in (_MEASURED, _STATED)
+    }
 
 
 def _measures_text(measures: tuple[TaskMeasure, ...]) -> bytes:

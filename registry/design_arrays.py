@@ -25,6 +25,7 @@ Words = NDArray[np.uint64]
 
 WORD_BITS = 64
 _LARGEST_KEY = 63
+_REQUIREMENT_BITS = 32  # more than there are requirements
 #: Questions whose best pipelines are kept, some 60 kB each.
 MOST_BEST = 64
 
@@ -111,12 +112,13 @@ class DesignArrays(PipelineTable):
         self.first_row = [0, *itertools.accumulate(len(design.rows) for design in self.designs)]
         self.words = studies // WORD_BITS + 1
         self.taken = self.words_of(design.taken for design in self.designs)
-        self.with_model = self.words_of(design.with_model for design in self.designs)
         self.measured = np.array([bool(design.rows) for design in self.designs], bool)
         self.not_advised = np.array([not design.advised for design in self.designs], np.int64)
         self.not_stated = np.array([not design.stated for design in self.designs], np.int64)
         self.unmeasured = np.flatnonzero(~self.measured)
         self.place_studies = self.words_of(place.studies for place in places)
+        with_model = self.words_of(design.with_model for design in self.designs)
+        self._study_sets = np.concatenate((self.place_studies, with_model, self.taken), axis=1)
         self.without_studies = np.array([not place.studies for place in places], bool)
         self.best = lru_cache(MOST_BEST)(self._best)
         self.counted = lru_cache(MOST_BEST)(self._counted)
@@ -191,12 +193,10 @@ class DesignArrays(PipelineTable):
         Of designs first those that use compensations and model, then those that use the extractor,
         too.
         """
-        words = self.words_of([studies])
-        sets = (self.place_studies & words, self.with_model & words, self.taken & words)
-        many, with_model, taken = (
-            np.bitwise_count(found).sum(axis=0, dtype=np.int64) for found in sets
-        )
-        return many, with_model, taken
+        found = np.bitwise_count(self._study_sets & self.words_of([studies]))
+        counts = found.sum(axis=0, dtype=np.int64)
+        first, second = len(self.places), len(self.places) + len(self.designs)
+        return counts[:first], counts[first:second], counts[second:]
 
     def _stated(self, studies: int) -> Flags:
         """Return the designs that nothing measures and one of some studies (bits) used."""
@@ -230,11 +230,11 @@ class DesignArrays(PipelineTable):
         """
         found: list[set[int]] = [set() for _ in self.places]
         for bits, rows in by_row:
-            designs = np.unique(self.design_of[rows])
-            for place, of_design in zip(
-                self.place_of[designs].tolist(), by_design[designs].tolist(), strict=True
-            ):
-                found[place].add(of_design | bits)
+            has = np.zeros(len(self.designs), bool)
+            has[self.design_of[rows]] = True
+            pairs = self.place_of[has] << _REQUIREMENT_BITS | by_design[has] | bits
+            for pair in np.unique(pairs).tolist():
+                found[pair >> _REQUIREMENT_BITS].add(pair & (1 << _REQUIREMENT_BITS) - 1)
         return found
 
     def _best(self, limits: Limits) -> BestPipelines:

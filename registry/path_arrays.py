@@ -7,23 +7,26 @@ from __future__ import annotations
 
 import itertools
 import weakref
-from collections.abc import Sequence
-from functools import lru_cache
+from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache, partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic_core import to_json
 
 from registry.answer import Answer
 from registry.design_arrays import WORD_BITS, DesignArrays, design_arrays
 from registry.designs import DesignTable
-from registry.paths import PathTable, path_table
+from registry.paths import PATH_LEVELS, PathTable, path_table
 
 Flags = NDArray[np.bool_]
 Words = NDArray[np.uint64]
 
 #: Sets of studies whose paths are kept, some 10 kB each.
 MOST_SETS = 256
+#: Texts of paths, nodes and links that are kept of each kind.
+MOST_TEXTS = 8192
 _POSITION_BYTES = 8
 
 
@@ -85,19 +88,19 @@ class PathArrays:
         include, exclude = question.asked.include, question.asked.exclude
         among = self._of_tasks(include.get("task"), exclude.get("task", ()))
         if question.studies == question.all_stated:
-            parts = [(question.matching_designs, question.studies)]
+            designs = question.matching_designs[None]
+            studies: tuple[int, ...] = (question.studies,)
         else:
-            parts = [
-                (question.matching_designs & measured, question.studies),
-                (question.matching_designs & ~measured, question.all_stated),
-            ]
-        led = [((self._led_to(designs) & among).tobytes(), of) for designs, of in parts]
-        return self._sets(tuple(led))
+            designs = question.matching_designs & np.stack((measured, ~measured))
+            studies = (question.studies, question.all_stated)
+        led = self._led_to(designs) & among
+        return self._sets(tuple(zip(map(bytes, led), studies, strict=True)))
 
     def _led_to(self, designs: Flags) -> Flags:
-        """Return the paths that lead to one of some designs."""
-        found = np.bitwise_or.reduce(np.where(designs, self._leading, 0), axis=1).view(np.uint8)
-        return np.unpackbits(found, count=self._size, bitorder="little").view(bool)
+        """Return the paths that lead to one of some designs, of which each row is flags."""
+        leading = np.where(designs[:, None], self._leading, 0)
+        found = np.bitwise_or.reduce(leading, axis=2).view(np.uint8)
+        return np.unpackbits(found, axis=1, count=self._size, bitorder="little").view(bool)
 
     def _from_tasks(self, include: tuple[str, ...] | None, exclude: tuple[str, ...]) -> Flags:
         """Return the paths from a task that is asked for; None asks for every one."""
@@ -128,6 +131,49 @@ class PathArrays:
         first_node, first_link = at.searchsorted(self._firsts).tolist()
         parts = (sets[:first_node], sets[first_node:first_link], sets[first_link:])
         return StudySets(*map(tuple, parts))
+
+
+class PathTexts:
+    """Paths, nodes and links as JSON.
+
+    Parameters
+    ----------
+    table : the paths
+    studies_text : writes the keys of studies (bits), with commas between them
+    """
+
+    def __init__(self, table: PathTable, studies_text: Callable[[int], bytes]) -> None:
+        self._studies = studies_text
+        paths = [_begun(zip(PATH_LEVELS, path, strict=True)) for path in table.paths]
+        nodes = [
+            _begun({"id": f"{level}:{value}", "level": level, "value": value, "name": name}.items())
+            for level, value, name in table.nodes
+        ]
+        links = [
+            _begun({"source": source, "target": target}.items()) for source, target in table.links
+        ]
+        self._path = lru_cache(MOST_TEXTS)(partial(self._text, paths, b""))
+        self._node = lru_cache(MOST_TEXTS)(partial(self._text, nodes, b',"count":%d'))
+        self._link = lru_cache(MOST_TEXTS)(partial(self._text, links, b',"value":%d'))
+        self.text = lru_cache(MOST_SETS)(self._all)
+
+    def _all(self, sets: StudySets) -> bytes:
+        """Return the three lists but for the name of the first and the end of the last."""
+        texts = (
+            b",".join(map(text, packed))
+            for text, packed in zip((self._path, self._node, self._link), sets, strict=True)
+        )
+        return b'%b],"nodes":[%b],"links":[%b' % tuple(texts)
+
+    def _text(self, begun: Sequence[bytes], count: bytes, packed: bytes) -> bytes:
+        at, studies = unpacked(packed)
+        counted = count % studies.bit_count() if count else b""
+        return b'%b%b,"studies":[%b]}' % (begun[at], counted, self._studies(studies))
+
+
+def _begun(members: Iterable[tuple[str, str]]) -> bytes:
+    """Return an object in JSON without its end."""
+    return to_json(dict(members))[:-1]
 
 
 def unpacked(packed: bytes) -> tuple[int, int]:
