@@ -25,7 +25,7 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-from benchmark.processes import end_with_coordinator, for_coordinator
+from benchmark.processes import call_to_end, for_coordinator
 from files.atomic import replace_file
 from files.locks import wait_for_lock
 from files.temporary import temporary_directory
@@ -142,12 +142,15 @@ def publish() -> None:
     """Draw the pictures that are not published as the code is now; remove all others."""
     from benchmark import datasets  # noqa: PLC0415 - as in `draw`
     from benchmark.datasets.preview import preview_png  # noqa: PLC0415 - as in `draw`
+    from benchmark.progress import told_progress  # noqa: PLC0415 - Rich
 
     PUBLISHED.mkdir(exist_ok=True)
     wanted = {name: published_preview(name) for name in datasets.names()}
-    for name, path in wanted.items():
-        if not path.is_file():
-            replace_file(path, preview_png(datasets.get(name)))
+    lacking = [name for name, path in wanted.items() if not path.is_file()]
+    with told_progress("drawing") as report:
+        for done, name in enumerate(lacking):
+            report(done, len(lacking), name)
+            replace_file(wanted[name], preview_png(datasets.get(name)))
     for found in set(PUBLISHED.glob("*.png")) - set(wanted.values()):
         found.unlink()
 
@@ -163,7 +166,6 @@ def forget_others(directory: Path) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Draw; the exit status."""
-    end_with_coordinator()
     parser = argparse.ArgumentParser(prog="python -m api.previews", description="Draw data sets.")
     parser.add_argument("directory", nargs="?", type=Path, help="of the working store")
     parser.add_argument("names", nargs="*", metavar="NAME", help="data sets")
@@ -180,4 +182,4 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    call_to_end(main)

@@ -3,6 +3,8 @@
 A process that is killed cannot end those that work for it. So each asks the system to be told when
 its coordinator ends (Linux's ``PR_SET_PDEATHSIG``), and elsewhere, or should that be missed, looks
 every half second. A request to terminate is taken as Ctrl-C is, so that what is half made goes.
+What does not end so within two seconds, such as a compiler at work, is ended hard: what is on disk
+is then as safe as when the process is killed.
 """
 
 from __future__ import annotations
@@ -27,14 +29,22 @@ COORDINATOR = "SUNATLAS_COORDINATOR"
 INTERRUPTED, TERMINATED = 128 + signal.SIGINT, 128 + signal.SIGTERM
 _PR_SET_PDEATHSIG = 1
 _EVERY_S = 0.5
-
+#: How long a process has to end tidily, seconds.
+_TIDY_S = 1.0
 
 #: Signals that told this process to end.
 _told: list[int] = []
+#: Whether the end was spoken of.
+_said = threading.Event()
 
 
 def terminate_as_interrupt() -> None:
-    """Let SIGTERM unwind this process as Ctrl-C does; `exit_code` tells them apart."""
+    """Let SIGTERM unwind this process as Ctrl-C does; `exit_code` tells them apart.
+
+    Either ends it for certain within two seconds.
+    """
+    _end_for_certain()
+    sys.unraisablehook = _ignore_interrupt
     signal.signal(signal.SIGTERM, _tell)
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is to be ignored
         signal.signal(signal.SIGINT, _tell)
@@ -63,6 +73,43 @@ def exit_code() -> int:
     return 128 + _told[0] if _told else INTERRUPTED
 
 
+def say_interrupted(line: str = "interrupted") -> None:
+    """Write on standard error that this process was told to end."""
+    _said.set()
+    with suppress(OSError, ValueError):  # nobody is left to read it
+        sys.stderr.write(f"{line}\n")
+        sys.stderr.flush()
+
+
+@cache
+def _end_for_certain() -> None:
+    """End this process in time where a signal does not.
+
+    Python calls its handlers between two instructions of its own: never while a library's call
+    lasts. The system's handler writes to a descriptor at once.
+    """
+    heard, hear = os.pipe()
+    os.set_blocking(hear, False)
+    signal.set_wakeup_fd(hear, warn_on_full_buffer=False)
+
+    def wait() -> None:
+        number = 0
+        while number not in {signal.SIGINT, signal.SIGTERM}:
+            number = os.read(heard, 1)[0]
+        time.sleep(_TIDY_S)
+        if not _said.is_set():
+            say_interrupted()
+        os._exit(128 + number)
+
+    threading.Thread(target=wait, daemon=True, name="end for certain").start()
+
+
+def _ignore_interrupt(raised: sys.UnraisableHookArgs) -> None:
+    """Say nothing of an interrupt that a callback ignores: what it was to end is ended later."""
+    if not issubclass(raised.exc_type, KeyboardInterrupt):
+        sys.__unraisablehook__(raised)
+
+
 def _tell(number: int, _: FrameType | None) -> None:
     _told.append(number)
     raise KeyboardInterrupt
@@ -78,7 +125,8 @@ def call_to_end(main: Callable[[], int]) -> NoReturn:
     terminate_as_interrupt()
     try:
         status = main()
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as error:
+        say_interrupted(str(error) or "interrupted")
         status = exit_code()
     except LockedError as error:
         sys.stderr.write(f"{error}\n")
@@ -86,6 +134,7 @@ def call_to_end(main: Callable[[], int]) -> NoReturn:
     except Exception:
         if not was_told():
             raise
+        say_interrupted()
         status = exit_code()
     sys.exit(status)
 

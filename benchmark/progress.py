@@ -10,25 +10,47 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
+from typing import Protocol
 
 from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from benchmark.processes import end_if_told
 
-ProgressCallback = Callable[[int, int, str], None]
-"""Called with cells done, cells in all, and what was just finished."""
+
+class ProgressCallback(Protocol):
+    """Called with cells done, cells in all, what was just finished, and the share of the work done.
+
+    The share is of the time that all takes, as far as that is known; else cells count alike.
+    """
+
+    def __call__(self, done: int, total: int, what: str, share: float | None = None, /) -> None:
+        """Take in how far something is."""
+        ...
 
 
-def silent(done: int, total: int, what: str) -> None:
+def silent(done: int, total: int, what: str, share: float | None = None) -> None:
     """Show nothing."""
+
+
+def time_left(elapsed_s: float, done: int, total: int, share: float | None = None) -> str:
+    """Return what time is left in words, "" where that is not known yet.
+
+    Parameters
+    ----------
+    elapsed_s
+        Seconds since the begin.
+    done, total
+        Cells, or other parts.
+    share
+        Of the work that is done; `done / total` by default.
+    """
+    if share is None:
+        share = done / total if total else 0.0
+    if not 0.0 < share < 1.0:
+        return ""
+    left = elapsed_s * (1.0 - share) / share
+    return f"{left / 60:.0f} min" if left >= 90.0 else f"{left:.0f} s"
 
 
 @contextmanager
@@ -43,15 +65,16 @@ def terminal_progress(doing: str = "measuring") -> Iterator[ProgressCallback]:
         BarColumn(),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
+        TextColumn("{task.fields[left]}"),
         TextColumn("{task.description}"),
     )
     with Progress(*columns, console=Console(stderr=True)) as bar:
-        task = bar.add_task("", total=None)
+        task = bar.add_task("", total=None, left="")
 
-        def report(done: int, total: int, what: str) -> None:
-            bar.update(task, completed=done, total=total, description=what)
+        def report(done: int, total: int, what: str, share: float | None = None) -> None:
+            left = time_left(bar.tasks[task].elapsed or 0.0, done, total, share)
+            said = f"about {left} left" if left else ""
+            bar.update(task, completed=done, total=total, description=what, left=said)
 
         yield report
 
@@ -74,9 +97,9 @@ def told_progress(doing: str, *, quiet: bool = False) -> Iterator[ProgressCallba
         shown = nullcontext(lines(doing, lambda line: print(line, file=sys.stderr, flush=True)))  # noqa: T201
     with shown as show:
 
-        def report(done: int, total: int, what: str) -> None:
+        def report(done: int, total: int, what: str, share: float | None = None) -> None:
             end_if_told()
-            show(done, total, what)
+            show(done, total, what, share)
 
         yield report
 
@@ -103,14 +126,14 @@ def lines(
     """
     start = last = clock()
 
-    def report(done: int, total: int, what: str) -> None:
+    def report(done: int, total: int, what: str, share: float | None = None) -> None:
         nonlocal last
         now = clock()
         if now - last < pause_s or not 0 < done < total:
             return
         last = now
-        left = (now - start) / done * (total - done)
-        time_left = f"{left / 60:.0f} min" if left >= 90.0 else f"{left:.0f} s"
-        say(f"{doing}: {done} of {total}, about {time_left} left{f' ({what})' if what else ''}")
+        left = time_left(now - start, done, total, share)
+        said = f", about {left} left" if left else ""
+        say(f"{doing}: {done} of {total}{said}{f' ({what})' if what else ''}")
 
     return report

@@ -8,25 +8,29 @@ from __future__ import annotations
 
 import hashlib
 import weakref
-from collections.abc import Mapping
+from collections.abc import Sequence
 from functools import cached_property, lru_cache
 from typing import Any
 
+import numpy as np
 from pydantic_core import to_json
 
 from registry.answer import Answer, RankedPlace
 from registry.contradiction import against_advice, against_literature, regret_words
 from registry.design_arrays import design_arrays
 from registry.designs import DesignTable
-from registry.judging import Question, advice_for
-from registry.path_arrays import MOST_SETS, StudySets, path_arrays, unpacked
-from registry.paths import PATH_LEVELS, path_table
-from registry.pipelines import PipelineErrors
+from registry.judging import OF_STUDIES, Question, advice_for
+from registry.path_arrays import MOST_SETS, PathTexts, path_arrays
+from registry.paths import path_table
+from registry.pipelines import NOT_COUNTED, PipelineErrors
 from registry.ranking import TaskMeasure, support
 from registry.requirements import Requirements
 
-#: Texts that are kept of each kind: some 16 MB of calibrations, which are the longest.
-MOST_TEXTS = 8192
+#: Texts that are kept of each kind, some 16 MB of calibrations, and architectures made of these.
+MOST_TEXTS, MOST_ARCHITECTURES = 8192, 4096
+#: Places for what hangs on the whole answer; JSON has no such byte.
+_RANK, _HEAD, _PARETO, _MEASURES = b"\0rank", b"\0head", b"\0pareto", b"\0measures"
+_MEASURED, _STATED = b"\0measured", b"\0stated"
 
 
 def encoded(value: Any) -> bytes:
@@ -49,17 +53,17 @@ class AnswerTexts:
         self._table = path_table(table.facts)
         self._left_out = encoded([left.to_dict() for left in self._table.left_out])
         self._places = table.places
+        self._keys = [encoded(key) for key in table.facts.keys]
         self._studies = lru_cache(MOST_TEXTS)(self._studies_text)
-        self._behind = lru_cache(MOST_SETS)(self._behind_text)
-        self._path = lru_cache(MOST_TEXTS)(self._path_text)
-        self._node = lru_cache(MOST_TEXTS)(self._node_text)
-        self._link = lru_cache(MOST_TEXTS)(self._link_text)
+        self._paths_text = PathTexts(self._table, self._studies).text
         self._head = lru_cache(MOST_TEXTS)(self._head_text)
         self._measures = lru_cache(MOST_TEXTS)(_measures_text)
+        self._architecture = lru_cache(MOST_ARCHITECTURES)(self._architecture_pieces)
         self._contradiction = lru_cache(MOST_TEXTS)(self._contradiction_text)
         self._calibration = lru_cache(MOST_TEXTS)(self._calibration_text)
+        self._ends = lru_cache(MOST_SETS)(_ends_text)
         self._design = lru_cache(None)(self._design_text)
-        self._measured = lru_cache(MOST_TEXTS)(self._measured_text)
+        self._best_rows = lru_cache(MOST_TEXTS)(self._rows_on_datasets)
         self._pipeline = lru_cache(MOST_TEXTS)(self._pipeline_text)
 
     @cached_property
@@ -77,7 +81,7 @@ class AnswerTexts:
             for hazard, pairs in answer.untried.items()
         }
         return [
-            *(b'{"requirements":', encoded(answer.question.asked.to_dict())),
+            *(b'{"requirements":', answer.question.asked_json),
             b',"sort":"%b","count":%d,"designs":%d,"architectures":['
             % (answer.sort.encode(), len(answer.places), answer.count),
             *self._architectures(answer, limit, calibrations),
@@ -88,57 +92,112 @@ class AnswerTexts:
             ),
             encoded(None if regret is None else regret.to_dict(regret_words(regret))),
             *(b',"untried":', encoded(untried), b',"untimed":%d' % answer.untimed),
-            *(b',"paths":[', self._behind(sets), b'],"left_out":', self._left_out),
-            *(b',"blocked":', encoded(None if blocked is None else blocked.to_dict()), b"}"),
+            *(b',"paths":[', self._paths_text(sets), b'],"left_out":', self._left_out),
+            *(b',"blocked":', b"null" if blocked is None else encoded(blocked.to_dict()), b"}"),
         ]
 
     def _architectures(
         self, answer: Answer, limit: int | None, calibrations: int | None
     ) -> list[bytes]:
-        question, best, first_row = answer.question, answer.best, self.arrays.first_row
-        errors, finer, advising = best.errors, question.finer, question.advice_key
-        units = errors.units_within(question.asked.largest_deg).tobytes()
-        rows: list[int] = best.row.tolist()
-        ends = {
-            (measured, studied): b',"basis":%b}'
-            % encoded(question.basis(measured=measured, studied=studied))
-            for measured in (True, False)
-            for studied in (True, False)
-        }
+        question, places = answer.question, answer.places[:limit]
+        errors, advising = answer.best.errors, question.advice_key
+        ends = [self._ends(question.judged, studied) for studied in (False, True)]
         parts: list[bytes] = []
-        calibration = self._calibration
-        for rank, place in enumerate(answer.places[:limit], 1):
-            studies, stated, start = place.studies, place.stated, place.start
-            last = place.end if calibrations is None else min(place.end, start + calibrations)
-            finest = finer.get(place.number, -1)
-            end = {measured: ends[measured, bool(studies)] for measured in (True, False)}
-            shown: list[int] = answer.designs[start:last].tolist()
-            of_shown: list[bytes] = []
-            for at, design in enumerate((place.best_at, *shown)):
-                row = rows[design]
-                if row < 0:
-                    text = calibration(design, row, stated, studies, None, -1, b"")
-                else:
-                    within = units[first_row[design] : first_row[design + 1]]
-                    text = calibration(design, row, studies, studies, errors, finest, within)
-                of_shown += (
-                    b',{"rank":%d' % (at or answer.rank_of_best(place)),
-                    text,
-                    end[row >= 0],
-                )
-            of_shown[0], of_shown[3] = of_shown[0][1:], of_shown[3][1:]
-            parts += (
-                b'%b{"rank":%d,' % (b"," if rank > 1 else b"", rank),
-                self._head(place.number, studies, advising),
-                *of_shown[:3],
-                b',"pareto":true' if rank - 1 in answer.pareto else b',"pareto":false',
-                *(b',"contradiction":', self._against(answer, place)),
-                *(b',"measures":', self._measures(place.measures)),
-                b',"count":%d,"calibrations":[' % (place.end - start),
-                *of_shown[3:],
-                b"]}",
-            )
+        shown = zip(places, *self._shown(answer, places, calibrations), strict=True)
+        for rank, (place, packed, units) in enumerate(shown, 1):
+            filled = {
+                _RANK: b',{"rank":%d,' % rank if rank > 1 else b'{"rank":1,',
+                _HEAD: self._head(place.number, place.studies, advising),
+                _PARETO: b"true" if rank - 1 in answer.pareto else b"false",
+                _MEASURES: self._measures(place.measures),
+                **ends[bool(place.studies)],
+            }
+            pieces = self._architecture(errors, place.studies, place.stated, packed, units)
+            parts += [filled.get(piece, piece) for piece in pieces]
         return parts
+
+    def _shown(
+        self, answer: Answer, places: Sequence[RankedPlace], calibrations: int | None
+    ) -> tuple[list[bytes], list[bytes]]:
+        """Return what the text of each architecture depends on beside studies and errors, packed.
+
+        First integers: the number of its designs, the rank of the best of them, the finest
+        pipeline that answers too seldom, the design that most studies used and its pipeline; the
+        best design and those that are shown, then the pipelines of these; all by position, -1 for
+        none. Second of all pipelines of these designs how many units keep the limit on the error;
+        nothing where none is asked.
+        """
+        if not places:
+            return [], []
+        question, best, designs = answer.question, answer.best, answer.designs
+        finer, usual = question.finer, answer.usual
+        of_places = [
+            (p.start, p.end, p.best_at, finer.get(p.number, -1), usual.get(p.number, -1))
+            for p in places
+        ]
+        start, end, best_at, finest, used = np.array(of_places).T
+        count, numbers = end - start, self.arrays.numbers
+        at = start[:, None] + numbers[: count.max() if calibrations is None else calibrations]
+        # Columns as above: five numbers, then designs, then pipelines.
+        width = 1 + at.shape[1]
+        packed = np.empty((len(places), 5 + 2 * width), int)
+        shown, rows = packed[:, 5 : 5 + width], packed[:, 5 + width :]
+        shown[:, 0] = best_at
+        shown[:, 1:] = designs.take(at, mode="clip")
+        shown[:, 1:][at >= end[:, None]] = -1
+        rows[:] = best.row[shown]
+        rows[shown < 0] = -1
+        place_in = np.empty_like(numbers)
+        place_in[designs] = numbers[: len(designs)]
+        packed[:, 0] = count
+        packed[:, 1] = place_in[best_at] - start + 1
+        packed[:, 2] = finest
+        packed[:, 3] = used
+        packed[:, 4] = best.row[used]
+        packed[:, 4][used < 0] = -1
+        limit = question.asked.largest_deg
+        if limit is None:
+            return [row.tobytes() for row in packed], [b""] * len(places)
+        units = np.append(best.errors.units_within(limit), np.uint8(NOT_COUNTED))
+        of_rows = units[self.arrays.rows_of[shown]]
+        return [row.tobytes() for row in packed], [row.tobytes() for row in of_rows]
+
+    def _architecture_pieces(
+        self, errors: PipelineErrors, studies: int, stated: int, packed: bytes, units: bytes
+    ) -> list[bytes]:
+        """Return an architecture in pieces, with places for what hangs on the whole answer.
+
+        Parameters
+        ----------
+        errors : of all pipelines
+        studies : studies of the architecture with what is asked of studies (bits)
+        stated : those of them whose stated numbers keep the limits, too
+        packed, units : as `_shown` packs them
+        """
+        count, rank_of_best, finest, used, used_row, *more = np.frombuffer(packed, int).tolist()
+        designs, rows = more[: len(more) // 2], more[len(more) // 2 :]
+        size = len(units) // len(designs)
+        contradiction = b"null"
+        if used >= 0:
+            best = designs[0], rows[0], studies if rows[0] >= 0 else stated
+            contradiction = self._contradiction(errors, studies, used, used_row, *best)
+        pieces = [_RANK, _HEAD]
+        for at, (design, row) in enumerate(zip(designs, rows, strict=True)):
+            if design < 0:
+                break
+            if row < 0:
+                end, text = _STATED, self._calibration(design, row, stated, studies)
+            else:
+                within = units[at * size : (at + 1) * size]
+                of_row = (errors, finest, within)
+                end, text = _MEASURED, self._calibration(design, row, studies, studies, *of_row)
+            pieces += (b'%b{"rank":%d' % (b"," if at > 1 else b"", at or rank_of_best), text, end)
+            if not at:
+                pieces += (
+                    *(b',"pareto":', _PARETO, b',"contradiction":', contradiction),
+                    *(b',"measures":', _MEASURES, b',"count":%d,"calibrations":[' % count),
+                )
+        return [*pieces, b"]}"]
 
     def _head_text(
         self, number: int, studies: int, advising: tuple[tuple[str, ...] | None, ...]
@@ -165,17 +224,6 @@ class AnswerTexts:
         }
         return b'%b,"studies":[%b],"best":' % (encoded(members)[1:-1], self._studies(studies))
 
-    def _against(self, answer: Answer, place: RankedPlace) -> bytes:
-        """Return the sentence where measurement contradicts the literature; null for none."""
-        usual = answer.usual.get(place.number)
-        if usual is None:
-            return b"null"
-        rows, best = answer.best.row, place.best_at
-        return self._contradiction(
-            *(answer.best.errors, place.studies, usual, int(rows[usual]), best, int(rows[best])),
-            place.studies if rows[best] >= 0 else place.stated,
-        )
-
     def _contradiction_text(  # noqa: PLR0917 - by these it is kept
         self,
         errors: PipelineErrors,
@@ -186,6 +234,10 @@ class AnswerTexts:
         best_row: int,
         best_studies: int,
     ) -> bytes:
+        """Return the sentence where measurement contradicts the literature; null for none.
+
+        It is of the calibration that most studies used and the one with the smallest error.
+        """
         arrays = self.arrays
         designs = arrays.designs
         said = against_literature(
@@ -202,9 +254,9 @@ class AnswerTexts:
         row: int,
         studies: int,
         of_place: int,
-        errors: PipelineErrors | None,
-        finer: int,
-        units_within: bytes,
+        errors: PipelineErrors | None = None,
+        finer: int = -1,
+        units_within: bytes = b"",
     ) -> bytes:
         """Return the members of a calibration between its rank and the basis.
 
@@ -213,18 +265,27 @@ class AnswerTexts:
         design, row : its position, and that of its best pipeline; -1 for none
         studies : studies of its architecture that count (bits)
         of_place : studies of its architecture with what is asked of studies (bits)
-        errors, finer, units_within : as `PipelineErrors.document` takes them, of all its
-            pipelines; errors are None for none
+        errors, finer : as `PipelineErrors.document` takes them; errors are None for no pipeline
+        units_within : units of each of its pipelines that keep the limit, nothing without one
         """
         of = self.arrays.designs[design]
         with_model, taken = of.with_model & studies, of.taken & studies
         counts = (of_place.bit_count(), with_model.bit_count(), taken.bit_count())
-        return b'%b%b],"with_model":%d,"support":%b,"measured":%b' % (
+        measured = [b"null"]
+        if errors is not None:
+            first = self.arrays.first_row[design]
+            measured = []
+            for at in self._best_rows(design, row, errors):
+                units = units_within[at - first] if units_within else NOT_COUNTED
+                number = b"null" if units == NOT_COUNTED else b"%d" % units
+                measured.append(number.join(self._pipeline(at, errors, finer)))
+        return b'%b%b],"with_model":%d,"support":%b,"measured":%b,"other_datasets":[%b]' % (
             self._design(design),
             self._studies(taken),
             counts[1],
             encoded(round(support(*counts), 4)),
-            self._measured(design, row, errors, finer, units_within),
+            measured[0],
+            b",".join(measured[1:]),
         )
 
     def _design_text(self, design: int) -> bytes:
@@ -237,63 +298,44 @@ class AnswerTexts:
         }
         return b',%b,"studies":[' % encoded(members)[1:-1]
 
-    def _measured_text(
-        self, design: int, row: int, errors: PipelineErrors | None, finer: int, units_within: bytes
-    ) -> bytes:
-        """Return the best pipeline of a calibration, and its best on each other data set."""
-        if errors is None:
-            return b'null,"other_datasets":[]'
-        arrays, first = self.arrays, self.arrays.first_row[design]
+    def _rows_on_datasets(self, design: int, row: int, errors: PipelineErrors) -> tuple[int, ...]:
+        """Return a pipeline of a calibration, and its best on each other data set."""
+        arrays = self.arrays
         others: dict[str, int] = {}
-        for at in range(first, arrays.first_row[design + 1]):
+        for at in range(arrays.first_row[design], arrays.first_row[design + 1]):
             dataset = arrays.rows[at].dataset
             known = others.get(dataset)
             if known is None or errors.error_deg[at] < errors.error_deg[known]:
                 others[dataset] = at
         del others[arrays.rows[row].dataset]
-        texts = [
-            self._pipeline(at, errors, finer, units_within[at - first])
-            for at in (row, *others.values())
-        ]
-        return b'%b,"other_datasets":[%b]' % (texts[0], b",".join(texts[1:]))
+        return row, *others.values()
 
-    def _pipeline_text(
-        self, row: int, errors: PipelineErrors, finer: int, units_within: int
-    ) -> bytes:
-        return encoded(errors.document(row, units_within, finer))
+    def _pipeline_text(self, row: int, errors: PipelineErrors, finer: int) -> list[bytes]:
+        """Return a pipeline in two parts, between them the number of units that keep a limit."""
+        text = encoded(errors.document(row, finer))
+        return text.replace(b'"meeting":null', b'"meeting":\0').split(b"\0")
 
     def _studies_text(self, studies: int) -> bytes:
         """Return the keys of studies (bits), with commas between them."""
-        return encoded(self._table.studies(studies))[1:-1]
+        flags = bin(studies)[:1:-1]
+        return b",".join([key for key, flag in zip(self._keys, flags, strict=False) if flag == "1"])
 
-    def _behind_text(self, sets: StudySets) -> bytes:
-        """Return paths, nodes and links."""
-        texts = (
-            b",".join(map(text, packed))
-            for text, packed in zip((self._path, self._node, self._link), sets, strict=True)
-        )
-        return b'%b],"nodes":[%b],"links":[%b' % tuple(texts)
 
-    def _path_text(self, packed: bytes) -> bytes:
-        at, studies = unpacked(packed)
-        return self._with_studies(
-            dict(zip(PATH_LEVELS, self._table.paths[at], strict=True)), studies
-        )
+def _ends_text(judged: tuple[str, ...], studied: bool) -> dict[bytes, bytes]:
+    """Return the end of a calibration, measured or stated: what each requirement is judged on.
 
-    def _node_text(self, packed: bytes) -> bytes:
-        at, studies = unpacked(packed)
-        level, value, name = self._table.nodes[at]
-        about = {"id": f"{level}:{value}", "level": level, "value": value, "name": name}
-        return self._with_studies({**about, "count": studies.bit_count()}, studies)
-
-    def _link_text(self, packed: bytes) -> bytes:
-        at, studies = unpacked(packed)
-        source, target = self._table.links[at]
-        about = {"source": source, "target": target, "value": studies.bit_count()}
-        return self._with_studies(about, studies)
-
-    def _with_studies(self, members: Mapping[str, object], studies: int) -> bytes:
-        return b'%b,"studies":[%b]}' % (encoded(members)[:-1], self._studies(studies))
+    Parameters
+    ----------
+    judged : names of the requirements
+    studied : whether a study of the architecture has what is asked of studies
+    """
+    of_studies = "studies" if studied else "advised"
+    known = {**dict.fromkeys(OF_STUDIES, of_studies), "properties": "assessed"}
+    return {
+        kind: b',"basis":%b}'
+        % encoded({name: known.get(name, kind[1:].decode()) for name in judged})
+        for kind in (_MEASURED, _STATED)
+    }
 
 
 def _measures_text(measures: tuple[TaskMeasure, ...]) -> bytes:
@@ -324,8 +366,8 @@ def answer_digest(answer: Answer, *shown: object) -> bytes:
     answer : the answer
     shown : what else the JSON depends on
     """
-    asked = encoded((answer.question.asked.to_dict(), answer.sort, *shown))
-    return _texts(answer).digest + asked
+    told = encoded((answer.sort, *shown))
+    return b"%b[%b,%b" % (_texts(answer).digest, answer.question.asked_json, told[1:])
 
 
 def _texts(answer: Answer) -> AnswerTexts:

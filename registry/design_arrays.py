@@ -25,6 +25,7 @@ Words = NDArray[np.uint64]
 
 WORD_BITS = 64
 _LARGEST_KEY = 63
+_REQUIREMENT_BITS = 32  # more than there are requirements
 #: Questions whose best pipelines are kept, some 60 kB each.
 MOST_BEST = 64
 
@@ -36,7 +37,7 @@ class BestPipelines:
     ----------
     row : position of the pipeline, shape (designs,); -1 where none keeps the limits
     error : its error; infinite where there is none
-    rank : of the error; equal errors share a rank
+    rank : of the error among those of all designs; equal errors share a rank
     order : place of each design by error, measured ones first among equals, shape (designs,)
     at_order : the design at each place of that order
     """
@@ -54,9 +55,7 @@ class BestPipelines:
         self.row[has] = first
         self.error = np.full(len(arrays.designs), np.inf)
         self.error[has] = self.errors.error_deg[first]
-        self.rank = np.full(len(arrays.designs), len(arrays.rows))
-        self.rank[has] = self.errors.rank[first]
-        self.rank[np.isinf(self.error)] = len(arrays.rows)
+        self.rank = np.unique(self.error, return_inverse=True)[1]
         key = ((self.rank << 1 | ~arrays.measured) << arrays.design_bits) | arrays.numbers
         key.sort()
         self.at_order = key & ((1 << arrays.design_bits) - 1)
@@ -113,25 +112,37 @@ class DesignArrays(PipelineTable):
         self.first_row = [0, *itertools.accumulate(len(design.rows) for design in self.designs)]
         self.words = studies // WORD_BITS + 1
         self.taken = self.words_of(design.taken for design in self.designs)
-        self.with_model = self.words_of(design.with_model for design in self.designs)
         self.measured = np.array([bool(design.rows) for design in self.designs], bool)
         self.not_advised = np.array([not design.advised for design in self.designs], np.int64)
         self.not_stated = np.array([not design.stated for design in self.designs], np.int64)
         self.unmeasured = np.flatnonzero(~self.measured)
         self.place_studies = self.words_of(place.studies for place in places)
+        with_model = self.words_of(design.with_model for design in self.designs)
+        self._study_sets = np.concatenate((self.place_studies, with_model, self.taken), axis=1)
         self.without_studies = np.array([not place.studies for place in places], bool)
         self.best = lru_cache(MOST_BEST)(self._best)
         self.counted = lru_cache(MOST_BEST)(self._counted)
         self.stated = lru_cache(MOST_BEST)(self._stated)
         self.untried = lru_cache(None)(self._untried)
         self.design_bits = max(1, len(self.designs).bit_length())
-        self.rank_bits = len(rows).bit_length()
+        self.rank_bits = len(self.designs).bit_length()
         self.support_bits = max(1, (studies**3).bit_length())
         bits = self.support_bits + self.rank_bits + self.design_bits
         if 2 + len(places).bit_length() + bits > _LARGEST_KEY:
             raise ValueError(
                 f"{len(self.designs)} designs of {studies} studies are too many to be ranked"
             )
+
+    @cached_property
+    def rows_of(self) -> Positions:
+        """Pipelines of each design, shape (designs + 1, most of one); none is `len(rows)`.
+
+        The last design has none: it stands for no design, whose position is -1.
+        """
+        counts = np.diff(self.first_row, append=self.first_row[-1])
+        along = np.arange(counts.max(initial=0))
+        at = np.array(self.first_row)[:, None] + along
+        return np.where(along < counts[:, None], at, len(self.rows))
 
     @cached_property
     def _designs_with(self) -> Mapping[tuple[str, str], Flags]:
@@ -182,12 +193,10 @@ class DesignArrays(PipelineTable):
         Of designs first those that use compensations and model, then those that use the extractor,
         too.
         """
-        words = self.words_of([studies])
-        sets = (self.place_studies & words, self.with_model & words, self.taken & words)
-        many, with_model, taken = (
-            np.bitwise_count(found).sum(axis=0, dtype=np.int64) for found in sets
-        )
-        return many, with_model, taken
+        found = np.bitwise_count(self._study_sets & self.words_of([studies]))
+        counts = found.sum(axis=0, dtype=np.int64)
+        first, second = len(self.places), len(self.places) + len(self.designs)
+        return counts[:first], counts[first:second], counts[second:]
 
     def _stated(self, studies: int) -> Flags:
         """Return the designs that nothing measures and one of some studies (bits) used."""
@@ -221,11 +230,11 @@ class DesignArrays(PipelineTable):
         """
         found: list[set[int]] = [set() for _ in self.places]
         for bits, rows in by_row:
-            designs = np.unique(self.design_of[rows])
-            for place, of_design in zip(
-                self.place_of[designs].tolist(), by_design[designs].tolist(), strict=True
-            ):
-                found[place].add(of_design | bits)
+            has = np.zeros(len(self.designs), bool)
+            has[self.design_of[rows]] = True
+            pairs = self.place_of[has] << _REQUIREMENT_BITS | by_design[has] | bits
+            for pair in np.unique(pairs).tolist():
+                found[pair >> _REQUIREMENT_BITS].add(pair & (1 << _REQUIREMENT_BITS) - 1)
         return found
 
     def _best(self, limits: Limits) -> BestPipelines:

@@ -72,7 +72,7 @@ def at_confidence(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers, share: 
     known = np.isfinite(found)
     size = UNITS * len(BENCHES)
     draws = drawn_deg(found[known], ratios[known], bench_deg[known]).reshape(-1, size)
-    place = min(math.ceil(share * draws.shape[1] - 1e-9), draws.shape[1]) - 1
+    place = _fewest(share, draws.shape[1]) - 1
     found[known] = np.partition(draws, place, axis=1)[:, place] if len(draws) else []
     return found
 
@@ -99,16 +99,27 @@ def unit_errors(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers, share: fl
     return found
 
 
-def bench_for(own_deg: float, ratios: Sequence[float], limit_deg: float, share: float) -> float:
-    """Return the largest bench error with which a share of the draws meets a limit; 0 for none."""
+def bench_for(own_deg: Numbers, ratios: Numbers, limit_deg: float, share: float) -> Numbers:
+    """Return the largest bench error (R,) with which a share of the draws meets a limit.
 
-    def kept(bench_deg: float) -> bool:
-        return one_at_confidence(own_deg, ratios, bench_deg, share) <= limit_deg
+    A draw meets it up to the bench error that takes its squares to the limit's: of these, the one
+    that the share of the draws reaches. At most the limit; 0 where none would do.
 
-    low, high = 0.0, limit_deg
-    if not kept(low):
-        return 0.0
-    for _ in range(40):
-        middle = (low + high) / 2.0
-        low, high = (middle, high) if kept(middle) else (low, middle)
-    return low
+    Parameters
+    ----------
+    own_deg, ratios
+        As `drawn_deg`.
+    limit_deg, share
+        What is asked for.
+    """
+    left = np.maximum(limit_deg**2 - (own_deg[:, None] * ratios) ** 2, -1.0)
+    most = np.where(left < 0.0, -1.0, np.sqrt(np.maximum(left, 0.0)))
+    draws = (most[:, :, None] / np.array(BENCHES)).reshape(len(own_deg), -1)
+    place = draws.shape[1] - _fewest(share, draws.shape[1])
+    found = np.partition(draws, place, axis=1)[:, place]
+    return np.asarray(np.clip(found, 0.0, limit_deg))
+
+
+def _fewest(share: float, draws: int) -> int:
+    """Return how many of some draws are a share of them at least."""
+    return min(math.ceil(share * draws - 1e-9), draws)

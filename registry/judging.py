@@ -7,6 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from pydantic_core import to_json
+
 from registry.designs import DesignTable, Limits, Place
 from registry.mapping.advice import ADVISING, Advice
 from registry.requirements import EXCLUDE, Requirements
@@ -62,6 +64,11 @@ class Question:
             requirements.draws,
             requirements.exclude_needs,
         )
+
+    @cached_property
+    def asked_json(self) -> bytes:
+        """The requirements as JSON."""
+        return to_json(self.asked.to_dict())
 
     @cached_property
     def best(self) -> BestPipelines:
@@ -164,23 +171,11 @@ class Question:
         """Return the studies (bits) whose stated number keeps a limit that is asked."""
         return self._stated[limit]
 
-    def basis(self, *, measured: bool, studied: bool) -> dict[str, str]:
-        """Say of each requirement whether it is judged on what is measured, stated, and so on.
-
-        Parameters
-        ----------
-        measured
-            Whether the calibration is measured.
-        studied
-            Whether a study of the architecture has what is asked of studies.
-        """
-        basis = dict.fromkeys(self.limits, "measured" if measured else "stated")
-        for name in OF_STUDIES:
-            if name in self.asked.include:
-                basis[name] = "studies" if studied else "advised"
-        if self.asked.properties:
-            basis["properties"] = "assessed"
-        return basis
+    @property
+    def judged(self) -> tuple[str, ...]:
+        """The requirements that an answer says the basis of: limits, of studies, properties."""
+        of_studies = [name for name in OF_STUDIES if name in self.asked.include]
+        return (*self.limits, *of_studies, *(["properties"] if self.asked.properties else ()))
 
     def _meeting_studies(self) -> int:
         """Return the studies (bits) with the tasks, errors and accuracies asked for."""

@@ -255,10 +255,9 @@ class MeasuredPipeline:
         half_field_deg: float | None = None,
         *,
         bench_deg: float | None = None,
-        units_within: int | None = None,
         partly: Iterable[Partly[MeasuredPipeline]] = (),
     ) -> dict[str, object]:
-        """Return the pipeline as in the HTTP answer.
+        """Return the pipeline as in the HTTP answer, but for its units that meet a limit.
 
         Parameters
         ----------
@@ -268,8 +267,6 @@ class MeasuredPipeline:
             What both hold under and over.
         bench_deg
             Fixed error of the bench asked for; None for the data set's own.
-        units_within
-            How many of ten units keep the largest error asked for; None where none is asked.
         partly
             Pipelines on the same sensor that answer too seldom, of which one may be far finer.
         """
@@ -298,7 +295,7 @@ class MeasuredPipeline:
                 "count": len(units),
                 "least_deg": min(units),
                 "largest_deg": max(units),
-                "meeting": units_within,
+                "meeting": None,
                 "of": UNITS,
             }
             if units

@@ -7,23 +7,26 @@ from __future__ import annotations
 
 import itertools
 import weakref
-from collections.abc import Iterable, Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache, partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic_core import to_json
 
 from registry.answer import Answer
 from registry.design_arrays import WORD_BITS, DesignArrays, design_arrays
 from registry.designs import DesignTable
-from registry.paths import PathTable, path_table
+from registry.paths import PATH_LEVELS, PathTable, path_table
 
 Flags = NDArray[np.bool_]
 Words = NDArray[np.uint64]
 
 #: Sets of studies whose paths are kept, some 10 kB each.
 MOST_SETS = 256
+#: Texts of paths, nodes and links that are kept of each kind.
+MOST_TEXTS = 8192
 _POSITION_BYTES = 8
 
 
@@ -51,6 +54,7 @@ class PathArrays:
     def __init__(self, table: PathTable, arrays: DesignArrays) -> None:
         self.arrays = arrays
         self._size = len(table.paths)
+        self._of_tasks = lru_cache(MOST_SETS)(self._from_tasks)
         self._among = lru_cache(MOST_SETS)(self._studies_among)
         self._sets = lru_cache(MOST_SETS)(self._present)
         self._studies = arrays.words_of(table.sets)
@@ -58,7 +62,8 @@ class PathArrays:
         leading = [sum(1 << at for at in table.of(d)) if d.taken else 0 for d in arrays.designs]
         size = 8 * (self._size // WORD_BITS + 1)
         data = b"".join(paths.to_bytes(size, "little") for paths in leading)
-        self._leading = np.frombuffer(data, "<u8").reshape(len(leading), size // 8)
+        words = np.frombuffer(data, "<u8").reshape(len(leading), size // 8)
+        self._leading = np.ascontiguousarray(words.T)
         self._of_task: dict[str, Flags] = {}
         for at, (task, *_) in enumerate(table.paths):
             self._of_task.setdefault(task, np.zeros(self._size, bool))[at] = True
@@ -80,27 +85,26 @@ class PathArrays:
         if not self._size:
             return StudySets((), (), ())
         question, measured = answer.question, self.arrays.measured
-        among = self._of_tasks(question.asked.include, question.asked.exclude)
+        include, exclude = question.asked.include, question.asked.exclude
+        among = self._of_tasks(include.get("task"), exclude.get("task", ()))
         if question.studies == question.all_stated:
-            parts = [(question.matching_designs, question.studies)]
+            designs = question.matching_designs[None]
+            studies: tuple[int, ...] = (question.studies,)
         else:
-            parts = [
-                (question.matching_designs & measured, question.studies),
-                (question.matching_designs & ~measured, question.all_stated),
-            ]
-        led = [((self._led_to(designs) & among).tobytes(), of) for designs, of in parts]
-        return self._sets(tuple(led))
+            designs = question.matching_designs & np.stack((measured, ~measured))
+            studies = (question.studies, question.all_stated)
+        led = self._led_to(designs) & among
+        return self._sets(tuple(zip(map(bytes, led), studies, strict=True)))
 
     def _led_to(self, designs: Flags) -> Flags:
-        """Return the paths that lead to one of some designs."""
-        found = np.bitwise_or.reduce(self._leading[designs], axis=0).view(np.uint8)
-        return np.unpackbits(found, count=self._size, bitorder="little").view(bool)
+        """Return the paths that lead to one of some designs, of which each row is flags."""
+        leading = np.where(designs[:, None], self._leading, 0)
+        found = np.bitwise_or.reduce(leading, axis=2).view(np.uint8)
+        return np.unpackbits(found, axis=1, count=self._size, bitorder="little").view(bool)
 
-    def _of_tasks(
-        self, include: Mapping[str, Iterable[str]], exclude: Mapping[str, Iterable[str]]
-    ) -> Flags:
-        """Return the paths from a task that is asked for."""
-        tasks = set(include.get("task", self._of_task)) - set(exclude.get("task", ()))
+    def _from_tasks(self, include: tuple[str, ...] | None, exclude: tuple[str, ...]) -> Flags:
+        """Return the paths from a task that is asked for; None asks for every one."""
+        tasks = set(self._of_task if include is None else include) - set(exclude)
         found = np.zeros(self._size, bool)
         for task in tasks & self._of_task.keys():
             found |= self._of_task[task]
@@ -127,6 +131,49 @@ class PathArrays:
         first_node, first_link = at.searchsorted(self._firsts).tolist()
         parts = (sets[:first_node], sets[first_node:first_link], sets[first_link:])
         return StudySets(*map(tuple, parts))
+
+
+class PathTexts:
+    """Paths, nodes and links as JSON.
+
+    Parameters
+    ----------
+    table : the paths
+    studies_text : writes the keys of studies (bits), with commas between them
+    """
+
+    def __init__(self, table: PathTable, studies_text: Callable[[int], bytes]) -> None:
+        self._studies = studies_text
+        paths = [_begun(zip(PATH_LEVELS, path, strict=True)) for path in table.paths]
+        nodes = [
+            _begun({"id": f"{level}:{value}", "level": level, "value": value, "name": name}.items())
+            for level, value, name in table.nodes
+        ]
+        links = [
+            _begun({"source": source, "target": target}.items()) for source, target in table.links
+        ]
+        self._path = lru_cache(MOST_TEXTS)(partial(self._text, paths, b""))
+        self._node = lru_cache(MOST_TEXTS)(partial(self._text, nodes, b',"count":%d'))
+        self._link = lru_cache(MOST_TEXTS)(partial(self._text, links, b',"value":%d'))
+        self.text = lru_cache(MOST_SETS)(self._all)
+
+    def _all(self, sets: StudySets) -> bytes:
+        """Return the three lists but for the name of the first and the end of the last."""
+        texts = (
+            b",".join(map(text, packed))
+            for text, packed in zip((self._path, self._node, self._link), sets, strict=True)
+        )
+        return b'%b],"nodes":[%b],"links":[%b' % tuple(texts)
+
+    def _text(self, begun: Sequence[bytes], count: bytes, packed: bytes) -> bytes:
+        at, studies = unpacked(packed)
+        counted = count % studies.bit_count() if count else b""
+        return b'%b%b,"studies":[%b]}' % (begun[at], counted, self._studies(studies))
+
+
+def _begun(members: Iterable[tuple[str, str]]) -> bytes:
+    """Return an object in JSON without its end."""
+    return to_json(dict(members))[:-1]
 
 
 def unpacked(packed: bytes) -> tuple[int, int]:

@@ -159,7 +159,6 @@ class PipelineErrors:
     error_deg : the same on calibration benches, as `MeasuredPipeline.judged` computes it
     nominal_deg : error of the first condition alone
     by_error : positions of the pipelines, by design and then by error
-    rank : position of each error among all different ones; equal errors share a rank
     """
 
     def __init__(
@@ -183,7 +182,7 @@ class PipelineErrors:
             share = draws[1]
             self.error_deg = at_confidence(self.own_deg, table.unit_ratios, self.bench_deg, share)
         self.by_error = np.lexsort((self.error_deg, table.design_of))
-        self.rank = np.unique(self.error_deg, return_inverse=True)[1]
+        self.own = lru_cache(None)(self._own)
         self.of = lru_cache(None)(self._judged)
 
     @property
@@ -193,16 +192,24 @@ class PipelineErrors:
         own = self.table.bench_deg
         return own if bench is None else np.full(len(own), bench)
 
+    def _own(self, row: int) -> PipelineJudgement:
+        """Return the error of one pipeline with true directions, with its condition and field."""
+        return self.table.rows[row].judged(self.hazards, self.half)
+
     def _judged(self, row: int) -> PipelineJudgement:
         """Return the error of one pipeline, with its condition and field."""
-        return self.table.rows[row].judged(self.hazards, self.half, self.draws)
+        own = self.own(row)
+        if self.draws is None or math.isinf(own.error_deg):
+            return own
+        return PipelineJudgement(float(self.error_deg[row]), own.condition, own.field_deg)
 
     @cached_property
     def _unit_errors(self) -> Numbers:
-        """Error that each of ten units keeps at the confidence, shape (pipelines, 10)."""
+        """Error that each of ten units keeps at the confidence, shape (10, pipelines)."""
         assert self.draws is not None  # noqa: S101 - without draws no unit is counted
         ratios, share = self.table.unit_ratios, self.draws[1]
-        return unit_errors(self.own_deg, ratios, self.bench_deg, share)
+        found = unit_errors(self.own_deg, ratios, self.bench_deg, share)
+        return np.ascontiguousarray(found.T)
 
     def units_within(self, limit_deg: float | None) -> NDArray[np.uint8]:
         """Return how many of ten units of each pipeline keep a limit on the error.
@@ -211,7 +218,7 @@ class PipelineErrors:
         """
         if limit_deg is None or self.draws is None:
             return np.full(len(self.own_deg), NOT_COUNTED, np.uint8)
-        found: NDArray[np.uint8] = (self._unit_errors <= limit_deg).sum(axis=1, dtype=np.uint8)
+        found: NDArray[np.uint8] = (self._unit_errors <= limit_deg).sum(axis=0, dtype=np.uint8)
         found[np.isinf(self.own_deg)] = NOT_COUNTED
         return found
 
@@ -278,23 +285,21 @@ class PipelineErrors:
         first = begins(places)
         return dict(zip(places[first].tolist(), rows[first].tolist(), strict=True))
 
-    def document(self, row: int, units_within: int, finer: int) -> dict[str, object]:
-        """Return one pipeline as in the HTTP answer.
+    def document(self, row: int, finer: int) -> dict[str, object]:
+        """Return one pipeline as in the HTTP answer, but for its units that meet a limit.
 
         Parameters
         ----------
         row : position of the pipeline
-        units_within : units that keep the limit on the error, or `NOT_COUNTED`
         finer : pipeline on the same sensor that answers too seldom to be judged; -1 for none
         """
         rows, field = self.table.rows, (self.hazards, self.half)
         partly = None if finer < 0 else rows[finer].partly(*field)
         return rows[row].to_dict(
             self.of(row),
-            rows[row].judged(*field),
+            self.own(row),
             *field,
             bench_deg=None if self.draws is None else self.draws[0],
-            units_within=None if units_within == NOT_COUNTED else units_within,
             partly=() if partly is None else (partly,),
         )
 

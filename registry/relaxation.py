@@ -344,21 +344,15 @@ def _bench_that_would_do(table: DesignTable, requirements: Requirements) -> floa
     limit, draws = requirements.largest_deg, requirements.draws
     if limit is None or draws is None:
         return None
-    import numpy as np  # noqa: PLC0415 - only who answers needs it
-
     from registry.draws import bench_for  # noqa: PLC0415 - NumPy
 
     question = Question(table, replace(requirements, bench_deg=0.0))
     rows = question.matching_designs[question.arrays.design_of]
     rows &= _keeping(question.arrays, question.asked)
-    own = question.errors.own_deg
-    return max(
-        (
-            bench_for(float(own[at]), question.arrays.rows[at].unit_ratios, limit, draws[1])
-            for at in np.flatnonzero(rows).tolist()
-        ),
-        default=None,
-    )
+    if not rows.any():
+        return None
+    ratios = question.arrays.unit_ratios[rows]
+    return float(bench_for(question.errors.own_deg[rows], ratios, limit, draws[1]).max())
 
 
 def _has_evidence(table: DesignTable, requirements: Requirements, name: str) -> bool:

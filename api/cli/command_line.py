@@ -29,6 +29,7 @@ from benchmark.processes import (
     INTERRUPTED,
     end_with_coordinator,
     exit_code,
+    say_interrupted,
     terminate_as_interrupt,
     was_told,
 )
@@ -74,6 +75,14 @@ class LazyCommands(TyperGroup):
         """Import the module of the command to run; a usage error names the nearest one."""
         name, command, rest = super().resolve_command(ctx, args)
         return name, command and load(str(name)), rest
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command; one that is broken off says so in a line."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt as error:
+            say_interrupted(f"sunatlas: {str(error) or 'interrupted'}")
+            raise
 
     def main(self, args: Sequence[str] | None = None, *rest: Any, **extra: Any) -> Any:
         """Run, and turn what goes wrong into an exit code and one line on stderr."""
@@ -181,6 +190,7 @@ def _drop_output() -> None:
 
 def _stop(error: BaseException, code: int, message: str) -> None:
     if was_told():  # then whatever went wrong did so because of that
+        say_interrupted("sunatlas: interrupted")
         sys.exit(exit_code())
     if os.environ.get(DEBUG):
         raise error

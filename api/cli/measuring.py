@@ -8,8 +8,7 @@ and read from it the next time.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -20,7 +19,7 @@ from api.cli import completion
 from api.cli.working import working_directory
 from benchmark.contract import Cell
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running.runner import RunInterruptedError, run, stale
+from benchmark.running.runner import run, stale
 from benchmark.running.times import times_of_code
 from benchmark.suites.selection import SUITES
 
@@ -130,8 +129,7 @@ def score_cells(
     missing = stale(elsewhere, work)
     warnings: tuple[str, ...] = ()
     if missing:
-        with interruptible():
-            warnings = run(missing, work, workers, scheduler=scheduler).warnings
+        warnings = run(missing, work, workers, scheduler=scheduler).warnings
     found = {**_rows(shipped, set(wanted) - set(elsewhere)), **_rows(work, set(elsewhere))}
     times = times_of_code(work.directory)
     for cell, row in found.items():
@@ -146,16 +144,6 @@ def score_cells(
         directory=work.directory,
         warnings=warnings,
     )
-
-
-@contextmanager
-def interruptible() -> Iterator[None]:
-    """Let Ctrl-C end a run with a line that says what is kept, and exit code 130."""
-    try:
-        yield
-    except RunInterruptedError as interrupted:
-        typer.echo(f"sunatlas: {interrupted}", err=True)
-        raise typer.Exit(130) from interrupted
 
 
 def _rows(store: Store, cells: set[Cell]) -> dict[Cell, Row]:

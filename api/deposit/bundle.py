@@ -131,7 +131,7 @@ def build(
     with replace_all(out, archive) as (bundle, zipped):
         bundle.mkdir()
         exported = write_frames(
-            bundle, names, pins, lambda done, _total, what: progress(done, total, what)
+            bundle, names, pins, lambda done, _, what, _share=None: progress(done, total, what)
         )
         progress(len(names), total, "tables")
         fill(bundle, who, sources, exported)

@@ -11,6 +11,7 @@ import argparse
 import re
 import sys
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 
 from api.deposit import codemeta
@@ -30,6 +31,7 @@ from api.docs.parts import (
 from api.guide import dictionary, measured_facts, words
 from api.guide.blocks import rerun
 from benchmark.processes import call_to_end
+from benchmark.progress import told_progress
 from files.atomic import replace_file
 from files.locks import wait_for_lock
 from files.temporary import temporary_directory
@@ -165,6 +167,15 @@ def renew_parts(page: str, text: str, parts: Mapping[str, Make]) -> str:
     )
 
 
+def _renewed(page: str, parts: Mapping[str, Make], directory: Path) -> str:
+    return renew_parts(page, text_of(page, directory), parts)
+
+
+def _rerun(page: str, directory: Path) -> str:
+    with temporary_directory() as scratch:
+        return rerun(page, (directory / page).read_text("utf-8"), scratch).text
+
+
 def regenerate(directory: Path = DIRECTORY, *, write: bool = True) -> list[str]:
     """Renew every page and picture; return the names of those that were behind.
 
@@ -180,23 +191,19 @@ def regenerate(directory: Path = DIRECTORY, *, write: bool = True) -> list[str]:
     FileNotFoundError
         Where a page is missing.
     """
+    made: dict[str, Make] = {
+        page: partial(_renewed, page, parts, directory)
+        for page, parts in every_page(directory).items()
+    }
+    made |= {page: partial(_rerun, page, directory) for page in RUN}
+    made |= every_picture()
     behind = {}
-    for page, parts in every_page(directory).items():
-        path = directory / page
-        new = renew_parts(page, text_of(page, directory), parts)
-        if not path.is_file() or new != path.read_text("utf-8"):
-            behind[page] = new
-    for page in RUN:
-        text = (directory / page).read_text("utf-8")
-        with temporary_directory() as scratch:
-            new = rerun(page, text, scratch).text
-        if new != text:
-            behind[page] = new
-    for picture, make in every_picture().items():
-        path = directory / picture
-        new = make()
-        if not path.is_file() or path.read_text("utf-8") != new:
-            behind[picture] = new
+    with told_progress("documenting") as report:
+        for done, (name, make) in enumerate(made.items()):
+            report(done, len(made), name)
+            path, new = directory / name, make()
+            if not path.is_file() or path.read_text("utf-8") != new:
+                behind[name] = new
     if write:
         with wait_for_lock(directory / "pages"):
             for page, new in behind.items():

@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from itertools import groupby
 from statistics import fmean, median
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 from benchmark.contract import Cell
 from benchmark.results.csv_tables import number, read_csv, text_of, whole, word
@@ -39,6 +39,11 @@ class ExtractionTask(NamedTuple):
     condition: str
     unit: int
     extractor: str
+
+    @classmethod
+    def of(cls, cell: Cell) -> Self:
+        """Return the task that a cell is measured by."""
+        return cls(cell.dataset, cell.condition, cell.unit, cell.extractor)
 
 
 @dataclass(frozen=True)
@@ -131,11 +136,29 @@ class Durations:
         rows = [{**task._asdict(), **asdict(took)} for task, took in sorted(self.known.items())]
         replace_file(store.work_directory / DURATIONS, text_of(list(_COLUMNS), rows))
 
+    def expected(self, cells: Iterable[Cell]) -> dict[ExtractionTask, float]:
+        """Return the seconds of each task of cells, of an unknown one those usual on its data set.
+
+        Where nothing on the data set is known, those usual on all; nothing where none is known.
+        """
+        of_dataset: dict[str, list[float]] = {}
+        for task, took in self.known.items():
+            of_dataset.setdefault(task.dataset, []).append(took.seconds)
+        usual = {dataset: median(seconds) for dataset, seconds in of_dataset.items()}
+        if not usual:
+            return {}
+        of_all = median(usual.values())
+        found = {}
+        for task in {ExtractionTask.of(cell) for cell in cells}:
+            known = self.known.get(task)
+            found[task] = known.seconds if known else usual.get(task.dataset, of_all)
+        return found
+
     def estimate(self, cells: Iterable[Cell]) -> Estimate:
         """Say how long cells take: by the same task, else by its like on the same data set."""
         tasks: dict[ExtractionTask, int] = {}
         for cell in cells:
-            task = ExtractionTask(cell.dataset, cell.condition, cell.unit, cell.extractor)
+            task = ExtractionTask.of(cell)
             tasks[task] = tasks.get(task, 0) + 1
         seconds, unknown = 0.0, 0
         for dataset, group in groupby(sorted(tasks), key=lambda task: task.dataset):

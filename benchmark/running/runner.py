@@ -16,12 +16,13 @@ from pathlib import Path
 
 from benchmark.contract import Cell
 from benchmark.plan.parts import Parts, installed_parts
+from benchmark.processes import end_if_told
 from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.components import Components, current
 from benchmark.results.record import Record, open_record
 from benchmark.results.store import Store
 from benchmark.running.backend import outcomes
-from benchmark.running.durations import Durations
+from benchmark.running.durations import Durations, ExtractionTask
 from benchmark.running.kept_stages import KeptStages
 from benchmark.running.planned import FollowUp, cells_of, numbers_of, samples_of, tasks_of
 from benchmark.running.task import TaskResult
@@ -70,8 +71,9 @@ def run(
     workers
         Number of processes; 1 measures in this one.
     progress
-        Called as ``progress(done, total, what)`` in cells; by default a bar on standard error
-        when that is a terminal.
+        Called as ``progress(done, total, what, share)`` in cells, with the share of the time
+        that all takes as far as that is known, else None; by default a bar on standard error when
+        that is a terminal.
     scheduler
         Address of a Dask scheduler to measure on instead.
     parts
@@ -153,13 +155,14 @@ def measure_missing(
     done = 0
     if missing:
         with terminal_progress() if progress is None else nullcontext(progress) as report:
-            counted = _Count(report, len(missing))
+            expected = Durations.read([record.store]).expected(missing)
+            counted = _Count(report, len(missing), sum(expected.values()))
             for stage in filter(None, stages):
                 tasks = tasks_of(stage, parts, record.pins, kept)
                 durations = Durations.read([record.store])
                 results = outcomes(tasks, workers, scheduler, follow_ups or {}, durations)
                 try:
-                    _keep_all(results, record, components, counted)
+                    _keep_all(results, record, components, counted, expected)
                 finally:
                     durations.keep(record.store)
             done = counted.done
@@ -215,23 +218,32 @@ class _Count:
 
     report: ProgressCallback
     total: int
+    expected_s: float = 0.0
     done: int = 0
+    done_s: float = 0.0
 
     def __post_init__(self) -> None:
         self.report(0, self.total, "")
 
-    def add(self, cells: int, what: str) -> None:
+    def add(self, cells: int, what: str, seconds: float) -> None:
         self.done += cells
+        self.done_s += seconds
         self.total = max(self.total, self.done)  # what followed was not counted before
-        self.report(self.done, self.total, what)
+        share = min(self.done_s / self.expected_s, 1.0) if self.expected_s else None
+        self.report(self.done, self.total, what, share)
 
 
 def _keep_all(
-    results: Iterable[TaskResult], record: Record, components: Components, counted: _Count
+    results: Iterable[TaskResult],
+    record: Record,
+    components: Components,
+    counted: _Count,
+    expected: Mapping[ExtractionTask, float],
 ) -> None:
     """Take every finished task into the record, which is on disk before the next is awaited."""
     try:
         for result in results:
+            end_if_told()
             task = result.task
             scores = dict(zip(cells_of(result), numbers_of(result), strict=True))
             new = [pin for pin in result.pins if not record.is_pinned(pin.place, components)]
@@ -244,7 +256,8 @@ def _keep_all(
                 directions=samples.directions,
             )
             what = f"{task.preset.name} {task.condition} {task.extractor.about.name}"
-            counted.add(len(scores), what)
+            seconds = sum(expected.get(of, 0.0) for of in {ExtractionTask.of(c) for c in scores})
+            counted.add(len(scores), what, seconds)
     except KeyboardInterrupt as error:
         raise RunInterruptedError(
             f"interrupted with {counted.done} of {counted.total} cells measured; they are kept in "

@@ -23,7 +23,7 @@ from typing import Any, TypeVar
 from joblib.externals.loky import get_reusable_executor
 from joblib.externals.loky.backend.process import LokyProcess
 
-from benchmark.processes import work_for
+from benchmark.processes import end_if_told, work_for
 from benchmark.running.cluster import WorkerLostError
 from benchmark.simulator.light.memory import memory
 from files.temporary import temporary_directory
@@ -133,7 +133,10 @@ def as_completed(
         When a worker was killed.
     """
     if workers == 1:
-        yield from map(work, items)
+        for item in items:
+            result = work(item)
+            end_if_told()  # what a signal broke off, though a library took it, is no result
+            yield result
         return
     waiting = iter(items)
     with hands_of(workers) as hands:

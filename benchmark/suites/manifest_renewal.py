@@ -11,6 +11,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from benchmark.processes import call_to_end
 from benchmark.results import record_manifest, samples
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running.experiment import Recorded, experiments
@@ -63,4 +64,4 @@ def renew(directory: Path) -> list[str]:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    call_to_end(main)

@@ -24,6 +24,8 @@ from algorithms.contract import Extractor, Floats
 from benchmark.contract import Cell, Samples, UnknownNameError
 from benchmark.plan.combinations import cells as planned
 from benchmark.plan.parts import Parts, installed_parts
+from benchmark.processes import call_to_end
+from benchmark.progress import ProgressCallback, silent, told_progress
 from benchmark.results.store import Store
 from benchmark.running.condition_data import ConditionData, found_features, generate
 from benchmark.running.task import Outcome, Task, data_condition, measured_on
@@ -98,6 +100,7 @@ def search(
     cells: Iterable[Cell],
     parts: Parts,
     told: Callable[[Sensitive], object] = lambda _: None,
+    progress: ProgressCallback = silent,
     *,
     observations: bool = True,
     draw: int = 0,
@@ -112,6 +115,8 @@ def search(
         Data sets and implementations.
     told
         Called with each finding at once.
+    progress
+        Called with cells done and in all.
     observations
         Whether to perturb what extractors read, too; it takes a second extraction.
     draw
@@ -122,6 +127,7 @@ def search(
     with one_thread():
         for _, group in groupby(order, key=_extraction):
             board = list(group)
+            progress(count, len(order), board[0].dataset)
             count += len(board)
             for finding in _of_one_extraction(board, parts, observations, draw):
                 told(finding)
@@ -263,11 +269,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not asked.all:
         known = {replace(cell, unit=0) for cell in Store().scores()}
         wanted = [cell for cell in wanted if cell in known]
-    done = search(wanted, parts, lambda one: sys.stdout.write(f"{one}\n"), draw=asked.draw)
+    with told_progress("perturbing") as report:
+        done = search(
+            wanted, parts, lambda one: sys.stdout.write(f"{one}\n"), report, draw=asked.draw
+        )
     turned = len(done.sensitive) - len(done.moved)
     sys.stdout.write(f"{done.cells} cells: {len(done.moved)} move, {turned} turn a last digit\n")
     return 1 if done.moved else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    call_to_end(main)

@@ -89,7 +89,7 @@ def test_a_program_that_is_told_to_end_removes_what_it_was_making(
     assert len(list(tmp_path.iterdir())) == 2, "a directory and its lock"
     process.send_signal(number)
     _, said = process.communicate(timeout=60)
-    assert (process.returncode, said) == (code, "")
+    assert (process.returncode, said) == (code, "interrupted\n")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -107,7 +107,7 @@ def test_an_error_that_a_signal_was_made_into_ends_as_the_signal_does(tmp_path: 
     assert first_line(process) == "working"
     process.terminate()
     _, said = process.communicate(timeout=60)
-    assert (process.returncode, said) == (143, "")
+    assert (process.returncode, said) == (143, "interrupted\n")
 
 
 def test_a_second_writer_is_told_in_one_line(tmp_path: Path) -> None:

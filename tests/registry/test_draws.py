@@ -47,11 +47,16 @@ def test_ratios_of_measured_units_are_theirs_and_of_few_those_of_the_spread():
 
 
 def test_the_bench_that_would_do_does_and_a_worse_one_does_not():
-    ratios = unit_ratios((1.0,), 0.1)
-    bench = bench_for(0.006, ratios, 0.01, 0.9)
-    assert one_at_confidence(0.006, ratios, bench, 0.9) <= 0.01
-    assert one_at_confidence(0.006, ratios, 1.05 * bench, 0.9) > 0.01
-    assert bench_for(0.02, ratios, 0.01, 0.9) == 0.0
+    own = np.array([0.006, 0.0099, 0.02])
+    ratios = np.array([unit_ratios((1.0,), spread) for spread in (0.1, 0.02, 0.1)])
+    for share in (0.5, 0.9, 0.95):
+        bench = bench_for(own, ratios, 0.01, share)
+        for at in np.flatnonzero(bench):
+            pair = own[at], ratios[at]
+            assert one_at_confidence(*pair, (1 - 1e-9) * bench[at], share) <= 0.01
+            assert one_at_confidence(*pair, (1 + 1e-9) * bench[at], share) > 0.01
+    assert bench[0] > 0.0
+    assert bench[2] == 0.0
 
 
 def test_of_what_is_said_to_meet_a_limit_fresh_units_and_benches_do():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmark import datasets
-from tools.bench import recommendations, startup
+from tools.bench import growth, recommendations, startup
 from tools.bench import simulator as speed
 from tools.bench.comparing import Subject
 from tools.bench.light import diffracted_frames, light_of_frames
@@ -94,3 +94,18 @@ def test_the_small_harnesses_prepare_what_runs(harness):
         prepared.reference()
         before = prepared.clock()
         assert prepared.clock() >= before >= 0
+
+
+def test_the_exponent_of_growth_is_the_slope_of_cost_over_work():
+    linear = growth.Growth("run", "methods", (1, 2, 4), (10, 20, 40), (0.3, 0.6, 1.2))
+    square = growth.Growth("run", "methods", (1, 2, 4), (10, 20, 40), (0.3, 1.2, 4.8))
+    assert linear.exponent == pytest.approx(1.0)
+    assert square.exponent == pytest.approx(2.0)
+
+
+def test_made_up_parts_are_as_many_cells_as_asked_for():
+    assert growth.running(methods=2, datasets=3, units=2)[0] == 2 * growth.running(2, 3)[0]
+    assert growth.running(methods=4)[0] == 2 * growth.running(methods=2)[0]
+    cells, run = growth.running(methods=2)
+    run()
+    assert cells > 0

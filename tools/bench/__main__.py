@@ -27,9 +27,10 @@ NAMES = (
     "recommendations",
     "startup",
     "service",
+    "growth",
 )
 #: Those of them that draw what they measure on: `run(seed)`.
-SEEDED = frozenset({"robustness", "covariances"})
+SEEDED = frozenset({"robustness", "covariances", "service"})
 
 Harness = Callable[[], Sequence[Verdict]]
 

@@ -4,6 +4,8 @@
 2. Schemathesis, from the OpenAPI document: no 5xx.
 3. Many clients at once: no error, memory that stays, and a median time at most `MOST_TIMES` that of
    an empty FastAPI endpoint under the same load.
+4. The same clients beside some that ask and never read: no error, and each of those is closed
+   within `MOST_UNREAD_S`.
 
 Exit status 1 where one of them does not hold. The seed is printed first, and repeats the requests.
 """
@@ -17,6 +19,7 @@ import secrets
 import subprocess
 import sys
 import tempfile
+import time
 import urllib.request
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -24,8 +27,10 @@ from urllib.parse import urlsplit
 
 from tools.load.crowd import Crowd, crowd
 from tools.load.fuzzing import fuzz
+from tools.load.unread import unread
 
 MOST_TIMES = 1.5
+UNREAD, MOST_UNREAD_S = 60, 30.0
 #: Memory may grow by this share and these megabytes while the crowd is there: pages of the heap
 #: are given back when they like.
 MOST_GROWTH, MOST_GROWTH_MB = 0.02, 4.0
@@ -94,7 +99,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with running(SERVICE) as (place, process):
         crowd(place, COMMON, 10, 2.0, process)  # answers are kept once they have been given
         met = crowd(place, COMMON, given.clients, given.seconds, process)
-    _print("service", met)
+        _print("service", met)
+        time.sleep(2.0)  # until the last of these clients has left
+        with unread(place, UNREAD) as ignored:
+            beside = crowd(place, COMMON, given.clients, max(given.seconds, MOST_UNREAD_S), process)
+    _print(f"service beside {UNREAD} that never read", beside)
+    last = max(ignored.closed_s, default=0.0)
+    print(f"of these {len(ignored.closed_s)} were closed, the last after {last:.0f} s")
+    if len(ignored.closed_s) < UNREAD or last > MOST_UNREAD_S:
+        broken.append(f"not all that never read were closed within {MOST_UNREAD_S:g} s")
+    if beside.errors:
+        broken.append(f"{beside.errors} errors beside clients that never read")
     ratio = met.median_ms / empty.median_ms
     print(f"median over an empty endpoint's: {ratio:.2f}, at most {MOST_TIMES:g}")
     early, late = met.memory_mb

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 import sys
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Any
 
 import typer
 
@@ -72,6 +72,7 @@ def calibrate(
     from api.calibrate.settings import read_settings  # noqa: PLC0415 - as above
     from api.calibrate.table import read_table  # noqa: PLC0415 - as above
     from api.calibrate.template import template  # noqa: PLC0415 - as above
+    from benchmark.progress import terminal_progress  # noqa: PLC0415 - Rich, where it is shown
     from files.atomic import replace_file  # noqa: PLC0415 - as above
 
     if init is not None:
@@ -83,35 +84,18 @@ def calibrate(
         return 0
     settings = None if config is None else read_settings(config)
     command = shlex.join(["sunatlas", *sys.argv[1:]])
-    with _Bar() as bar:
+    with terminal_progress("calibrating") as report:
         found = run(
-            files, settings, apply=apply, thorough=thorough, models=model, progress=bar.show
+            files,
+            settings,
+            apply=apply,
+            thorough=thorough,
+            models=model,
+            progress=lambda step, done, total: report(done, total, step),
         )
         written = write_products(found, out, name, command)
     _print(found, written, out)
     return 0 if found.verdict.word == "good" else 3
-
-
-class _Bar:
-    """A progress bar on a terminal; nothing elsewhere."""
-
-    def __enter__(self) -> Self:
-        from rich.console import Console  # noqa: PLC0415 - Rich, where it is shown
-        from rich.progress import Progress  # noqa: PLC0415 - as above
-
-        self._progress = Progress(
-            console=Console(file=sys.stderr), transient=True, disable=not sys.stderr.isatty()
-        )
-        self._progress.start()
-        self._task = self._progress.add_task("reading", total=None)
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._progress.stop()
-
-    def show(self, step: str, done: int, total: int) -> None:
-        """Show a step and how many of all are done."""
-        self._progress.update(self._task, description=step, completed=done, total=total)
 
 
 def _print(found: Any, written: list[Path], out: Path) -> None:

@@ -15,7 +15,6 @@ from api.cli.measuring import (
     AVAILABLE_WORKERS,
     ManyWorkersOption,
     StoreOption,
-    interruptible,
 )
 from api.cli.table_output import Format, FormatOption, emit, line_width
 from api.cli.working import working_directory
@@ -195,8 +194,7 @@ def update(workers: ManyWorkersOption = AVAILABLE_WORKERS) -> None:
 
     Data that changed without a new version of their data set are refused, with the data sets named.
     """
-    with interruptible():
-        summary = updating.update(PUBLISHED, workers)
+    summary = updating.update(PUBLISHED, workers)
     for cell, reason in summary.failed:
         typer.echo(f"failed: {cell}: {reason}", err=True)
     for warning in summary.warnings:
@@ -244,8 +242,7 @@ def times(store: StoreOption = None, form: FormatOption = Format.TABLE) -> None:
     and never published.
     """
     directory = working_directory(store)
-    with interruptible():
-        timed = running_times.update(directory)
+    timed = running_times.update(directory)
     kept = running_times.times_of_code(directory)
     columns = ("dataset", "extractor", "model", "latency_us", "time_ratio", "extract_ratio")
     rows = [{name: getattr(time, name) for name in columns} for time in kept.values()]
@@ -254,8 +251,7 @@ def times(store: StoreOption = None, form: FormatOption = Format.TABLE) -> None:
 
 
 def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only: bool) -> None:
-    with interruptible():
-        found = checking.check(PUBLISHED, workers, stored_only=stored_only, kernels=kernels)
+    found = checking.check(PUBLISHED, workers, stored_only=stored_only, kernels=kernels)
     rows = [{name: getattr(difference, name) for name in DIFFERENCES} for difference in found]
     if rows or form is not Format.TABLE:
         emit(rows, DIFFERENCES, form, title=f"{len(rows)} differences")

@@ -13,7 +13,6 @@ from api.cli.measuring import (
     AVAILABLE_WORKERS,
     ManyWorkersOption,
     StoreOption,
-    interruptible,
     stores_of,
 )
 from api.cli.table_output import Format, FormatOption, emit, say
@@ -83,8 +82,7 @@ def rank(
     else:
         typer.echo(f"contract: {result.ran} checks passed", err=True)
     record, work = stores_of(store)
-    with interruptible():
-        ranked = candidate.ranked(name, dataset, record, work, workers=workers)
+    ranked = candidate.ranked(name, dataset, record, work, workers=workers)
     page = out or Path("out") / f"{name}-{dataset}.html"
     replace_file(page, to_html(ranked.board, marked=ranked.pipelines, note=ranked.scope))
     rows = [{**row, "new": MARK if ranked.has(row) else None} for row in ranked.rows]

@@ -13,7 +13,6 @@ from api.cli.measuring import (
     ManyWorkersOption,
     SchedulerOption,
     SuiteOption,
-    interruptible,
     stores_of,
 )
 from api.cli.table_output import Format, FormatOption, emit
@@ -65,8 +64,7 @@ def verify(
     count = sample or (len(published) if suite else 10)
     cells = draw_cells(published, count, number)
     typer.echo(f"{len(cells)} of {len(published)} cells, drawn by --seed {number}", err=True)
-    with interruptible():
-        result = verified(cells, record, workers, scheduler=scheduler)
+    result = verified(cells, record, workers, scheduler=scheduler)
     rows = [
         {name: getattr(difference, name) for name in COLUMNS} for difference in result.differences
     ]

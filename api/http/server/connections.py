@@ -1,6 +1,8 @@
-"""Connections within bounds: how long a request may take to arrive, and how many there may be.
+"""Connections within bounds: how long a request may take to arrive, an answer to be read, how many.
 
-Uvicorn bounds neither: a client that opens a connection and sends half a request keeps it for good.
+Uvicorn bounds none of them: a client that opens a connection and sends half a request, or reads no
+answer, keeps it for good. A request that is sent before the answers to those before it have been
+read waits for that, and takes no part of what is answered at once.
 """
 
 from __future__ import annotations
@@ -16,8 +18,10 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from api.http.problems import MEDIA_TYPE, Problem
 
 ARRIVES_S = 10.0  # from the first byte, or the opening of the connection, to the request's last
+READS_S = 20.0  # without a byte being taken of an answer that waits
+LOOKS = 20  # how often that is looked at meanwhile
 MOST_CONNECTIONS = 400  # beyond: 503; beyond twice as many: closed unheard
-MOST_AT_ONCE = 300  # requests that are being answered
+MOST_AT_ONCE = 400  # requests that are being answered, some of which are only ending
 RETRY_AFTER_S = 2
 
 
@@ -25,9 +29,14 @@ class BoundedProtocol(H11Protocol):
     """HTTP/1.1 as Uvicorn speaks it, within the bounds of this module."""
 
     arrives_s = ARRIVES_S
+    reads_s = READS_S
     most_connections = MOST_CONNECTIONS
     most_at_once = MOST_AT_ONCE
     _due: asyncio.TimerHandle | None = None
+    _look: asyncio.TimerHandle | None = None
+    _waiting = 0  # bytes that nobody has taken yet, when they were last looked at
+    _idle = 0  # how often they were not fewer
+    _held = False  # whether a request waits for the answers before it to be read
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Begin to wait for a request; close at once where there are far too many."""
@@ -40,6 +49,8 @@ class BoundedProtocol(H11Protocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """End waiting."""
         self._stop_waiting()
+        if self._look is not None:
+            self._look.cancel()
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
@@ -51,6 +62,50 @@ class BoundedProtocol(H11Protocol):
             self._wait()
         else:
             self._stop_waiting()
+
+    def pause_writing(self) -> None:
+        """Begin to look whether the client reads."""
+        super().pause_writing()
+        self._watch()
+
+    def resume_writing(self) -> None:
+        """Go on with requests that waited for it."""
+        self._idle = 0
+        super().resume_writing()
+        if self._held:
+            self._held = False
+            self.flow.resume_reading()
+            self.handle_events()
+
+    def handle_events(self) -> None:
+        """Handle what has been received, once the client reads what has been answered."""
+        if self.flow.write_paused:
+            self._held = True
+            self._unset_keepalive_if_required()
+            self.flow.pause_reading()
+        else:
+            super().handle_events()
+
+    def on_response_complete(self) -> None:
+        """Go on; look whether the client reads, where not all of the answer has left."""
+        super().on_response_complete()
+        self._watch()
+
+    def _watch(self) -> None:
+        if self._look is None and self.transport.get_write_buffer_size():
+            self._waiting, self._idle = self.transport.get_write_buffer_size(), 0
+            self._look = self.loop.call_later(self.reads_s / LOOKS, self._close_unread)
+
+    def _close_unread(self) -> None:
+        """Close a connection of whose answer nothing was read for too long."""
+        self._look = None
+        waiting = self.transport.get_write_buffer_size()
+        self._idle = self._idle + 1 if waiting >= self._waiting else 0
+        self._waiting = waiting
+        if self._idle >= LOOKS:
+            self.transport.abort()
+        elif waiting:
+            self._look = self.loop.call_later(self.reads_s / LOOKS, self._close_unread)
 
     def eof_received(self) -> bool:  # type: ignore[override]
         """Keep the other half open for an answer that is on its way."""
@@ -82,6 +137,7 @@ class BoundedProtocol(H11Protocol):
             for event in (response, h11.Data(data=body), h11.EndOfMessage()):
                 self.transport.write(self.conn.send(event) or b"")
         self.transport.close()
+        self._watch()
 
 
 async def overload_response(scope: Scope, receive: Receive, send: Send) -> None:  # noqa: ARG001 - ASGI
@@ -102,4 +158,10 @@ async def overload_response(scope: Scope, receive: Receive, send: Send) -> None:
 
 def bounds() -> dict[str, Any]:
     """Return the arguments of `uvicorn.Config` that keep the bounds."""
-    return {"http": BoundedProtocol, "ws": "none", "timeout_keep_alive": 5, "loop": "asyncio"}
+    return {
+        "http": BoundedProtocol,
+        "ws": "none",
+        "timeout_keep_alive": 5,
+        "timeout_graceful_shutdown": 1,
+        "loop": "asyncio",
+    }

@@ -185,7 +185,7 @@ def test_a_reader_that_leaves_early_hears_nothing(form):
     assert said == b""
 
 
-def test_ctrl_c_ends_a_command_with_130(monkeypatch):
+def test_ctrl_c_ends_a_command_with_130_and_a_line(monkeypatch):
     def interrupted(*_arguments, **_options):
         raise KeyboardInterrupt
 
@@ -193,4 +193,4 @@ def test_ctrl_c_ends_a_command_with_130(monkeypatch):
     monkeypatch.setattr(module, "emit", interrupted)
     shown = invoke("dataset", "list")
     assert shown.exit_code == 130
-    assert shown.stderr == ""
+    assert shown.stderr == "sunatlas: interrupted\n"

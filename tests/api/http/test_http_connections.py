@@ -15,6 +15,10 @@ class Impatient(BoundedProtocol):
     arrives_s = 0.4
 
 
+class Unread(BoundedProtocol):
+    reads_s = 0.5
+
+
 class Small(BoundedProtocol):
     most_connections = 5
 
@@ -168,3 +172,40 @@ def test_who_asks_before_sending_is_refused_before(place):
         plug.sendall(POST.format(length=10**9, more=more).encode())
         received = answer(plug)
     assert received.startswith(b"HTTP/1.1 413 ")
+
+
+PIPELINED = b"GET /v1/results?limit=500 HTTP/1.1\r\nHost: a\r\n\r\n" * 100
+
+
+def closed_within(plug, seconds):
+    """Whether the other side has let go: what is sent to it is refused."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        try:
+            plug.send(b"GET")
+        except BlockingIOError:
+            pass
+        except ConnectionError:
+            return True
+        time.sleep(0.05)
+    return False
+
+
+@pytest.mark.parametrize("place", [Unread], indirect=True)
+def test_who_reads_nothing_is_closed_and_who_reads_is_not(place):
+    with ExitStack() as stack:
+        for_nothing = [dial(place, stack) for _ in range(4)]
+        for plug in for_nothing:
+            plug.setblocking(False)
+            plug.send(PIPELINED)
+        reading = dial(place, stack)
+        reading.sendall(PIPELINED)
+        received = 0
+        start = time.monotonic()
+        # Slowly, a part at a time, for longer than nothing may be read.
+        while time.monotonic() - start < 4 * Unread.reads_s:
+            received += len(reading.recv(50_000))
+            time.sleep(0.05)
+        assert received > 500_000
+        assert all(closed_within(plug, 20.0) for plug in for_nothing)
+        assert reading.recv(50_000)

@@ -7,7 +7,7 @@ from tools.bench import service as speed
 
 
 def test_queries_that_are_to_differ_do(atlas):
-    for kind in (speed.excluding(), speed.limiting()):
+    for kind in (speed.excluding(), speed.limiting(), speed.drawn(1)):
         paths = list(itertools.islice(kind, 500))
         assert len(set(paths)) == 500
         answers = [atlas.get(path) for path in paths[:3]]
@@ -18,10 +18,11 @@ def test_queries_that_are_to_differ_do(atlas):
 
 
 def test_the_command_prints_ratios_and_its_exit_status_tells(monkeypatch, capsys):
-    kept = speed.summary("repeated", [(100.0, 200.0), (110.0, 250.0), (300.0, 2000.0)])
-    assert (kept.empty_us, kept.recommendation_us, kept.ratio) == (100.0, 200.0, 2.0)
-    assert kept.typical_ratio == 250.0 / 110.0
-    broken = speed.summary("excluding", [(100.0, 510.0)])
+    rounds = [[(100.0, 200.0), (110.0, 250.0)], [(300.0, 2000.0)], [(100.0, 200.0)]]
+    kept = speed.summary("repeated", rounds)
+    assert (kept.empty_us, kept.recommendation_us) == (105.0, 225.0)
+    assert (kept.ratio, kept.mean_ratio, kept.dear_ratio) == (225 / 105, 2650 / 610, 2000 / 105)
+    broken = speed.summary("excluding", [[(100.0, 510.0)]])
     monkeypatch.setattr(speed, "measure", lambda *_: [kept])
     assert speed.main(["--format", "json"]) == 0
     assert json.loads(capsys.readouterr().out)["kept"] is True

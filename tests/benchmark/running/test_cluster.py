@@ -117,7 +117,7 @@ def test_a_worker_killed_after_its_first_result_loses_nothing(
 
     told: list[tuple[int, str]] = []
 
-    def kill(done: int, total: int, what: str) -> None:
+    def kill(done: int, total: int, what: str, share: float | None = None) -> None:
         told.append((done, what))
         if done and not killed:
             assert (done, total) == (1, PLANNED)
@@ -173,7 +173,7 @@ def test_a_run_broken_off_is_finished_on_the_cluster_by_what_is_missing(
 ) -> None:
     store = Store(tmp_path)
 
-    def stop(done: int, _total: int, _what: str) -> None:
+    def stop(done: int, _total: int, _what: str, _share: float | None = None) -> None:
         if done >= 3:
             raise KeyboardInterrupt
 

@@ -247,7 +247,7 @@ def test_a_partial_run_drops_what_its_new_code_no_longer_vouches_for(store):
 
 
 def test_ctrl_c_keeps_what_is_stored_and_says_so(store, log):
-    def interrupt(done, total, what):
+    def interrupt(done, *_):
         if done == 2:
             raise KeyboardInterrupt
 
@@ -260,7 +260,7 @@ def test_ctrl_c_keeps_what_is_stored_and_says_so(store, log):
 
 def test_progress_counts_cells_to_the_end(store):
     seen = []
-    measure(store, progress=lambda done, total, what: seen.append((done, total)))
+    measure(store, progress=lambda done, total, *_: seen.append((done, total)))
     assert seen == [(0, 4), (1, 4), (2, 4), (3, 4), (4, 4)]
 
 

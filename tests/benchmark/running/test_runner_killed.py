@@ -1,10 +1,12 @@
-"""Killing the runner (SIGKILL) loses nothing that was stored and changes no byte of the outcome."""
+"""A runner that is killed or told to end loses nothing stored and records nothing but results."""
 
 import json
 import os
+import random
 import signal
 import subprocess
 import sys
+import textwrap
 import time
 from pathlib import Path
 
@@ -27,9 +29,24 @@ parts = fake_plan.parts(presets=(fake_atlas.Diodes(), second))
 summary = runner.run(plan.cells(parts=parts), Store(sys.argv[1]), int(sys.argv[2]), parts=parts)
 print(summary.planned, summary.computed)
 """
+#: The same as a command that ends as it should when it is told to.
+COMMAND = f"""
+def main():
+{textwrap.indent(PROGRAM, "    ")}
+    return 0
+
+from benchmark.processes import call_to_end
+call_to_end(main)
+"""
+#: Before it: a library's callback, which ignores what is raised in it, as the compiler's does.
+SWALLOWING = """
+import ctypes, time
+sleep, callback = time.sleep, ctypes.CFUNCTYPE(None)
+time.sleep = lambda seconds: callback(lambda: sleep(seconds))()
+"""
 
 
-def start(directory, workers, log, sleep):
+def start(directory, workers, log, sleep, program=PROGRAM):
     environment = {
         **os.environ,
         "PYTHONPATH": os.pathsep.join([str(ROOT), str(Path(__file__).parents[1] / "fakes")]),
@@ -37,11 +54,13 @@ def start(directory, workers, log, sleep):
         "FAKE_ATLAS_SLEEP": str(sleep),
     }
     return subprocess.Popen(
-        [sys.executable, "-c", PROGRAM, str(directory), str(workers)],
+        [sys.executable, "-c", program, str(directory), str(workers)],
         env=environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        # else a run in a shell's background, where Ctrl-C is ignored, hands that on
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # noqa: PLW1509
     )
 
 
@@ -99,3 +118,40 @@ def test_a_killed_run_is_finished_by_the_next_with_identical_bytes(
     # one model a task: each missing cell extracts from the three splits once
     assert len(extractions) == 3 * (8 - len(stored))
     assert not journal.exists()
+
+
+@pytest.mark.parametrize(
+    ("number", "workers", "before"),
+    [
+        (signal.SIGTERM, 1, ""),
+        (signal.SIGTERM, 1, SWALLOWING),
+        (signal.SIGINT, 1, SWALLOWING),
+        (signal.SIGTERM, 2, ""),
+    ],
+)
+def test_what_is_told_to_end_at_any_moment_ends_and_is_no_result(
+    uninterrupted, tmp_path, number, workers, before
+):
+    store = Store(tmp_path / "store")
+    journal = Record(store).journal
+    process = start(store.directory, workers, tmp_path / "log", 0.25, before + COMMAND)
+    deadline = time.monotonic() + 600
+    while not (journal.is_file() and b'"score"' in journal.read_bytes()):
+        assert process.poll() is None, "the run ended before it could be told to"
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    time.sleep(random.Random(f"{number} {workers} {before}").uniform(0.0, 0.7))
+    told = time.monotonic()
+    process.send_signal(number)
+    _, said = process.communicate(timeout=60)
+    took = time.monotonic() - told
+    assert process.returncode == 128 + number
+    assert took < 2.0 + 8.0 * (os.getloadavg()[0] > (os.cpu_count() or 1))
+    assert "interrupted" in said
+    assert said.count("\n") == 1
+    lines = [line for line in journal.read_text().splitlines() if '"score"' in line]
+    kept = [json.loads(line)["score"] for line in lines]
+    assert 1 <= len(kept) < 8
+    assert "failed" not in journal.read_text()
+    assert finish(start(store.directory, 1, tmp_path / "log2", 0)) == [8, 8 - len(kept)]
+    assert contents(store) == contents(uninterrupted)

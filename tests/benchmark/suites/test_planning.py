@@ -116,6 +116,23 @@ def test_what_was_measured_tells_how_long_it_will_take(store: Store) -> None:
     assert (found.estimate.tasks, found.estimate.unknown) == (4, 0)
 
 
+def test_what_a_task_is_expected_to_take_is_its_own_time_or_what_is_usual() -> None:
+    durations = Durations(
+        {
+            ExtractionTask("d", "one", 0, "a"): Took(models=2, made_data=1, seconds=6.0),
+            ExtractionTask("d", "one", 0, "b"): Took(models=2, made_data=0, seconds=2.0),
+            ExtractionTask("e", "one", 0, "a"): Took(models=2, made_data=0, seconds=1.0),
+        }
+    )
+    cells = [Cell("d", "one", "a", "m"), Cell("d", "two", "a", "m"), Cell("f", "one", "a", "m")]
+    assert durations.expected(cells) == {
+        ExtractionTask("d", "one", 0, "a"): 6.0,
+        ExtractionTask("d", "two", 0, "a"): 4.0,
+        ExtractionTask("f", "one", 0, "a"): 2.5,
+    }
+    assert Durations().expected(cells) == {}
+
+
 def test_an_estimate_is_of_the_data_and_the_tasks() -> None:
     """Data of a place take 5 s; the extractors `a` and `b` 1 and 3 s."""
     durations = Durations(

@@ -99,7 +99,7 @@ def test_what_is_not_installed_any_more_goes_with_the_time_it_took(store: Store)
 def test_a_broken_off_run_s_journal_is_taken_in_before(tmp_path: Path) -> None:
     store = Store(tmp_path)
 
-    def stop(done: int, _total: int, _what: str) -> None:
+    def stop(done: int, _total: int, _what: str, _share: float | None = None) -> None:
         if done >= 2:
             raise KeyboardInterrupt
 

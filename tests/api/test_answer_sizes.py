@@ -1,0 +1,61 @@
+"""No answer is larger than a megabyte where nothing is asked for but what has to be.
+
+Larger is only what is asked for by name: `/v1/leaderboard?whole=true`, `limit` beyond its default.
+"""
+
+import pytest
+
+LARGEST = 1_000_000
+LISTS = ("items", "datasets")
+
+
+@pytest.fixture(scope="module")
+def operations(atlas):
+    """Each GET of the description with an address that its examples give, nothing optional."""
+    found = {}
+    for path, item in atlas.get("/openapi.json").json()["paths"].items():
+        if "get" not in item:
+            continue
+        asked = {}
+        for parameter in item["get"].get("parameters", ()):
+            if parameter["required"]:
+                asked[parameter["name"]] = parameter.get("example", "sun")
+        address = path.format(**asked)
+        query = {name: value for name, value in asked.items() if f"{{{name}}}" not in path}
+        found[path] = (item["get"], address, query)
+    return found
+
+
+def test_no_answer_is_large_unasked(atlas, operations):
+    assert len(operations) > 30
+    for path, (_, address, query) in operations.items():
+        for accept in ("application/json", "text/csv", "*/*"):
+            answer = atlas.get(address, params=query, headers={"Accept": accept})
+            refused = {406} | (
+                {400} if path == "/v1/compare" else set()
+            )  # it compares what is named
+            assert answer.status_code in {200, *refused}, (path, accept)
+            assert len(answer.content) <= LARGEST, (path, accept)
+
+
+def test_of_no_data_set_is_an_answer_large_unasked(atlas):
+    names = [row["name"] for row in atlas.get("/v1/datasets?limit=500").json()["items"]]
+    for name in names:
+        for address in (f"datasets/{name}", f"datasets/{name}/errors", f"leaderboard/{name}"):
+            answer = atlas.get(f"/v1/{address}")
+            assert answer.status_code == 200, address
+            assert len(answer.content) <= LARGEST, address
+
+
+def test_lists_that_grow_with_the_facts_are_paged(atlas, operations):
+    for path, (operation, address, query) in operations.items():
+        answer = atlas.get(address, params=query)
+        if "application/json" not in answer.headers["Content-Type"]:
+            continue
+        document = answer.json()
+        if "total" not in document:
+            continue
+        names = {parameter["name"] for parameter in operation["parameters"]}
+        assert {"limit", "cursor"} <= names, path
+        shown = sum(len(one.get("rows", [1])) for name in LISTS for one in document.get(name, ()))
+        assert shown <= 200, path
