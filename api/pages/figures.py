@@ -17,14 +17,14 @@ from api.figures.statements import number_of_studies, statements
 from api.http.answers import Handler, StrictRoute
 from api.http.dependencies import NO_PARAMETERS, Known
 from api.http.knowledge import Knowledge
-from api.http.models.figures import FigureName, FigureQuery, MatrixQuery
-from api.http.models.studies import StudyFilters
 from api.http.negotiation import media_type
 from api.http.representations import Representation, RepresentationCache
 from api.http.routers import figures as told
 from api.pages.editions import edition_shown
 from api.pages.numbers import degrees, kind_said, wide
 from api.pages.serving import PageRouter, View
+from api.schema.figures import FigureName, FigureQuery, MatrixQuery
+from api.schema.studies import StudyFilters
 from registry.taxonomy import ATTRIBUTES, LEVELS
 from survey_data.reported import QUANTITIES
 

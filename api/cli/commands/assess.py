@@ -10,8 +10,9 @@ import typer
 from api.cli import completion
 from api.cli.asking import ask
 from api.cli.table_output import Format, FormatOption, emit, say
-from api.columns import ASSESSMENT
 from api.http.routers.assessment import assessment
+from api.schema.assessment import VerdictRow
+from api.schema.table import columns_of
 from benchmark.assessment.definitions import DEFINITIONS
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -46,7 +47,7 @@ def assess(
     answer = ask(assessment, {"method": method})
     document = answer.document
     if form is not Format.TABLE or method:
-        columns: tuple[str, ...] = COLUMNS if form is Format.TABLE else ASSESSMENT
+        columns: tuple[str, ...] = COLUMNS if form is Format.TABLE else columns_of(VerdictRow)
         emit(answer.rows(), columns, form, document=document)
         return
     rows = []

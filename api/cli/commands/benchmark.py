@@ -16,7 +16,8 @@ from api.cli.measuring import (
     score_cells,
 )
 from api.cli.table_output import Format, FormatOption, emit
-from api.columns import RESULTS
+from api.schema.scores import Score
+from api.schema.table import columns_of
 from benchmark.plan.combinations import Incompatible, cells, incompatible
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -80,7 +81,7 @@ def benchmark(
         typer.echo(f"sunatlas: no compatible combination of these names{_why(refused)}", err=True)
         raise typer.Exit(1)
     result = score_cells(planned, workers, store, scheduler)
-    columns = RESULTS if form is Format.CSV else COLUMNS
+    columns = columns_of(Score) if form is Format.CSV else COLUMNS
     document = {"scores": result.rows, "sources": result.sources()}
     emit(result.rows, columns, form, document=document, title=f"{len(result.rows)} scores")
     for warning in result.warnings:

@@ -10,9 +10,10 @@ from api.cli import completion
 from api.cli.asking import ask
 from api.cli.table_output import Format, FormatOption, emit, say
 from api.cli.wrong_call import WrongCallError
-from api.columns import CLAIM, CLAIMS
 from api.http.answers import Answer
 from api.http.routers import claims as endpoints
+from api.schema.claims import CheckedRule, ClaimRow
+from api.schema.table import columns_of
 from benchmark.claims.rules import VERDICTS
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -62,7 +63,7 @@ def claims(
     answer = ask(endpoints.claims, {"verdict": verdict, "q": search})
     document = answer.document
     if form is Format.CSV:
-        emit(answer.rows(), CLAIMS, form)
+        emit(answer.rows(), columns_of(ClaimRow), form)
         return
     counts = ", ".join(f"{n} {name}" for name, n in document["tally"].items() if n)
     emit(
@@ -77,7 +78,7 @@ def claims(
 def _one(answer: Answer, form: Format) -> None:
     document = answer.document
     if form is not Format.TABLE:
-        emit(answer.rows(), CLAIM, form, document=document)
+        emit(answer.rows(), columns_of(CheckedRule), form, document=document)
         return
     say(f"{document['id']} {document['statement']}", "    ")
     by = f", {document['study']}" if document["study"] else ""

@@ -9,9 +9,10 @@ import typer
 from api.cli import completion
 from api.cli.asking import ask
 from api.cli.table_output import Format, FormatOption, emit
-from api.columns import CURVES
-from api.http.models.parameters import LARGEST_PAGE
 from api.http.routers.curves import curves as endpoint
+from api.schema.curves import CurveRow
+from api.schema.parameters import LARGEST_PAGE
+from api.schema.table import columns_of
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -54,7 +55,7 @@ def curves(
     answer = ask(endpoint, asked)
     rows = answer.document["items"]
     if form is not Format.TABLE:
-        emit(rows, CURVES, form, document=answer.document)
+        emit(rows, columns_of(CurveRow), form, document=answer.document)
         return
     shown = [
         {

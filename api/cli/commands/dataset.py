@@ -12,11 +12,12 @@ from api.cli.asking import ask, knowledge
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
 from api.cli.table_output import Format, FormatOption, emit, say
 from api.cli.wrong_call import WrongCallError
-from api.columns import DATASET, DATASETS, REALISM, SAMPLE_ERRORS, csv_of
-from api.http.models.samples import SampleErrorsQuery
 from api.http.routers.datasets import errors as dataset_errors
 from api.http.routers.realism import realism as besides_built
 from api.http.sample_errors import choose, rows_of
+from api.schema.datasets import BuiltSensorRow, Data, Dataset
+from api.schema.samples import SampleError, SampleErrorsQuery
+from api.schema.table import columns_of, csv_of
 from benchmark import datasets
 from benchmark.contract import UnknownNameError
 from benchmark.datasets import coverage as covered
@@ -54,7 +55,10 @@ def listing(form: FormatOption = Format.TABLE) -> None:
     """List the data sets with sensor and conditions."""
     cards = knowledge().measurements.cards
     emit(
-        cards, COLUMNS if form is Format.TABLE else DATASETS, form, title=f"{len(cards)} data sets"
+        cards,
+        COLUMNS if form is Format.TABLE else columns_of(Dataset),
+        form,
+        title=f"{len(cards)} data sets",
     )
     if form is Format.TABLE:
         typer.echo(f"{covered.coverage().sentence()} See `sunatlas dataset coverage`.", err=True)
@@ -74,7 +78,7 @@ def describe(name: NameArgument, form: FormatOption = Format.TABLE) -> None:
         say(f"follows {', '.join(card['follows']) or 'no study'}")
         typer.echo()
     if form is Format.CSV:
-        emit(card["data"], DATASET, form)
+        emit(card["data"], columns_of(Data), form)
         return
     rows = [
         {"condition": key, "bound_deg": card["bounds"].get(key), **setup}
@@ -187,10 +191,10 @@ def errors(
     given = {key: value for key, value in query.items() if value is not None}
     rows = rows_of(choose(measured, name, SampleErrorsQuery.model_validate(given)))
     if out is None:
-        emit(rows, SAMPLE_ERRORS, form, title=f"{len(rows)} errors")
+        emit(rows, columns_of(SampleError), form, title=f"{len(rows)} errors")
         return
     if out.suffix != ".parquet":
-        replace_file(out, spreadsheets.as_asked(csv_of(SAMPLE_ERRORS, rows)))
+        replace_file(out, spreadsheets.as_asked(csv_of(columns_of(SampleError), rows)))
     typer.echo(f"wrote {out}", err=True)
 
 
@@ -261,7 +265,7 @@ def realism(
     two are explained; data sets without a built sensor are called idealised.
     """
     answer = ask(besides_built, {"dataset": dataset})
-    shown = BUILT if form is Format.TABLE else REALISM
+    shown = BUILT if form is Format.TABLE else columns_of(BuiltSensorRow)
     emit(answer.rows(), shown, form, document=answer.document, title="Data sets and built sensors")
 
 

@@ -20,7 +20,9 @@ from api.cli.measuring import (
 from api.cli.table_output import Format, FormatOption, emit, line_width
 from api.cli.working import working_directory
 from api.cli.wrong_call import WrongCallError
-from api.columns import ARCHITECTURES, LEADERBOARD, PARTS
+from api.schema.boards import BestOfArchitecture, PartOverview
+from api.schema.scores import LeaderboardRow
+from api.schema.table import columns_of
 from benchmark.contract import UnknownNameError
 from benchmark.leaderboard import check as checking
 from benchmark.leaderboard import pages
@@ -273,8 +275,8 @@ def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only:
 def _architectures(query: Mapping[str, list[str] | None], form: Format) -> None:
     """Print the best pipeline of each architecture, as the service answers it."""
     from api.cli.asking import ask, knowledge  # noqa: PLC0415 - slow; measuring does without it
-    from api.http.models.parameters import LARGEST_PAGE  # noqa: PLC0415
     from api.http.routers.leaderboard import architectures  # noqa: PLC0415
+    from api.schema.parameters import LARGEST_PAGE  # noqa: PLC0415
 
     answer = ask(architectures, {**query, "limit": LARGEST_PAGE})
     rows = answer.rows()
@@ -285,7 +287,7 @@ def _architectures(query: Mapping[str, list[str] | None], form: Format) -> None:
         record = knowledge().measurements.record
         typer.echo(f"Record: version {record['version']}, sha256 {record['sha256']}", err=True)
     else:
-        emit(rows, ARCHITECTURES, form, document=answer.document)
+        emit(rows, columns_of(BestOfArchitecture), form, document=answer.document)
 
 
 def _overview(query: Mapping[str, list[str] | None], form: Format) -> None:
@@ -300,7 +302,7 @@ def _overview(query: Mapping[str, list[str] | None], form: Format) -> None:
     if form is Format.TABLE:
         typer.echo(overview_text(answer.document, line_width()), nl=False)
     else:
-        emit(rows, PARTS, form, document=answer.document)
+        emit(rows, columns_of(PartOverview), form, document=answer.document)
 
 
 def _show(
@@ -311,7 +313,7 @@ def _show(
     form: Format,
 ) -> None:
     from api.cli.asking import knowledge  # noqa: PLC0415 - slow; measuring does without it
-    from api.http.models import words  # noqa: PLC0415
+    from api.schema import words  # noqa: PLC0415
 
     measurements = knowledge().measurements
     _require("dataset", datasets, words.datasets())
@@ -338,7 +340,7 @@ def _show(
     if form is Format.TABLE:
         _print_boards(chosen, columns, title, divided=bool(datasets))
     else:
-        emit(chosen, LEADERBOARD, form, document=document)
+        emit(chosen, columns_of(LeaderboardRow), form, document=document)
     if not chosen:
         typer.echo("sunatlas: no pipeline has such an error there", err=True)
         raise typer.Exit(1)

@@ -17,7 +17,8 @@ from api.cli.measuring import (
     stores_of,
 )
 from api.cli.table_output import Format, FormatOption, emit, say
-from api.columns import LEADERBOARD
+from api.schema.scores import LeaderboardRow
+from api.schema.table import columns_of
 from benchmark.leaderboard import candidate
 from benchmark.leaderboard.pages import to_html
 from files.atomic import replace_file
@@ -93,7 +94,12 @@ def rank(
         emit(shown, COLUMNS, form, title=f"{dataset}: best of each extractor, and {name} ({MARK})")
         say(ranked.scope)
     else:
-        emit(rows, ("new", *LEADERBOARD), form, document={"items": rows, "scope": ranked.scope})
+        emit(
+            rows,
+            ("new", *columns_of(LeaderboardRow)),
+            form,
+            document={"items": rows, "scope": ranked.scope},
+        )
     failed = [row for row in rows if row["new"] and row["reason"]]
     for row in failed:
         typer.echo(f"no score: {row['extractor']} + {row['model']}: {row['reason']}", err=True)

@@ -12,8 +12,9 @@ from api.cli import architectures, attributes, completion
 from api.cli.prepared_measurements import measure
 from api.cli.table_output import Format, FormatOption, emit, emit_json, line_width
 from api.cli.wrong_call import refuse
-from api.columns import RECOMMENDATIONS
 from api.recommending import rows
+from api.schema.recommendations import RecommendationRow
+from api.schema.table import columns_of
 from registry.recommendation import recommend as ranked
 from registry.requirements import HAZARDS, NEEDS
 from registry.studies import Facts, facts
@@ -149,7 +150,7 @@ def recommend(
         emit_json(document)
         return
     if form is Format.CSV:
-        emit(list(rows(document)), RECOMMENDATIONS, form)
+        emit(list(rows(document)), columns_of(RecommendationRow), form)
     else:
         typer.echo(architectures.text(document, line_width()), nl=False)
     if document["blocked"]:

@@ -22,8 +22,9 @@ from api.cli.measuring import (
 )
 from api.cli.table_output import Format, FormatOption, emit
 from api.cli.wrong_call import WrongCallError
-from api.columns import RESULTS
 from api.http.routers import studies
+from api.schema.scores import Score
+from api.schema.table import columns_of
 from benchmark.contract import Cell, UnknownNameError
 from benchmark.plan.combinations import cells
 from benchmark.suites.planning import cells_of
@@ -43,7 +44,7 @@ COLUMNS = (
         "assumed",
     ),
 )
-CSV_COLUMNS = ("study", *RESULTS, "assumed")
+CSV_COLUMNS = ("study", *columns_of(Score), "assumed")
 
 #: A suite may hold other units than the standard one.
 SUITE_COLUMNS = ("unit", *benchmark.COLUMNS)
@@ -114,7 +115,7 @@ def _run_suite(
         planned = now
         result = score_cells(planned, workers, directory, scheduler)
         measured += result.measured
-    columns = RESULTS if form is Format.CSV else SUITE_COLUMNS
+    columns = columns_of(Score) if form is Format.CSV else SUITE_COLUMNS
     sources = {**result.sources(), "kept": result.kept - measured + result.measured}
     sources["measured"] = measured
     document = {"suite": name, "scores": result.rows, "sources": sources}

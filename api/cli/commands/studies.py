@@ -13,9 +13,10 @@ from api.cli import attributes, completion
 from api.cli.asking import ask
 from api.cli.table_output import Format, emit, emit_json, say, write
 from api.cli.wrong_call import WrongCallError
-from api.columns import STUDIES, STUDY
-from api.http.models.parameters import LARGEST_PAGE
 from api.http.routers import studies as answers
+from api.schema.parameters import LARGEST_PAGE
+from api.schema.studies import AttributeValue, StudyRow
+from api.schema.table import columns_of
 from registry.fidelity.grading import tally_text
 from survey_data import labels
 
@@ -133,7 +134,7 @@ def _list(filters: Mapping[str, Any], asked: StudyFormat) -> None:
         return
     form = Format(asked)
     flat = [{**study, **study["values"]} for study in found]
-    columns = STUDIES if form is Format.CSV else COLUMNS
+    columns = columns_of(StudyRow) if form is Format.CSV else COLUMNS
     counted = tally_text(study["grade"] for study in found)
     emit(flat, columns, form, document=found, title=f"{len(found)} studies: {counted}")
 
@@ -168,7 +169,7 @@ def _show(key: str, asked: StudyFormat) -> None:
         for departure in study["departures"]:
             say(f"  {departure['part']} settled by: {departure['settled_by']}")
         typer.echo()
-    emit(study["attributes"], STUDY if form is Format.CSV else DETAILS, form)
+    emit(study["attributes"], columns_of(AttributeValue) if form is Format.CSV else DETAILS, form)
     if form is Format.TABLE:
         reported = [study[f"reported_{quantity}"] for quantity in ("accuracy", "precision")]
         said = [f"{one['label']} {one['value_deg']:g} deg" for one in reported if one is not None]

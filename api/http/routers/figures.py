@@ -6,13 +6,13 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
 
-from api import columns
 from api.figures.catalogue import LEVELS, TITLES, evidence_map
 from api.figures.catalogue import figure as drawn
 from api.figures.figure import Figure as Drawn
 from api.http.answers import Answer, AnswerRoute
 from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
-from api.http.models.figures import Figure, FigureName, FigureQuery, Figures, MatrixQuery
+from api.schema.figures import Figure, FigureName, FigureQuery, Figures, ListedFigure, MatrixQuery
+from api.schema.table import columns_of
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -28,7 +28,7 @@ async def figures(
         for name, (title, caption) in TITLES.items()
     ]
     document = {"items": items, "studies": len(known.facts.studies)}
-    return Answer(document, columns.FIGURES, lambda: items)
+    return Answer(document, columns_of(ListedFigure), lambda: items)
 
 
 @router.get(

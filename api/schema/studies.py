@@ -6,27 +6,22 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
-from api import columns
-from api.http.models import words
-from api.http.models.base import CitedQuestion, Listing, Question, Shape, TableQuestion
-from api.http.models.parameters import (
-    DEFAULT_PAGE,
-    FIELDS,
+from api.schema import words
+from api.schema.base import CitedQuestion, Listing, Question, Shape, SortedQuestion, TableQuestion
+from api.schema.parameters import (
     GIVEN,
-    SORT,
     WHOLE,
-    Cursor,
-    Limit,
     Several,
-    columns_of,
     several,
-    sorting,
 )
+from api.schema.table import AS_TEXT, ColumnEach
 from registry.fidelity.particulars import Purpose
 from registry.sensors import Basis
 from registry.taxonomy import ATTRIBUTES
 from survey_data.editions import Choice
 
+REPORTED = ("accuracy_deg", "accuracy_kind", "precision_deg", "precision_kind", "fov_deg")
+"""Attributes of studies that are numbers, and the statistics of these."""
 State = Literal["complete", "partial", "none"]
 Grade = Literal["faithful", "close", "stand-in", "none"]
 
@@ -61,40 +56,6 @@ class StudyFilters(OfEdition, TableQuestion):
         return {attribute: values for attribute, values in asked.items() if values}
 
 
-class StudiesQuery(CitedQuestion, StudyFilters):
-    """Which studies."""
-
-    model_config = ConfigDict(
-        json_schema_extra={"examples": [{"detector": ["CMOS"], "mask": ["Multi-Ap."], "limit": 1}]}
-    )
-
-    key: Several[words.StudyKey] = several("Only studies with one of these keys.")
-    year_min: Annotated[int | None, WHOLE] = Field(
-        None, ge=0, le=9999, description="Only studies of this year or later."
-    )
-    year_max: Annotated[int | None, WHOLE] = Field(
-        None, ge=0, le=9999, description="Only studies of this year or earlier."
-    )
-    grade: Several[Grade] = several(
-        "Only studies with this grade: faithful (every part is the study's own, "
-        "stated or inferred with a reason), close (one part differs), stand-in (more "
-        "parts differ), none (not implemented)."
-    )
-    state: Several[State] = several("Only studies with this state of implementation.")
-    q: Annotated[str | None, GIVEN] = Field(
-        None,
-        min_length=1,
-        max_length=200,
-        description=(
-            "Search words; all must occur in key, title, authors or venue. Case does not matter."
-        ),
-    )
-    sort: Annotated[str | None, sorting(columns.STUDIES), GIVEN] = SORT
-    fields: Several[Annotated[str, columns_of(columns.STUDIES)]] = FIELDS
-    limit: Limit = DEFAULT_PAGE
-    cursor: Cursor = None
-
-
 class StudyQuery(CitedQuestion):
     """The query of one study."""
 
@@ -116,24 +77,12 @@ class Runs(Shape):
     assumed: dict[str, str] = Field(description="Reason or rule for each part that is not stated.")
 
 
-class Score(Shape):
-    """Published score of a pipeline on a data set and condition; status is null if none."""
-
-    dataset: str
-    condition: str
-    purposes: list[Purpose] = Field(description="Test purpose: albedo, temperature or flight.")
-    status: str | None
-    rms_deg: float | None
-    bound_deg: float | None
-    availability: float | None
-
-
 class Verification(Shape):
     """A confirmation of a study's values by an author."""
 
     name: str
     date: str = Field(description="YYYY-MM-DD.")
-    confirms: str
+    confirms: str = Field(description="What the source confirms.")
     source: str
 
 
@@ -152,14 +101,16 @@ class Headline(Shape):
 class Departure(Shape):
     """A difference between a study and its implementation here."""
 
-    part: Literal["sensor", "condition", "extractor", "model", "compensation"]
+    part: Literal["sensor", "condition", "extractor", "model", "compensation"] = Field(
+        description="Part of the sensor or method."
+    )
     value: str
     text: str
     settled_by: str = Field(description="Information needed to remove the difference.")
 
 
-class Study(Shape):
-    """A study. Texts are empty if unknown."""
+class StudyRow(Shape):
+    """A study: a row of the table."""
 
     key: str
     title: str
@@ -170,22 +121,31 @@ class Study(Shape):
         description="Kind of publication: journal, conference, preprint, thesis, ... or unknown."
     )
     doi: str
-    url: str
+    url: str = Field(description="Address; empty if unknown.")
     identity: str = Field(description="Whether a public page confirms author, year and topic.")
-    edition: Literal["survey", "extension"] = Field(
-        description="survey, or extension (added after the survey)."
-    )
-    verified: list[Verification]
     grade: Grade = Field(
         description="Grade of the implementation: faithful, close, stand-in or none."
     )
-    sentence: str = Field(description="Implementation and its differences, one sentence.")
     state: State = Field(description="complete: every value is implemented; partial: some; none.")
-    runs: Runs
+    values: Annotated[dict[str, list[str]], ColumnEach((*ATTRIBUTES, *REPORTED))] = Field(
+        description="Values by attribute of the taxonomy."
+    )
+    edition: Literal["survey", "extension"] = Field(
+        description="survey, or extension (added after the survey)."
+    )
+    verified: Annotated[list[Verification], AS_TEXT] = Field(
+        description="When and how the entry was checked against the publication; null if not."
+    )
+
+
+class Study(StudyRow):
+    """A study. Texts are empty if unknown."""
+
+    sentence: str = Field(description="Implementation and its differences, one sentence.")
+    runs: Runs = Field(description="Implementation in the Atlas.")
     headline: Headline | None = Field(
         description="Lowest error of the best-supported pipelines; null if not measured."
     )
-    values: dict[str, list[str]]
 
 
 class AttributeValue(Shape):
@@ -212,6 +172,15 @@ class Setting(Shape):
     purposes: list[Purpose] = Field(description="Purpose of the study that this shows.")
 
 
+class SettingScore(Setting):
+    """Published score of a pipeline on a data set and condition; status is null if none."""
+
+    status: str | None
+    rms_deg: float | None
+    bound_deg: float | None
+    availability: float | None
+
+
 class StudyPipeline(Shape):
     """A pipeline of the study with its data sets and scores."""
 
@@ -233,7 +202,7 @@ class StudyPipeline(Shape):
     settings: list[Setting] = Field(
         description="Data sets and conditions used for the study, most relevant first."
     )
-    scores: list[Score] = Field(description="Published score of each setting.")
+    scores: list[SettingScore] = Field(description="Published score of each setting.")
 
 
 class Gap(Shape):
@@ -281,7 +250,7 @@ class StudyDetail(Study):
         description="Test purposes of the study, with their rules."
     )
     pipelines: list[StudyPipeline]
-    gaps: list[Gap]
+    gaps: list[Gap] = Field(description="Attributes of the study without a known value.")
 
 
 class Edition(Shape):
@@ -306,3 +275,33 @@ class Studies(Listing):
     """A page of studies."""
 
     items: list[Study]
+
+
+class StudiesQuery(CitedQuestion, StudyFilters, SortedQuestion, rows=StudyRow):
+    """Which studies."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"detector": ["CMOS"], "mask": ["Multi-Ap."], "limit": 1}]}
+    )
+
+    key: Several[words.StudyKey] = several("Only studies with one of these keys.")
+    year_min: Annotated[int | None, WHOLE] = Field(
+        None, ge=0, le=9999, description="Only studies of this year or later."
+    )
+    year_max: Annotated[int | None, WHOLE] = Field(
+        None, ge=0, le=9999, description="Only studies of this year or earlier."
+    )
+    grade: Several[Grade] = several(
+        "Only studies with this grade: faithful (every part is the study's own, "
+        "stated or inferred with a reason), close (one part differs), stand-in (more "
+        "parts differ), none (not implemented)."
+    )
+    state: Several[State] = several("Only studies with this state of implementation.")
+    q: Annotated[str | None, GIVEN] = Field(
+        None,
+        min_length=1,
+        max_length=200,
+        description=(
+            "Search words; all must occur in key, title, authors or venue. Case does not matter."
+        ),
+    )

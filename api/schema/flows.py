@@ -6,9 +6,9 @@ from typing import Literal
 
 from pydantic import ConfigDict, Field
 
-from api.http.models.base import Shape
-from api.http.models.parameters import Flag
-from api.http.models.studies import StudyFilters
+from api.schema.base import Shape
+from api.schema.parameters import Flag
+from api.schema.studies import StudyFilters
 
 
 class FlowsQuery(StudyFilters):
@@ -46,7 +46,7 @@ class Link(Shape):
     """Link between two values with its studies."""
 
     source: str
-    target: str
+    target: str = Field(description="Target node of the link.")
     value: float = Field(description="Number of studies, or sum of their fractions.")
     studies: list[str]
 
@@ -62,9 +62,11 @@ class LeftOut(Shape):
 class Flows(Shape):
     """A decision flow: a Sankey diagram, or the rings of a sunburst."""
 
-    chart: str
-    levels: list[str]
-    counting: Literal["studies", "fractional"]
+    chart: str = Field(description="Name of the chart.")
+    levels: list[str] = Field(description="Attributes of the chart, from left to right.")
+    counting: Literal["studies", "fractional"] = Field(
+        description="studies or fractional: how a study with several values is counted."
+    )
     studies: int = Field(description="Number of studies that match the filters.")
     nodes: list[Node]
     links: list[Link]

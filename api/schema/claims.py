@@ -6,44 +6,15 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from api import columns
-from api.http.models.base import Listing, Shape, TableQuestion
-from api.http.models.parameters import (
-    DEFAULT_PAGE,
-    FIELDS,
+from api.schema.base import Listing, Shape, SortedQuestion
+from api.schema.parameters import (
     GIVEN,
-    SORT,
-    Cursor,
-    Limit,
     Several,
-    columns_of,
     several,
-    sorting,
 )
-from api.http.models.words import ClaimVerdict
+from api.schema.words import ClaimVerdict
 
 Standing = Literal["holds", "fails", "open"]
-
-
-class ClaimsQuery(TableQuestion):
-    """Which claims."""
-
-    model_config = ConfigDict(json_schema_extra={"examples": [{"q": "polynomial order"}]})
-
-    verdict: Several[ClaimVerdict] = several("Only claims with this verdict.")
-    q: Annotated[
-        str | None,
-        Field(
-            min_length=1,
-            max_length=200,
-            description="Search words; all must occur in the claim, its study or its section.",
-        ),
-        GIVEN,
-    ] = None
-    sort: Annotated[str | None, sorting(columns.CLAIMS), GIVEN] = SORT
-    fields: Several[Annotated[str, columns_of(columns.CLAIMS)]] = FIELDS
-    limit: Limit = DEFAULT_PAGE
-    cursor: Cursor = None
 
 
 class ClaimRule(Shape):
@@ -67,14 +38,20 @@ class ClaimRule(Shape):
     )
 
 
-class Claim(Shape):
-    """A statement of the survey with its verdict."""
+class CheckedRule(ClaimRule):
+    """A criterion with what the second method says of it: a row of the table."""
+
+    second_standing: Standing | None = Field(description="The standing by the second method.")
+
+
+class ClaimRow(Shape):
+    """A statement of the survey with its verdict: a row of the table."""
 
     id: str
     section: str = Field(description="Label in the survey's source.")
     section_name: str = Field(description="Name of the section, with printed number.")
     study: str = Field(description="Key of the study that the survey cites; empty for none.")
-    statement: str
+    statement: str = Field(description="The survey's statement.")
     verdict: str | None = Field(
         description=(
             "reproduced: every criterion holds; partly: some hold; refuted: none holds "
@@ -82,13 +59,18 @@ class Claim(Shape):
             "measured."
         )
     )
-    explanation: str = Field(description="Explanation of the verdict, or remarks.")
-    measured_on: str = Field(description="Data, sensors and methods.")
     trials: int = Field(description="Number of planned trials.")
+    explanation: str = Field(description="Explanation of the verdict, or remarks.")
+
+
+class Claim(ClaimRow):
+    """A statement of the survey with its verdict."""
+
+    measured_on: str = Field(description="Data, sensors and methods.")
     replicate: Literal["unit", "seed"] = Field(
         description="Difference between trials: sensor unit or random seed."
     )
-    rules: list[ClaimRule]
+    rules: list[ClaimRule] = Field(description="Criteria that decide the claim.")
     second_method: str = Field(description="Second method of the check; empty if none.")
     second_agrees: bool | None = Field(
         description="Whether the second method gives the same verdict for every criterion."
@@ -119,7 +101,26 @@ class ClaimDetail(Claim):
     values: dict[str, list[float | None]] = Field(
         description="Statistic of each trial, by criterion."
     )
-    second_values: dict[str, list[float | None]]
+    second_values: dict[str, list[float | None]] = Field(
+        description="Statistic of each trial by the second method."
+    )
     across: str = Field(description="Quantity on the horizontal axis.")
     up: str = Field(description="Quantity on the vertical axis.")
-    lines: dict[str, ClaimLine]
+    lines: dict[str, ClaimLine] = Field(description="Lines of the plot, by name.")
+
+
+class ClaimsQuery(SortedQuestion, rows=ClaimRow):
+    """Which claims."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{"q": "polynomial order"}]})
+
+    verdict: Several[ClaimVerdict] = several("Only claims with this verdict.")
+    q: Annotated[
+        str | None,
+        Field(
+            min_length=1,
+            max_length=200,
+            description="Search words; all must occur in the claim, its study or its section.",
+        ),
+        GIVEN,
+    ] = None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from api.http.models.base import Shape
+from api.schema.base import Shape
 
 
 class TaxonomyValue(Shape):
@@ -15,6 +15,17 @@ class TaxonomyValue(Shape):
     category: str
     section: str = Field(description="Label in the survey; empty where it has none.")
     section_name: str = Field(description="Name of the section, with printed number.")
+
+
+class OfAttribute(Shape):
+    """Of an attribute of the taxonomy."""
+
+    attribute: str
+
+
+# Members of a class stand behind those of the classes named after it.
+class TaxonomyRow(TaxonomyValue, OfAttribute):
+    """A value of the taxonomy with its attribute: a row of the table."""
 
 
 class Taxonomy(Shape):

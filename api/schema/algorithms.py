@@ -6,35 +6,12 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from api import columns
-from api.http.models.base import Listing, Shape, TableQuestion
-from api.http.models.parameters import (
-    DEFAULT_PAGE,
-    FIELDS,
+from api.schema.base import Listing, Shape, SortedQuestion
+from api.schema.parameters import (
     GIVEN,
-    SORT,
-    Cursor,
-    Limit,
-    Several,
-    columns_of,
-    sorting,
 )
 
 Role = Literal["extractor", "model"]
-
-
-class AlgorithmsQuery(TableQuestion):
-    """Which implementations."""
-
-    model_config = ConfigDict(json_schema_extra={"examples": [{"role": "extractor", "limit": 1}]})
-
-    role: Annotated[Role | None, GIVEN] = Field(
-        None, description="Only implementations with this role."
-    )
-    sort: Annotated[str | None, sorting(columns.ALGORITHMS), GIVEN] = SORT
-    fields: Several[Annotated[str, columns_of(columns.ALGORITHMS)]] = FIELDS
-    limit: Limit = DEFAULT_PAGE
-    cursor: Cursor = None
 
 
 class Algorithm(Shape):
@@ -50,12 +27,22 @@ class Algorithm(Shape):
     labels: list[str] = Field(description="Labels of the survey's source.")
     label_names: list[str] = Field(description="Names of the labels, with printed numbers.")
     studies: list[str]
-    origin: str
+    origin: str = Field(description="survey: described in the survey; ours: not.")
     version: int
-    summary: str
+    summary: str = Field(description="One-sentence summary.")
 
 
 class Algorithms(Listing):
     """A page of implementations."""
 
     items: list[Algorithm]
+
+
+class AlgorithmsQuery(SortedQuestion, rows=Algorithm):
+    """Which implementations."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{"role": "extractor", "limit": 1}]})
+
+    role: Annotated[Role | None, GIVEN] = Field(
+        None, description="Only implementations with this role."
+    )

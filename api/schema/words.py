@@ -6,11 +6,8 @@ from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Annotated
 
-from api.http.models.parameters import OneOf
+from api.schema.parameters import OneOf
 from benchmark.claims.rules import VERDICTS
-from benchmark.sweeps.plan import SERIES
-from benchmark.synthetic_features.series import SWEEPS
-from registry.catalogue import catalogue
 from registry.flows import CHARTS
 from registry.requirements import HAZARDS, NEEDS
 from registry.studies import facts
@@ -35,6 +32,38 @@ def conditions() -> tuple[str, ...]:
 
     found = (condition for name in datasets() for condition in get(name).conditions)
     return tuple(dict.fromkeys(("nominal", *found)))
+
+
+@cache
+def sweeps() -> tuple[str, ...]:
+    """Names of the quantities that sweeps vary."""
+    from benchmark.synthetic_features.series import SWEEPS  # noqa: PLC0415 - slow, as above
+
+    return tuple(SWEEPS)
+
+
+@cache
+def series() -> tuple[str, ...]:
+    """Names of the synthetic features of sweeps."""
+    from benchmark.sweeps.plan import SERIES  # noqa: PLC0415 - slow, as above
+
+    return tuple(SERIES)
+
+
+@cache
+def extractors() -> tuple[str, ...]:
+    """Names of the implementations of extractors."""
+    from registry.catalogue import catalogue  # noqa: PLC0415 - slow, as above
+
+    return tuple(catalogue().extractors)
+
+
+@cache
+def models() -> tuple[str, ...]:
+    """Names of the implementations of models."""
+    from registry.catalogue import catalogue  # noqa: PLC0415 - slow, as above
+
+    return tuple(catalogue().models)
 
 
 @cache
@@ -69,10 +98,10 @@ StudyKey = Annotated[str, OneOf(lambda: facts("all").keys)]
 Chart = Annotated[str, OneOf(lambda: tuple(CHARTS))]
 DatasetName = Annotated[str, OneOf(datasets)]
 Condition = Annotated[str, OneOf(conditions)]
-ExtractorName = Annotated[str, OneOf(lambda: tuple(catalogue().extractors))]
-ModelName = Annotated[str, OneOf(lambda: tuple(catalogue().models))]
+ExtractorName = Annotated[str, OneOf(extractors)]
+ModelName = Annotated[str, OneOf(models)]
 MethodName = Annotated[str, OneOf(assessed_methods)]
-Series = Annotated[str, OneOf(lambda: tuple(SERIES))]
-SweepName = Annotated[str, OneOf(lambda: tuple(SWEEPS))]
+Series = Annotated[str, OneOf(series)]
+SweepName = Annotated[str, OneOf(sweeps)]
 ClaimId = Annotated[str, OneOf(claim_ids)]
 ClaimVerdict = Annotated[str, OneOf(lambda: (*VERDICTS, "not measured"))]

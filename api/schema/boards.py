@@ -6,39 +6,17 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from api import columns
-from api.http.models.base import Listing, Shape, TableQuestion
-from api.http.models.parameters import (
-    DEFAULT_PAGE,
-    FIELDS,
-    GIVEN,
-    SORT,
-    Cursor,
-    Limit,
+from api.schema.base import Listing, Shape, SortedQuestion, TableQuestion
+from api.schema.parameters import (
     OneOf,
     Several,
-    columns_of,
     several,
-    sorting,
 )
-from api.http.models.words import Detector, Mask
+from api.schema.words import Detector, Mask
 from benchmark.leaderboard.overview import ROLES
 from registry.measured_pipelines import FINER
 
 RoleName = Annotated[str, OneOf(lambda: ROLES)]
-
-
-class ArchitecturesQuery(TableQuestion):
-    """Which architectures."""
-
-    model_config = ConfigDict(json_schema_extra={"examples": [{"detector": ["QPD"], "limit": 1}]})
-
-    detector: Several[Detector] = several("Only this detector.")
-    mask: Several[Mask] = several("Only this mask.")
-    sort: Annotated[str | None, sorting(columns.ARCHITECTURES), GIVEN] = SORT
-    fields: Several[Annotated[str, columns_of(columns.ARCHITECTURES)]] = FIELDS
-    limit: Limit = DEFAULT_PAGE
-    cursor: Cursor = None
 
 
 class OverviewQuery(TableQuestion):
@@ -68,7 +46,6 @@ class BestOfArchitecture(Shape):
     extractor: str | None
     model: str | None
     studies: list[str] = Field(description="Studies that used this pipeline on the architecture.")
-    rms_deg: float | None = Field(description="RMS error on the standard sensor unit.")
     own_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
     own_se: float | None = Field(description="Relative standard error of the own error.")
     quoted_deg: float | None = Field(
@@ -77,12 +54,15 @@ class BestOfArchitecture(Shape):
     on_bench_deg: float | None = Field(
         description="Error expected with the standard calibration bench."
     )
-    on_bench_basis: Literal["measured", "estimated"] | None
+    on_bench_basis: Literal["measured", "estimated"] | None = Field(
+        description="measured on random benches, or estimated."
+    )
+    rms_deg: float | None = Field(description="RMS error on the standard sensor unit.")
     bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
     over_bound: float | None = Field(description="RMS error divided by the bound.")
     over_bound_se: float | None = Field(description="Standard error of that ratio.")
     bound_unit_deg: float | None
-    over_bound_unit: float | None
+    over_bound_unit: float | None = Field(description="RMS error divided by bound_unit_deg.")
     availability: float | None = Field(
         description="Availability: share of observable samples with an answer."
     )
@@ -98,9 +78,13 @@ class BestOfArchitecture(Shape):
     runner_up_extractor: str | None = Field(
         description="Extractor of the pipeline that ranks next."
     )
-    runner_up_model: str | None
-    runner_up_own_deg: float | None
-    runner_up_unit_rms_deg: list[float | None] | None
+    runner_up_model: str | None = Field(description="Model of the pipeline that ranks next.")
+    runner_up_own_deg: float | None = Field(
+        description="Own error of the pipeline that ranks next, degrees."
+    )
+    runner_up_unit_rms_deg: list[float | None] | None = Field(
+        description="Errors of the pipeline that ranks next on each unit, degrees."
+    )
     first_group: int = Field(
         description="Number of pipelines that a paired test cannot separate from the best."
     )
@@ -113,11 +97,13 @@ class BestOfArchitecture(Shape):
         description="Data set of the pipeline with the lowest error at 50 to 95 % availability; "
         f"null unless the best has more than {FINER:g} times its error."
     )
-    finer_extractor: str | None
-    finer_model: str | None
-    finer_rms_deg: float | None
-    finer_over_bound: float | None
-    finer_availability: float | None
+    finer_extractor: str | None = Field(
+        description="Extractor of a pipeline with lower error at lower availability."
+    )
+    finer_model: str | None = Field(description="Model of that pipeline.")
+    finer_rms_deg: float | None = Field(description="Its RMS error, degrees.")
+    finer_over_bound: float | None = Field(description="Its error divided by the bound.")
+    finer_availability: float | None = Field(description="Availability of that pipeline.")
 
 
 class Architectures(Listing):
@@ -137,11 +123,15 @@ class PartOverview(Shape):
     within_1_5: int = Field(
         description="Of these, data sets with a pipeline within 1.5 times the bound."
     )
-    within_3: int
-    within_10: int
+    within_3: int = Field(description="Boards on which the error is at most 3 times the bound.")
+    within_10: int = Field(description="Boards on which the error is at most 10 times the bound.")
     share_1_5: float = Field(description="`within_1_5` over `boards`.")
-    share_3: float
-    share_10: float
+    share_3: float = Field(
+        description="Share of the boards on which the error is at most 3 times the bound."
+    )
+    share_10: float = Field(
+        description="Share of the boards on which the error is at most 10 times the bound."
+    )
     median_over_bound: float | None = Field(description="Median of error divided by bound.")
     leads: int = Field(description="Number of data sets on which it is part of the best pipeline.")
     reachable_10: int = Field(
@@ -155,4 +145,15 @@ class Overview(Shape):
     says: str = Field(description="Description of the aggregation.")
     within: list[float] = Field(description="Limits, as multiples of the bound.")
     boards: int = Field(description="Number of data sets counted, nominal condition.")
-    parts: list[PartOverview]
+    parts: list[PartOverview] = Field(
+        description="Extractors, compensations and models, one entry each."
+    )
+
+
+class ArchitecturesQuery(SortedQuestion, rows=BestOfArchitecture):
+    """Which architectures."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{"detector": ["QPD"], "limit": 1}]})
+
+    detector: Several[Detector] = several("Only this detector.")
+    mask: Several[Mask] = several("Only this mask.")

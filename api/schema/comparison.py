@@ -7,10 +7,10 @@ from typing import Annotated, Literal, TypeVar
 from pydantic import AfterValidator, ConfigDict, Field
 
 from api.comparing import FEWEST, MOST, SEPARATOR
-from api.http.models.base import Shape, TableQuestion
-from api.http.models.parameters import GIVEN, OneOf
-from api.http.models.studies import OfEdition
-from api.http.models.words import Condition, DatasetName
+from api.schema.base import Shape, TableQuestion
+from api.schema.parameters import GIVEN, OneOf
+from api.schema.studies import OfEdition
+from api.schema.words import Condition, DatasetName
 from registry.measured_pipelines import FINER
 from registry.studies import facts
 
@@ -84,13 +84,13 @@ class ConditionError(Shape):
 class RingError(Shape):
     """Error in a ring of the field."""
 
-    inner_deg: float
-    outer_deg: float
+    inner_deg: float = Field(description="Inner off-axis angle of the ring, degrees.")
+    outer_deg: float = Field(description="Outer off-axis angle of the ring, degrees.")
     rms_deg: float
 
 
-class Compared(Shape):
-    """A pipeline, or the best one of an architecture. Numbers are null if undefined."""
+class ComparedRow(Shape):
+    """What is compared of a pipeline: a row of the table."""
 
     detector: str
     mask: str
@@ -99,7 +99,6 @@ class Compared(Shape):
     extractor: str | None
     model: str | None
     studies: list[str] = Field(description="Studies that used it on such a sensor.")
-    proposed: list[str] | None = Field(description="Studies with this architecture.")
     rms_deg: float | None
     over_least: float | None = Field(
         description="RMS error divided by the lowest of those compared."
@@ -111,35 +110,47 @@ class Compared(Shape):
     on_bench_deg: float | None = Field(
         description="Error expected with the standard calibration bench."
     )
-    unit_rms_deg: list[float | None] | None = Field(description="Error on each sensor unit.")
     low_deg: float | None = Field(description="Smallest error over units.")
     high_deg: float | None = Field(description="Largest error over units.")
     availability: float | None
-    false_sun: float | None
+    false_sun: float | None = Field(
+        description="False detections: share of unobservable test samples with an answer."
+    )
     latency_us: float | None = Field(
         description="Time per sample on this machine, microseconds; null if not timed."
     )
     time_ratio: float | None = Field(description="Time divided by that of a reference method.")
-    half_fov_deg: float | None
-    rank: int | None = Field(description="Rank on the leaderboard of the data set and condition.")
-    status: Literal["ok", "refused", "failed", "none"]
-    reason: str | None = Field(description="Reason for a missing score.")
     needed_poses: int | None = Field(
         description=(
             "Calibration poses needed to be within 10 % of the error floor; null without "
             "a learning curve, or if more than all poses are needed."
         )
     )
-    needed_low: int | None
-    needed_high: int | None
+    needed_low: int | None = Field(description="Poses needed in the best random draw.")
+    needed_high: int | None = Field(
+        description=(
+            "Poses needed in the worst random draw; empty if more than all poses are needed."
+        )
+    )
     poses: int | None = Field(
         description="Calibration poses in the data set; null without a learning curve."
     )
     floor_error_deg: float | None = Field(description="Error floor of the learning curve.")
+    half_fov_deg: float | None
+    rank: int | None = Field(description="Rank on the leaderboard of the data set and condition.")
+    status: Literal["ok", "refused", "failed", "none"]
+    reason: str | None = Field(description="Reason for a missing score.")
     finer: FinerPipeline | None = Field(
         description="Pipeline of the architecture with the lowest error at 50 to 95 % "
         f"availability; null unless the error is more than {FINER:g} times as large."
     )
+
+
+class Compared(ComparedRow):
+    """A pipeline, or the best one of an architecture. Numbers are null if undefined."""
+
+    proposed: list[str] | None = Field(description="Studies with this architecture.")
+    unit_rms_deg: list[float | None] | None = Field(description="Error on each sensor unit.")
     conditions: dict[str, ConditionError] = Field(description="RMS error by condition.")
     rings: list[RingError] = Field(description="RMS error by off-axis angle.")
 

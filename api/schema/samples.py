@@ -6,19 +6,19 @@ from typing import Annotated
 
 from pydantic import ConfigDict, Field
 
-from api import columns
-from api.http.models.base import Listing, Shape, TableQuestion
-from api.http.models.parameters import (
+from api.schema.base import Listing, Shape, TableQuestion
+from api.schema.parameters import (
     DEFAULT_PAGE,
     FIELDS,
     WHOLE,
     Cursor,
     Limit,
+    OneOf,
     Several,
-    columns_of,
     several,
 )
-from api.http.models.words import ExtractorName, ModelName
+from api.schema.table import columns_of
+from api.schema.words import ExtractorName, ModelName
 from benchmark.results.samples import DOUBTS
 
 
@@ -34,7 +34,7 @@ class SampleErrorsQuery(TableQuestion):
     unit: Annotated[int | None, WHOLE] = Field(
         None, ge=0, le=127, description="Only this sensor unit; 0 is the standard unit."
     )
-    fields: Several[Annotated[str, columns_of(columns.SAMPLE_ERRORS)]] = FIELDS
+    fields: Several[Annotated[str, OneOf(lambda: list(columns_of(SampleError)))]] = FIELDS
     limit: Limit = DEFAULT_PAGE
     cursor: Cursor = None
 

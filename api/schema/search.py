@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from api.http.models.base import Listing, Shape, TableQuestion
-from api.http.models.parameters import GIVEN, Cursor, Limit, Several, several
+from api.schema.base import Listing, Shape, TableQuestion
+from api.schema.parameters import GIVEN, Cursor, Limit, Several, several
 
 Kind = Literal["study", "algorithm", "dataset", "claim", "attribute", "word"]
 

@@ -1,155 +1,15 @@
-"""Requirements, and the architectures that meet them."""
+"""Architectures that meet requirements, and their calibrations."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from api.http.models import words
-from api.http.models.base import OpenShape, Shape, TableQuestion
-from api.http.models.flows import LeftOut, Link, Node
-from api.http.models.parameters import LARGEST_PAGE, NUMBER, WHOLE, Several, several
-from api.http.models.studies import OfEdition
+from api.schema.advice import ArchitectureAdvice
+from api.schema.base import OpenShape, Shape
+from api.schema.flows import LeftOut, Link, Node
 from registry.measured_pipelines import FINER, LEAST_ANSWERED
-from registry.ranking import Sort
-
-
-def _wanted(attribute: str) -> Any:
-    return several(f"Require one of these values of {attribute}.")
-
-
-def _unwanted(attribute: str) -> Any:
-    return several(f"Exclude these values of {attribute}.")
-
-
-Number = Annotated[float | None, NUMBER]
-
-
-class Requirements(OfEdition):
-    """Requirements on a sensor and its calibration."""
-
-    task: Several[words.Task] = _wanted("task")
-    error: Several[words.Error] = _wanted("error")
-    accuracy: Several[words.Accuracy] = _wanted("accuracy")
-    detector: Several[words.Detector] = _wanted("detector")
-    mask: Several[words.Mask] = _wanted("mask")
-    model: Several[words.Model] = _wanted("model")
-    extractor: Several[words.Extractor] = _wanted("extractor")
-    exclude_task: Several[words.Task] = _unwanted("task")
-    exclude_error: Several[words.Error] = _unwanted("error")
-    exclude_accuracy: Several[words.Accuracy] = _unwanted("accuracy")
-    exclude_detector: Several[words.Detector] = _unwanted("detector")
-    exclude_mask: Several[words.Mask] = _unwanted("mask")
-    exclude_model: Several[words.Model] = _unwanted("model")
-    exclude_extractor: Several[words.Extractor] = _unwanted("extractor")
-    # No more than directions, a full turn, and 11 days.
-    max_error_deg: Number = Field(
-        None,
-        gt=0,
-        le=180,
-        description=(
-            "Maximum RMS error, degrees, over the required field of view and conditions. "
-            "Measured; if not measured, the stated accuracy converted to RMS."
-        ),
-    )
-    min_fov_deg: Number = Field(
-        None,
-        gt=0,
-        le=360,
-        description="Minimum full field of view, degrees. Measured; if not measured, stated.",
-    )
-    max_latency_us: Number = Field(
-        None,
-        gt=0,
-        le=1e12,
-        description="Maximum time of extraction and prediction per sample, microseconds.",
-    )
-    min_availability: Number = Field(
-        None,
-        gt=0,
-        le=1,
-        description="Minimum availability, nominal and under all required conditions.",
-    )
-    survive: Several[words.Hazard] = several(
-        "Conditions to tolerate: a data set must test each, with sufficient "
-        "availability and within the maximum error."
-    )
-    properties: Several[words.Property] = several(
-        "Required extractor properties, at least partly provided in the survey's assessment."
-    )
-    exclude_needs: Several[words.Need] = several(
-        "Exclude calibrations that need one of these inputs."
-    )
-    bench_deg: Number = Field(
-        None,
-        ge=0,
-        le=180,
-        description=(
-            "Calibration-bench error, degrees; by default that of each data set's "
-            "standard bench; 0 for own errors."
-        ),
-    )
-    confidence: Number = Field(
-        None,
-        ge=0.5,
-        le=0.999,
-        description=(
-            "Share of sensor units and benches that must meet the maximum error; default 0.9."
-        ),
-    )
-    sort: Sort = Field(
-        "advice",
-        description=(
-            "Ranking. advice: advised or used in studies first, then by the measure of "
-            "the tasks or by error. support: by number of studies. measured: by error."
-        ),
-    )
-    limit: Annotated[int, WHOLE] = Field(
-        20,
-        ge=1,
-        le=LARGEST_PAGE,
-        description="Maximum number of architectures; `count`, paths, nodes and links cover all.",
-    )
-    calibrations: Annotated[int, WHOLE] = Field(
-        5, ge=1, le=LARGEST_PAGE, description="Maximum number of calibrations per architecture."
-    )
-
-
-class RequirementsQuery(Requirements, TableQuestion):
-    """Requirements in a query."""
-
-    model_config = ConfigDict(
-        json_schema_extra={
-            "examples": [
-                {
-                    "task": ["Accuracy"],
-                    "detector": ["CMOS"],
-                    "mask": ["Single-Ap."],
-                    "limit": 1,
-                    "calibrations": 1,
-                }
-            ]
-        }
-    )
-
-
-class RequirementsBody(Requirements, strict=True):
-    """Requirements in a request body."""
-
-    model_config = ConfigDict(
-        json_schema_extra={
-            "examples": [
-                {
-                    "task": ["Accuracy"],
-                    "mask": ["Encoded"],
-                    "exclude_detector": ["CCD"],
-                    "limit": 1,
-                    "calibrations": 1,
-                }
-            ]
-        }
-    )
 
 
 class Nominal(Shape):
@@ -172,8 +32,8 @@ class Units(Shape):
     """Own errors over the measured sensor units."""
 
     count: int
-    least_deg: float
-    largest_deg: float
+    least_deg: float = Field(description="Smallest error of a unit, degrees.")
+    largest_deg: float = Field(description="Largest error of a unit, degrees.")
     meeting: int | None = Field(
         description="Number of ten units that meet the maximum error; null without one."
     )
@@ -203,23 +63,23 @@ class Measured(Shape):
             "benches meets. Null below the required availability."
         )
     )
-    own_deg: float | None = Field(
-        description="Own error: calibrated with true directions, over sensor units."
-    )
-    bench_deg: float = Field(description="Calibration-bench error used.")
-    needs: list[str] = Field(description="Inputs that the calibration needs besides the sensor.")
     condition: str = Field(description="Condition with the maximum error.")
-    field_deg: float | None = Field(description="Full field of view of the error.")
-    nominal_deg: float | None = Field(description="RMS error under nominal conditions.")
-    nominal: Nominal
     conditions: dict[str, float | None] = Field(
         description="RMS errors under the conditions to tolerate."
     )
+    field_deg: float | None = Field(description="Full field of view of the error.")
     fov_deg: float | None = Field(description="Full field of view of the data set.")
     availability: float | None = Field(description="Lowest availability over the conditions.")
     latency_us: float | None = Field(
         description="Time per sample on this machine, microseconds; null if not timed."
     )
+    nominal_deg: float | None = Field(description="RMS error under nominal conditions.")
+    nominal: Nominal = Field(description="Score under nominal conditions.")
+    own_deg: float | None = Field(
+        description="Own error: calibrated with true directions, over sensor units."
+    )
+    bench_deg: float = Field(description="Calibration-bench error used.")
+    needs: list[str] = Field(description="Inputs that the calibration needs besides the sensor.")
     units: Units | None
     finer: Finer | None = Field(
         description=f"Pipeline with the lowest error at {100 * LEAST_ANSWERED:.0f} % availability "
@@ -253,25 +113,32 @@ class Calibration(Shape):
     )
 
 
+class RecommendationRow(Shape):
+    """A calibration of a recommended architecture: a row of the table."""
+
+    rank: int = Field(description="Rank of the architecture.")
+    detector: str
+    mask: str
+    advised: bool = Field(description="Whether the survey advises it for these requirements.")
+    studies: list[str] = Field(description="Studies with this architecture.")
+    pareto: bool = Field(description="Pareto: no other has both more studies and a lower error.")
+    calibration: int = Field(description="Rank of the calibration on the architecture.")
+    extractor: str
+    compensations: list[str]
+    model: str
+    calibration_studies: list[str] = Field(description="Studies that used the calibration.")
+    support: float = Field(
+        description="Geometric mean of the numbers of studies of architecture and calibration."
+    )
+    measured: Measured | None
+
+
 class Task(Shape):
     """A task of an architecture."""
 
     task: str
     studies: int
-    advised: bool
-
-
-class Advice(Shape):
-    """A piece of the survey's advice."""
-
-    id: str
-    requirement: str
-    value: str
-    model_category: str
-    extractor: str
-    section: str
-    section_name: str = Field(description="Name of the section, with printed number.")
-    note: str
+    advised: bool = Field(description="Whether the survey advises it.")
 
 
 class TaskMeasure(Shape):
@@ -291,9 +158,13 @@ class Architecture(Shape):
     rank: int
     detector: str
     mask: str
-    tasks: list[Task]
+    tasks: list[Task] = Field(
+        description="Tasks of the architecture's studies, or that it is advised for."
+    )
     advised: bool = Field(description="Whether the survey advises it for these requirements.")
-    advice: list[Advice]
+    advice: list[ArchitectureAdvice] = Field(
+        description="Advice of the survey for these requirements."
+    )
     studies: list[str]
     best: Calibration = Field(description="The calibration with the lowest measured error.")
     pareto: bool = Field(description="Pareto: no other has both more studies and a lower error.")
@@ -302,16 +173,24 @@ class Architecture(Shape):
     )
     measures: list[TaskMeasure] = Field(description="Measures of the requested tasks.")
     count: int = Field(description="Calibrations that meet the requirements.")
-    calibrations: list[Calibration]
+    calibrations: list[Calibration] = Field(
+        description="Calibrations of the architecture, best first."
+    )
 
 
 class Regret(Shape):
     """Accuracy lost by the ranking: first calibration compared with the most accurate one."""
 
-    first_deg: float | None
-    best_deg: float
-    ratio: float | None
-    sentence: str
+    first_deg: float | None = Field(
+        description="Error of the first calibration, degrees; null if not measured."
+    )
+    best_deg: float = Field(
+        description="Lowest measured error that meets the requirements, degrees."
+    )
+    ratio: float | None = Field(
+        description="Error of the first calibration divided by the lowest; null if not measured."
+    )
+    sentence: str = Field(description="The comparison as a sentence.")
 
 
 class Pair(Shape):
@@ -345,21 +224,28 @@ class Blocked(Shape):
 
     constraint: str
     detail: str
-    relaxations: list[Relaxation]
+    relaxations: list[Relaxation] = Field(
+        description="Changes of the requirements that give results."
+    )
 
 
 class Recommendations(Shape):
     """Architectures for a set of requirements, their calibrations, and the studies behind them."""
 
-    requirements: dict[str, Any]
-    sort: str
+    requirements: dict[str, Any] = Field(description="Requirements as interpreted.")
+    sort: str = Field(description="Order of the list.")
     count: int = Field(description="Number of architectures that meet the requirements.")
     designs: int = Field(description="Number of their calibrations.")
     architectures: list[Architecture]
     contradictions: list[str] = Field(
         description="Sentences, where an architecture that is not advised has better results."
     )
-    regret: Regret | None
+    regret: Regret | None = Field(
+        description=(
+            "Comparison of the first calibration with the most accurate one; null if none "
+            "is measured."
+        )
+    )
     untimed: int = Field(
         description=(
             "Number of pipelines excluded by the latency limit because they were not timed."
@@ -368,10 +254,14 @@ class Recommendations(Shape):
     untried: dict[str, list[Pair]] = Field(
         description="Architectures without a data set that tests the required condition."
     )
-    paths: list[Path]
+    paths: list[Path] = Field(
+        description="Combinations of values from task to extractor, with their studies."
+    )
     nodes: list[Node]
     links: list[Link]
     left_out: list[LeftOut] = Field(
         description="Studies not shown because an attribute is unknown."
     )
-    blocked: Blocked | None
+    blocked: Blocked | None = Field(
+        description="Why no architecture meets the requirements; null otherwise."
+    )

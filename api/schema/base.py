@@ -2,28 +2,30 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol
 
 from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
-from api.dictionary import meaning
-from api.http.models.parameters import GIVEN
+from api.schema.parameters import DEFAULT_PAGE, FIELDS, GIVEN, SORT, Cursor, Limit, OneOf, Several
+from api.schema.table import Model, columns_of, sortable
+from api.schema.vocabulary import meaning
 
 
 class Described(BaseModel):
-    """A model whose members are described: by itself, or by the data dictionary."""
+    """A model whose members are described: by itself, or by the vocabulary."""
+
+    model_config = ConfigDict(defer_build=True)
 
     @classmethod
     def __get_pydantic_json_schema__(
         cls, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        """Return the JSON schema, with the dictionary's meaning where a member has none."""
+        """Return the JSON schema, with what each member means."""
         made = handler(schema)
         for name, member in handler.resolve_ref_schema(made).get("properties", {}).items():
-            said = meaning(name)
-            if said is not None:
-                member.setdefault("description", said)
+            if said := meaning(name, member.get("description")):
+                member["description"] = said
         return made
 
 
@@ -69,6 +71,33 @@ class TableQuestion(Question):
         default=False,
         description="Escape CSV cells that a spreadsheet would run as formulas.",
     )
+
+
+class SortedQuestion(TableQuestion):
+    """The query of a list: filters, then an order, columns and a page.
+
+    A subclass names the model of a row, `rows`, whose columns can be sorted by and chosen.
+    """
+
+    if TYPE_CHECKING:
+        sort: str | None
+        fields: list[str]
+        limit: int
+        cursor: str | None
+
+    def __init_subclass__(cls, rows: Model | None = None, **settings: Any) -> None:
+        """Add the parameters that a list of such rows has, after the filters."""
+        super().__init_subclass__(**settings)
+        if rows is None:
+            return
+        by = OneOf(lambda: [f"{sign}{name}" for name in sortable(rows) for sign in ("", "-")])
+        cls.__annotations__ |= {
+            "sort": Annotated[str | None, by, GIVEN],
+            "fields": Several[Annotated[str, OneOf(lambda: list(columns_of(rows)))]],
+            "limit": Limit,
+            "cursor": Cursor,
+        }
+        cls.sort, cls.fields, cls.limit, cls.cursor = SORT, FIELDS, DEFAULT_PAGE, None
 
 
 _CitedFormat = Literal["json", "csv", "bibtex", "ris", "csl"] | None

@@ -15,8 +15,6 @@ from typing import Annotated, Any, TypeVar
 from pydantic import AfterValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from api.columns import sortable
-
 LARGEST_PAGE = 500
 DEFAULT_PAGE = 200
 MOST_VALUES = 100  # of one parameter
@@ -93,16 +91,6 @@ Several = Annotated[list[Word], Field(max_length=MOST_VALUES), AfterValidator(_d
 def several(description: str) -> Any:
     """Return the field of a parameter that may be given several times, or not at all."""
     return Field(default_factory=list, description=description)
-
-
-def sorting(columns: Sequence[str]) -> OneOf:
-    """Return the words of `sort`: columns that hold one value a row, also with "-" before."""
-    return OneOf(lambda: tuple(f"{sign}{c}" for c in sortable(columns) for sign in ("", "-")))
-
-
-def columns_of(columns: Sequence[str]) -> OneOf:
-    """Return the words of `fields`."""
-    return OneOf(lambda: tuple(columns))
 
 
 GIVEN = Spelt(".*")
