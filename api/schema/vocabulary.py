@@ -5,9 +5,8 @@ A model says itself what only it has, or what means something else in it.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
-
-from benchmark.metrics.rings import RINGS
 
 MEANINGS: Mapping[str, str] = {
     "accuracy_kind": "Statistic of the published accuracy, such as 3sigma or rms.",
@@ -93,12 +92,10 @@ MEANINGS: Mapping[str, str] = {
     "version": "Version; raised when results change intentionally.",
     "words": "Description in words.",
     "year": "Year of publication.",
-    **{
-        ring.column: f"RMS error {ring.inner_deg} to {ring.outer_deg} degrees off the axis."
-        for ring in RINGS
-    },
 }
 
+#: An error in a ring of the field (`benchmark.metrics.rings.Ring.column`).
+_RING = re.compile(r"rms_(\d+)_(\d+)_deg")
 #: By the end of a name.
 _UNITS: Mapping[str, str] = {"deg": "degrees", "us": "microseconds"}
 
@@ -113,6 +110,8 @@ def meaning(name: str, said: str | None = None) -> str:
     said
         What its model says; by default what the vocabulary says, or nothing.
     """
+    if ring := _RING.fullmatch(name):
+        return f"RMS error {ring[1]} to {ring[2]} degrees off the axis."
     text = said or MEANINGS.get(name, "")
     unit = _UNITS.get(name.rpartition("_")[2])
     if text and unit and unit not in text:

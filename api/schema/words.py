@@ -7,7 +7,6 @@ from functools import cache
 from typing import Annotated
 
 from api.schema.parameters import OneOf
-from benchmark.claims.rules import VERDICTS
 from registry.flows import CHARTS
 from registry.requirements import HAZARDS, NEEDS
 from registry.studies import facts
@@ -75,6 +74,14 @@ def assessed_methods() -> tuple[str, ...]:
 
 
 @cache
+def claim_verdicts() -> tuple[str, ...]:
+    """Verdicts of claims, and the word for none."""
+    from benchmark.claims.rules import VERDICTS  # noqa: PLC0415 - slow, as above
+
+    return (*VERDICTS, "not measured")
+
+
+@cache
 def claim_ids() -> tuple[str, ...]:
     """Ids of the survey's claims."""
     from survey_data import load  # noqa: PLC0415 - slow, as above
@@ -104,4 +111,4 @@ MethodName = Annotated[str, OneOf(assessed_methods)]
 Series = Annotated[str, OneOf(series)]
 SweepName = Annotated[str, OneOf(sweeps)]
 ClaimId = Annotated[str, OneOf(claim_ids)]
-ClaimVerdict = Annotated[str, OneOf(lambda: (*VERDICTS, "not measured"))]
+ClaimVerdict = Annotated[str, OneOf(claim_verdicts)]

@@ -10,12 +10,13 @@ import typer
 from api.cli import completion, spreadsheets
 from api.cli.asking import ask, knowledge
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
+from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, say
 from api.cli.wrong_call import WrongCallError
 from api.http.routers.datasets import errors as dataset_errors
 from api.http.routers.realism import realism as besides_built
 from api.http.sample_errors import choose, rows_of
-from api.schema.datasets import BuiltSensorRow, Data, Dataset
+from api.schema.datasets import BuiltSensorRow, Data, Dataset, RealismQuery
 from api.schema.samples import SampleError, SampleErrorsQuery
 from api.schema.table import columns_of, csv_of
 from benchmark import datasets
@@ -139,29 +140,11 @@ def export(
 
 
 @app.command()
+@asked_by(SampleErrorsQuery, "extractor", "model", "unit")
 def errors(
     name: NameArgument,
     *,
-    extractor: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.extractors,
-            help="Only this extractor; may be repeated.",
-            show_default=False,
-        ),
-    ] = None,
-    model: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.models,
-            help="Only this model; may be repeated.",
-            show_default=False,
-        ),
-    ] = None,
-    unit: Annotated[
-        int | None,
-        typer.Option(help="Only this sensor unit; 0 is the standard unit."),
-    ] = None,
+    asked: Asked,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -178,18 +161,16 @@ def errors(
     By extractor, model, unit and sample, with the true Sun direction; `doubt` gives the reason for
     a missing answer. A data set has up to a million rows: choose a pipeline, or write to a file.
     """
-    query = {"extractor": extractor or [], "model": model or [], "unit": unit}
-    ask(dataset_errors, {**query, "limit": 1}, name=name)  # refuses what does not fit
+    ask(dataset_errors, {**asked, "limit": 1}, name=name)  # refuses what does not fit
     measured = knowledge().measurements
     if out is not None and out.suffix == ".parquet":
-        if extractor or model or unit is not None:
+        if asked:
             raise WrongCallError("a .parquet has all pipelines and units; give a .csv for some")
         try:
             replace_file(out, measured.file(samples.path_of(name)))
         except FileNotFoundError:
             raise WrongCallError(f"no errors of {name} are published") from None
-    given = {key: value for key, value in query.items() if value is not None}
-    rows = rows_of(choose(measured, name, SampleErrorsQuery.model_validate(given)))
+    rows = rows_of(choose(measured, name, SampleErrorsQuery.model_validate(asked)))
     if out is None:
         emit(rows, columns_of(SampleError), form, title=f"{len(rows)} errors")
         return
@@ -246,16 +227,10 @@ def coverage(form: FormatOption = Format.TABLE) -> None:
 
 
 @app.command()
+@asked_by(RealismQuery, "dataset")
 def realism(
     *,
-    dataset: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.datasets,
-            help="Only this data set; may be repeated.",
-            show_default=False,
-        ),
-    ] = None,
+    asked: Asked,
     form: FormatOption = Format.TABLE,
 ) -> None:
     """Compare each data set with built sensors and their published figures.
@@ -264,7 +239,7 @@ def realism(
     repeatability. Published accuracies are converted to RMS. Differences of more than a factor of
     two are explained; data sets without a built sensor are called idealised.
     """
-    answer = ask(besides_built, {"dataset": dataset})
+    answer = ask(besides_built, asked)
     shown = BUILT if form is Format.TABLE else columns_of(BuiltSensorRow)
     emit(answer.rows(), shown, form, document=answer.document, title="Data sets and built sensors")
 

@@ -17,10 +17,11 @@ from api.cli.measuring import (
     StoreOption,
     interruptible,
 )
+from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, line_width
 from api.cli.working import working_directory
 from api.cli.wrong_call import WrongCallError
-from api.schema.boards import BestOfArchitecture, PartOverview
+from api.schema.boards import BestOfArchitecture, OverviewQuery, PartOverview
 from api.schema.scores import LeaderboardRow
 from api.schema.table import columns_of
 from benchmark.contract import UnknownNameError
@@ -66,6 +67,7 @@ class Kernels(StrEnum):
 
 
 @app.callback(invoke_without_command=True)
+@asked_by(OverviewQuery, "detector", "mask")
 def leaderboard(
     context: typer.Context,
     *,
@@ -75,22 +77,7 @@ def leaderboard(
             "--overview", help="Count how often each extractor and model is near the bound."
         ),
     ] = False,
-    detector: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.values("detector"),
-            help="Only architectures with this detector; may be repeated.",
-            show_default=False,
-        ),
-    ] = None,
-    mask: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.values("mask"),
-            help="Only architectures with this mask; may be repeated.",
-            show_default=False,
-        ),
-    ] = None,
+    asked: Asked,
     each: Annotated[
         bool, typer.Option("--each", help="Show the best pipelines of each data set.")
     ] = False,
@@ -161,7 +148,7 @@ def leaderboard(
     listing = each or dataset or condition or field is not None or max_error is not None
     if overview and (listing or check):
         raise WrongCallError("--overview counts over data sets: it neither lists nor checks them")
-    if (detector or mask) and (listing or check):
+    if asked and (listing or check):
         raise WrongCallError("--detector and --mask narrow architectures and --overview alone")
     if check:
         _check(workers, form, (kernels or Kernels.BOTH).chosen, stored_only=stored)
@@ -170,9 +157,9 @@ def leaderboard(
     elif field is not None and max_error is not None:
         raise WrongCallError("--field and --max-error are two questions; ask one at a time")
     elif overview:
-        _overview({"detector": detector, "mask": mask}, form)
+        _overview(asked, form)
     elif not listing:
-        _architectures({"detector": detector, "mask": mask}, form)
+        _architectures(asked, form)
     else:
         _show(dataset or [], condition or [], field, max_error, form)
 
@@ -272,7 +259,7 @@ def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only:
     typer.echo(f"every published number holds: {how}", err=True)
 
 
-def _architectures(query: Mapping[str, list[str] | None], form: Format) -> None:
+def _architectures(query: Asked, form: Format) -> None:
     """Print the best pipeline of each architecture, as the service answers it."""
     from api.cli.asking import ask, knowledge  # noqa: PLC0415 - slow; measuring does without it
     from api.http.routers.leaderboard import architectures  # noqa: PLC0415
@@ -290,7 +277,7 @@ def _architectures(query: Mapping[str, list[str] | None], form: Format) -> None:
         emit(rows, columns_of(BestOfArchitecture), form, document=answer.document)
 
 
-def _overview(query: Mapping[str, list[str] | None], form: Format) -> None:
+def _overview(query: Asked, form: Format) -> None:
     """Print how near the bound each part comes, as the service answers it."""
     from api.cli.asking import ask  # noqa: PLC0415 - as above
     from api.http.routers.leaderboard import overview  # noqa: PLC0415
