@@ -31,6 +31,7 @@ from api.docs.parts import (
 from api.guide import dictionary, measured_facts, words
 from api.guide.blocks import rerun
 from benchmark.processes import call_to_end
+from benchmark.running.experiment import recorded
 from files.atomic import replace_file
 from files.locks import wait_for_lock
 from files.temporary import temporary_directory
@@ -129,10 +130,8 @@ def every_picture() -> Mapping[str, Make]:
     return {
         "answer.svg": front.picture,
         f"../{codemeta.NAME}": lambda: codemeta.codemeta_text(identity().citation),
-        **assessment.PICTURES,
-        **curves.PICTURES,
         **model_pages.pictures(),
-        **claim_pages.pictures(),
+        **{name: draw for kind in recorded().values() for name, draw in kind().pictures().items()},
     }
 
 

@@ -54,6 +54,7 @@ class ErrorBudget(Recorded[str]):
     """A row of each data set, by its name: of the score, on the standard unit, that leads it."""
 
     name = "error_budget"
+    title = "Error budget"
     record = RECORD
 
     @cached_property
