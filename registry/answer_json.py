@@ -19,7 +19,7 @@ from registry.contradiction import against_advice, against_literature, regret_wo
 from registry.design_arrays import design_arrays
 from registry.designs import DesignTable
 from registry.judging import Question, advice_for
-from registry.path_arrays import MOST_SETS, StudySets, path_arrays, unpacked
+from registry.path_arrays import MOST_SETS, StudySets, path_arrays, unpack
 from registry.paths import PATH_LEVELS, path_table
 from registry.pipelines import PipelineErrors
 from registry.ranking import TaskMeasure, support
@@ -275,19 +275,19 @@ class AnswerTexts:
         return b'%b],"nodes":[%b],"links":[%b' % tuple(texts)
 
     def _path_text(self, packed: bytes) -> bytes:
-        at, studies = unpacked(packed)
+        at, studies = unpack(packed)
         return self._with_studies(
             dict(zip(PATH_LEVELS, self._table.paths[at], strict=True)), studies
         )
 
     def _node_text(self, packed: bytes) -> bytes:
-        at, studies = unpacked(packed)
+        at, studies = unpack(packed)
         level, value, name = self._table.nodes[at]
         about = {"id": f"{level}:{value}", "level": level, "value": value, "name": name}
         return self._with_studies({**about, "count": studies.bit_count()}, studies)
 
     def _link_text(self, packed: bytes) -> bytes:
-        at, studies = unpacked(packed)
+        at, studies = unpack(packed)
         source, target = self._table.links[at]
         about = {"source": source, "target": target, "value": studies.bit_count()}
         return self._with_studies(about, studies)

@@ -31,7 +31,7 @@ class StudySets(NamedTuple):
     """Paths behind an answer, their nodes and their links, with the studies of each.
 
     Each set is packed: the position of its path, node or link, and the studies as bits
-    (`unpacked`). Paths are in the order of the taxonomy, nodes and links in chart order.
+    (`unpack`). Paths are in the order of the taxonomy, nodes and links in chart order.
     """
 
     paths: Sequence[bytes]
@@ -129,7 +129,7 @@ class PathArrays:
         return StudySets(*map(tuple, parts))
 
 
-def unpacked(packed: bytes) -> tuple[int, int]:
+def unpack(packed: bytes) -> tuple[int, int]:
     """Return the position that a packed set is of, and its studies (bits)."""
     position, studies = packed[:_POSITION_BYTES], packed[_POSITION_BYTES:]
     return int.from_bytes(position, "little"), int.from_bytes(studies, "little")

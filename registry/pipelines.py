@@ -195,7 +195,7 @@ class PipelineErrors:
 
     def _judged(self, row: int) -> PipelineJudgement:
         """Return the error of one pipeline, with its condition and field."""
-        return self.table.rows[row].judged(self.hazards, self.half, self.draws)
+        return self.table.rows[row].judge(self.hazards, self.half, self.draws)
 
     @cached_property
     def _unit_errors(self) -> Numbers:
@@ -291,7 +291,7 @@ class PipelineErrors:
         partly = None if finer < 0 else rows[finer].partly(*field)
         return rows[row].to_dict(
             self.of(row),
-            rows[row].judged(*field),
+            rows[row].judge(*field),
             *field,
             bench_deg=None if self.draws is None else self.draws[0],
             units_within=None if units_within == NOT_COUNTED else units_within,

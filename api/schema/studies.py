@@ -50,7 +50,7 @@ class StudyFilters(OfEdition, TableQuestion):
     model: Several[words.Model] = _filter("model", " (a parent such as ECM covers its kinds)")
     extractor: Several[words.Extractor] = _filter("extractor")
 
-    def wanted(self) -> dict[str, list[str]]:
+    def by_attribute(self) -> dict[str, list[str]]:
         """Return the values asked for, by attribute."""
         asked = {attribute: getattr(self, attribute) for attribute in ATTRIBUTES}
         return {attribute: values for attribute, values in asked.items() if values}

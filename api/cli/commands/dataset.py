@@ -25,7 +25,7 @@ from benchmark.datasets import coverage as covered
 from benchmark.datasets import export as dataset_export
 from benchmark.datasets import export_verification
 from benchmark.plan.parts import installed_parts
-from benchmark.progress import terminal_progress, told_progress
+from benchmark.progress import console_progress, terminal_progress
 from benchmark.results import samples
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import pinning
@@ -118,7 +118,7 @@ def export(
     low-dimensional samples also as .csv. card.json describes every array, the studies the data set
     is based on, the bound and the hashes. The same call gives the same bytes.
     """
-    with told_progress("writing the data set") as progress:
+    with console_progress("writing the data set") as progress:
         made = dataset_export.export(
             name,
             out,

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from api.cli import completion
-from api.cli.contract import GUIDE, checked, name_of
+from api.cli.contract import GUIDE, check_contract, name_of
 from api.cli.measuring import (
     AVAILABLE_WORKERS,
     ManyWorkersOption,
@@ -69,7 +69,7 @@ def rank(
     local store (see --store).
     """
     name = name_of(algorithm)
-    result = checked(name)
+    result = check_contract(name)
     if result is None:
         typer.echo("contract: not checked, the tests are in a checkout only", err=True)
     elif result.failed:
@@ -85,7 +85,7 @@ def rank(
         typer.echo(f"contract: {result.ran} checks passed", err=True)
     record, work = stores_of(store)
     with interruptible():
-        ranked = candidate.ranked(name, dataset, record, work, workers=workers)
+        ranked = candidate.rank(name, dataset, record, work, workers=workers)
     page = out or Path("out") / f"{name}-{dataset}.html"
     replace_file(page, to_html(ranked.board, marked=ranked.pipelines, note=ranked.scope))
     rows = [{**row, "new": MARK if ranked.has(row) else None} for row in ranked.rows]

@@ -42,8 +42,8 @@ async def matrix(known: Known, query: Annotated[MatrixQuery, Query()]) -> Answer
     `leads_to` show how to measure the pair.
     """
     studies = known.of(query.edition).facts
-    asked = (query.wanted(), query.rows, query.columns)
-    return answered(evidence_map(studies, *asked, evidence=known.evidence))
+    asked = (query.by_attribute(), query.rows, query.columns)
+    return answer_of(evidence_map(studies, *asked, evidence=known.evidence))
 
 
 @router.get("/figures/{figure}", summary="A figure of the survey", response_model=Figure)
@@ -58,9 +58,9 @@ async def figure(
     Publications: a row per year or venue and part of its bar. Parallel coordinates: a row per
     sensor.
     """
-    return answered(drawn(figure, known.of(query.edition).facts, query.wanted()))
+    return answer_of(drawn(figure, known.of(query.edition).facts, query.by_attribute()))
 
 
-def answered(found: Drawn) -> Answer:
+def answer_of(found: Drawn) -> Answer:
     """Return a figure as an answer."""
     return Answer(found.to_dict(), found.columns, lambda: found.rows)

@@ -27,7 +27,9 @@ async def flows(
     Filters keep the studies with one of the values. CSV: the links.
     """
     studies = known.of(query.edition).facts
-    found = flows_of(chart, query.wanted(), query.counting, grouped=query.grouped, facts=studies)
+    found = flows_of(
+        chart, query.by_attribute(), query.counting, grouped=query.grouped, facts=studies
+    )
     return Answer(
         found.to_dict(), columns_of(Link), lambda: [link.to_dict() for link in found.links]
     )

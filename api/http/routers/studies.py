@@ -186,7 +186,7 @@ def _is_wanted(study: Study, query: StudiesQuery, known: Knowledge) -> bool:
         and _has_words(study, query.q)
         and (not query.grade or known.resolutions[study.key].fidelity.grade in query.grade)
         and (not query.state or known.resolutions[study.key].state in query.state)
-        and _has_values(study, query.wanted(), known)
+        and _has_values(study, query.by_attribute(), known)
     )
 
 
