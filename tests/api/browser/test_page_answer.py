@@ -10,7 +10,7 @@ from playwright.sync_api import Locator, expect
 
 from api.pages.answer import KINDS
 from api.pages.terms import display_text as named
-from tests.api.page.visiting import Visit, get_json
+from tests.api.browser.visiting import Visit, get_json
 
 pytestmark = pytest.mark.slow
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.api.page.visiting import Visit, build_guide, follow
+from tests.api.browser.visiting import Visit, build_guide, follow
 
 pytestmark = pytest.mark.slow
 

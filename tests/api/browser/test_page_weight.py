@@ -7,7 +7,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from tests.api.page.visiting import Visit
+from tests.api.browser.visiting import Visit
 
 pytestmark = pytest.mark.slow
 

@@ -6,7 +6,7 @@ from importlib.resources import files
 
 import pytest
 
-from tests.api.page.visiting import Visit, build_guide
+from tests.api.browser.visiting import Visit, build_guide
 from tests.api.pages.addresses import BESIDE, KINDS
 
 pytestmark = pytest.mark.slow

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.api.page.visiting import PATIENCE_MS, WIDE, Visit, follow, get_json, tab_to
+from tests.api.browser.visiting import PATIENCE_MS, WIDE, Visit, follow, get_json, tab_to
 
 pytestmark = pytest.mark.slow
 

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser
 
+from tests.api.browser.visiting import follow
 from tests.api.figures.geometry import Shape, overlap
-from tests.api.page.visiting import follow
 
 pytestmark = pytest.mark.slow
 

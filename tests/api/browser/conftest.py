@@ -14,9 +14,9 @@ import pytest
 import uvicorn
 from playwright.sync_api import Browser, expect, sync_playwright
 
+from tests.api.browser.delivery import InPieces
+from tests.api.browser.visiting import NARROW, PATIENCE_MS, WIDE, Visit
 from tests.api.conftest import Client
-from tests.api.page.delivery import InPieces
-from tests.api.page.visiting import NARROW, PATIENCE_MS, WIDE, Visit
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 QUIET = ["--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"]

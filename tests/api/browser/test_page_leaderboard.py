@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.api.page.visiting import WIDE, Visit, get_json
+from tests.api.browser.visiting import WIDE, Visit, get_json
 
 pytestmark = pytest.mark.slow
 

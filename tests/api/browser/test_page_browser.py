@@ -13,7 +13,7 @@ import pytest
 from playwright.sync_api import Route, expect
 
 from registry.studies import facts
-from tests.api.page.visiting import NARROW, PATIENCE_MS, Visit, get_json, tab_to
+from tests.api.browser.visiting import NARROW, PATIENCE_MS, Visit, get_json, tab_to
 
 pytestmark = pytest.mark.slow
 
