@@ -45,7 +45,7 @@ async def experiments(known: Known) -> View:
     """List the experiments with the number of their rows."""
     every = [_about(_experiment(name, known)) for name in recorded()]
     columns = ("name", "title", "description", "rows")
-    return View("experiments.html", Answer({"items": every}, columns, lambda: every))
+    return View("experiments/list.html", Answer({"items": every}, columns, lambda: every))
 
 
 @router.page("/experiments/{name}")
@@ -56,7 +56,7 @@ async def experiment(known: Known, name: Name) -> View:
     columns = tuple(dict.fromkeys(column for row in rows for column in row))
     document = {**_about(found), "pictures": list(_drawn(found)), "items": rows}
     return View(
-        "experiment.html", Answer(document, columns, lambda: rows), columns=columns, most=SHOWN
+        "experiments/one.html", Answer(document, columns, lambda: rows), columns=columns, most=SHOWN
     )
 
 
