@@ -105,14 +105,14 @@ class PublishedFigures(Shape):
     precision_ratio: float | None = Field(description="Our repeatability divided by its precision.")
 
 
-class Sourced(Shape):
+class Source(Shape):
     """Where a figure was read."""
 
     source: str = Field(description="Address, document, study or label of the survey's source.")
     source_name: str = Field(description="Publisher, document or part of the survey.")
 
 
-class Explained(Shape):
+class Explanation(Shape):
     """Whether a difference is explained, and how."""
 
     explanation: str | None = Field(
@@ -124,11 +124,11 @@ class Explained(Shape):
 
 
 # Members of a class stand behind those of the classes named after it.
-class BuiltSensor(Sourced, PublishedFigures):
+class BuiltSensor(Source, PublishedFigures):
     """Published figures of a built sensor, compared with ours. Null if unknown."""
 
 
-class BuiltSensorRow(Sourced, Explained, PublishedFigures, BestOnDataset):
+class BuiltSensorRow(Source, Explanation, PublishedFigures, BestOnDataset):
     """A data set and a built sensor: a row of the table."""
 
 

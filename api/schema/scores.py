@@ -76,7 +76,7 @@ class Accuracy(OpenShape):
     )
 
 
-class Answered(OpenShape):
+class AnswerRates(OpenShape):
     """How often there is an answer."""
 
     availability: float | None = Field(
@@ -144,14 +144,14 @@ class RingErrors(OpenShape):
     rms_90_180_deg: float | None = None
 
 
-class Measured(OpenShape):
-    """How it was measured."""
+class MetricVersion(OpenShape):
+    """Version of the metrics."""
 
     metric_version: int | None = Field(None, description="Version of the metrics.")
 
 
 # Members of a class stand behind those of the classes named after it.
-class Score(Measured, RingErrors, Statistics, Subject, Answered, Accuracy, Outcome, Place):
+class Score(MetricVersion, RingErrors, Statistics, Subject, AnswerRates, Accuracy, Outcome, Place):
     """What a pipeline achieves on a data set in a condition. Numbers are null where undefined.
 
     Errors, the bound and their ratio are over the same samples: observable and answered.
@@ -164,7 +164,7 @@ class Scores(Listing):
     items: list[Score]
 
 
-class Ranked(OpenShape):
+class Rank(OpenShape):
     """Rank in a data set and condition."""
 
     rank: int | None = Field(
@@ -255,18 +255,18 @@ class Units(OpenShape):
 
 class LeaderboardRow(
     Units,
-    Measured,
+    MetricVersion,
     RingErrors,
     Statistics,
     Outcome,
     Subject,
     OfExtractor,
-    Answered,
+    AnswerRates,
     Spread,
     Accuracy,
     OwnAccuracy,
     Place,
-    Ranked,
+    Rank,
 ):
     """A score with its rank."""
 

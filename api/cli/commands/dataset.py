@@ -18,6 +18,7 @@ from api.http.routers.realism import realism as besides_built
 from api.http.sample_errors import choose, rows_of
 from api.schema.datasets import BuiltSensorRow, Data, Dataset, RealismQuery
 from api.schema.samples import SampleError, SampleErrorsQuery
+from api.schema.scores import ScoresQuery
 from api.schema.table import columns_of, csv_of
 from benchmark import datasets
 from benchmark.contract import UnknownNameError
@@ -89,18 +90,12 @@ def describe(name: NameArgument, form: FormatOption = Format.TABLE) -> None:
 
 
 @app.command()
+@asked_by(ScoresQuery, "condition")
 def export(
     name: NameArgument,
     *,
     out: Annotated[Path, typer.Option(help="Output directory.", show_default=False)],
-    condition: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.conditions,
-            help="Only this condition; may be repeated.",
-            show_default=False,
-        ),
-    ] = None,
+    asked: Asked,
     split: Annotated[
         list[str] | None,
         typer.Option(help="Only calibration or test; may be repeated.", show_default=False),
@@ -122,7 +117,7 @@ def export(
         made = dataset_export.export(
             name,
             out,
-            conditions=condition,
+            conditions=asked.get("condition"),
             splits=split,
             n=n,
             force=force,

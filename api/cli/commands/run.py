@@ -20,10 +20,11 @@ from api.cli.measuring import (
     score_cells,
     stores_of,
 )
+from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit
 from api.cli.wrong_call import WrongCallError
 from api.http.routers import studies
-from api.schema.scores import Score
+from api.schema.scores import Score, ScoresQuery
 from api.schema.table import columns_of
 from benchmark.contract import Cell, UnknownNameError
 from benchmark.plan.combinations import cells
@@ -51,6 +52,7 @@ SUITE_COLUMNS = ("unit", *benchmark.COLUMNS)
 
 
 @app.command()
+@asked_by(ScoresQuery, "condition")
 def run(
     study: Annotated[
         str | None,
@@ -62,12 +64,7 @@ def run(
     ] = None,
     *,
     suite: SuiteOption = None,
-    condition: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.conditions, help="Only this condition; may be repeated."
-        ),
-    ] = None,
+    asked: Asked,
     workers: WorkersOption = 1,
     scheduler: SchedulerOption = None,
     store: StoreOption = None,
@@ -87,13 +84,13 @@ def run(
     if (study is None) == (suite is None):
         raise WrongCallError("one of a study's key and --suite is to be given")
     if study is None:
-        if condition:
+        if asked:
             raise WrongCallError("--condition goes with a study: a suite has its own")
         _run_suite(str(suite), workers, scheduler, store, form)
         return
     ask(studies.study, key=study)  # refuses an unknown key with the nearest one
     resolution = knowledge().of("all").resolutions[study]
-    planned = _plan(resolution, condition)
+    planned = _plan(resolution, asked.get("condition"))
     result = score_cells(planned, workers, store, scheduler)
     rows = [{"study": study, **row, "assumed": planned[_cell(row)]} for row in result.rows]
     _print(study, resolution, rows, result, form)
