@@ -61,7 +61,7 @@ test: $(DEVELOPING) ## run the tests, the slow ones left out
 	$(TEST) -m "not slow"
 
 test-browser: $(COMPILED) ## run what walks the page in headless Chromium, slow tests too
-	$(TEST) tests/api/page
+	$(TEST) tests/api/browser
 
 test-slow: $(COMPILED) ## run the slow tests alone
 	$(TEST) -m slow

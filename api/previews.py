@@ -142,12 +142,12 @@ def publish() -> None:
     """Draw the pictures that are not published as the code is now; remove all others."""
     from benchmark import datasets  # noqa: PLC0415 - as in `draw`
     from benchmark.datasets.preview import preview_png  # noqa: PLC0415 - as in `draw`
-    from benchmark.progress import told_progress  # noqa: PLC0415 - Rich
+    from benchmark.progress import console_progress  # noqa: PLC0415 - Rich
 
     PUBLISHED.mkdir(exist_ok=True)
     wanted = {name: published_preview(name) for name in datasets.names()}
     lacking = [name for name, path in wanted.items() if not path.is_file()]
-    with told_progress("drawing") as report:
+    with console_progress("drawing") as report:
         for done, name in enumerate(lacking):
             report(done, len(lacking), name)
             replace_file(wanted[name], preview_png(datasets.get(name)))

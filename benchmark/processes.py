@@ -50,7 +50,7 @@ def terminate_as_interrupt() -> None:
         signal.signal(signal.SIGINT, _tell)
 
 
-def was_told() -> bool:
+def termination_requested() -> bool:
     """Say whether a signal told this process to end.
 
     Whatever error ends it then is of that signal: some code makes another of a KeyboardInterrupt,
@@ -59,12 +59,12 @@ def was_told() -> bool:
     return bool(_told)
 
 
-def end_if_told() -> None:
+def end_if_requested() -> None:
     """Raise KeyboardInterrupt once more where a signal told this process to end.
 
     The first one is lost where it meets a callback of a library, as of the compiler.
     """
-    if was_told():
+    if termination_requested():
         raise KeyboardInterrupt
 
 
@@ -132,7 +132,7 @@ def call_to_end(main: Callable[[], int]) -> NoReturn:
         sys.stderr.write(f"{error}\n")
         status = 1
     except Exception:
-        if not was_told():
+        if not termination_requested():
             raise
         say_interrupted()
         status = exit_code()

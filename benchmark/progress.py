@@ -1,7 +1,7 @@
 """Progress of a run: any callable, by default a bar on a terminal and nothing elsewhere.
 
 What takes minutes and is made in one go says a line now and then where there is no terminal
-(`told_progress`).
+(`console_progress`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Protocol
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from benchmark.processes import end_if_told
+from benchmark.processes import end_if_requested
 
 
 class ProgressCallback(Protocol):
@@ -84,10 +84,10 @@ PAUSE_S = 15.0
 
 
 @contextmanager
-def told_progress(doing: str, *, quiet: bool = False) -> Iterator[ProgressCallback]:
+def console_progress(doing: str, *, quiet: bool = False) -> Iterator[ProgressCallback]:
     """Show a bar on a terminal, a line now and then elsewhere; nothing where `quiet`.
 
-    What it yields also ends what a signal should have ended (`processes.end_if_told`).
+    What it yields also ends what a signal should have ended (`processes.end_if_requested`).
     """
     if quiet:
         shown: AbstractContextManager[ProgressCallback] = nullcontext(silent)
@@ -98,7 +98,7 @@ def told_progress(doing: str, *, quiet: bool = False) -> Iterator[ProgressCallba
     with shown as show:
 
         def report(done: int, total: int, what: str, share: float | None = None) -> None:
-            end_if_told()
+            end_if_requested()
             show(done, total, what, share)
 
         yield report

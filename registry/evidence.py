@@ -154,7 +154,12 @@ class Evidence:
             else "unstudied"
         )
         judged = [one for one in done if one.nominal.available]
-        best = min(judged, key=lambda one: (one.nominal.rms_deg, one.dataset), default=None)
+        # names decide between equal errors: the order of a set is another in each process
+        best = min(
+            judged,
+            key=lambda one: (one.nominal.rms_deg, one.dataset, one.extractor, one.model),
+            default=None,
+        )
         near = min((run.dataset for run in (theirs or ours)), default="")
         return PairEvidence(
             state=state,

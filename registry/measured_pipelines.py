@@ -163,7 +163,7 @@ class MeasuredPipeline:
     bench_deg: float = 0.0
     needs: tuple[str, ...] = ()
 
-    def judged(
+    def judge(
         self,
         hazards: Iterable[str] = (),
         half_field_deg: float | None = None,

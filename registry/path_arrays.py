@@ -34,7 +34,7 @@ class StudySets(NamedTuple):
     """Paths behind an answer, their nodes and their links, with the studies of each.
 
     Each set is packed: the position of its path, node or link, and the studies as bits
-    (`unpacked`). Paths are in the order of the taxonomy, nodes and links in chart order.
+    (`unpack`). Paths are in the order of the taxonomy, nodes and links in chart order.
     """
 
     paths: Sequence[bytes]
@@ -166,7 +166,7 @@ class PathTexts:
         return b'%b],"nodes":[%b],"links":[%b' % tuple(texts)
 
     def _text(self, begun: Sequence[bytes], count: bytes, packed: bytes) -> bytes:
-        at, studies = unpacked(packed)
+        at, studies = unpack(packed)
         counted = count % studies.bit_count() if count else b""
         return b'%b%b,"studies":[%b]}' % (begun[at], counted, self._studies(studies))
 
@@ -176,7 +176,7 @@ def _begun(members: Iterable[tuple[str, str]]) -> bytes:
     return to_json(dict(members))[:-1]
 
 
-def unpacked(packed: bytes) -> tuple[int, int]:
+def unpack(packed: bytes) -> tuple[int, int]:
     """Return the position that a packed set is of, and its studies (bits)."""
     position, studies = packed[:_POSITION_BYTES], packed[_POSITION_BYTES:]
     return int.from_bytes(position, "little"), int.from_bytes(studies, "little")

@@ -194,7 +194,7 @@ class PipelineErrors:
 
     def _own(self, row: int) -> PipelineJudgement:
         """Return the error of one pipeline with true directions, with its condition and field."""
-        return self.table.rows[row].judged(self.hazards, self.half)
+        return self.table.rows[row].judge(self.hazards, self.half)
 
     def _judged(self, row: int) -> PipelineJudgement:
         """Return the error of one pipeline, with its condition and field."""

@@ -101,7 +101,7 @@ class Recommendation:
     blocked
         Why nothing meets the requirements; None where something does.
     document
-        All of the answer, as over HTTP (`api.http.models.recommendations.Recommendations`).
+        All of the answer, as over HTTP (`api.schema.recommendations.Recommendations`).
     """
 
     requirements: Requirements

@@ -52,7 +52,7 @@ class Relaxation:
         """Return the requirements relaxed so."""
         relaxed = requirements.without(*self.drop)
         for name, value in self.change.items():
-            relaxed = relaxed.changed(name, value)
+            relaxed = relaxed.with_value(name, value)
         return relaxed
 
     def to_dict(self) -> dict[str, object]:
@@ -285,7 +285,7 @@ def _changes(table: DesignTable, requirements: Requirements, name: str) -> list[
         candidates = [(v,) for v in table.facts.taxonomy.values(name)]
     changes = []
     for value in candidates:
-        found = _count(table, requirements.changed(name, value))
+        found = _count(table, requirements.with_value(name, value))
         if found:
             changes.append(Relaxation({}, MappingProxyType({name: value}), found))
     changes.sort(key=lambda r: -r.architectures)
@@ -332,7 +332,7 @@ def _widest(table: DesignTable, requirements: Requirements) -> float | None:
     rows = rest.matching_designs[arrays.design_of]
     widest = 0.0
     for half, having in arrays.cone_edges:
-        over = requirements.changed("min_fov_deg", 2.0 * half)
+        over = requirements.with_value("min_fov_deg", 2.0 * half)
         if (rows & having & _keeping(arrays, over)).any():
             widest = 2.0 * half
             break

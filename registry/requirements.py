@@ -224,10 +224,10 @@ class Requirements:
         """Return these requirements less the parameters named."""
         changed = self
         for name in names:
-            changed = changed.changed(name, None)
+            changed = changed.with_value(name, None)
         return changed
 
-    def changed(self, name: str, value: tuple[str, ...] | float | None) -> Requirements:
+    def with_value(self, name: str, value: tuple[str, ...] | float | None) -> Requirements:
         """Return these requirements with one parameter replaced (dropped if None or empty)."""
         if name in LIMITS:
             return replace(self, **{name: value})  # type: ignore[arg-type]  # name is a limit's

@@ -19,7 +19,7 @@ PLACES = (
     "README.md",
     "docs/**/*.md",
     "api/pages/templates/**/*.html",
-    "api/page/*.js",
+    "api/static/*.js",
     "api/cli/**/*.py",
     "registry/*.py",
 )

@@ -86,7 +86,7 @@ def estimate_noise(
         Variances, none above the model's.
     """
     # all that the answer depends on: filters that differ in their rule of update alone share it
-    given = model.space(noise=model.noise_), model.starts_, model.considered()
+    given = model.space(noise=model.noise_), model.starts_, model.considered_errors()
     key = hashlib.sha256(pickle.dumps((*given, features, known, apart_s, least))).digest()
     if key not in _heard:
         while len(_heard) >= _KEPT:
@@ -96,7 +96,7 @@ def estimate_noise(
 
 
 def _likeliest(
-    model: Learnt, features: Floats, known: Floats, apart_s: Floats, least: Floats
+    model: FittedFilter, features: Floats, known: Floats, apart_s: Floats, least: Floats
 ) -> Floats:
     """Return what `heard` does, worked out."""
     from algorithms.filtering.filters import ExtendedKalman  # noqa: PLC0415 - Numba

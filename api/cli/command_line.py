@@ -31,7 +31,7 @@ from benchmark.processes import (
     exit_code,
     say_interrupted,
     terminate_as_interrupt,
-    was_told,
+    termination_requested,
 )
 
 # name -> its line in `sunatlas --help`; the module is api.cli.commands.<name>.
@@ -108,7 +108,7 @@ class LazyCommands(TyperGroup):
         except OSError as error:
             _stop(error, 1, f"{_where(error)}{error.strerror or error}")
         except Exception as error:
-            if not (is_known(error) or was_told()):
+            if not (is_known(error) or termination_requested()):
                 raise
             quoted = isinstance(error, LookupError) and error.args  # str() would quote the message
             _stop(error, 1, str(error.args[0] if quoted else error))
@@ -189,7 +189,7 @@ def _drop_output() -> None:
 
 
 def _stop(error: BaseException, code: int, message: str) -> None:
-    if was_told():  # then whatever went wrong did so because of that
+    if termination_requested():  # then whatever went wrong did so because of that
         say_interrupted("sunatlas: interrupted")
         sys.exit(exit_code())
     if os.environ.get(DEBUG):

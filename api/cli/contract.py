@@ -26,7 +26,7 @@ GUIDE = "docs/guide/add-an-algorithm.md"
 
 
 @dataclass(frozen=True)
-class Checked:
+class ContractResult:
     """How many checks ran on an algorithm, and what failed, a line a check."""
 
     ran: int
@@ -64,7 +64,7 @@ def name_of(given: str) -> str:
     )
 
 
-def checked(name: str) -> Checked | None:
+def check_contract(name: str) -> ContractResult | None:
     """Run the common suite on one algorithm; None where this is no checkout with its tests.
 
     Raises
@@ -94,7 +94,7 @@ def checked(name: str) -> Checked | None:
         if done.returncode not in {0, 1}:
             raise WrongCallError(f"the checks did not run: {(done.stderr or done.stdout).strip()}")
         cases = list(ET.parse(report).iter("testcase"))  # noqa: S314 - written just now
-    return Checked(len(cases), tuple(_failures(cases)))
+    return ContractResult(len(cases), tuple(_failures(cases)))
 
 
 def _failures(cases: list[ET.Element]) -> Iterator[str]:

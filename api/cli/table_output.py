@@ -15,7 +15,7 @@ import typer
 from api.cells import cell, plain
 from api.cli import spreadsheets
 from api.cli.layout import Column, laid_out, wrap
-from api.columns import csv_of
+from api.schema.table import csv_of
 
 Row = Mapping[str, Any]
 

@@ -12,6 +12,25 @@ from typing import Any
 from api.cells import cell
 from api.deposit import claim_tables, derived_tables
 from api.deposit.fields import schema
+from api.schema.algorithms import Algorithm
+from api.schema.curves import Curve
+from api.schema.deposited import (
+    ClaimTrial,
+    ClaimVerdict,
+    ClauseVerdict,
+    DepositedDataset,
+    DepositedEdition,
+    DepositedPoint,
+    DepositedRule,
+    DepositedSweep,
+    IdentifiedStudy,
+    Pin,
+    PublicationCount,
+    Resolution,
+    SampleFile,
+)
+from api.schema.scores import LeaderboardRow, Score
+from api.schema.table import Model
 from benchmark import datasets
 from benchmark.claims.ledger import Entry, ledger
 from benchmark.leaderboard.board import build
@@ -83,6 +102,7 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
         _datasets(),
         _table(
             "scores",
+            Score,
             "Scores",
             "One row a pipeline on a data set in a condition and a unit of the sensor; a pure "
             "function of code and data.",
@@ -103,6 +123,7 @@ def frames_table(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
     """Make the table of the samples that go along, a row a file of arrays."""
     return _table(
         "frames",
+        SampleFile,
         "Samples in this bundle",
         "Which samples of the standard data sets lie in frames/: the first so many of each split, "
         "or all, in the nominal condition. The code makes the others.",
@@ -117,6 +138,7 @@ def _told(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
     return [
         _table(
             "resolution",
+            Resolution,
             "Resolution of the studies",
             "Runs of each study, with grade: a row per pipeline, data set and condition. Basis of "
             "each part, and the rule that fills it where the study does not state it.",
@@ -126,6 +148,7 @@ def _told(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
         ),
         _table(
             "all_studies",
+            IdentifiedStudy,
             "Studies of both editions",
             "The survey's studies and those after it, told apart by their edition.",
             derived_tables.all_studies(),
@@ -134,6 +157,7 @@ def _told(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
         ),
         _table(
             "editions",
+            DepositedEdition,
             "Editions of the studies",
             "The survey's studies, and those after it: each with the version to cite.",
             derived_tables.edition_rows(),
@@ -141,6 +165,7 @@ def _told(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
         ),
         _table(
             "verdicts",
+            ClauseVerdict,
             "Verdicts of the findings",
             "Each clause of the survey's checkable statements, judged strictly by the tables, with "
             "the counts and the evidence that would turn it, and the verdict of the whole.",
@@ -150,6 +175,7 @@ def _told(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
         ),
         _table(
             "publications",
+            PublicationCount,
             "Publications per year and per venue",
             "Mapped studies of each year, and of each venue that is known.",
             derived_tables.publication_counts(),
@@ -164,6 +190,7 @@ def _claims(entries: Sequence[Entry]) -> list[MeasuredTable]:
     return [
         _table(
             "claim_verdicts",
+            ClaimVerdict,
             "Verdicts of the claims",
             "Each of the survey's statements about algorithms, put to the test.",
             claim_tables.verdicts(entries),
@@ -172,6 +199,7 @@ def _claims(entries: Sequence[Entry]) -> list[MeasuredTable]:
         ),
         _table(
             "claim_rules",
+            DepositedRule,
             "Rules of the claims",
             "What has to hold for each claim, and what the trials say of it.",
             claim_tables.rules(entries),
@@ -180,6 +208,7 @@ def _claims(entries: Sequence[Entry]) -> list[MeasuredTable]:
         ),
         _table(
             "claim_trials",
+            ClaimTrial,
             "Trials of the claims",
             "The statistic of every rule in every trial.",
             claim_tables.trials(entries),
@@ -200,6 +229,7 @@ def _leaderboard(
     ]
     return _table(
         "leaderboard",
+        LeaderboardRow,
         "Leaderboard",
         "Pipelines ranked in each data set and condition; numbers of every row stand in scores.",
         rows,
@@ -211,6 +241,7 @@ def _leaderboard(
 def _pins(store: Store) -> MeasuredTable:
     return _table(
         "data",
+        Pin,
         "Generated data",
         "Hash of every generated split of every data set, and its Cramer-Rao bound.",
         [dataclasses.asdict(pin) for _, pin in sorted(store.pins().items())],
@@ -231,6 +262,7 @@ def _sweeps(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
     ]
     return _table(
         "sweeps",
+        DepositedSweep,
         "Sweeps",
         "Error of every extractor on features in closed form, with the Cramer-Rao bound.",
         named,
@@ -253,6 +285,7 @@ def _curves(
     return [
         _table(
             "curves",
+            Curve,
             "Learning curves",
             "How many calibration poses the leaders of each data set need to be within 10 % of "
             "their floor.",
@@ -262,6 +295,7 @@ def _curves(
         ),
         _table(
             "curve_points",
+            DepositedPoint,
             "Points of the learning curves",
             "Errors after so many calibration poses, over draws of poses and units of the sensor.",
             points,
@@ -274,6 +308,7 @@ def _curves(
 def _algorithms() -> MeasuredTable:
     return _table(
         "algorithms",
+        Algorithm,
         "Algorithms",
         "Every implementation of an extractor or a model.",
         [implementation.to_dict() for implementation in catalogue().implementations()],
@@ -298,6 +333,7 @@ def _datasets() -> MeasuredTable:
     ]
     return _table(
         "datasets",
+        DepositedDataset,
         "Standard data sets",
         "The simulated sensors that pipelines are scored on.",
         rows,
@@ -307,6 +343,7 @@ def _datasets() -> MeasuredTable:
 
 def _table(
     name: str,
+    model: Model,
     title: str,
     description: str,
     rows: Sequence[Mapping[str, Any]],
@@ -317,7 +354,7 @@ def _table(
     columns = list(dict.fromkeys(column for row in rows for column in row))
     cells = ([cell(taxonomy_rows(name, row.get(name))) for name in columns] for row in rows)
     text = csv_text(columns, cells)
-    described = schema(columns, f"{name}.csv", primary=primary, foreign=foreign)
+    described = schema(model, columns, primary=primary, foreign=foreign)
     return MeasuredTable(name, title, description, text, described)
 
 

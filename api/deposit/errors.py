@@ -2,51 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from benchmark.results.samples import CONDITION, DOUBTS, datasets, path_of
+from api.deposit.fields import fields
+from api.schema.samples import SampleError
+from benchmark.results.samples import (
+    COLUMNS,
+    CONDITION,
+    DIRECTION_COLUMNS,
+    DOUBTS,
+    datasets,
+    path_of,
+)
 
 FOLDER = "benchmark"
 
 Fields = tuple[dict[str, Any], ...]
 
 
-def _field(name: str, kind: str, description: str, **constraints: Any) -> dict[str, Any]:
-    return {"name": name, "type": kind, "description": description, "constraints": constraints}
+def _fields(columns: Sequence[str], **constraints: Mapping[str, Any]) -> Fields:
+    """Describe columns of the files; only numbers may be NaN."""
+    required = [name for name in columns if name not in ("error_deg", "bound_deg")]
+    made = fields(SampleError, columns, required)
+    return tuple(
+        {**one, "constraints": {**one.get("constraints", {}), **constraints.get(one["name"], {})}}
+        for one in made
+    )
 
 
 #: Columns of the errors and of the directions, in words.
-ERRORS: Fields = (
-    _field("extractor", "string", "Extractor, by its name.", required=True),
-    _field("model", "string", "Model, by its name.", required=True),
-    _field("unit", "integer", "Sensor unit; 0 is the standard unit.", required=True),
-    _field("sample", "integer", "Number of the test sample, from 0.", required=True),
-    _field(
-        "error_deg",
-        "number",
-        "Angle between answer and truth in degrees, to a part in 2,000; NaN: no answer.",
-        minimum=0,
-        maximum=180,
-    ),
-    _field(
-        "doubt",
-        "integer",
-        "; ".join(f"{code}: {meaning}" for code, meaning in DOUBTS.items()) + ".",
-        required=True,
-        enum=list(DOUBTS),
-    ),
+ERRORS: Fields = _fields(
+    tuple(COLUMNS), error_deg={"minimum": 0, "maximum": 180}, doubt={"enum": list(DOUBTS)}
 )
-DIRECTIONS: Fields = (
-    _field("sample", "integer", "Number of the test sample, from 0.", required=True),
-    *(
-        _field(f"sun_{axis}", "number", f"True unit vector to the Sun, {axis}.", required=True)
-        for axis in "xyz"
-    ),
-    _field("observable", "boolean", "Whether the readings contain the direction.", required=True),
-    _field("bound_deg", "number", "Cramer-Rao bound in degrees, of unit 0; NaN: none."),
-)
+DIRECTIONS: Fields = _fields(tuple(DIRECTION_COLUMNS))
 
 
 def write_errors(bundle: Path, published: Path) -> list[dict[str, str]]:

@@ -1,18 +1,52 @@
-"""Table schemas of the bundle's measured tables, from the data dictionary (`api.dictionary`)."""
+"""Table schemas of the bundle's tables, from the models of their rows (`api.schema`)."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-from api.dictionary import COLUMNS
+from api.schema.table import Model, described_columns
 
 TABLE_SCHEMA = "https://datapackage.org/profiles/2.0/tableschema.json"
 
 
+def fields(
+    model: Model, columns: Sequence[str], required: Collection[str] = ()
+) -> list[dict[str, Any]]:
+    """Describe columns as fields of a Table Schema.
+
+    Parameters
+    ----------
+    model : of a row
+    columns : in order
+    required : of which no cell may be empty
+
+    Raises
+    ------
+    ValueError
+        For a column that the model does not have or describe.
+    """
+    known = described_columns(model)
+    unknown = [name for name in columns if name not in known or not known[name].description]
+    if unknown:
+        raise ValueError(f"{model.__name__} does not describe column {', '.join(unknown)}")
+    made = []
+    for name in columns:
+        column = known[name]
+        field: dict[str, Any] = {
+            "name": name,
+            "type": column.type,
+            "description": column.description,
+        }
+        if name in required:
+            field["constraints"] = {"required": True}
+        made.append(field)
+    return made
+
+
 def schema(
+    model: Model,
     columns: Sequence[str],
-    where: str,
     *,
     primary: Sequence[str],
     foreign: Mapping[str, tuple[str, str]] | None = None,
@@ -21,32 +55,18 @@ def schema(
 
     Parameters
     ----------
-    columns : of the table, in order
-    where : the table's name, for messages
+    model, columns : as `fields`
     primary : columns that identify a row
     foreign : column -> (resource, column) that its values stand in
 
     Raises
     ------
     ValueError
-        For a column nothing is known of: a table does not go out half described.
+        As `fields`: a table does not go out half described.
     """
-    unknown = [name for name in columns if name not in COLUMNS]
-    if unknown:
-        raise ValueError(
-            f"{where}: no description of column {', '.join(unknown)} in api.dictionary"
-        )
-    required = {*primary, *(foreign or {})}
-    fields = []
-    for name in columns:
-        kind, description = COLUMNS[name]
-        field: dict[str, Any] = {"name": name, "type": kind, "description": description}
-        if name in required:
-            field["constraints"] = {"required": True}
-        fields.append(field)
     described: dict[str, Any] = {
         "$schema": TABLE_SCHEMA,
-        "fields": fields,
+        "fields": fields(model, columns, {*primary, *(foreign or {})}),
         "missingValues": [""],
         "primaryKey": list(primary),
     }

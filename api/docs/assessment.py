@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from functools import cache, partial
+from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 from api.docs.markdown import table as _table
 from benchmark.assessment import assess as assessment
 from benchmark.assessment.definitions import DEFINITIONS
 from benchmark.results.csv_tables import Row
-from benchmark.sweeps import plots as sweep_pictures
 from benchmark.sweeps import sweep_tables
 from benchmark.sweeps.plan import SERIES
 from benchmark.sweeps.record import swept
@@ -88,16 +87,6 @@ def features_without_measure() -> str:
         (f"`{n}`", s or "any", reason) for s, n, reason in sweep_tables.unmeasured_settings(_rows())
     ]
     return _table(("extractor", "series", "reason"), rows) if rows else "Nothing is left out."
-
-
-def _picture(sweep: str) -> str:
-    return sweep_pictures.picture(_rows(), sweep)
-
-
-#: Pictures beside the pages, by file name.
-PICTURES: Mapping[str, Callable[[], str]] = {
-    f"error-against-{sweep}.svg": partial(_picture, sweep) for sweep in sweep_pictures.DRAWN
-}
 
 
 @cache

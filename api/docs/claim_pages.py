@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from functools import cache, partial
+from functools import cache
 
-from benchmark.claims.experiment import find_experiments
 from benchmark.claims.judgement import Judgement
 from benchmark.claims.ledger import Entry, ledger, tally
-from benchmark.claims.plots import picture
+from benchmark.claims.plots import file_of
 from survey_data import labels
 
 
@@ -39,11 +37,6 @@ def trials() -> str:
     return "\n\n".join(_section(entry) for entry in _entries())
 
 
-def pictures() -> Mapping[str, Callable[[], str]]:
-    """Return what draws the plot of each claim that was measured."""
-    return {_picture(entry): partial(_draw, entry) for entry in _entries() if _has_plot(entry)}
-
-
 @cache
 def _entries() -> tuple[Entry, ...]:
     return ledger()
@@ -67,7 +60,7 @@ def _section(entry: Entry) -> str:
         if others:
             lines.append("\n".join(others))
     if _has_plot(entry):
-        lines.append(f"![{said.up} against {said.across}]({_picture(entry)})")
+        lines.append(f"![{said.up} against {said.across}]({file_of(said.id)})")
     return "\n\n".join(lines)
 
 
@@ -88,13 +81,3 @@ def _link(entry: Entry) -> str:
 
 def _has_plot(entry: Entry) -> bool:
     return entry.outcome is not None and bool(entry.outcome.lines)
-
-
-def _picture(entry: Entry) -> str:
-    return f"claims/{entry.claim.id}.svg"
-
-
-def _draw(entry: Entry) -> str:
-    if entry.outcome is None:
-        raise ValueError(f"{entry.claim.id} was not measured: there is nothing to draw")
-    return picture(entry.claim, entry.outcome, find_experiments()[entry.claim.id].sketch)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
 from api.docs.markdown import table
-from benchmark.learning_curves import pictures, record
+from benchmark.learning_curves import record
 
 Row = Mapping[str, Any]
 
@@ -83,14 +83,6 @@ def leaders_short_of_poses() -> str:
         *("error with all, by unit (deg)", "floor (deg)"),
     )
     return table(header, rows)
-
-
-def _picture() -> str:
-    return pictures.picture(_rows())
-
-
-#: Pictures beside the page, by file name.
-PICTURES: Mapping[str, Callable[[], str]] = {"learning-curves.svg": _picture}
 
 
 @cache

@@ -31,7 +31,8 @@ from api.docs.parts import (
 from api.guide import dictionary, measured_facts, words
 from api.guide.blocks import rerun
 from benchmark.processes import call_to_end
-from benchmark.progress import told_progress
+from benchmark.progress import console_progress
+from benchmark.running.experiment import recorded
 from files.atomic import replace_file
 from files.locks import wait_for_lock
 from files.temporary import temporary_directory
@@ -127,10 +128,8 @@ def every_picture() -> Mapping[str, Make]:
     return {
         "answer.svg": front.picture,
         f"../{codemeta.NAME}": lambda: codemeta.codemeta_text(identity().citation),
-        **assessment.PICTURES,
-        **curves.PICTURES,
         **model_pages.pictures(),
-        **claim_pages.pictures(),
+        **{name: draw for kind in recorded().values() for name, draw in kind().pictures().items()},
     }
 
 
@@ -198,7 +197,7 @@ def regenerate(directory: Path = DIRECTORY, *, write: bool = True) -> list[str]:
     made |= {page: partial(_rerun, page, directory) for page in RUN}
     made |= every_picture()
     behind = {}
-    with told_progress("documenting") as report:
+    with console_progress("documenting") as report:
         for done, (name, make) in enumerate(made.items()):
             report(done, len(made), name)
             path, new = directory / name, make()

@@ -13,6 +13,7 @@ from api.figures.flow_figures import CHAINS, flow_figure
 from api.figures.matrix import matrix_figure
 from api.figures.publications import publications_figure
 from api.figures.sunburst import sunburst_figure
+from api.schema.figures import COLUMNS, ROWS
 from registry.catalogue import catalogue
 from registry.evidence import Evidence
 from registry.flows import Where
@@ -77,8 +78,8 @@ def figure(
 def evidence_map(
     facts: Facts,
     where: Where | None = None,
-    rows: str = matrix.ROWS,
-    columns: str = matrix.COLUMNS_OF,
+    rows: str = ROWS,
+    columns: str = COLUMNS,
     page: str | None = None,
     *,
     evidence: Evidence | None = None,

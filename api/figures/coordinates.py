@@ -6,11 +6,12 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from api import columns as table_columns
 from api.figures import wording
 from api.figures.addresses import Addresses
 from api.figures.coordinates_svg import Axis, Polyline, Tick, draw_coordinates
 from api.figures.figure import Entry, Figure
+from api.schema.figures import SensorRow
+from api.schema.table import columns_of
 from registry.flows import LeftOut, Where, allowed_values, flows
 from registry.studies import Facts, Study
 from survey_data.reported import QUANTITIES, UNSPECIFIED, reported_accuracies
@@ -61,7 +62,7 @@ def coordinates_figure(facts: Facts, addresses: Addresses, where: Where) -> Figu
         text=_text(studies, rows),
         studies=len(studies),
         left_out=left_out,
-        columns=table_columns.FIGURE_COORDINATES,
+        columns=columns_of(SensorRow),
         rows=tuple(rows),
         draw=lambda width: draw_coordinates(axes, lines, entries, width),
     )

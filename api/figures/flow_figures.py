@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from api import columns as table_columns
 from api.figures import wording
 from api.figures.addresses import Addresses
 from api.figures.figure import Figure, in_words
 from api.figures.sankey_svg import Mark, SankeyMarks, draw_sankey
+from api.schema.figures import FlowRow
+from api.schema.table import columns_of
 from registry.flows import Flows, Node, Where, flows
 from registry.studies import Facts
 
@@ -121,7 +122,7 @@ def flow_figure(name: str, facts: Facts, addresses: Addresses, where: Where) -> 
         text=_text(found, facts),
         studies=len(found.studies),
         left_out=found.left_out,
-        columns=table_columns.FIGURE_FLOWS,
+        columns=columns_of(FlowRow),
         rows=tuple(rows),
         draw=lambda width: draw_sankey(drawn, width),
     )

@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from api import columns as table_columns
 from api.figures import wording
 from api.figures.addresses import Addresses
 from api.figures.figure import Entry, Figure, in_words
 from api.figures.matrix_svg import Cell, Line, draw_matrix
 from api.pages.addresses import architecture_page, dataset_page
+from api.schema.figures import PairRow
+from api.schema.table import columns_of
 from registry.evidence import Evidence, PairEvidence, PipelineRun, count
 from registry.flows import LeftOut, Node, Where, allowed_values, flows
 from registry.possibility import RULE, Value
@@ -23,8 +24,6 @@ from registry.taxonomy import Taxonomy, attribute_of, unknown_name
 
 NAME = "matrix"
 TITLE = "Evidence map"
-ROWS, COLUMNS_OF = "detector", "mask"
-"""What is shown where nothing else is asked for."""
 
 
 def matrix_figure(
@@ -109,7 +108,7 @@ def matrix_figure(
         text=_text(table, lines[rows], lines[columns], heads, left_out),
         studies=len(found.studies),
         left_out=left_out,
-        columns=table_columns.FIGURE_MATRIX,
+        columns=columns_of(PairRow),
         rows=tuple(table),
         draw=lambda width: draw_matrix(
             lines[rows], lines[columns], cells, heads, _legend(table), width=width

@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
 
-from api import columns as table_columns
 from api.figures import svg, wording
 from api.figures.addresses import Addresses
 from api.figures.bars import Bar, Part, horizontal_bars, upright_bars
@@ -15,6 +14,8 @@ from api.figures.figure import Entry, Figure
 from api.figures.legend import legend
 from api.figures.lettering import line_height
 from api.figures.svg import BODY, SMALL, Drawing
+from api.schema.figures import PublicationRow
+from api.schema.table import columns_of
 from registry.flows import Where, flows
 from registry.studies import Facts, Study
 
@@ -89,7 +90,7 @@ def publications_figure(facts: Facts, addresses: Addresses, where: Where) -> Fig
         text=_text(dated, years, rows),
         studies=len(studies),
         left_out=(),
-        columns=table_columns.FIGURE_PUBLICATIONS,
+        columns=columns_of(PublicationRow),
         rows=tuple(rows),
         draw=draw,
     )

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from api import columns as table_columns
 from api.figures import wording
 from api.figures.addresses import Addresses
 from api.figures.figure import Figure
 from api.figures.sunburst_svg import Sector, draw_sunburst
+from api.schema.figures import ArcRow
+from api.schema.table import columns_of
 from registry.flows import Where, flows
 from registry.studies import Facts
 from registry.taxonomy import NO_IMPLEMENTATION_STATED
@@ -96,7 +97,7 @@ def sunburst_figure(facts: Facts, addresses: Addresses, where: Where) -> Figure:
         text=_text(sectors, len(found.studies)),
         studies=len(found.studies),
         left_out=found.left_out,
-        columns=table_columns.FIGURE_MODELS,
+        columns=columns_of(ArcRow),
         rows=tuple(rows),
         draw=lambda width: draw_sunburst(sectors, width),
     )

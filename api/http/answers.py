@@ -12,7 +12,6 @@ from fastapi.routing import APIRoute
 from pydantic_core import to_json
 
 from api import citations
-from api.columns import csv_of, flat
 from api.http.negotiation import (
     CITATIONS,
     CONTENT_TYPES,
@@ -27,6 +26,7 @@ from api.http.pagination import Page
 from api.http.problems import Problem, Violation
 from api.http.representations import Representation, RepresentationCache
 from api.http.requests import StrictRequest
+from api.schema.table import csv_of, flat
 
 Row = Mapping[str, Any]
 

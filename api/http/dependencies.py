@@ -10,8 +10,8 @@ from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, ValidationError
 
 from api.http.knowledge import Knowledge
-from api.http.models.base import NoParameters, OnlyFormat
 from api.http.negotiation import JSON, media_type
+from api.schema.base import NoParameters, OnlyFormat
 
 Asked = TypeVar("Asked", bound=BaseModel)
 

@@ -9,9 +9,10 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 import survey_data
-from api.columns import ADVICE
 from api.http.measurements import Measurements
 from api.previews import Pictures
+from api.schema.advice import Advice
+from api.schema.table import columns_of
 from api.search.entries import entries
 from api.search.index import Index
 from files.manifest import manifest_digest
@@ -101,8 +102,9 @@ class Knowledge:
         """What the survey advises, and where it says errors are met; empty where it leaves open."""
         table = survey_data.load().advice.rename(columns={"survey_section": "section"}).fillna("")
         table["section_name"] = table["section"].map(labels.name)
-        rows = table[list(ADVICE)].itertuples(index=False)
-        return [dict(zip(ADVICE, map(str, row), strict=True)) for row in rows]
+        names = columns_of(Advice)
+        rows = table[list(names)].itertuples(index=False)
+        return [dict(zip(names, map(str, row), strict=True)) for row in rows]
 
     @cached_property
     def pictures(self) -> Pictures:

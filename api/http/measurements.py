@@ -7,8 +7,9 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from api.columns import SAMPLE_ERRORS
 from api.deposit.identity import version
+from api.schema.samples import SampleError
+from api.schema.table import columns_of
 from benchmark.datasets.pins import Pin
 from benchmark.leaderboard.board import build
 from benchmark.leaderboard.scope import Studied, studies_of_pipelines
@@ -259,7 +260,7 @@ class Measurements:
             try:
                 found = samples.read_samples(dataset, directory)
             except FileNotFoundError:
-                return pd.DataFrame(columns=list(SAMPLE_ERRORS))
+                return pd.DataFrame(columns=list(columns_of(SampleError)))
             return found.merge(samples.read_directions(dataset, directory), on="sample", how="left")
 
         return read

@@ -16,10 +16,10 @@ from fastapi.routing import APIRoute
 from api.http.answers import Answer, AnswerRoute, CitedAnswer
 from api.http.asking import ask
 from api.http.knowledge import Knowledge
-from api.http.models.problems import ProblemDocument
 from api.http.negotiation import CITATIONS, CSV, JSON
 from api.http.problems import MEDIA_TYPE, Problem
 from api.http.refusals import asked_models, refusal, schemas
+from api.schema.service import ProblemDocument
 from files.csv_writing import csv_text
 
 LONGEST_TEXT = 160  # characters of a text in an example

@@ -12,9 +12,9 @@ from typing import Any, Generic, TypeVar
 from urllib.parse import urlencode
 
 from api.cells import cell
-from api.columns import flat
-from api.http.models.base import Paged, Question
 from api.http.problems import Problem, Violation
+from api.schema.base import Paged, Question
+from api.schema.table import flat
 
 Row = TypeVar("Row")
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from api.columns import SAMPLE_ERRORS
 from api.http.measurements import Measurements
-from api.http.models.samples import SampleErrorsQuery
+from api.schema.samples import SampleError, SampleErrorsQuery
+from api.schema.table import columns_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,12 +25,13 @@ def choose(measured: Measurements, dataset: str, query: SampleErrorsQuery) -> pd
 
 
 def rows_of(errors: pd.DataFrame) -> list[dict[str, Any]]:
-    """Return errors as rows of `SAMPLE_ERRORS`, None for NaN."""
+    """Return errors as rows of `SampleError`, None for NaN."""
+    names = columns_of(SampleError)
     columns = [
         [_format_value(value, _DIGITS.get(name)) for value in errors[name].tolist()]
-        for name in SAMPLE_ERRORS
+        for name in names
     ]
-    return [dict(zip(SAMPLE_ERRORS, row, strict=True)) for row in zip(*columns, strict=True)]
+    return [dict(zip(names, row, strict=True)) for row in zip(*columns, strict=True)]
 
 
 def _format_value(value: Any, digits: int | None) -> Any:

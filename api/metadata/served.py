@@ -5,36 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from api import columns
 from api.deposit.errors import DIRECTIONS, ERRORS
 from api.deposit.identity import Identity
-from api.dictionary import COLUMNS
 from api.metadata.croissant import PARQUET, Column, DatasetDescription, File, Table
+from api.schema.datasets import Data
+from api.schema.scores import LeaderboardRow
+from api.schema.table import Model, described_columns
 from benchmark.results import samples
 
 CSV = ("text/csv",)
 SUBJECTS = ("sun sensor", "calibration", "simulation", "benchmark")
-#: Columns of the leaderboard that the deposit's tables do not have, or name otherwise.
-RANKED: Mapping[str, tuple[str, str]] = {
-    "best_of_extractor": (
-        "boolean",
-        "Whether no other pipeline of its extractor ranks before it in the condition.",
-    ),
-    "studies": (
-        "string",
-        "Mapped studies that used the pipeline on such a sensor, separated by semicolons.",
-    ),
-    "latency_us": (
-        "number",
-        "Extraction and prediction of one sample on the machine that serves, microseconds.",
-    ),
-    "time_ratio": ("number", "Time divided by that of a reference method."),
-    "field_deg": ("number", "Angle of the boresight that the error is over; empty: not asked."),
-    "field_rms_deg": ("number", "Root mean square error over that field; empty: not asked."),
-    "widest_field_deg": ("number", "Widest field that keeps an error; empty: not asked."),
-}
-
-
 #: What is measured on a data set, by the names of columns.
 MEASURED: Mapping[str, str] = {
     field["name"]: field["description"]
@@ -130,8 +110,7 @@ def table_of_data(content: bytes, name: str, base: str) -> tuple[File, Table]:
         "Hash of each split in each condition, and its Cramer-Rao bound.",
     )
     said = "A split of the data set in a condition."
-    known = [(column, *COLUMNS[column]) for column in columns.DATASET]
-    return file, Table("splits", file.name, said, known, ("condition", "split"))
+    return file, Table("splits", file.name, said, _columns_of(Data), ("condition", "split"))
 
 
 def table_of_ranks(content: bytes, base: str) -> tuple[File, Table]:
@@ -149,12 +128,19 @@ def table_of_ranks(content: bytes, base: str) -> tuple[File, Table]:
         CSV,
         "Every pipeline on every data set and condition, ranked.",
     )
-    known: Sequence[Column] = [
-        (column, *(RANKED.get(column) or COLUMNS[column])) for column in columns.LEADERBOARD
-    ]
     key = ("dataset", "condition", "extractor", "model")
-    return file, Table("ranks", file.name, "A pipeline on a data set in a condition.", known, key)
+    return file, Table(
+        "ranks",
+        file.name,
+        "A pipeline on a data set in a condition.",
+        _columns_of(LeaderboardRow),
+        key,
+    )
 
 
 def _columns(fields: Sequence[Mapping[str, Any]]) -> list[Column]:
     return [(one["name"], one["type"], one["description"]) for one in fields]
+
+
+def _columns_of(model: Model) -> list[Column]:
+    return [(one.name, one.type, one.description) for one in described_columns(model).values()]

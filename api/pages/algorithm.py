@@ -13,8 +13,6 @@ from api.deposit.identity import identity
 from api.http.answers import Answer
 from api.http.dependencies import Known
 from api.http.knowledge import Knowledge
-from api.http.models.algorithms import Algorithm, AlgorithmsQuery
-from api.http.models.parameters import OneOf
 from api.http.routers import algorithms as service
 from api.metadata import schema_org
 from api.metadata.signposting import landing_of_algorithm
@@ -23,6 +21,8 @@ from api.pages.methods import docstring_parts
 from api.pages.plots.line_chart import Line, LineChart
 from api.pages.serving import PageRouter, View
 from api.pages.terms import term_name
+from api.schema.algorithms import Algorithm, AlgorithmsQuery
+from api.schema.parameters import OneOf
 from registry.catalogue import Implementation, catalogue
 
 router = PageRouter()

@@ -8,12 +8,10 @@ from typing import Any
 from fastapi import Request
 from pydantic import ValidationError
 
-from api.columns import RECOMMENDATIONS
 from api.deposit.identity import identity
 from api.http.answers import Answer
 from api.http.dependencies import Known
 from api.http.knowledge import Knowledge
-from api.http.models.recommendations import RequirementsQuery
 from api.http.problems import Problem
 from api.http.refusals import refusal
 from api.http.routers import recommendations as service
@@ -24,6 +22,9 @@ from api.pages.editions import edition_shown
 from api.pages.plots.scatter import Point, Scatter
 from api.pages.serving import PageRouter, View
 from api.pages.study import NAMES
+from api.schema.recommendations import RecommendationRow
+from api.schema.requirements import RequirementsQuery
+from api.schema.table import columns_of
 from registry.requirements import HAZARDS, LIMITS, SETTINGS
 from registry.taxonomy import ATTRIBUTES
 
@@ -135,7 +136,7 @@ def _ask(fields: Sequence[tuple[str, str]]) -> RequirementsQuery:
 
 
 def _nothing() -> Answer:
-    return Answer({"architectures": [], "count": 0}, RECOMMENDATIONS, list)
+    return Answer({"architectures": [], "count": 0}, columns_of(RecommendationRow), list)
 
 
 def _parts(known: Knowledge) -> dict[str, Any]:

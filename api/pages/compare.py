@@ -12,14 +12,14 @@ from api.comparing import MOST, SEPARATOR, compare_architectures, compare_pipeli
 from api.http.answers import Answer
 from api.http.dependencies import Known
 from api.http.knowledge import Knowledge
-from api.http.models import words
-from api.http.models.parameters import GIVEN, Several, several
-from api.http.models.studies import OfEdition
 from api.http.problems import Problem, Violation
 from api.pages.editions import edition_shown
 from api.pages.plots.line_chart import Line, LineChart
 from api.pages.sensors import best_built
 from api.pages.serving import PageRouter, View
+from api.schema import words
+from api.schema.parameters import GIVEN, Several, several
+from api.schema.studies import OfEdition
 from benchmark.metrics.score import AVAILABLE
 from registry.taxonomy import InvalidValueError
 

@@ -12,10 +12,6 @@ from api.deposit.identity import identity
 from api.http.answers import Answer
 from api.http.dependencies import Known
 from api.http.knowledge import Knowledge
-from api.http.models import words
-from api.http.models.base import Question
-from api.http.models.datasets import DatasetsQuery
-from api.http.models.parameters import GIVEN
 from api.http.problems import Problem, Violation
 from api.http.routers import datasets as service
 from api.http.routers.metadata import landing_of_dataset
@@ -25,6 +21,10 @@ from api.pages import boards
 from api.pages.plots.heat import heat_map
 from api.pages.plots.line_chart import Line, LineChart
 from api.pages.serving import PageRouter, View
+from api.schema import words
+from api.schema.base import Question
+from api.schema.datasets import DatasetsQuery
+from api.schema.parameters import GIVEN
 from benchmark.error_budget import sentences
 from benchmark.error_budget.record import RECORD as ERROR_BUDGET
 from benchmark.leaderboard.architectures import architectures as best_of_each

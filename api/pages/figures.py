@@ -17,14 +17,14 @@ from api.figures.statements import number_of_studies, statements
 from api.http.answers import Handler, StrictRoute
 from api.http.dependencies import NO_PARAMETERS, Known
 from api.http.knowledge import Knowledge
-from api.http.models.figures import FigureName, FigureQuery, MatrixQuery
-from api.http.models.studies import StudyFilters
 from api.http.negotiation import media_type
 from api.http.representations import Representation, RepresentationCache
 from api.http.routers import figures as told
 from api.pages.editions import edition_shown
 from api.pages.numbers import degrees, kind_said, wide
 from api.pages.serving import PageRouter, View
+from api.schema.figures import FigureName, FigureQuery, MatrixQuery
+from api.schema.studies import StudyFilters
 from registry.taxonomy import ATTRIBUTES, LEVELS
 from survey_data.reported import QUANTITIES
 
@@ -108,7 +108,7 @@ async def figure(
     request: Request,
 ) -> View:
     """One figure of the survey."""
-    found = drawn(figure, known.of(query.edition).facts, query.wanted(), _page(request))
+    found = drawn(figure, known.of(query.edition).facts, query.by_attribute(), _page(request))
     return _view(known, found, query, request, chosen={}, gaps={})
 
 
@@ -128,7 +128,9 @@ async def figure_drawing(
     request: Request,
 ) -> Response:
     """Give a figure as a drawing."""
-    return _document(drawn(figure, known.of(query.edition).facts, query.wanted(), _page(request)))
+    return _document(
+        drawn(figure, known.of(query.edition).facts, query.by_attribute(), _page(request))
+    )
 
 
 @specifications.get(f"/figures/{MATRIX}{PLOTLY}", response_class=Response)
@@ -145,11 +147,11 @@ async def figure_specification(
 ) -> Response:
     """Give a figure for Plotly."""
     studies = known.of(query.edition).facts
-    return Response(specification(drawn(figure, studies, query.wanted())))
+    return Response(specification(drawn(figure, studies, query.by_attribute())))
 
 
 def _matrix(known: Knowledge, query: MatrixQuery, request: Request) -> Figure:
-    asked = (query.wanted(), query.rows, query.columns, _page(request))
+    asked = (query.by_attribute(), query.rows, query.columns, _page(request))
     return evidence_map(known.of(query.edition).facts, *asked, evidence=known.evidence)
 
 
@@ -175,10 +177,10 @@ def _view(
         for at, row in enumerate(found.rows)
         if row["studies"]
     ]
-    whole = not query.wanted() and query.edition == "survey"
+    whole = not query.by_attribute() and query.edition == "survey"
     return View(
         "figure.html",
-        told.answered(found),
+        told.answer_of(found),
         figure=found,
         abbreviations=_abbreviations(known, found),
         rows=rows,

@@ -8,16 +8,17 @@ from typing import Annotated, Any, Literal
 from fastapi import Query
 from pydantic import Field
 
-from api.columns import ARCHITECTURES
 from api.deposit.identity import identity
 from api.http.answers import Answer
 from api.http.dependencies import Known
-from api.http.models.base import Question
-from api.http.models.parameters import GIVEN
 from api.metadata import schema_org
 from api.metadata.signposting import landing_of_record
 from api.pages.sensors import best_built
 from api.pages.serving import PageRouter, View
+from api.schema.base import Question
+from api.schema.boards import BestOfArchitecture
+from api.schema.parameters import GIVEN
+from api.schema.table import columns_of
 from benchmark.leaderboard.overview import ROLES, overview
 from benchmark.leaderboard.summaries import tally
 
@@ -49,7 +50,7 @@ async def leaderboard(known: Known, query: Annotated[LeaderboardQuery, Query()])
     landing = landing_of_record(identity())
     return View(
         "leaderboard.html",
-        Answer(document, ARCHITECTURES, lambda: rows),
+        Answer(document, columns_of(BestOfArchitecture), lambda: rows),
         landing=landing,
         entity=schema_org.record(identity(), landing, known.measurements.digest),
         order=order,

@@ -10,6 +10,7 @@ from api.pages import (
     claim,
     compare,
     dataset,
+    experiments,
     figures,
     glossary_page,
     leaderboard,
@@ -23,9 +24,10 @@ ROUTERS = (
         kind.router
         for kind in (
             *(answer, study, algorithm, dataset, sensors, claim, compare, search),
-            *(glossary_page, leaderboard, bibliography, calibrate),
+            *(glossary_page, leaderboard, bibliography, calibrate, experiments),
         )
     ),
     *figures.ROUTERS,
+    experiments.pictures,
 )
 """Routers of every kind of page."""

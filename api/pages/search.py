@@ -9,11 +9,11 @@ from pydantic import Field
 
 from api.http.answers import Answer
 from api.http.dependencies import Known
-from api.http.models.base import Question
-from api.http.models.parameters import GIVEN, Several, several
 from api.pages import addresses
 from api.pages.serving import PageRouter, View
 from api.pages.terms import glossary
+from api.schema.base import Question
+from api.schema.parameters import GIVEN, Several, several
 from api.search.entries import KINDS
 from api.search.index import Entry
 from registry.taxonomy import ATTRIBUTES

@@ -11,13 +11,13 @@ from fastapi import Path, Query, Request
 from api.http.answers import Answer
 from api.http.dependencies import Known
 from api.http.knowledge import Knowledge
-from api.http.models import words
-from api.http.models.recommendations import RequirementsQuery
-from api.http.models.studies import OfEdition
 from api.http.routers import recommendations as service
 from api.pages import boards
 from api.pages.editions import edition_shown
 from api.pages.serving import PageRouter, View
+from api.schema import words
+from api.schema.requirements import RequirementsQuery
+from api.schema.studies import OfEdition
 from benchmark.leaderboard.architectures import architectures
 from registry.studies import Study
 

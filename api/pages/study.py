@@ -8,14 +8,14 @@ from fastapi import Path, Query, Request
 from pydantic import Field
 
 from api.http.dependencies import Known
-from api.http.models.parameters import GIVEN
-from api.http.models.studies import StudiesQuery
-from api.http.models.words import StudyKey
 from api.http.routers import studies as told
 from api.metadata import schema_org
 from api.metadata.signposting import landing_of_study
 from api.pages.editions import edition_shown
 from api.pages.serving import PageRouter, View
+from api.schema.parameters import GIVEN
+from api.schema.studies import StudiesQuery
+from api.schema.words import StudyKey
 from registry.fidelity.grading import GRADES as IN_WORDS
 from registry.fidelity.grading import TALLIED, tally_text
 from registry.fidelity.purposes import PURPOSES

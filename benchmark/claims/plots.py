@@ -23,6 +23,11 @@ _MARKS = "os^Dv*P"
 _SIZE_IN = (5.6, 3.4)
 
 
+def file_of(claim: str) -> str:
+    """Return the path of a claim's picture in `docs`."""
+    return f"claims/{claim}.svg"
+
+
 def picture(claim: Claim, outcome: Outcome, sketch: Sketch) -> str:
     """Draw the lines of an outcome as SVG: median over the trials, and their extremes shaded."""
     return svg(lambda: figure(claim, outcome, sketch), f"{claim.id}: {claim.statement}")

@@ -26,11 +26,11 @@ from benchmark.running.threads import one_thread
 from benchmark.simulator.light.memory import memory
 
 #: What a calibration is told: features, Suns, context.
-_Told = tuple[Floats, Floats, Mapping[str, NDArray[Any]] | None]
+_CalibrationData = tuple[Floats, Floats, Mapping[str, NDArray[Any]] | None]
 
 
 @dataclass(frozen=True)
-class Held:
+class VariantErrors:
     """Errors of one pipeline on one data set, root mean square in degrees.
 
     Attributes
@@ -46,14 +46,14 @@ class Held:
     judged: int
 
 
-def held(
+def score_variants(
     preset: Preset,
     condition: str,
     extractor: type[Extractor],
     model: Scored,
     *,
     all_observable: bool = False,
-) -> Held:
+) -> VariantErrors:
     """Score a pipeline as it is, with parts of the chain made perfect, and with two made worse.
 
     As it is, the calibration has the true directions of its poses, and readings are corrected by
@@ -233,10 +233,10 @@ class _Chain:
         beside = samples.context if context is None else context(self._condition, split)
         return replace(samples, observations=read, context=beside)
 
-    def _seen(self, samples: Samples, by: ReferenceCorrection | None) -> _Told:
+    def _seen(self, samples: Samples, by: ReferenceCorrection | None) -> _CalibrationData:
         return features_of(self._extractor, samples, by), samples.truth, samples.context
 
-    def _answers(self, known: Sequence[_Told], asked: _Told) -> Floats | None:
+    def _answers(self, known: Sequence[_CalibrationData], asked: _CalibrationData) -> Floats | None:
         """Return directions (N, 3) by a model fitted to all that is known; None if it refuses."""
         model = self._model.for_sensor(self._geometry, self._extractor.about.kind)
         pipeline = Pipeline(self._extractor, model)
@@ -254,7 +254,7 @@ class _Chain:
 _SPLITS = ("calibration", "test")
 
 
-def _judged(errors: Mapping[str, Floats], observable: NDArray[np.bool_]) -> Held:
+def _judged(errors: Mapping[str, Floats], observable: NDArray[np.bool_]) -> VariantErrors:
     judged = np.logical_and.reduce([observable, *map(np.isfinite, errors.values())])
     pooled = {name: float(np.sqrt(np.mean(error[judged] ** 2))) for name, error in errors.items()}
-    return Held({name: pooled.get(name) for name in VARIANTS}, int(judged.sum()))
+    return VariantErrors({name: pooled.get(name) for name in VARIANTS}, int(judged.sum()))

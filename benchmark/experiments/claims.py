@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 from benchmark.claims.experiment import find_experiments
 from benchmark.claims.outcomes import RECORD, outcome_of, outcome_of_row, plan_digest, row_of
+from benchmark.claims.plots import file_of, picture
 from benchmark.claims.rules import FIRST_TRIAL, claims
 from benchmark.claims.verification import contradictions
 from benchmark.results.closure import closure_digest
@@ -22,6 +24,7 @@ class Claims(Recorded[str]):
     """
 
     name = "claims"
+    title = "Claims of the survey"
     record = RECORD
 
     def keys(self) -> Mapping[str, str]:
@@ -40,6 +43,18 @@ class Claims(Recorded[str]):
         if outcome.code != code:
             return "code changed"
         return next(contradictions(claims()[row["claim"]], outcome), "")
+
+    def pictures(self) -> Mapping[str, Callable[[], str]]:
+        """Draw each claim that has lines: median and extremes over its trials."""
+        return {
+            file_of(name): partial(self._draw, name)
+            for name, row in self.record.read(self.directory).items()
+            if row["lines"]
+        }
+
+    def _draw(self, name: str) -> str:
+        outcome = outcome_of_row(self.record.read(self.directory)[name])
+        return picture(claims()[name], outcome, find_experiments()[name].sketch)
 
     def tasks(self, cells: Sequence[str]) -> Sequence[str]:
         """Make a task of each claim."""

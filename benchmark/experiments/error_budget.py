@@ -12,7 +12,7 @@ from algorithms.chain import Scored
 from algorithms.contract import Extractor
 from benchmark.contract import Cell
 from benchmark.datasets.preset import Preset
-from benchmark.error_budget.measure import held
+from benchmark.error_budget.measure import score_variants
 from benchmark.error_budget.record import RECORD, SCORE
 from benchmark.metrics.ranking import order
 from benchmark.metrics.score import store
@@ -45,6 +45,7 @@ class ErrorBudget(Recorded[str]):
     """A row of each data set, by its name: of the score, on the standard unit, that leads it."""
 
     name = "error_budget"
+    title = "Error budget"
     record = RECORD
 
     @cached_property
@@ -88,7 +89,7 @@ class ErrorBudget(Recorded[str]):
     def measure(task: Task) -> list[tuple[str, Row]]:
         """Measure every variant of the chain (`benchmark.error_budget.variants`)."""
         score = task.score
-        found = held(
+        found = score_variants(
             task.preset,
             score["condition"],
             task.extractor,

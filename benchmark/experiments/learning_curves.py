@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby
 
 from benchmark.contract import Cell
+from benchmark.learning_curves import plots
 from benchmark.learning_curves.leaders import Leader, leaders
 from benchmark.learning_curves.measure import Task, measure
 from benchmark.learning_curves.outcome import row_of
-from benchmark.learning_curves.record import RECORD
+from benchmark.learning_curves.record import RECORD, published_curves
 from benchmark.results.closure import closure_digest
 from benchmark.results.components import current
 from benchmark.results.digests import short_digest
@@ -29,6 +30,7 @@ class LearningCurves(Recorded[Leader]):
     """A curve for the leaders of every data set, by the scores of the record."""
 
     name = "learning_curves"
+    title = "Learning curves"
     record = RECORD
 
     @cached_property
@@ -59,6 +61,14 @@ class LearningCurves(Recorded[Leader]):
             )
             for leader in wanted
         }
+
+    def pictures(self) -> Mapping[str, Callable[[], str]]:
+        """Draw the curves, a panel a data set."""
+        return {"learning-curves.svg": lambda: plots.picture(self.rows())}
+
+    def rows(self) -> list[Row]:
+        """Return the curves in order, with what follows from their points."""
+        return published_curves(self.directory)
 
     def name_of(self, cell: Leader) -> str:
         """Return the data set: its leaders are measured together."""

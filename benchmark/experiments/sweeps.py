@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property, partial
 from itertools import groupby
 
 from benchmark.results.closure import closure_digest
@@ -11,6 +11,7 @@ from benchmark.results.components import current
 from benchmark.results.digests import series_digest, short_digest
 from benchmark.results.row_file import Row
 from benchmark.running.experiment import Recorded
+from benchmark.sweeps import plots
 from benchmark.sweeps.measure import Task, measure
 from benchmark.sweeps.plan import SERIES, SweepPlan, plan_points
 from benchmark.sweeps.points import Point
@@ -29,6 +30,7 @@ class Sweeps(Recorded[Point]):
     """A row of every extractor at each point of the series that it fits, and why not elsewhere."""
 
     name = "sweeps"
+    title = "Sweeps on synthetic features"
     record = RECORD
 
     @cached_property
@@ -59,6 +61,13 @@ class Sweeps(Recorded[Point]):
         if (row["reason"] != reason) if reason else (not row["n"]):
             return "refused otherwise"
         return super().outdated(row, key)
+
+    def pictures(self) -> Mapping[str, Callable[[], str]]:
+        """Draw error against noise, size and phase."""
+        return {f"error-against-{sweep}.svg": partial(self._draw, sweep) for sweep in plots.DRAWN}
+
+    def _draw(self, sweep: str) -> str:
+        return plots.picture(self.rows(), sweep)
 
     def name_of(self, cell: Point) -> str:
         """Return the extractor."""

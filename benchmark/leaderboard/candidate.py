@@ -27,7 +27,7 @@ class UnfitError(LookupError):
 
 
 @dataclass(frozen=True)
-class Ranked:
+class Ranking:
     """The board of a data set's first condition with one algorithm on it.
 
     Attributes
@@ -59,7 +59,7 @@ class Ranked:
         return (row["extractor"], row["model"]) in self.pipelines
 
 
-def ranked(
+def rank(
     name: str,
     dataset: str,
     record: Store,
@@ -68,7 +68,7 @@ def ranked(
     workers: int = 1,
     progress: ProgressCallback | None = None,
     parts: Parts | None = None,
-) -> Ranked:
+) -> Ranking:
     """Score the pipelines with one algorithm and rank them among those of the record.
 
     Parameters
@@ -131,7 +131,7 @@ def ranked(
         *_rows(work, wanted - kept),
     ]
     board = build(rows, studied=scope.studies_of_pipelines(), pins=record.pins())
-    return Ranked(board, pipelines, measured, _scope(len(own), best, chosen))
+    return Ranking(board, pipelines, measured, _scope(len(own), best, chosen))
 
 
 def _own_cells(name: str, dataset: str, condition: str, parts: Parts) -> list[Cell]:

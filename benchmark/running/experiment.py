@@ -2,9 +2,9 @@
 
 An experiment is a module of `benchmark.experiments` with one class: its *cells* (what is to be
 measured), its *measure* (numbers of some cells that share work, in one worker) and either a file of
-the record, in which a row stays until the digest of what it depends on changes (`Recorded`), or
-lines that are printed (`Report`). Rows depend on the cell alone, never on time, machine or number
-of workers.
+the record, in which a row stays until the digest of what it depends on changes, with the *pictures*
+that are drawn of it (`Recorded`), or lines that are printed (`Report`). Rows depend on the cell
+alone, never on time, machine or number of workers.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import math
 import pkgutil
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, nullcontext
 from dataclasses import dataclass
 from functools import cached_property
@@ -101,9 +101,12 @@ class Recorded(Experiment[C]):
     ----------
     record
         The file.
+    title
+        Heading of its page.
     """
 
     record: ClassVar[RowFile[Any] | TableFile[Any]]
+    title: ClassVar[str]
 
     @abstractmethod
     def keys(self) -> Mapping[C, str]:
@@ -116,6 +119,17 @@ class Recorded(Experiment[C]):
     def outdated(self, row: Row, key: str) -> str:
         """Say why a row is not of this key; empty where it is."""
         return "" if row["key"] == key else "of other code or data"
+
+    def pictures(self) -> Mapping[str, Callable[[], str]]:
+        """Return what draws the record as SVG, by the path of the file in `docs`."""
+        return {}
+
+    def rows(self) -> list[Row]:
+        """Return the rows of the record in order, without digests."""
+        return [
+            {name: value for name, value in row.items() if name != "key"}
+            for row in self.record.read(self.directory).values()
+        ]
 
     def comparable(self, row: Row) -> Row:
         """Return those members of a row that another run repeats."""
@@ -168,6 +182,11 @@ def experiments() -> dict[str, type[Recorded[Any] | Report[Any]]]:
             raise ValueError(f"{info.name}: expected one experiment, got {len(defined)}")
         found[defined[0].name] = defined[0]
     return found
+
+
+def recorded() -> dict[str, type[Recorded[Any]]]:
+    """Return by name every experiment whose rows are kept."""
+    return {name: kind for name, kind in experiments().items() if issubclass(kind, Recorded)}
 
 
 def due(experiment: Recorded[C]) -> list[tuple[C, str]]:

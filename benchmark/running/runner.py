@@ -16,7 +16,7 @@ from pathlib import Path
 
 from benchmark.contract import Cell
 from benchmark.plan.parts import Parts, installed_parts
-from benchmark.processes import end_if_told
+from benchmark.processes import end_if_requested
 from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.components import Components, current
 from benchmark.results.record import Record, open_record
@@ -243,7 +243,7 @@ def _keep_all(
     """Take every finished task into the record, which is on disk before the next is awaited."""
     try:
         for result in results:
-            end_if_told()
+            end_if_requested()
             task = result.task
             scores = dict(zip(cells_of(result), numbers_of(result), strict=True))
             new = [pin for pin in result.pins if not record.is_pinned(pin.place, components)]

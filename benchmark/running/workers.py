@@ -23,7 +23,7 @@ from typing import Any, TypeVar
 from joblib.externals.loky import get_reusable_executor
 from joblib.externals.loky.backend.process import LokyProcess
 
-from benchmark.processes import end_if_told, work_for
+from benchmark.processes import end_if_requested, work_for
 from benchmark.running.cluster import WorkerLostError
 from benchmark.simulator.light.memory import memory
 from files.temporary import temporary_directory
@@ -135,7 +135,7 @@ def as_completed(
     if workers == 1:
         for item in items:
             result = work(item)
-            end_if_told()  # what a signal broke off, though a library took it, is no result
+            end_if_requested()  # what a signal broke off, though a library took it, is no result
             yield result
         return
     waiting = iter(items)

@@ -25,7 +25,7 @@ from benchmark.contract import Cell, Samples, UnknownNameError
 from benchmark.plan.combinations import cells as planned
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.processes import call_to_end
-from benchmark.progress import ProgressCallback, silent, told_progress
+from benchmark.progress import ProgressCallback, console_progress, silent
 from benchmark.results.store import Store
 from benchmark.running.condition_data import ConditionData, found_features, generate
 from benchmark.running.task import Outcome, Task, data_condition, measured_on
@@ -269,7 +269,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not asked.all:
         known = {replace(cell, unit=0) for cell in Store().scores()}
         wanted = [cell for cell in wanted if cell in known]
-    with told_progress("perturbing") as report:
+    with console_progress("perturbing") as report:
         done = search(
             wanted, parts, lambda one: sys.stdout.write(f"{one}\n"), report, draw=asked.draw
         )

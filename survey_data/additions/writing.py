@@ -14,7 +14,7 @@ from survey_data.additions.toml_lines import TomlDocument, read_toml
 from survey_data.additions.vocabulary import vocabulary
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.editions import FOLDER
-from survey_data.importing.writing import held_tables, require_valid, write_valid
+from survey_data.importing.writing import locked_tables, require_valid, write_valid
 from survey_data.problems import SurveyImportError
 from survey_data.texts import load_texts
 
@@ -172,7 +172,7 @@ def _change(
     apply: bool,
 ) -> dict[str, str]:
     """Change tables of the extension that nobody else writes meanwhile."""
-    with held_tables(folder):
+    with locked_tables(folder):
         rows = {name: _rows(folder, _table(name)) for name in (*TABLES, _VERIFICATIONS)}
         texts = {
             _table(name): csv_text(list(column_types(_table(name))), found)

@@ -16,7 +16,7 @@ from files.strict_csv import read_records
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.importing.bibliography import Entry, read_bibliography
 from survey_data.importing.text_similarity import normalise, similarity
-from survey_data.importing.writing import held_tables, write_valid
+from survey_data.importing.writing import locked_tables, write_valid
 from survey_data.problems import SurveyImportError
 from survey_data.sources import fault
 from survey_data.tables import SurveyTables, load
@@ -126,7 +126,7 @@ def import_bibliography(
     """
     folder = DATA_DIRECTORY if directory is None else Path(directory)
     entries = read_bibliography(path)
-    with held_tables(folder) if apply else nullcontext():
+    with locked_tables(folder) if apply else nullcontext():
         plan = plan_identities(load(folder), entries, Path(path).name, frozenset(replace_studies))
         if not apply or not (plan.edits or plan.settled):
             return plan

@@ -18,7 +18,7 @@ from survey_data.importing.plan import (
     require_readable,
 )
 from survey_data.importing.table_reader import read_table
-from survey_data.importing.writing import held_tables, write_valid
+from survey_data.importing.writing import locked_tables, write_valid
 from survey_data.problems import SurveyImportError
 from survey_data.tables import RESTING, SurveyTables, load
 
@@ -72,7 +72,7 @@ def import_table(
     if not apply:
         return compared()
     folder = DATA_DIRECTORY if directory is None else Path(directory)
-    with held_tables(folder):
+    with locked_tables(folder):
         return _apply(folder, compared())
 
 
@@ -103,7 +103,7 @@ def apply_import(directory: str | Path | None, plan: ImportPlan) -> ImportPlan:
         cannot be written; nothing has been written.
     """
     folder = DATA_DIRECTORY if directory is None else Path(directory)
-    with held_tables(folder):
+    with locked_tables(folder):
         return _apply(folder, plan)
 
 

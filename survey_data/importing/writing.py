@@ -17,7 +17,7 @@ from survey_data.validation.validate import validate
 
 
 @contextmanager
-def held_tables(folder: Path) -> Iterator[None]:
+def locked_tables(folder: Path) -> Iterator[None]:
     """Hold the tables from reading to writing; who else would write waits, and reads what is new.
 
     Raises

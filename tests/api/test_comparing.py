@@ -5,12 +5,13 @@ import io
 
 import pytest
 
-from api import columns, comparing
+from api import comparing
 from api.cells import cell
-from api.columns import csv_of
 from api.comparing import compare_architectures, compare_pipelines
 from api.http.knowledge import Knowledge
 from api.http.measurements import Measurements
+from api.schema.comparison import ComparedRow
+from api.schema.table import columns_of, csv_of
 from benchmark.leaderboard import architectures as module
 from registry.taxonomy import InvalidValueError
 
@@ -103,7 +104,7 @@ def test_what_is_far_finer_on_a_part_of_the_samples_stands_beside_the_best(known
     one, other = compare_architectures(known, ["CMOS:Multi-Ap.", "CMOS:Single-Ap."])["items"]
     assert one["finer"] == {name.removeprefix("finer_"): value for name, value in FINER.items()}
     assert other["finer"] is None
-    told, nothing = csv.DictReader(io.StringIO(csv_of(columns.COMPARISON, [one, other])))
+    told, nothing = csv.DictReader(io.StringIO(csv_of(columns_of(ComparedRow), [one, other])))
     assert {name: told[name] for name in FINER} == {n: cell(v) for n, v in FINER.items()}
     assert {nothing[name] for name in FINER} == {""}
 

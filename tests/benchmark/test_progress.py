@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from benchmark import processes
-from benchmark.progress import lines, time_left, told_progress
+from benchmark.progress import console_progress, lines, time_left
 
 
 @pytest.mark.parametrize(
@@ -54,14 +54,14 @@ def test_nothing_is_said_of_what_has_no_parts_or_is_done():
 
 def test_a_quiet_command_shows_nothing_even_on_a_terminal(monkeypatch, capsys):
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
-    with told_progress("building", quiet=True) as report:
+    with console_progress("building", quiet=True) as report:
         report(1, 2, "pd-slit")
     assert capsys.readouterr().err == ""
 
 
 def test_a_terminal_has_a_bar_with_the_time_that_is_left(monkeypatch, capsys):
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
-    with told_progress("building") as report:
+    with console_progress("building") as report:
         report(1, 2, "pd-slit")
     shown = capsys.readouterr().err
     assert "1/2" in shown
@@ -69,7 +69,7 @@ def test_a_terminal_has_a_bar_with_the_time_that_is_left(monkeypatch, capsys):
 
 
 def test_a_signal_that_was_lost_ends_what_is_done_at_the_next_step(monkeypatch):
-    with told_progress("building", quiet=True) as report:
+    with console_progress("building", quiet=True) as report:
         report(1, 3, "")
         monkeypatch.setattr(processes, "_told", [15])
         with pytest.raises(KeyboardInterrupt):

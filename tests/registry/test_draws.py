@@ -106,7 +106,7 @@ def test_an_error_is_judged_on_the_bench_asked_for_and_one_that_would_do_is_name
     assert [one["units"]["meeting"] for one in measured(bench_deg=0.002)] == [10]
     assert measured() == []
     only = {"max_error_deg": 0.0042, "detector": "CMOS", "mask": "Single-Ap.", "survive": []}
-    assert row.judged(draws=(None, 0.9)).error_deg > 0.0158
+    assert row.judge(draws=(None, 0.9)).error_deg > 0.0158
     blocked = recommend({**only, "min_availability": 0.5}, [row]).blocked
     assert blocked is not None
     assert "bench good to" in blocked.detail

@@ -119,14 +119,14 @@ def test_what_is_left_out_or_changed_leaves_the_rest(survey: Facts) -> None:
     rest = {"exclude_mask": ["Lens", "Encoded"], "min_fov_deg": 90.0}
     assert asked.without("mask", "max_error_deg").to_dict() == rest
     assert asked.without("task").to_dict() == asked.to_dict()
-    assert asked.changed("exclude_mask", ("Lens",)).to_dict()["exclude_mask"] == ["Lens"]
-    assert asked.changed("exclude_mask", ("Lens",)).include == asked.include
-    assert asked.changed("exclude_mask", ()).names == ("mask", "max_error_deg", "min_fov_deg")
-    assert asked.changed("mask", ("Encoded",)).to_dict()["mask"] == ["Encoded"]
-    assert asked.changed("mask", ("Encoded",)).exclude == asked.exclude
-    assert asked.changed("max_error_deg", 2.0).limit("max_error_deg") == 2.0
-    assert asked.changed("survive", ("spin",)).names[-1] == "survive"
-    assert asked.changed("survive", ("spin",)).without("survive") == asked
+    assert asked.with_value("exclude_mask", ("Lens",)).to_dict()["exclude_mask"] == ["Lens"]
+    assert asked.with_value("exclude_mask", ("Lens",)).include == asked.include
+    assert asked.with_value("exclude_mask", ()).names == ("mask", "max_error_deg", "min_fov_deg")
+    assert asked.with_value("mask", ("Encoded",)).to_dict()["mask"] == ["Encoded"]
+    assert asked.with_value("mask", ("Encoded",)).exclude == asked.exclude
+    assert asked.with_value("max_error_deg", 2.0).limit("max_error_deg") == 2.0
+    assert asked.with_value("survive", ("spin",)).names[-1] == "survive"
+    assert asked.with_value("survive", ("spin",)).without("survive") == asked
 
 
 def test_attributes_named_by_hand_are_checked_on_both_sides(survey: Facts) -> None:

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from playwright.sync_api import Browser, sync_playwright
 
 from benchmark import datasets
-from tests.api.page.conftest import NAMES, QUIET
+from tests.api.browser.conftest import NAMES, QUIET
 from tools.load.__main__ import SERVICE, running
 
 BYTES_PER_S, LATENCY_MS = 1.6e6 / 8, 150

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Any
 
 import typer
 
-from api.cli import completion
 from api.cli.asking import ask
+from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, say
-from api.columns import ASSESSMENT
 from api.http.routers.assessment import assessment
+from api.schema.assessment import AssessmentQuery, VerdictRow
+from api.schema.table import columns_of
 from benchmark.assessment.definitions import DEFINITIONS
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -24,15 +25,10 @@ _MARKS = {"agrees": "=", "near": "~", "opposed": "x", "not judged": ".", "not me
 
 
 @app.command()
+@asked_by(AssessmentQuery, "method")
 def assess(
     *,
-    method: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.methods,
-            help="Only this method, one row per property; may be repeated.",
-        ),
-    ] = None,
+    asked: Asked,
     form: FormatOption = Format.TABLE,
 ) -> None:
     """Compare the survey's scores of extractors with ours.
@@ -43,10 +39,10 @@ def assess(
     the published results; definitions are in docs/assessment.md. CSV has a row per method and
     property.
     """
-    answer = ask(assessment, {"method": method})
+    answer = ask(assessment, asked)
     document = answer.document
-    if form is not Format.TABLE or method:
-        columns: tuple[str, ...] = COLUMNS if form is Format.TABLE else ASSESSMENT
+    if form is not Format.TABLE or asked:
+        columns: tuple[str, ...] = COLUMNS if form is Format.TABLE else columns_of(VerdictRow)
         emit(answer.rows(), columns, form, document=document)
         return
     rows = []

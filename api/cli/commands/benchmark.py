@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated
 
 import typer
 
-from api.cli import completion
 from api.cli.measuring import (
     AVAILABLE_WORKERS,
     ManyWorkersOption,
@@ -15,8 +13,10 @@ from api.cli.measuring import (
     StoreOption,
     score_cells,
 )
+from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit
-from api.columns import RESULTS
+from api.schema.scores import Score, ScoresQuery
+from api.schema.table import columns_of
 from benchmark.plan.combinations import Incompatible, cells, incompatible
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -35,34 +35,10 @@ COLUMNS = (
 
 
 @app.command()
+@asked_by(ScoresQuery, "dataset", "condition", "extractor", "model")
 def benchmark(
     *,
-    dataset: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.datasets, help="Only this data set; may be repeated."
-        ),
-    ] = None,
-    condition: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.conditions, help="Only this condition; may be repeated."
-        ),
-    ] = None,
-    extractor: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.extractors,
-            help="Only this implementation of an extractor; may be repeated.",
-        ),
-    ] = None,
-    model: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.models,
-            help="Only this implementation of a model; may be repeated.",
-        ),
-    ] = None,
+    asked: Asked,
     workers: ManyWorkersOption = AVAILABLE_WORKERS,
     scheduler: SchedulerOption = None,
     store: StoreOption = None,
@@ -74,13 +50,15 @@ def benchmark(
     without options, all. Published results are reused if code and data are unchanged. New results
     are kept in the local store (see --store), so that an interrupted run can be continued.
     """
-    planned = cells(dataset or None, condition or None, extractor or None, model or None)
+    names = {f"{name}s": given for name, given in asked.items()}
+    planned = cells(**names)
     if not planned:
-        refused = incompatible(dataset or None, extractor or None, model or None)
+        names.pop("conditions", None)
+        refused = incompatible(**names)
         typer.echo(f"sunatlas: no compatible combination of these names{_why(refused)}", err=True)
         raise typer.Exit(1)
     result = score_cells(planned, workers, store, scheduler)
-    columns = RESULTS if form is Format.CSV else COLUMNS
+    columns = columns_of(Score) if form is Format.CSV else COLUMNS
     document = {"scores": result.rows, "sources": result.sources()}
     emit(result.rows, columns, form, document=document, title=f"{len(result.rows)} scores")
     for warning in result.warnings:

@@ -8,12 +8,13 @@ import typer
 
 from api.cli import completion
 from api.cli.asking import ask
+from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, say
 from api.cli.wrong_call import WrongCallError
-from api.columns import CLAIM, CLAIMS
 from api.http.answers import Answer
 from api.http.routers import claims as endpoints
-from benchmark.claims.rules import VERDICTS
+from api.schema.claims import CheckedRule, ClaimRow, ClaimsQuery
+from api.schema.table import columns_of
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -21,6 +22,7 @@ RULES = ("rule", "statistic", "decides", "estimate", "low", "high", "trials", "s
 
 
 @app.command()
+@asked_by(ClaimsQuery, "verdict", "q", q="search")
 def claims(
     claim: Annotated[
         str | None,
@@ -32,17 +34,7 @@ def claims(
         ),
     ] = None,
     *,
-    verdict: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.one_of(*VERDICTS),
-            help="Only this verdict, such as refuted; may be repeated.",
-        ),
-    ] = None,
-    search: Annotated[
-        str | None,
-        typer.Option(help="Only claims with these words.", show_default=False),
-    ] = None,
+    asked: Asked,
     form: FormatOption = Format.TABLE,
 ) -> None:
     """Show claims of the survey, with verdicts.
@@ -53,16 +45,16 @@ def claims(
     every trial. Methods and plots are in docs/claims.md.
     """
     if claim is not None:
-        if verdict or search:
+        if asked:
             raise WrongCallError("an ID stands alone; leave out --verdict and --search")
         _one(ask(endpoints.claim, id=claim.upper()), form)
         return
-    if search is not None and not search.strip():
+    if not asked.get("q", "any").strip():
         raise WrongCallError("--search: got nothing; expected a word or several")
-    answer = ask(endpoints.claims, {"verdict": verdict, "q": search})
+    answer = ask(endpoints.claims, asked)
     document = answer.document
     if form is Format.CSV:
-        emit(answer.rows(), CLAIMS, form)
+        emit(answer.rows(), columns_of(ClaimRow), form)
         return
     counts = ", ".join(f"{n} {name}" for name, n in document["tally"].items() if n)
     emit(
@@ -77,7 +69,7 @@ def claims(
 def _one(answer: Answer, form: Format) -> None:
     document = answer.document
     if form is not Format.TABLE:
-        emit(answer.rows(), CLAIM, form, document=document)
+        emit(answer.rows(), columns_of(CheckedRule), form, document=document)
         return
     say(f"{document['id']} {document['statement']}", "    ")
     by = f", {document['study']}" if document["study"] else ""

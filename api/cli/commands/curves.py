@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import typer
 
-from api.cli import completion
 from api.cli.asking import ask
+from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit
-from api.columns import CURVES
-from api.http.models.parameters import LARGEST_PAGE
 from api.http.routers.curves import curves as endpoint
+from api.schema.curves import CurveRow, CurvesQuery
+from api.schema.parameters import LARGEST_PAGE
+from api.schema.table import columns_of
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -23,24 +22,10 @@ _SHOWN = (
 
 
 @app.command()
+@asked_by(CurvesQuery, "dataset", "extractor", "model")
 def curves(
     *,
-    dataset: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.datasets, help="Only this data set; may be repeated."
-        ),
-    ] = None,
-    extractor: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.extractors, help="Only this extractor; may be repeated."
-        ),
-    ] = None,
-    model: Annotated[
-        list[str] | None,
-        typer.Option(autocompletion=completion.models, help="Only this model; may be repeated."),
-    ] = None,
+    asked: Asked,
     form: FormatOption = Format.TABLE,
 ) -> None:
     """Show how many calibration poses pipelines need.
@@ -50,11 +35,10 @@ def curves(
     alone; of: poses in the data set. A dash means more poses than the data set has. Values are from
     the published results (docs/learning-curves.md).
     """
-    asked = {"dataset": dataset, "extractor": extractor, "model": model, "limit": LARGEST_PAGE}
-    answer = ask(endpoint, asked)
+    answer = ask(endpoint, {**asked, "limit": LARGEST_PAGE})
     rows = answer.document["items"]
     if form is not Format.TABLE:
-        emit(rows, CURVES, form, document=answer.document)
+        emit(rows, columns_of(CurveRow), form, document=answer.document)
         return
     shown = [
         {

@@ -10,20 +10,23 @@ import typer
 from api.cli import completion, spreadsheets
 from api.cli.asking import ask, knowledge
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
+from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, say
 from api.cli.wrong_call import WrongCallError
-from api.columns import DATASET, DATASETS, REALISM, SAMPLE_ERRORS, csv_of
-from api.http.models.samples import SampleErrorsQuery
 from api.http.routers.datasets import errors as dataset_errors
 from api.http.routers.realism import realism as besides_built
 from api.http.sample_errors import choose, rows_of
+from api.schema.datasets import BuiltSensorRow, Data, Dataset, RealismQuery
+from api.schema.samples import SampleError, SampleErrorsQuery
+from api.schema.scores import ScoresQuery
+from api.schema.table import columns_of, csv_of
 from benchmark import datasets
 from benchmark.contract import UnknownNameError
 from benchmark.datasets import coverage as covered
 from benchmark.datasets import export as dataset_export
 from benchmark.datasets import export_verification
 from benchmark.plan.parts import installed_parts
-from benchmark.progress import terminal_progress, told_progress
+from benchmark.progress import console_progress, terminal_progress
 from benchmark.results import samples
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import pinning
@@ -54,7 +57,10 @@ def listing(form: FormatOption = Format.TABLE) -> None:
     """List the data sets with sensor and conditions."""
     cards = knowledge().measurements.cards
     emit(
-        cards, COLUMNS if form is Format.TABLE else DATASETS, form, title=f"{len(cards)} data sets"
+        cards,
+        COLUMNS if form is Format.TABLE else columns_of(Dataset),
+        form,
+        title=f"{len(cards)} data sets",
     )
     if form is Format.TABLE:
         typer.echo(f"{covered.coverage().sentence()} See `sunatlas dataset coverage`.", err=True)
@@ -74,7 +80,7 @@ def describe(name: NameArgument, form: FormatOption = Format.TABLE) -> None:
         say(f"follows {', '.join(card['follows']) or 'no study'}")
         typer.echo()
     if form is Format.CSV:
-        emit(card["data"], DATASET, form)
+        emit(card["data"], columns_of(Data), form)
         return
     rows = [
         {"condition": key, "bound_deg": card["bounds"].get(key), **setup}
@@ -84,18 +90,12 @@ def describe(name: NameArgument, form: FormatOption = Format.TABLE) -> None:
 
 
 @app.command()
+@asked_by(ScoresQuery, "condition")
 def export(
     name: NameArgument,
     *,
     out: Annotated[Path, typer.Option(help="Output directory.", show_default=False)],
-    condition: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.conditions,
-            help="Only this condition; may be repeated.",
-            show_default=False,
-        ),
-    ] = None,
+    asked: Asked,
     split: Annotated[
         list[str] | None,
         typer.Option(help="Only calibration or test; may be repeated.", show_default=False),
@@ -113,11 +113,11 @@ def export(
     low-dimensional samples also as .csv. card.json describes every array, the studies the data set
     is based on, the bound and the hashes. The same call gives the same bytes.
     """
-    with told_progress("writing the data set") as progress:
+    with console_progress("writing the data set") as progress:
         made = dataset_export.export(
             name,
             out,
-            conditions=condition,
+            conditions=asked.get("condition"),
             splits=split,
             n=n,
             force=force,
@@ -135,29 +135,11 @@ def export(
 
 
 @app.command()
+@asked_by(SampleErrorsQuery, "extractor", "model", "unit")
 def errors(
     name: NameArgument,
     *,
-    extractor: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.extractors,
-            help="Only this extractor; may be repeated.",
-            show_default=False,
-        ),
-    ] = None,
-    model: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.models,
-            help="Only this model; may be repeated.",
-            show_default=False,
-        ),
-    ] = None,
-    unit: Annotated[
-        int | None,
-        typer.Option(help="Only this sensor unit; 0 is the standard unit."),
-    ] = None,
+    asked: Asked,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -174,23 +156,21 @@ def errors(
     By extractor, model, unit and sample, with the true Sun direction; `doubt` gives the reason for
     a missing answer. A data set has up to a million rows: choose a pipeline, or write to a file.
     """
-    query = {"extractor": extractor or [], "model": model or [], "unit": unit}
-    ask(dataset_errors, {**query, "limit": 1}, name=name)  # refuses what does not fit
+    ask(dataset_errors, {**asked, "limit": 1}, name=name)  # refuses what does not fit
     measured = knowledge().measurements
     if out is not None and out.suffix == ".parquet":
-        if extractor or model or unit is not None:
+        if asked:
             raise WrongCallError("a .parquet has all pipelines and units; give a .csv for some")
         try:
             replace_file(out, measured.file(samples.path_of(name)))
         except FileNotFoundError:
             raise WrongCallError(f"no errors of {name} are published") from None
-    given = {key: value for key, value in query.items() if value is not None}
-    rows = rows_of(choose(measured, name, SampleErrorsQuery.model_validate(given)))
+    rows = rows_of(choose(measured, name, SampleErrorsQuery.model_validate(asked)))
     if out is None:
-        emit(rows, SAMPLE_ERRORS, form, title=f"{len(rows)} errors")
+        emit(rows, columns_of(SampleError), form, title=f"{len(rows)} errors")
         return
     if out.suffix != ".parquet":
-        replace_file(out, spreadsheets.as_asked(csv_of(SAMPLE_ERRORS, rows)))
+        replace_file(out, spreadsheets.as_asked(csv_of(columns_of(SampleError), rows)))
     typer.echo(f"wrote {out}", err=True)
 
 
@@ -242,16 +222,10 @@ def coverage(form: FormatOption = Format.TABLE) -> None:
 
 
 @app.command()
+@asked_by(RealismQuery, "dataset")
 def realism(
     *,
-    dataset: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.datasets,
-            help="Only this data set; may be repeated.",
-            show_default=False,
-        ),
-    ] = None,
+    asked: Asked,
     form: FormatOption = Format.TABLE,
 ) -> None:
     """Compare each data set with built sensors and their published figures.
@@ -260,8 +234,8 @@ def realism(
     repeatability. Published accuracies are converted to RMS. Differences of more than a factor of
     two are explained; data sets without a built sensor are called idealised.
     """
-    answer = ask(besides_built, {"dataset": dataset})
-    shown = BUILT if form is Format.TABLE else REALISM
+    answer = ask(besides_built, asked)
+    shown = BUILT if form is Format.TABLE else columns_of(BuiltSensorRow)
     emit(answer.rows(), shown, form, document=answer.document, title="Data sets and built sensors")
 
 

@@ -16,7 +16,7 @@ from api.deposit import against_record
 from api.deposit import bundle as deposit
 from api.deposit.verification import UNSEEN
 from api.deposit.verification import verify as verified
-from benchmark.progress import told_progress
+from benchmark.progress import console_progress
 
 if TYPE_CHECKING:
     from api.deposit.archives.archive import Archive
@@ -63,7 +63,7 @@ def build(
     A Data Package with RO-Crate metadata, licences, CITATION.cff and checksums, as a directory and
     as a zip file. The same sources give the same bytes.
     """
-    with told_progress("building the bundle", quiet=quiet) as progress:
+    with console_progress("building the bundle", quiet=quiet) as progress:
         bundle = deposit.build(out, progress=progress)
     rows = [
         {"file": name, "bytes": (bundle.directory / name).stat().st_size} for name in bundle.files
@@ -101,7 +101,7 @@ def verify(
     """
     wrong = verified(directory)
     if not (wrong or alone):
-        with told_progress("verifying the bundle") as progress:
+        with console_progress("verifying the bundle") as progress:
             wrong = against_record.differences(directory, anew=not quick, progress=progress)
     rows = [{"file": name, "problem": problem} for name, problem in wrong]
     if rows or form is not Format.TABLE:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from benchmark.progress import told_progress
+from benchmark.progress import console_progress
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, rich_markup_mode=None)
 
@@ -36,7 +36,7 @@ def build(
     """
     from api.guide import site  # noqa: PLC0415 - reads all pages
 
-    with told_progress("building the guide", quiet=quiet) as progress:
+    with console_progress("building the guide", quiet=quiet) as progress:
         warnings = site.keep(progress) if out is None else site.build(out, progress)
     for warning in warnings:
         typer.echo(warning, err=True)

@@ -16,10 +16,13 @@ from api.cli.measuring import (
     ManyWorkersOption,
     StoreOption,
 )
+from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, line_width
 from api.cli.working import working_directory
 from api.cli.wrong_call import WrongCallError
-from api.columns import ARCHITECTURES, LEADERBOARD, PARTS
+from api.schema.boards import BestOfArchitecture, OverviewQuery, PartOverview
+from api.schema.scores import LeaderboardRow
+from api.schema.table import columns_of
 from benchmark.contract import UnknownNameError
 from benchmark.leaderboard import check as checking
 from benchmark.leaderboard import pages
@@ -63,6 +66,7 @@ class Kernels(StrEnum):
 
 
 @app.callback(invoke_without_command=True)
+@asked_by(OverviewQuery, "detector", "mask")
 def leaderboard(
     context: typer.Context,
     *,
@@ -72,22 +76,7 @@ def leaderboard(
             "--overview", help="Count how often each extractor and model is near the bound."
         ),
     ] = False,
-    detector: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.values("detector"),
-            help="Only architectures with this detector; may be repeated.",
-            show_default=False,
-        ),
-    ] = None,
-    mask: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.values("mask"),
-            help="Only architectures with this mask; may be repeated.",
-            show_default=False,
-        ),
-    ] = None,
+    asked: Asked,
     each: Annotated[
         bool, typer.Option("--each", help="Show the best pipelines of each data set.")
     ] = False,
@@ -158,7 +147,7 @@ def leaderboard(
     listing = each or dataset or condition or field is not None or max_error is not None
     if overview and (listing or check):
         raise WrongCallError("--overview counts over data sets: it neither lists nor checks them")
-    if (detector or mask) and (listing or check):
+    if asked and (listing or check):
         raise WrongCallError("--detector and --mask narrow architectures and --overview alone")
     if check:
         _check(workers, form, (kernels or Kernels.BOTH).chosen, stored_only=stored)
@@ -167,9 +156,9 @@ def leaderboard(
     elif field is not None and max_error is not None:
         raise WrongCallError("--field and --max-error are two questions; ask one at a time")
     elif overview:
-        _overview({"detector": detector, "mask": mask}, form)
+        _overview(asked, form)
     elif not listing:
-        _architectures({"detector": detector, "mask": mask}, form)
+        _architectures(asked, form)
     else:
         _show(dataset or [], condition or [], field, max_error, form)
 
@@ -266,11 +255,11 @@ def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only:
     typer.echo(f"every published number holds: {how}", err=True)
 
 
-def _architectures(query: Mapping[str, list[str] | None], form: Format) -> None:
+def _architectures(query: Asked, form: Format) -> None:
     """Print the best pipeline of each architecture, as the service answers it."""
     from api.cli.asking import ask, knowledge  # noqa: PLC0415 - slow; measuring does without it
-    from api.http.models.parameters import LARGEST_PAGE  # noqa: PLC0415
     from api.http.routers.leaderboard import architectures  # noqa: PLC0415
+    from api.schema.parameters import LARGEST_PAGE  # noqa: PLC0415
 
     answer = ask(architectures, {**query, "limit": LARGEST_PAGE})
     rows = answer.rows()
@@ -281,10 +270,10 @@ def _architectures(query: Mapping[str, list[str] | None], form: Format) -> None:
         record = knowledge().measurements.record
         typer.echo(f"Record: version {record['version']}, sha256 {record['sha256']}", err=True)
     else:
-        emit(rows, ARCHITECTURES, form, document=answer.document)
+        emit(rows, columns_of(BestOfArchitecture), form, document=answer.document)
 
 
-def _overview(query: Mapping[str, list[str] | None], form: Format) -> None:
+def _overview(query: Asked, form: Format) -> None:
     """Print how near the bound each part comes, as the service answers it."""
     from api.cli.asking import ask  # noqa: PLC0415 - as above
     from api.http.routers.leaderboard import overview  # noqa: PLC0415
@@ -296,7 +285,7 @@ def _overview(query: Mapping[str, list[str] | None], form: Format) -> None:
     if form is Format.TABLE:
         typer.echo(overview_text(answer.document, line_width()), nl=False)
     else:
-        emit(rows, PARTS, form, document=answer.document)
+        emit(rows, columns_of(PartOverview), form, document=answer.document)
 
 
 def _show(
@@ -307,7 +296,7 @@ def _show(
     form: Format,
 ) -> None:
     from api.cli.asking import knowledge  # noqa: PLC0415 - slow; measuring does without it
-    from api.http.models import words  # noqa: PLC0415
+    from api.schema import words  # noqa: PLC0415
 
     measurements = knowledge().measurements
     _require("dataset", datasets, words.datasets())
@@ -334,7 +323,7 @@ def _show(
     if form is Format.TABLE:
         _print_boards(chosen, columns, title, divided=bool(datasets))
     else:
-        emit(chosen, LEADERBOARD, form, document=document)
+        emit(chosen, columns_of(LeaderboardRow), form, document=document)
     if not chosen:
         typer.echo("sunatlas: no pipeline has such an error there", err=True)
         raise typer.Exit(1)

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from api.cli import completion
-from api.cli.contract import GUIDE, checked, name_of
+from api.cli.contract import GUIDE, check_contract, name_of
 from api.cli.measuring import (
     AVAILABLE_WORKERS,
     ManyWorkersOption,
@@ -16,7 +16,8 @@ from api.cli.measuring import (
     stores_of,
 )
 from api.cli.table_output import Format, FormatOption, emit, say
-from api.columns import LEADERBOARD
+from api.schema.scores import LeaderboardRow
+from api.schema.table import columns_of
 from benchmark.leaderboard import candidate
 from benchmark.leaderboard.pages import to_html
 from files.atomic import replace_file
@@ -67,7 +68,7 @@ def rank(
     local store (see --store).
     """
     name = name_of(algorithm)
-    result = checked(name)
+    result = check_contract(name)
     if result is None:
         typer.echo("contract: not checked, the tests are in a checkout only", err=True)
     elif result.failed:
@@ -82,7 +83,7 @@ def rank(
     else:
         typer.echo(f"contract: {result.ran} checks passed", err=True)
     record, work = stores_of(store)
-    ranked = candidate.ranked(name, dataset, record, work, workers=workers)
+    ranked = candidate.rank(name, dataset, record, work, workers=workers)
     page = out or Path("out") / f"{name}-{dataset}.html"
     replace_file(page, to_html(ranked.board, marked=ranked.pipelines, note=ranked.scope))
     rows = [{**row, "new": MARK if ranked.has(row) else None} for row in ranked.rows]
@@ -91,7 +92,12 @@ def rank(
         emit(shown, COLUMNS, form, title=f"{dataset}: best of each extractor, and {name} ({MARK})")
         say(ranked.scope)
     else:
-        emit(rows, ("new", *LEADERBOARD), form, document={"items": rows, "scope": ranked.scope})
+        emit(
+            rows,
+            ("new", *columns_of(LeaderboardRow)),
+            form,
+            document={"items": rows, "scope": ranked.scope},
+        )
     failed = [row for row in rows if row["new"] and row["reason"]]
     for row in failed:
         typer.echo(f"no score: {row['extractor']} + {row['model']}: {row['reason']}", err=True)

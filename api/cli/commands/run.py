@@ -20,10 +20,12 @@ from api.cli.measuring import (
     score_cells,
     stores_of,
 )
+from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit
 from api.cli.wrong_call import WrongCallError
-from api.columns import RESULTS
 from api.http.routers import studies
+from api.schema.scores import Score, ScoresQuery
+from api.schema.table import columns_of
 from benchmark.contract import Cell, UnknownNameError
 from benchmark.plan.combinations import cells
 from benchmark.suites.planning import cells_of
@@ -43,13 +45,14 @@ COLUMNS = (
         "assumed",
     ),
 )
-CSV_COLUMNS = ("study", *RESULTS, "assumed")
+CSV_COLUMNS = ("study", *columns_of(Score), "assumed")
 
 #: A suite may hold other units than the standard one.
 SUITE_COLUMNS = ("unit", *benchmark.COLUMNS)
 
 
 @app.command()
+@asked_by(ScoresQuery, "condition")
 def run(
     study: Annotated[
         str | None,
@@ -61,12 +64,7 @@ def run(
     ] = None,
     *,
     suite: SuiteOption = None,
-    condition: Annotated[
-        list[str] | None,
-        typer.Option(
-            autocompletion=completion.conditions, help="Only this condition; may be repeated."
-        ),
-    ] = None,
+    asked: Asked,
     workers: WorkersOption = 1,
     scheduler: SchedulerOption = None,
     store: StoreOption = None,
@@ -86,13 +84,13 @@ def run(
     if (study is None) == (suite is None):
         raise WrongCallError("one of a study's key and --suite is to be given")
     if study is None:
-        if condition:
+        if asked:
             raise WrongCallError("--condition goes with a study: a suite has its own")
         _run_suite(str(suite), workers, scheduler, store, form)
         return
     ask(studies.study, key=study)  # refuses an unknown key with the nearest one
     resolution = knowledge().of("all").resolutions[study]
-    planned = _plan(resolution, condition)
+    planned = _plan(resolution, asked.get("condition"))
     result = score_cells(planned, workers, store, scheduler)
     rows = [{"study": study, **row, "assumed": planned[_cell(row)]} for row in result.rows]
     _print(study, resolution, rows, result, form)
@@ -114,7 +112,7 @@ def _run_suite(
         planned = now
         result = score_cells(planned, workers, directory, scheduler)
         measured += result.measured
-    columns = RESULTS if form is Format.CSV else SUITE_COLUMNS
+    columns = columns_of(Score) if form is Format.CSV else SUITE_COLUMNS
     sources = {**result.sources(), "kept": result.kept - measured + result.measured}
     sources["measured"] = measured
     document = {"suite": name, "scores": result.rows, "sources": sources}

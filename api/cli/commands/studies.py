@@ -9,14 +9,17 @@ from typing import Annotated, Any
 import typer
 
 from api.citations import FORMS
-from api.cli import attributes, completion
+from api.cli import completion
 from api.cli.asking import ask
+from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, emit, emit_json, say, write
 from api.cli.wrong_call import WrongCallError
-from api.columns import STUDIES, STUDY
-from api.http.models.parameters import LARGEST_PAGE
 from api.http.routers import studies as answers
+from api.schema.parameters import LARGEST_PAGE
+from api.schema.studies import AttributeValue, StudiesQuery, StudyRow
+from api.schema.table import columns_of
 from registry.fidelity.grading import tally_text
+from registry.taxonomy import ATTRIBUTES
 from survey_data import labels
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -25,15 +28,6 @@ COLUMNS = ("key", "year", "grade", "detector", "mask", "extractor", "model", "ti
 DETAILS = (
     *("attribute", "value", "name_in_study", "nearest", "role", "basis", "source_name", "note"),
 )
-
-
-class Grade(StrEnum):
-    """How near what runs is to a study."""
-
-    FAITHFUL = "faithful"
-    CLOSE = "close"
-    STAND_IN = "stand-in"
-    NONE = "none"
 
 
 class StudyFormat(StrEnum):
@@ -47,15 +41,8 @@ class StudyFormat(StrEnum):
     CSL = "csl"
 
 
-class State(StrEnum):
-    """How much of a study can be run."""
-
-    COMPLETE = "complete"
-    PARTIAL = "partial"
-    NONE = "none"
-
-
 @app.command()
+@asked_by(StudiesQuery, *ATTRIBUTES, "grade", "state", "edition", "year_min", "year_max", "q")
 def studies(
     key: Annotated[
         str | None,
@@ -65,26 +52,7 @@ def studies(
         ),
     ] = None,
     *,
-    task: attributes.Task = None,
-    error: attributes.Error = None,
-    accuracy: attributes.Accuracy = None,
-    detector: attributes.Detector = None,
-    mask: attributes.Mask = None,
-    model: attributes.Model = None,
-    extractor: attributes.Extractor = None,
-    grade: Annotated[
-        list[Grade] | None,
-        typer.Option(help="Only this grade; may be repeated."),
-    ] = None,
-    state: Annotated[
-        list[State] | None, typer.Option(help="Only this state of implementation; may be repeated.")
-    ] = None,
-    edition: attributes.EditionOption = attributes.Edition.SURVEY,
-    year_min: Annotated[int | None, typer.Option(help="Published this year or later.")] = None,
-    year_max: Annotated[int | None, typer.Option(help="Published this year or earlier.")] = None,
-    q: Annotated[
-        str | None, typer.Option("--q", help="Search words in key, title, authors or venue.")
-    ] = None,
+    asked: Asked,
     form: Annotated[
         StudyFormat,
         typer.Option(
@@ -103,24 +71,9 @@ def studies(
     `sunatlas studies KEY` shows the differences, the information that would remove them, and the
     basis of each value. State is complete if every value of the study is implemented.
     """
-    filters: dict[str, Any] = {
-        "task": task,
-        "error": error,
-        "accuracy": accuracy,
-        "detector": detector,
-        "mask": mask,
-        "model": model,
-        "extractor": extractor,
-        "grade": [str(g) for g in grade or ()],
-        "state": [str(s) for s in state or ()],
-        "edition": None if edition is attributes.Edition.SURVEY else edition.value,
-        "year_min": year_min,
-        "year_max": year_max,
-        "q": q,
-    }
     if key is None:
-        _list(filters, form)
-    elif any(value not in (None, []) for value in filters.values()):
+        _list(asked, form)
+    elif asked != {"edition": "survey"}:
         raise WrongCallError("a study's key takes no filters beside it")
     else:
         _show(key, form)
@@ -133,7 +86,7 @@ def _list(filters: Mapping[str, Any], asked: StudyFormat) -> None:
         return
     form = Format(asked)
     flat = [{**study, **study["values"]} for study in found]
-    columns = STUDIES if form is Format.CSV else COLUMNS
+    columns = columns_of(StudyRow) if form is Format.CSV else COLUMNS
     counted = tally_text(study["grade"] for study in found)
     emit(flat, columns, form, document=found, title=f"{len(found)} studies: {counted}")
 
@@ -168,7 +121,7 @@ def _show(key: str, asked: StudyFormat) -> None:
         for departure in study["departures"]:
             say(f"  {departure['part']} settled by: {departure['settled_by']}")
         typer.echo()
-    emit(study["attributes"], STUDY if form is Format.CSV else DETAILS, form)
+    emit(study["attributes"], columns_of(AttributeValue) if form is Format.CSV else DETAILS, form)
     if form is Format.TABLE:
         reported = [study[f"reported_{quantity}"] for quantity in ("accuracy", "precision")]
         said = [f"{one['label']} {one['value_deg']:g} deg" for one in reported if one is not None]

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import typer
 
 import survey_data
 from api.cli.commands import survey_add
 from api.cli.commands.survey_import import import_
+from api.cli.survey_options import DataOption
 from api.cli.table_output import Format, FormatOption, emit, emit_json, say
 from survey_data import FidelityReport, Problem, facts_manifest, labels
 from survey_data.descriptor import DATA_DIRECTORY
@@ -40,12 +40,7 @@ FINDINGS_CSV = (
 @app.command()
 def check(
     *,
-    data: Annotated[
-        Path | None,
-        typer.Option(
-            help="Directory of the tables; by default those of the Atlas.", show_default=False
-        ),
-    ] = None,
+    data: DataOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
     """Validate the tables of the survey and compare them with its findings.

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
+from api.cli.survey_options import ApplyOption, DataOption
 from api.cli.table_output import Format, FormatOption, emit, emit_json, say
 from api.cli.wrong_call import WrongCallError
 from files.atomic import replace_file
@@ -22,16 +23,6 @@ from survey_data.descriptor import DATA_DIRECTORY
 
 _CELLS = ("attribute", "value", "name", "role", "basis", "source", "note")
 _PIPELINES = ("detector", "mask", "extractor", "model", "datasets", "assumed")
-
-DataOption = Annotated[
-    Path | None,
-    typer.Option(
-        help="Directory of the tables; by default those of the Atlas.", show_default=False
-    ),
-]
-ApplyOption = Annotated[
-    bool, typer.Option("--apply", help="Write the changes; otherwise only show them.")
-]
 
 
 def add(

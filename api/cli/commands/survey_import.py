@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 import survey_data
+from api.cli.survey_options import ApplyOption, DataOption
 from api.cli.table_output import Format, FormatOption, emit, emit_json, say
 from api.cli.wrong_call import WrongCallError
 from survey_data import ImportPlan
@@ -52,15 +53,8 @@ def import_(
         ),
     ] = None,
     sheet: Annotated[str | None, typer.Option(help="Sheet of the workbook.")] = None,
-    apply: Annotated[
-        bool, typer.Option("--apply", help="Write the changes; otherwise only show them.")
-    ] = False,
-    data: Annotated[
-        Path | None,
-        typer.Option(
-            help="Directory of the tables; by default those of the Atlas.", show_default=False
-        ),
-    ] = None,
+    apply: ApplyOption = False,
+    data: DataOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
     """Compare a table or bibliography with the Atlas, and import it with --apply.

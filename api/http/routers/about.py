@@ -9,11 +9,11 @@ from pydantic_core import to_json
 
 from api.http.answers import StrictRoute
 from api.http.dependencies import JSON_ONLY, NO_PARAMETERS, Known
-from api.http.models.health import Health
 from api.http.negotiation import JSON
 from api.http.observation import exposition
 from api.http.reference import reference
 from api.http.representations import Representation, RepresentationCache
+from api.schema.service import Health
 
 EXPOSITION = "text/plain; version=0.0.4; charset=utf-8"
 

@@ -6,13 +6,13 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from api import columns
 from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
-from api.http.models.advice import AdviceQuery, Advices, Protocol
-from api.http.models.base import Selected
 from api.http.pagination import narrow, order, page
 from api.protocol import protocol as told
+from api.schema.advice import Advice, AdviceQuery, Advices, Protocol, Statement
+from api.schema.base import Selected
+from api.schema.table import columns_of
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -25,7 +25,7 @@ async def advice(known: Known, query: Annotated[AdviceQuery, Query()]) -> Answer
     """
     found = narrow(known.advice, query, ("requirement", "detector", "mask"))
     shown = page(order(found, query.sort), "/v1/advice", query)
-    return list_answer(shown, shown.items, columns.ADVICE, fields=query.fields)
+    return list_answer(shown, shown.items, columns_of(Advice), fields=query.fields)
 
 
 @router.get("/protocol", summary="Rules for studies and scores", response_model=Protocol)
@@ -38,4 +38,6 @@ async def protocol(
     CSV: a row per sentence.
     """
     document = told()
-    return Answer(document, columns.PROTOCOL, lambda: [*document["survey"], *document["scores"]])
+    return Answer(
+        document, columns_of(Statement), lambda: [*document["survey"], *document["scores"]]
+    )

@@ -6,12 +6,12 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from api import columns
 from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import Known
-from api.http.models.algorithms import Algorithms, AlgorithmsQuery
-from api.http.models.base import Selected
 from api.http.pagination import order, page
+from api.schema.algorithms import Algorithm, Algorithms, AlgorithmsQuery
+from api.schema.base import Selected
+from api.schema.table import columns_of
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -23,4 +23,4 @@ async def algorithms(known: Known, query: Annotated[AlgorithmsQuery, Query()]) -
         implementation.to_dict() for implementation in known.catalogue.implementations(query.role)
     ]
     shown = page(order(found, query.sort), "/v1/algorithms", query)
-    return list_answer(shown, shown.items, columns.ALGORITHMS, fields=query.fields)
+    return list_answer(shown, shown.items, columns_of(Algorithm), fields=query.fields)

@@ -7,10 +7,10 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
 
-from api import columns
 from api.http.answers import Answer, AnswerRoute
 from api.http.dependencies import Known
-from api.http.models.assessment import Assessment, AssessmentQuery
+from api.schema.assessment import Assessment, AssessmentQuery, VerdictRow
+from api.schema.table import columns_of
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -35,4 +35,4 @@ async def assessment(known: Known, query: Annotated[AssessmentQuery, Query()]) -
     ]
     totals = {name: sum(method["counts"][name] for method in methods) for name in whole["totals"]}
     document = {"definitions": whole["definitions"], "methods": methods, "totals": totals}
-    return Answer(document, columns.ASSESSMENT, lambda: rows)
+    return Answer(document, columns_of(VerdictRow), lambda: rows)

@@ -7,13 +7,13 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query
 
-from api import columns
 from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
-from api.http.models.base import Selected
-from api.http.models.claims import ClaimDetail, Claims, ClaimsQuery
-from api.http.models.words import ClaimId
 from api.http.pagination import order, page
+from api.schema.base import Selected
+from api.schema.claims import CheckedRule, ClaimDetail, ClaimRow, Claims, ClaimsQuery
+from api.schema.table import columns_of
+from api.schema.words import ClaimId
 from benchmark.claims.ledger import Entry, tally
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
@@ -29,7 +29,7 @@ async def claims(known: Known, query: Annotated[ClaimsQuery, Query()]) -> Answer
     items = order([entry.to_dict() for entry in found], query.sort)
     shown = page(items, "/v1/claims", query)
     counts = tally(found)
-    return list_answer(shown, shown.items, columns.CLAIMS, fields=query.fields, tally=counts)
+    return list_answer(shown, shown.items, columns_of(ClaimRow), fields=query.fields, tally=counts)
 
 
 @router.get(
@@ -49,7 +49,7 @@ async def claim(
     document = detail(known.measurements.claims[id])
     second = {rule["rule"]: rule["standing"] for rule in document["second"]}
     rows = [{**rule, "second_standing": second.get(rule["rule"])} for rule in document["rules"]]
-    return Answer(document, columns.CLAIM, lambda: rows)
+    return Answer(document, columns_of(CheckedRule), lambda: rows)
 
 
 def detail(entry: Entry) -> dict[str, Any]:

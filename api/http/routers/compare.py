@@ -6,13 +6,13 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
 
-from api import columns
 from api.comparing import compare_architectures, compare_pipelines
 from api.http.answers import Answer, AnswerRoute
 from api.http.dependencies import Known
 from api.http.knowledge import Knowledge
-from api.http.models.comparison import CompareQuery, Comparison
 from api.http.problems import Problem, Violation
+from api.schema.comparison import ComparedRow, CompareQuery, Comparison
+from api.schema.table import columns_of
 from registry.taxonomy import InvalidValueError
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
@@ -31,7 +31,7 @@ async def compare(known: Known, query: Annotated[CompareQuery, Query()]) -> Answ
         came = None if error.value is None else str(error.value)
         violation = Violation(error.parameter, came, error.expected, error.nearest)
         raise Problem(400, "not-comparable", errors=[violation]) from error
-    return Answer(document, columns.COMPARISON, lambda: document["items"])
+    return Answer(document, columns_of(ComparedRow), lambda: document["items"])
 
 
 def _compare(known: Knowledge, query: CompareQuery) -> dict[str, Any]:

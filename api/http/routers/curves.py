@@ -6,12 +6,12 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from api import columns
 from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import Known
-from api.http.models.base import Selected
-from api.http.models.curves import Curves, CurvesQuery
 from api.http.pagination import narrow, order, page
+from api.schema.base import Selected
+from api.schema.curves import CurveRow, Curves, CurvesQuery
+from api.schema.table import columns_of
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -25,4 +25,4 @@ async def curves(known: Known, query: Annotated[CurvesQuery, Query()]) -> Answer
     """
     rows = narrow(known.measurements.curves, query, ("dataset", "extractor", "model"))
     shown = page(order(rows, query.sort), "/v1/curves", query)
-    return list_answer(shown, shown.items, columns.CURVES, fields=query.fields)
+    return list_answer(shown, shown.items, columns_of(CurveRow), fields=query.fields)

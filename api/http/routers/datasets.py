@@ -6,18 +6,18 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
 
-from api import columns
 from api.deposit.identity import identity
 from api.http.answers import Answer, AnswerRoute, Columns, Picture, list_answer
 from api.http.dependencies import AS_ACCEPTED, NO_PARAMETERS, Known, TableOnly
-from api.http.models.base import Selected
-from api.http.models.datasets import DatasetDetail, Datasets, DatasetsQuery
-from api.http.models.samples import SampleErrors, SampleErrorsQuery
-from api.http.models.words import DatasetName
 from api.http.pagination import order, page
 from api.http.problems import Problem
 from api.http.sample_errors import choose, rows_of
 from api.metadata.signposting import headers, landing_of_dataset
+from api.schema.base import Selected
+from api.schema.datasets import Data, Dataset, DatasetDetail, Datasets, DatasetsQuery
+from api.schema.samples import SampleError, SampleErrors, SampleErrorsQuery
+from api.schema.table import columns_of
+from api.schema.words import DatasetName
 from benchmark.results import samples
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
@@ -32,7 +32,7 @@ async def datasets(known: Known, query: Annotated[DatasetsQuery, Query()]) -> An
     """List the simulated data sets."""
     cards = order(known.measurements.cards, query.sort)
     shown = page(cards, "/v1/datasets", query)
-    return list_answer(shown, shown.items, columns.DATASETS, fields=query.fields)
+    return list_answer(shown, shown.items, columns_of(Dataset), fields=query.fields)
 
 
 @router.get(
@@ -52,7 +52,7 @@ async def dataset(
     """
     card = known.measurements.card(name)
     link = ", ".join(_links(known, name))
-    return Answer(card, columns.DATASET, lambda: card["data"], link)
+    return Answer(card, columns_of(Data), lambda: card["data"], link)
 
 
 @router.get(
@@ -83,7 +83,7 @@ async def errors(known: Known, name: Name, query: Annotated[SampleErrorsQuery, Q
     found = choose(known.measurements, name, query)
     shown = page(range(len(found)), f"/v1/datasets/{name}/errors", query)
     items = rows_of(found.iloc[list(shown.items)])
-    return list_answer(shown, items, columns.SAMPLE_ERRORS, fields=query.fields)
+    return list_answer(shown, items, columns_of(SampleError), fields=query.fields)
 
 
 @router.get(

@@ -6,13 +6,13 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
 
-from api import columns
 from api.figures.catalogue import LEVELS, TITLES, evidence_map
 from api.figures.catalogue import figure as drawn
 from api.figures.figure import Figure as Drawn
 from api.http.answers import Answer, AnswerRoute
 from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
-from api.http.models.figures import Figure, FigureName, FigureQuery, Figures, MatrixQuery
+from api.schema.figures import Figure, FigureName, FigureQuery, Figures, ListedFigure, MatrixQuery
+from api.schema.table import columns_of
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -28,7 +28,7 @@ async def figures(
         for name, (title, caption) in TITLES.items()
     ]
     document = {"items": items, "studies": len(known.facts.studies)}
-    return Answer(document, columns.FIGURES, lambda: items)
+    return Answer(document, columns_of(ListedFigure), lambda: items)
 
 
 @router.get(
@@ -42,8 +42,8 @@ async def matrix(known: Known, query: Annotated[MatrixQuery, Query()]) -> Answer
     `leads_to` show how to measure the pair.
     """
     studies = known.of(query.edition).facts
-    asked = (query.wanted(), query.rows, query.columns)
-    return answered(evidence_map(studies, *asked, evidence=known.evidence))
+    asked = (query.by_attribute(), query.rows, query.columns)
+    return answer_of(evidence_map(studies, *asked, evidence=known.evidence))
 
 
 @router.get("/figures/{figure}", summary="A figure of the survey", response_model=Figure)
@@ -58,9 +58,9 @@ async def figure(
     Publications: a row per year or venue and part of its bar. Parallel coordinates: a row per
     sensor.
     """
-    return answered(drawn(figure, known.of(query.edition).facts, query.wanted()))
+    return answer_of(drawn(figure, known.of(query.edition).facts, query.by_attribute()))
 
 
-def answered(found: Drawn) -> Answer:
+def answer_of(found: Drawn) -> Answer:
     """Return a figure as an answer."""
     return Answer(found.to_dict(), found.columns, lambda: found.rows)

@@ -6,11 +6,11 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
 
-from api import columns
 from api.http.answers import Answer, AnswerRoute
 from api.http.dependencies import Known
-from api.http.models.flows import Flows, FlowsQuery
-from api.http.models.words import Chart
+from api.schema.flows import Flows, FlowsQuery, Link
+from api.schema.table import columns_of
+from api.schema.words import Chart
 from registry.flows import chart as flows_of
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
@@ -27,5 +27,9 @@ async def flows(
     Filters keep the studies with one of the values. CSV: the links.
     """
     studies = known.of(query.edition).facts
-    found = flows_of(chart, query.wanted(), query.counting, grouped=query.grouped, facts=studies)
-    return Answer(found.to_dict(), columns.FLOWS, lambda: [link.to_dict() for link in found.links])
+    found = flows_of(
+        chart, query.by_attribute(), query.counting, grouped=query.grouped, facts=studies
+    )
+    return Answer(
+        found.to_dict(), columns_of(Link), lambda: [link.to_dict() for link in found.links]
+    )

@@ -7,26 +7,29 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query
 
-from api import columns
 from api.deposit.identity import identity
 from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import Known
-from api.http.models.base import Selected
-from api.http.models.boards import (
+from api.http.pagination import Page, narrow, order, page
+from api.metadata.signposting import headers, landing_of_record
+from api.schema.base import Selected
+from api.schema.boards import (
     Architectures,
     ArchitecturesQuery,
+    BestOfArchitecture,
     Overview,
     OverviewQuery,
+    PartOverview,
 )
-from api.http.models.scores import (
+from api.schema.scores import (
     Leaderboard,
     LeaderboardQuery,
+    LeaderboardRow,
     LeaderboardRows,
     WholeLeaderboardQuery,
 )
-from api.http.models.words import DatasetName
-from api.http.pagination import Page, narrow, order, page
-from api.metadata.signposting import headers, landing_of_record
+from api.schema.table import columns_of
+from api.schema.words import DatasetName
 from benchmark.leaderboard.architectures import architectures as best_of_each
 from benchmark.leaderboard.board import at_field, within_error
 from benchmark.leaderboard.overview import overview as overview_of
@@ -55,7 +58,7 @@ async def leaderboard(known: Known, query: Annotated[WholeLeaderboardQuery, Quer
     board |= {"record": known.measurements.record, "total": shown.total, "next": shown.next}
     links = headers(landing_of_record(identity()).links_of_content())
     link = ", ".join((*links, *([shown.link] if shown.link else ())))
-    return Answer(board, columns.LEADERBOARD, lambda: shown.items, link)
+    return Answer(board, columns_of(LeaderboardRow), lambda: shown.items, link)
 
 
 def _with_rows(
@@ -81,7 +84,7 @@ async def architectures(known: Known, query: Annotated[ArchitecturesQuery, Query
     """
     rows = narrow(best_of_each(known.measurements.leaderboard), query, ("detector", "mask"))
     shown = page(order(rows, query.sort), "/v1/leaderboard/architectures", query)
-    return list_answer(shown, shown.items, columns.ARCHITECTURES, fields=query.fields)
+    return list_answer(shown, shown.items, columns_of(BestOfArchitecture), fields=query.fields)
 
 
 @router.get(
@@ -98,7 +101,7 @@ async def overview(known: Known, query: Annotated[OverviewQuery, Query()]) -> An
     boards = narrow(board["datasets"], query, ("detector", "mask"))
     document = overview_of({"datasets": boards})
     parts = narrow(document["parts"], query, ("role",))
-    return Answer({**document, "parts": parts}, columns.PARTS, lambda: parts)
+    return Answer({**document, "parts": parts}, columns_of(PartOverview), lambda: parts)
 
 
 @router.get(
@@ -130,4 +133,4 @@ async def leaderboard_of_dataset(
         and bool(row["studies"]) >= query.studied
     ]
     shown = page(order(rows, query.sort), f"/v1/leaderboard/{dataset}", query)
-    return list_answer(shown, shown.items, columns.LEADERBOARD, fields=query.fields)
+    return list_answer(shown, shown.items, columns_of(LeaderboardRow), fields=query.fields)

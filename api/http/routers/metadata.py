@@ -12,14 +12,14 @@ from api.deposit.identity import identity
 from api.http.answers import AnswerRoute, LinkDocument
 from api.http.dependencies import NO_PARAMETERS, Known
 from api.http.knowledge import Knowledge
-from api.http.models.scores import WholeLeaderboardQuery
-from api.http.models.words import DatasetName
 from api.http.negotiation import CSV
 from api.http.routers.datasets import dataset
 from api.http.routers.leaderboard import leaderboard
 from api.metadata import served, signposting
 from api.metadata.croissant import croissant
 from api.metadata.terms import LD_JSON, LINKSET
+from api.schema.scores import WholeLeaderboardQuery
+from api.schema.words import DatasetName
 from benchmark.results import samples
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, dependencies=[NO_PARAMETERS])

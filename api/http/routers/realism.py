@@ -7,10 +7,10 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
 
-from api import columns
 from api.http.answers import Answer, AnswerRoute
 from api.http.dependencies import Known
-from api.http.models.datasets import BuiltSensor, Realism, RealismQuery
+from api.schema.datasets import BuiltSensor, BuiltSensorRow, Realism, RealismQuery
+from api.schema.table import columns_of
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -28,7 +28,7 @@ async def realism(known: Known, query: Annotated[RealismQuery, Query()]) -> Answ
         for row in known.measurements.realism
         if not query.dataset or row["dataset"] in query.dataset
     ]
-    return Answer({"datasets": chosen}, columns.REALISM, lambda: _rows(chosen))
+    return Answer({"datasets": chosen}, columns_of(BuiltSensorRow), lambda: _rows(chosen))
 
 
 def _rows(chosen: list[Mapping[str, Any]]) -> list[Mapping[str, Any]]:

@@ -8,18 +8,14 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Depends
 
-from api import columns
 from api.http.answers import Answer, AnswerRoute
 from api.http.dependencies import AS_ACCEPTED, Known, TableOnly, query_as
 from api.http.knowledge import Knowledge
-from api.http.models.recommendations import (
-    Recommendations,
-    Requirements,
-    RequirementsBody,
-    RequirementsQuery,
-)
 from api.http.representations import digest_of
 from api.recommending import rows
+from api.schema.recommendations import RecommendationRow, Recommendations
+from api.schema.requirements import Requirements, RequirementsBody, RequirementsQuery
+from api.schema.table import columns_of
 from registry.answer_json import answer_digest, answer_json
 from registry.recommendation import answer
 from registry.requirements import PARAMETERS, SETTINGS
@@ -75,7 +71,7 @@ class Recommendation(Answer):
     def __init__(self, content: bytes, digest: str) -> None:
         self._content = content
         self.digest = digest
-        super().__init__({}, columns.RECOMMENDATIONS, lambda: list(rows(self.document)))
+        super().__init__({}, columns_of(RecommendationRow), lambda: list(rows(self.document)))
 
     def render(self, content: Any) -> bytes:  # noqa: ARG002 - written already
         """Return the JSON."""

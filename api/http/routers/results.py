@@ -6,12 +6,12 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from api import columns
 from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import Known
-from api.http.models.base import Selected
-from api.http.models.scores import Scores, ScoresQuery
 from api.http.pagination import narrow, order, page
+from api.schema.base import Selected
+from api.schema.scores import Score, Scores, ScoresQuery
+from api.schema.table import columns_of
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -22,4 +22,4 @@ async def results(known: Known, query: Annotated[ScoresQuery, Query()]) -> Answe
     names = ("dataset", "condition", "extractor", "model")
     rows = order(narrow(known.measurements.scores, query, names), query.sort)
     shown = page(rows, "/v1/results", query)
-    return list_answer(shown, shown.items, columns.RESULTS, fields=query.fields)
+    return list_answer(shown, shown.items, columns_of(Score), fields=query.fields)

@@ -7,11 +7,11 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
 
-from api import columns
 from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import Known
-from api.http.models.search import SearchQuery, SearchResults
 from api.http.pagination import page
+from api.schema.search import Found, SearchQuery, SearchResults
+from api.schema.table import columns_of
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -29,4 +29,4 @@ async def search(known: Known, query: Annotated[SearchQuery, Query()]) -> Answer
         told = {name: entry[name] for name in ("kind", "id", "title", "address")}
         ranked.append({"rank": rank, **told, "excerpt": hit.excerpt, "score": hit.score})
     shown = page(ranked, "/v1/search", query)
-    return list_answer(shown, shown.items, columns.SEARCH)
+    return list_answer(shown, shown.items, columns_of(Found))

@@ -7,15 +7,24 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query
 
-from api import columns
 from api.http.answers import Answer, AnswerRoute, CitedAnswer, list_answer
 from api.http.dependencies import AS_ACCEPTED as TABLE_AS_ACCEPTED
 from api.http.dependencies import Known, TableOnly
 from api.http.knowledge import Knowledge
-from api.http.models.base import Selected
-from api.http.models.studies import Editions, Studies, StudiesQuery, StudyDetail, StudyQuery
-from api.http.models.words import StudyKey
 from api.http.pagination import order, page
+from api.schema.base import Selected
+from api.schema.studies import (
+    AttributeValue,
+    Edition,
+    Editions,
+    Studies,
+    StudiesQuery,
+    StudyDetail,
+    StudyQuery,
+    StudyRow,
+)
+from api.schema.table import columns_of
+from api.schema.words import StudyKey
 from registry.fidelity.runnable import RunnablePipeline
 from registry.resolution import Resolution
 from registry.studies import Study
@@ -47,7 +56,7 @@ async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> Answ
     answer = list_answer(
         shown,
         shown.items,
-        columns.STUDIES,
+        columns_of(StudyRow),
         lambda: [{**item, **item["values"], "verified": _said(item)} for item in shown.items],
         fields=query.fields,
     )
@@ -65,7 +74,7 @@ async def editions(
     tables.
     """
     items = [one.to_dict() for one in known.editions]
-    return Answer({"items": items}, columns.EDITIONS, lambda: items)
+    return Answer({"items": items}, columns_of(Edition), lambda: items)
 
 
 @router.get(
@@ -102,7 +111,7 @@ async def study(
         ],
         "gaps": [gap.to_dict() for gap in resolution.gaps],
     }
-    answer = Answer(document, columns.STUDY, lambda: document["attributes"])
+    answer = Answer(document, columns_of(AttributeValue), lambda: document["attributes"])
     return CitedAnswer(answer, [document], key)
 
 
@@ -177,7 +186,7 @@ def _is_wanted(study: Study, query: StudiesQuery, known: Knowledge) -> bool:
         and _has_words(study, query.q)
         and (not query.grade or known.resolutions[study.key].fidelity.grade in query.grade)
         and (not query.state or known.resolutions[study.key].state in query.state)
-        and _has_values(study, query.wanted(), known)
+        and _has_values(study, query.by_attribute(), known)
     )
 
 

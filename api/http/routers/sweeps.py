@@ -6,12 +6,12 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from api import columns
 from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import Known
-from api.http.models.assessment import Sweeps, SweepsQuery
-from api.http.models.base import Selected
 from api.http.pagination import narrow, order, page
+from api.schema.assessment import Sweep, Sweeps, SweepsQuery
+from api.schema.base import Selected
+from api.schema.table import columns_of
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -25,4 +25,4 @@ async def sweeps(known: Known, query: Annotated[SweepsQuery, Query()]) -> Answer
     """
     rows = narrow(known.measurements.sweeps, query, ("series", "sweep", "extractor"))
     shown = page(order(rows, query.sort), "/v1/sweeps", query)
-    return list_answer(shown, shown.items, columns.SWEEPS, fields=query.fields)
+    return list_answer(shown, shown.items, columns_of(Sweep), fields=query.fields)

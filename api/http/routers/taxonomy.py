@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
-from api import columns
 from api.http.answers import Answer, AnswerRoute
 from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
-from api.http.models.taxonomy import Taxonomy
+from api.schema.table import columns_of
+from api.schema.taxonomy import Taxonomy, TaxonomyRow
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -28,7 +28,7 @@ async def taxonomy(
     attributes = known.taxonomy.to_dict()
     return Answer(
         {"attributes": attributes},
-        columns.TAXONOMY,
+        columns_of(TaxonomyRow),
         lambda: [
             {"attribute": attribute, **entry}
             for attribute, entries in attributes.items()

@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import re
+from typing import get_args
 
 import pytest
 from typer.testing import CliRunner
@@ -11,8 +12,7 @@ from typer.testing import CliRunner
 from api.cells import cell
 from api.cli import architectures
 from api.cli.command_line import app
-from api.cli.commands.recommend import Sort
-from registry.ranking import SORTS
+from registry.ranking import SORTS, Sort
 
 ASKED = {
     "task": ["Accuracy", "FOV"],
@@ -137,7 +137,7 @@ def test_what_disagrees_costs_or_is_not_tried_is_said(atlas):
 def test_the_order_is_the_one_asked_for():
     for sort in SORTS:
         assert architectures.ORDERS[sort] in words(text("--sort", sort, "--limit", 1))
-    assert tuple(Sort) == SORTS
+    assert get_args(Sort) == SORTS
 
 
 def test_what_cannot_be_met_names_the_requirement_and_what_would_help(atlas):

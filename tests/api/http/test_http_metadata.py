@@ -20,9 +20,10 @@ import rdflib
 import uvicorn
 from signposting import find_signposting_http, find_signposting_http_link, find_signposting_linkset
 
-from api import columns
 from api.deposit.identity import identity
 from api.metadata.signposting import landing_of_study
+from api.schema.scores import LeaderboardRow
+from api.schema.table import columns_of
 from benchmark import datasets
 from tests.api.conftest import Client
 
@@ -125,7 +126,7 @@ def test_croissant_loads_the_leaderboard(atlas, address, load) -> None:
     rows = rows_of(load(f"{address}/v1/leaderboard/croissant.json"), "ranks")
     table = atlas.table("/v1/leaderboard?whole=true")
     assert len(rows) == len(table) > 1000
-    assert set(rows[0]) == set(columns.LEADERBOARD)
+    assert set(rows[0]) == set(columns_of(LeaderboardRow))
     for row, text in zip(rows[::101], table[::101], strict=True):
         assert row["dataset"].decode() == text["dataset"]
         assert row["rank"] == (int(text["rank"]) if text["rank"] else None)

@@ -16,8 +16,11 @@ from api.http.answers import Answer, AnswerRoute
 from api.http.asking import ask
 from api.http.dependencies import Known
 from api.http.knowledge import Knowledge
-from api.http.models.base import Question
-from api.http.models.parameters import (
+from api.http.pagination import page
+from api.http.problems import Problem
+from api.http.representations import RepresentationCache
+from api.schema.base import Question
+from api.schema.parameters import (
     DEFAULT_PAGE,
     GIVEN,
     NUMBER,
@@ -27,9 +30,6 @@ from api.http.models.parameters import (
     OneOf,
     Several,
 )
-from api.http.pagination import page
-from api.http.problems import Problem
-from api.http.representations import RepresentationCache
 
 fuzz = settings(deadline=None, derandomize=True)
 

@@ -6,10 +6,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from api.columns import SAMPLE_ERRORS
 from api.http.knowledge import Knowledge
 from api.http.measurements import Measurements
 from api.http.service import create_app
+from api.schema.samples import SampleError
+from api.schema.table import columns_of
 from benchmark.contract import Cell
 from benchmark.results.samples import Directions, SampleErrors
 
@@ -38,7 +39,7 @@ def client(published, client_of):
 def test_rows_are_those_of_the_file_with_their_directions(client):
     rows = client.get(f"/v1/datasets/{NAME}/errors").json()["items"]
     assert len(rows) == 9
-    assert list(rows[0]) == list(SAMPLE_ERRORS)
+    assert list(rows[0]) == list(columns_of(SampleError))
     assert rows[3] == {
         "extractor": "bctm",
         "model": "pinhole",

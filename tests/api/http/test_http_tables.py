@@ -6,53 +6,70 @@ import math
 
 import pytest
 
-from api import columns
+from api.schema.advice import Advice, Statement
+from api.schema.algorithms import Algorithm
+from api.schema.assessment import Sweep, VerdictRow
+from api.schema.boards import BestOfArchitecture, PartOverview
+from api.schema.claims import CheckedRule, ClaimRow
+from api.schema.comparison import ComparedRow
+from api.schema.curves import CurveRow
+from api.schema.datasets import BuiltSensorRow, Data, Dataset
+from api.schema.figures import ArcRow, FlowRow, ListedFigure, PairRow, PublicationRow, SensorRow
+from api.schema.flows import Link
+from api.schema.recommendations import RecommendationRow
+from api.schema.samples import SampleError
+from api.schema.scores import LeaderboardRow, Score
+from api.schema.search import Found
+from api.schema.studies import AttributeValue, Edition, StudyRow
+from api.schema.table import columns_of
+from api.schema.taxonomy import TaxonomyRow
 
-TABLES = {
-    "/v1/taxonomy": columns.TAXONOMY,
-    "/v1/studies": columns.STUDIES,
-    "/v1/studies?year_min=2020&detector=PD": columns.STUDIES,
-    "/v1/studies?edition=all": columns.STUDIES,
-    "/v1/editions": columns.EDITIONS,
-    "/v1/studies/Liebe2001": columns.STUDY,
-    "/v1/flows/error": columns.FLOWS,
-    "/v1/flows/error?error=Electrical&counting=fractional": columns.FLOWS,
-    "/v1/figures": columns.FIGURES,
-    "/v1/figures/matrix": columns.FIGURE_MATRIX,
-    "/v1/figures/matrix?rows=model&columns=model&detector=OI": columns.FIGURE_MATRIX,
-    "/v1/figures/performance": columns.FIGURE_FLOWS,
-    "/v1/figures/error?detector=OI": columns.FIGURE_FLOWS,
-    "/v1/figures/models?detector=OI": columns.FIGURE_MODELS,
-    "/v1/figures/publications?detector=OI": columns.FIGURE_PUBLICATIONS,
-    "/v1/figures/coordinates?detector=OI": columns.FIGURE_COORDINATES,
-    "/v1/recommendations?task=Accuracy": columns.RECOMMENDATIONS,
-    "/v1/recommendations?survive=albedo&max_error_deg=1": columns.RECOMMENDATIONS,
-    "/v1/recommendations?max_error_deg=0.000001": columns.RECOMMENDATIONS,
-    "/v1/algorithms": columns.ALGORITHMS,
-    "/v1/datasets": columns.DATASETS,
-    "/v1/datasets?limit=1": columns.DATASETS,
-    "/v1/datasets/pd-orbit": columns.DATASET,
-    "/v1/datasets/pd-orbit/errors": columns.SAMPLE_ERRORS,
-    "/v1/realism": columns.REALISM,
-    "/v1/leaderboard": columns.LEADERBOARD,
-    "/v1/leaderboard/architectures": columns.ARCHITECTURES,
-    "/v1/leaderboard/overview": columns.PARTS,
-    "/v1/leaderboard/qpd-single-aperture": columns.LEADERBOARD,
-    "/v1/leaderboard/qpd-single-aperture?field_deg=30": columns.LEADERBOARD,
-    "/v1/leaderboard/qpd-single-aperture?max_error_deg=1": columns.LEADERBOARD,
-    "/v1/results?limit=5": columns.RESULTS,
-    "/v1/sweeps?limit=5": columns.SWEEPS,
-    "/v1/curves": columns.CURVES,
-    "/v1/assessment": columns.ASSESSMENT,
-    "/v1/claims": columns.CLAIMS,
-    "/v1/claims?q=zzz": columns.CLAIMS,
-    "/v1/claims/C04": columns.CLAIM,
-    "/v1/search?q=centroid": columns.SEARCH,
-    "/v1/search?q=zzzzzzzz": columns.SEARCH,
-    "/v1/compare?architecture=CMOS:Encoded&architecture=PD:Slit": columns.COMPARISON,
-    "/v1/advice": columns.ADVICE,
-    "/v1/protocol": columns.PROTOCOL,
+MODELS = {
+    "/v1/taxonomy": TaxonomyRow,
+    "/v1/studies": StudyRow,
+    "/v1/studies?year_min=2020&detector=PD": StudyRow,
+    "/v1/studies?edition=all": StudyRow,
+    "/v1/editions": Edition,
+    "/v1/studies/Liebe2001": AttributeValue,
+    "/v1/flows/error": Link,
+    "/v1/flows/error?error=Electrical&counting=fractional": Link,
+    "/v1/figures": ListedFigure,
+    "/v1/figures/matrix": PairRow,
+    "/v1/figures/matrix?rows=model&columns=model&detector=OI": PairRow,
+    "/v1/figures/performance": FlowRow,
+    "/v1/figures/error?detector=OI": FlowRow,
+    "/v1/figures/models?detector=OI": ArcRow,
+    "/v1/figures/publications?detector=OI": PublicationRow,
+    "/v1/figures/coordinates?detector=OI": SensorRow,
+    "/v1/recommendations?task=Accuracy": RecommendationRow,
+    "/v1/recommendations?survive=albedo&max_error_deg=1": RecommendationRow,
+    "/v1/recommendations?max_error_deg=0.000001": RecommendationRow,
+    "/v1/algorithms": Algorithm,
+    "/v1/datasets": Dataset,
+    "/v1/datasets?limit=1": Dataset,
+    "/v1/datasets/pd-orbit": Data,
+    "/v1/datasets/pd-orbit/errors": SampleError,
+    "/v1/realism": BuiltSensorRow,
+    "/v1/leaderboard": LeaderboardRow,
+    "/v1/leaderboard/architectures": BestOfArchitecture,
+    "/v1/leaderboard/overview": PartOverview,
+    "/v1/leaderboard/qpd-single-aperture": LeaderboardRow,
+    "/v1/leaderboard/qpd-single-aperture?field_deg=30": LeaderboardRow,
+    "/v1/leaderboard/qpd-single-aperture?max_error_deg=1": LeaderboardRow,
+    "/v1/results?limit=5": Score,
+    "/v1/sweeps?limit=5": Sweep,
+    "/v1/curves": CurveRow,
+    "/v1/assessment": VerdictRow,
+    "/v1/claims": ClaimRow,
+    "/v1/claims?q=zzz": ClaimRow,
+    "/v1/claims/C04": CheckedRule,
+    "/v1/search?q=centroid": Found,
+    "/v1/search?q=zzzzzzzz": Found,
+    "/v1/compare?architecture=CMOS:Encoded&architecture=PD:Slit": ComparedRow,
+    "/v1/advice": Advice,
+    "/v1/protocol": Statement,
 }
+TABLES = {url: tuple(columns_of(model)) for url, model in MODELS.items()}
 LISTS = {
     # nested, and so columns of their own or left to JSON
     "/v1/studies": {"values", "runs", "headline", "sentence"},
@@ -130,7 +147,9 @@ def test_format_and_accept_agree_or_are_refused(atlas):
 def test_what_is_asked_by_post_has_a_format_too(atlas):
     url, body = "/v1/recommendations", {"task": ["Accuracy"], "limit": 2}
     table = atlas.post(f"{url}?format=csv", json=body)
-    assert table.text.partition("\n")[0].split(",") == list(columns.RECOMMENDATIONS)
+    assert table.text.partition("\n")[0].split(",") == list(
+        TABLES["/v1/recommendations?task=Accuracy"]
+    )
     for query in ("format=xml", "format=csv&format=json"):
         refused = atlas.post(f"{url}?{query}", json=body)
         assert refused.status_code == 422

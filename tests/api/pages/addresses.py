@@ -26,6 +26,8 @@ KINDS = {
     "architecture": "/architectures/CMOS/Encoded",
     "claims": "/claims",
     "claim": "/claims/C04",
+    "experiments": "/experiments",
+    "experiment": "/experiments/learning_curves",
     "compare": "/compare",
     "compared": "/compare?architecture=CMOS:Encoded&architecture=QPD:Single-Ap.",
     "compared pipelines": "/compare?dataset=ccd-lens&pipeline=bcm:lut"

@@ -10,7 +10,7 @@ from algorithms.models.geometric.pinhole import BuiltPinhole
 from benchmark import datasets
 from benchmark.datasets.corrected import correction
 from benchmark.error_budget import perfected
-from benchmark.error_budget.measure import directions, held
+from benchmark.error_budget.measure import directions, score_variants
 from benchmark.error_budget.variants import SINGLE, VARIANTS
 from benchmark.metrics.score import separation_deg
 from benchmark.plan.parts import installed_parts
@@ -127,7 +127,7 @@ def quadrant():
     parts = installed_parts()
     preset, condition = _first("qpd-single-aperture")
     extractor, model = parts.extractor("voltage-balance"), parts.model("polynomial-2d")
-    found = held(preset, condition, extractor, model, all_observable=True)
+    found = score_variants(preset, condition, extractor, model, all_observable=True)
     (outcome,) = measure(Task(preset, condition, extractor, (model,))).outcomes
     return found, outcome.score
 
@@ -190,7 +190,7 @@ def test_what_is_left_over_the_field_is_what_the_variants_err_by(quadrant):
 def test_a_geometric_model_inverts_the_true_places_of_its_sensor():
     parts = installed_parts()
     preset, condition = _first("ccd-slit")
-    found = held(
+    found = score_variants(
         preset,
         condition,
         parts.extractor("eigen-analysis"),

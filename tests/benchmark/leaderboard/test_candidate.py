@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from benchmark.contract import UnknownNameError
-from benchmark.leaderboard.candidate import UnfitError, ranked
+from benchmark.leaderboard.candidate import UnfitError, rank
 from benchmark.leaderboard.pages import to_html
 from benchmark.results.store import Store
 
@@ -17,19 +17,19 @@ CUBE = "pd-maskless-cube"
 
 def test_an_unknown_name_is_refused_with_the_nearest(tmp_path: Path) -> None:
     with pytest.raises(UnknownNameError, match="'bctm'"):
-        ranked("bctn", CUBE, Store(), Store(tmp_path / "work"))
+        rank("bctn", CUBE, Store(), Store(tmp_path / "work"))
 
 
 def test_an_algorithm_that_reads_something_else_is_refused_with_the_reason(tmp_path: Path) -> None:
     with pytest.raises(UnfitError, match="bcm does not fit pd-maskless-cube: reads frames"):
-        ranked("bcm", CUBE, Store(), Store(tmp_path / "work"))
+        rank("bcm", CUBE, Store(), Store(tmp_path / "work"))
     assert not (tmp_path / "work").exists()
 
 
 @pytest.mark.slow
 def test_a_model_of_the_record_has_its_published_numbers_among_all_others(tmp_path: Path) -> None:
     record = Store()
-    found = ranked("basic", CUBE, record, Store(tmp_path / "work"))
+    found = rank("basic", CUBE, record, Store(tmp_path / "work"))
     published = {
         (row["extractor"], row["model"]): row
         for row in record.rows()

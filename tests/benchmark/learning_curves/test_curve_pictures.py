@@ -5,7 +5,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from benchmark.learning_curves import pictures, record
+from benchmark.learning_curves import plots, record
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -17,7 +17,7 @@ def rows():
 
 @pytest.mark.slow
 def test_every_leader_has_its_line_and_its_mark(rows):
-    drawn = pictures.figure(rows)
+    drawn = plots.figure(rows)
     panels = {axes.texts[0].get_text(): axes for axes in drawn.axes}
     assert list(panels) == list(dict.fromkeys(row["dataset"] for row in rows))
     for row in rows:
@@ -46,8 +46,8 @@ def test_every_leader_has_its_line_and_its_mark(rows):
 
 @pytest.mark.slow
 def test_the_file_is_the_same_every_time_small_and_says_what_it_is(rows):
-    text = pictures.picture(rows)
-    assert text == pictures.picture(rows)
+    text = plots.picture(rows)
+    assert text == plots.picture(rows)
     assert len(text.encode()) < 300_000
     root = ET.fromstring(text)
     assert "against the poses" in root.findtext(f"{SVG}title")
@@ -60,6 +60,6 @@ def test_a_leader_that_nothing_answered_leaves_an_empty_panel(rows):
         {"poses": p["poses"], "refused": 6, **dict.fromkeys(p.keys() - {"poses", "refused"})}
         for p in rows[0]["points"]
     ]
-    drawn = pictures.figure([{**rows[0], "points": empty, "needed_poses": None}])
+    drawn = plots.figure([{**rows[0], "points": empty, "needed_poses": None}])
     assert len(drawn.axes) == 1
-    assert pictures.figure([]).texts[-1].get_text() == "nothing is stored"
+    assert plots.figure([]).texts[-1].get_text() == "nothing is stored"

@@ -12,7 +12,7 @@ import pytest
 import survey_data
 from survey_data import SurveyImportError, import_table, load, validate
 from survey_data.importing import table_import
-from survey_data.importing.writing import held_tables
+from survey_data.importing.writing import locked_tables
 
 
 def offer(copy: Any, text: str) -> Path:
@@ -129,7 +129,7 @@ def test_who_imports_while_another_writes_reads_what_that_one_wrote(copy: Any) -
         applied.set()
 
     waiting = threading.Thread(target=other)
-    with held_tables(copy.directory):
+    with locked_tables(copy.directory):
         waiting.start()
         assert not applied.wait(0.5)
         table_import._apply(copy.directory, ours)

@@ -1,0 +1,91 @@
+"""/experiments and /experiments/{name}: what is measured beside the scores, one page for all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from inspect import getdoc
+from pathlib import PurePosixPath
+from typing import Annotated, Any, ClassVar
+
+from fastapi import APIRouter, Path, Response
+
+from api.http.answers import Answer, AnswerRoute
+from api.http.dependencies import NO_PARAMETERS, Known
+from api.http.knowledge import Knowledge
+from api.http.problems import Problem
+from api.http.representations import Representation
+from api.pages.serving import PageRouter, View
+from api.schema.parameters import OneOf
+from benchmark.running.experiment import Recorded, recorded
+
+router = PageRouter()
+#: Rows that a page shows; its CSV has all.
+SHOWN = 100
+SVG = "image/svg+xml"
+
+Name = Annotated[str, OneOf(lambda: tuple(recorded())), Path()]
+
+
+class Drawing(Response):
+    """An SVG."""
+
+    media_type = SVG
+    offered: ClassVar = (SVG,)
+
+    def representation(self, wanted: str) -> Representation:
+        """Return the drawing."""
+        return Representation(bytes(self.body), wanted, {"Vary": "Accept"})
+
+
+pictures = APIRouter(route_class=AnswerRoute, include_in_schema=False)
+
+
+@router.page("/experiments")
+async def experiments(known: Known) -> View:
+    """List the experiments with the number of their rows."""
+    every = [_about(_experiment(name, known)) for name in recorded()]
+    columns = ("name", "title", "description", "rows")
+    return View("experiments/list.html", Answer({"items": every}, columns, lambda: every))
+
+
+@router.page("/experiments/{name}")
+async def experiment(known: Known, name: Name) -> View:
+    """Show an experiment: what it measures, its pictures and its rows."""
+    found = _experiment(name, known)
+    rows = [_flat(row) for row in found.rows()]
+    columns = tuple(dict.fromkeys(column for row in rows for column in row))
+    document = {**_about(found), "pictures": list(_drawn(found)), "items": rows}
+    return View(
+        "experiments/one.html", Answer(document, columns, lambda: rows), columns=columns, most=SHOWN
+    )
+
+
+@pictures.get("/experiments/{name}/{file}", response_class=Drawing, dependencies=[NO_PARAMETERS])
+def picture(known: Known, name: Name, file: str) -> Drawing:
+    """Draw a picture of an experiment."""
+    draw = _drawn(_experiment(name, known)).get(file)
+    if draw is None:
+        raise Problem(404, "unknown-file", f"{name} has no picture {file}")
+    return Drawing(draw())
+
+
+def _experiment(name: str, known: Knowledge) -> Recorded[Any]:
+    return recorded()[name](known.measurements.directory)
+
+
+def _about(one: Recorded[Any]) -> dict[str, Any]:
+    said = (getdoc(type(one)) or "").partition("\n\n")[0].replace("\n", " ")
+    return {"name": one.name, "title": one.title, "description": said, "rows": len(one.rows())}
+
+
+def _drawn(one: Recorded[Any]) -> Mapping[str, Callable[[], str]]:
+    return {PurePosixPath(path).name: draw for path, draw in one.pictures().items()}
+
+
+def _flat(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the members of a row that a cell can hold."""
+    return {
+        name: value
+        for name, value in row.items()
+        if isinstance(value, str) or not isinstance(value, Mapping | Sequence)
+    }

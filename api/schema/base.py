@@ -1,0 +1,144 @@
+"""What the models of answers and of questions have in common."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol
+
+from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler
+from pydantic_core import CoreSchema
+
+from api.schema.parameters import DEFAULT_PAGE, FIELDS, GIVEN, SORT, Cursor, Limit, OneOf, Several
+from api.schema.table import Model, columns_of, sortable
+from api.schema.vocabulary import meaning
+
+
+class Described(BaseModel):
+    """A model whose members are described: by itself, or by the vocabulary."""
+
+    model_config = ConfigDict(defer_build=True)
+
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Return the JSON schema, with what each member means."""
+        made = handler(schema)
+        for name, member in handler.resolve_ref_schema(made).get("properties", {}).items():
+            if said := meaning(name, member.get("description")):
+                member["description"] = said
+        return made
+
+
+class Shape(Described):
+    """An answer or a part of one: exactly these members."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+class OpenShape(Described):
+    """An answer or a part of one whose producer may say more than these members."""
+
+    model_config = ConfigDict(extra="allow")
+
+
+class Listing(Shape):
+    """A page of a list."""
+
+    total: int = Field(description="Total number of items.")
+    next: str | None = Field(description="Cursor of the next page; null on the last page.")
+
+
+class Question(BaseModel):
+    """The parameters of a query or a body: these and no others."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+class NoParameters(Question):
+    """The query of an endpoint that takes none."""
+
+
+class TableQuestion(Question):
+    """The query of what can be had as a table."""
+
+    format: Annotated[Literal["json", "csv"] | None, GIVEN] = Field(
+        None,
+        description=(
+            "Response format; must be one the Accept header allows. "
+            "By default the Accept header selects it."
+        ),
+    )
+    safe: bool = Field(
+        default=False,
+        description="Escape CSV cells that a spreadsheet would run as formulas.",
+    )
+
+
+class SortedQuestion(TableQuestion):
+    """The query of a list: filters, then an order, columns and a page.
+
+    A subclass names the model of a row, `rows`, whose columns can be sorted by and chosen.
+    """
+
+    if TYPE_CHECKING:
+        sort: str | None
+        fields: list[str]
+        limit: int
+        cursor: str | None
+
+    def __init_subclass__(cls, rows: Model | None = None, **settings: Any) -> None:
+        """Add the parameters that a list of such rows has, after the filters."""
+        super().__init_subclass__(**settings)
+        if rows is None:
+            return
+        by = OneOf(lambda: [f"{sign}{name}" for name in sortable(rows) for sign in ("", "-")])
+        cls.__annotations__ |= {
+            "sort": Annotated[str | None, by, GIVEN],
+            "fields": Several[Annotated[str, OneOf(lambda: list(columns_of(rows)))]],
+            "limit": Limit,
+            "cursor": Cursor,
+        }
+        cls.sort, cls.fields, cls.limit, cls.cursor = SORT, FIELDS, DEFAULT_PAGE, None
+
+
+_CitedFormat = Literal["json", "csv", "bibtex", "ris", "csl"] | None
+
+
+class CitedQuestion(TableQuestion):
+    """The query of studies: a table, or references."""
+
+    format: Annotated[_CitedFormat, GIVEN] = Field(  # type: ignore[assignment]  # more than a table
+        None,
+        description=(
+            "Response format: JSON, CSV, or references to studies with a known title as "
+            "BibTeX, RIS or CSL JSON; must be one the Accept header allows. By default "
+            "the header decides."
+        ),
+    )
+
+
+class OnlyFormat(TableQuestion):
+    """The query of a table that takes no other parameters."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{}]})
+
+
+class Selected(Shape):
+    """A page with the columns of `fields`, as flat rows."""
+
+    model_config = ConfigDict(extra="allow")
+
+    items: list[dict[str, str | float | bool | list[Any] | dict[str, Any] | None]]
+    total: int = Field(description="Total number of items.")
+    next: str | None = Field(description="Cursor of the next page; null on the last page.")
+
+
+class Paged(Protocol):
+    """A question for a page of a list."""
+
+    limit: int
+    cursor: str | None
+
+    def model_dump(self, *, exclude_defaults: bool) -> dict[str, Any]:
+        """Return what is asked, as any model does."""
+        ...

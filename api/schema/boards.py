@@ -1,0 +1,159 @@
+"""Leaderboard summary: the best of each architecture, and an overview of the parts."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field
+
+from api.schema.base import Listing, Shape, SortedQuestion, TableQuestion
+from api.schema.parameters import (
+    OneOf,
+    Several,
+    several,
+)
+from api.schema.words import Detector, Mask
+from benchmark.leaderboard.overview import ROLES
+from registry.measured_pipelines import FINER
+
+RoleName = Annotated[str, OneOf(lambda: ROLES)]
+
+
+class OverviewQuery(TableQuestion):
+    """Which parts, counted on which boards."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"role": ["extractor"], "detector": ["QPD"]}]}
+    )
+
+    role: Several[RoleName] = several("Only parts of this role.")
+    detector: Several[Detector] = several("Only data sets with this detector.")
+    mask: Several[Mask] = several("Only data sets with this mask.")
+
+
+class BestOfArchitecture(Shape):
+    """The best pipeline of an architecture under the first condition of its data sets.
+
+    On the data set with the lowest error. Numbers are null where
+    undefined, all of them where nothing has an error.
+    """
+
+    detector: str
+    mask: str
+    datasets: list[str] = Field(description="Data sets of the architecture.")
+    dataset: str | None = Field(description="The data set with the lowest error.")
+    half_fov_deg: float | None
+    extractor: str | None
+    model: str | None
+    studies: list[str] = Field(description="Studies that used this pipeline on the architecture.")
+    own_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
+    own_se: float | None = Field(description="Relative standard error of the own error.")
+    quoted_deg: float | None = Field(
+        description="Error on odd units of the pipeline that is best on even units."
+    )
+    on_bench_deg: float | None = Field(
+        description="Error expected with the standard calibration bench."
+    )
+    on_bench_basis: Literal["measured", "estimated"] | None = Field(
+        description="measured on random benches, or estimated."
+    )
+    rms_deg: float | None = Field(description="RMS error on the standard sensor unit.")
+    bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
+    over_bound: float | None = Field(description="RMS error divided by the bound.")
+    over_bound_se: float | None = Field(description="Standard error of that ratio.")
+    bound_unit_deg: float | None
+    over_bound_unit: float | None = Field(description="RMS error divided by bound_unit_deg.")
+    availability: float | None = Field(
+        description="Availability: share of observable samples with an answer."
+    )
+    unit_rms_deg: list[float | None] | None = Field(
+        description="RMS error of all answers on each unit, standard unit first."
+    )
+    others_low_deg: float | None = Field(
+        description="Smallest error on a unit other than the standard one."
+    )
+    others_high_deg: float | None = Field(
+        description="Largest error on a unit other than the standard one."
+    )
+    runner_up_extractor: str | None = Field(
+        description="Extractor of the pipeline that ranks next."
+    )
+    runner_up_model: str | None = Field(description="Model of the pipeline that ranks next.")
+    runner_up_own_deg: float | None = Field(
+        description="Own error of the pipeline that ranks next, degrees."
+    )
+    runner_up_unit_rms_deg: list[float | None] | None = Field(
+        description="Errors of the pipeline that ranks next on each unit, degrees."
+    )
+    first_group: int = Field(
+        description="Number of pipelines that a paired test cannot separate from the best."
+    )
+    tie: bool = Field(description="Whether the runner-up is tied with the best.")
+    units_ahead: int | None = Field(
+        description="Units on which the best pipeline has the lower error."
+    )
+    units_compared: int = Field(description="Units on which both were scored.")
+    finer_dataset: str | None = Field(
+        description="Data set of the pipeline with the lowest error at 50 to 95 % availability; "
+        f"null unless the best has more than {FINER:g} times its error."
+    )
+    finer_extractor: str | None = Field(
+        description="Extractor of a pipeline with lower error at lower availability."
+    )
+    finer_model: str | None = Field(description="Model of that pipeline.")
+    finer_rms_deg: float | None = Field(description="Its RMS error, degrees.")
+    finer_over_bound: float | None = Field(description="Its error divided by the bound.")
+    finer_availability: float | None = Field(description="Availability of that pipeline.")
+
+
+class Architectures(Listing):
+    """A page of architectures, by detector and mask."""
+
+    items: list[BestOfArchitecture]
+
+
+class PartOverview(Shape):
+    """Number of data sets on which a part of a pipeline is near the bound."""
+
+    role: Literal["extractor", "compensation", "model"]
+    part: str = Field(description="Name of the implementation.")
+    taxonomy: str
+    boards: int = Field(description="Number of data sets with a bound on which it ran.")
+    answered: int = Field(description="Of these, data sets with a pipeline at 95 % availability.")
+    within_1_5: int = Field(
+        description="Of these, data sets with a pipeline within 1.5 times the bound."
+    )
+    within_3: int = Field(description="Boards on which the error is at most 3 times the bound.")
+    within_10: int = Field(description="Boards on which the error is at most 10 times the bound.")
+    share_1_5: float = Field(description="`within_1_5` over `boards`.")
+    share_3: float = Field(
+        description="Share of the boards on which the error is at most 3 times the bound."
+    )
+    share_10: float = Field(
+        description="Share of the boards on which the error is at most 10 times the bound."
+    )
+    median_over_bound: float | None = Field(description="Median of error divided by bound.")
+    leads: int = Field(description="Number of data sets on which it is part of the best pipeline.")
+    reachable_10: int = Field(
+        description="Of `boards`, those on which any pipeline is within 10 times the bound."
+    )
+
+
+class Overview(Shape):
+    """Share of data sets on which each part of a pipeline is near the bound."""
+
+    says: str = Field(description="Description of the aggregation.")
+    within: list[float] = Field(description="Limits, as multiples of the bound.")
+    boards: int = Field(description="Number of data sets counted, nominal condition.")
+    parts: list[PartOverview] = Field(
+        description="Extractors, compensations and models, one entry each."
+    )
+
+
+class ArchitecturesQuery(SortedQuestion, rows=BestOfArchitecture):
+    """Which architectures."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{"detector": ["QPD"], "limit": 1}]})
+
+    detector: Several[Detector] = several("Only this detector.")
+    mask: Several[Mask] = several("Only this mask.")

@@ -1,0 +1,163 @@
+"""Pipelines or architectures side by side."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, TypeVar
+
+from pydantic import AfterValidator, ConfigDict, Field
+
+from api.comparing import FEWEST, MOST, SEPARATOR
+from api.schema.base import Shape, TableQuestion
+from api.schema.parameters import GIVEN, OneOf
+from api.schema.studies import OfEdition
+from api.schema.words import Condition, DatasetName
+from registry.measured_pipelines import FINER
+from registry.studies import facts
+
+Word = TypeVar("Word")
+InOrder = Annotated[
+    list[Word], Field(max_length=MOST), AfterValidator(lambda given: list(dict.fromkeys(given)))
+]
+
+
+def _architectures() -> tuple[str, ...]:
+    values = facts().taxonomy.values
+    return tuple(f"{d}{SEPARATOR}{m}" for d in values("detector") for m in values("mask"))
+
+
+Architecture = Annotated[str, OneOf(_architectures)]
+Pipeline = Annotated[str, Field(min_length=3, max_length=120)]
+
+
+class CompareQuery(OfEdition, TableQuestion):
+    """What is compared: pipelines on a data set, or architectures."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [
+                {
+                    "dataset": "cmos-single-aperture",
+                    "pipeline": ["bctm:spm", "mirror:homography"],
+                }
+            ]
+        }
+    )
+
+    architecture: InOrder[Architecture] = Field(
+        default_factory=list,
+        description=f"Architectures as DETECTOR:MASK, {FEWEST} to {MOST}; each by its best "
+        "pipeline.",
+    )
+    dataset: Annotated[DatasetName | None, GIVEN] = Field(
+        None, description="Data set of the pipelines."
+    )
+    pipeline: InOrder[Pipeline] = Field(
+        default_factory=list,
+        description=f"Pipelines as EXTRACTOR:MODEL, {FEWEST} to {MOST}.",
+    )
+    condition: Annotated[Condition | None, GIVEN] = Field(
+        None, description="Condition of the data set; by default the first."
+    )
+
+
+class FinerPipeline(Shape):
+    """A pipeline of the same architecture with a much lower error."""
+
+    dataset: str
+    extractor: str
+    model: str
+    rms_deg: float
+    availability: float = Field(description="Availability.")
+
+
+class ConditionError(Shape):
+    """Error under a condition."""
+
+    rms_deg: float | None
+    availability: float | None
+    finer: FinerPipeline | None = Field(
+        description="Pipeline of the architecture with the lowest error under this condition at "
+        f"50 % availability or more; null unless the error is more than {FINER:g} times as large."
+    )
+
+
+class RingError(Shape):
+    """Error in a ring of the field."""
+
+    inner_deg: float = Field(description="Inner off-axis angle of the ring, degrees.")
+    outer_deg: float = Field(description="Outer off-axis angle of the ring, degrees.")
+    rms_deg: float
+
+
+class ComparedRow(Shape):
+    """What is compared of a pipeline: a row of the table."""
+
+    detector: str
+    mask: str
+    dataset: str | None
+    condition: str | None
+    extractor: str | None
+    model: str | None
+    studies: list[str] = Field(description="Studies that used it on such a sensor.")
+    rms_deg: float | None
+    over_least: float | None = Field(
+        description="RMS error divided by the lowest of those compared."
+    )
+    bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
+    over_bound: float | None
+    over_bound_se: float | None = Field(description="Standard error of that ratio.")
+    own_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
+    on_bench_deg: float | None = Field(
+        description="Error expected with the standard calibration bench."
+    )
+    low_deg: float | None = Field(description="Smallest error over units.")
+    high_deg: float | None = Field(description="Largest error over units.")
+    availability: float | None
+    false_sun: float | None = Field(
+        description="False detections: share of unobservable test samples with an answer."
+    )
+    latency_us: float | None = Field(
+        description="Time per sample on this machine, microseconds; null if not timed."
+    )
+    time_ratio: float | None = Field(description="Time divided by that of a reference method.")
+    needed_poses: int | None = Field(
+        description=(
+            "Calibration poses needed to be within 10 % of the error floor; null without "
+            "a learning curve, or if more than all poses are needed."
+        )
+    )
+    needed_low: int | None = Field(description="Poses needed in the best random draw.")
+    needed_high: int | None = Field(
+        description=(
+            "Poses needed in the worst random draw; empty if more than all poses are needed."
+        )
+    )
+    poses: int | None = Field(
+        description="Calibration poses in the data set; null without a learning curve."
+    )
+    floor_error_deg: float | None = Field(description="Error floor of the learning curve.")
+    half_fov_deg: float | None
+    rank: int | None = Field(description="Rank on the leaderboard of the data set and condition.")
+    status: Literal["ok", "refused", "failed", "none"]
+    reason: str | None = Field(description="Reason for a missing score.")
+    finer: FinerPipeline | None = Field(
+        description="Pipeline of the architecture with the lowest error at 50 to 95 % "
+        f"availability; null unless the error is more than {FINER:g} times as large."
+    )
+
+
+class Compared(ComparedRow):
+    """A pipeline, or the best one of an architecture. Numbers are null if undefined."""
+
+    proposed: list[str] | None = Field(description="Studies with this architecture.")
+    unit_rms_deg: list[float | None] | None = Field(description="Error on each sensor unit.")
+    conditions: dict[str, ConditionError] = Field(description="RMS error by condition.")
+    rings: list[RingError] = Field(description="RMS error by off-axis angle.")
+
+
+class Comparison(Shape):
+    """Compared pipelines or architectures, in the requested order."""
+
+    dataset: str | None = Field(description="Null if architectures are compared.")
+    condition: str | None
+    items: list[Compared]

@@ -1,0 +1,190 @@
+"""Standard data sets."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import ConfigDict, Field
+
+from api.schema.base import Listing, OpenShape, Shape, SortedQuestion, TableQuestion
+from api.schema.parameters import (
+    Several,
+    several,
+)
+from api.schema.table import AS_TEXT
+from api.schema.words import DatasetName
+
+
+class SplitSize(OpenShape):
+    """Size of a split."""
+
+    samples: int
+
+
+class Splits(OpenShape):
+    """Splits of a data set."""
+
+    calibration: SplitSize = Field(description="Known directions, to calibrate with.")
+    test: SplitSize = Field(description="Directions that are scored.")
+    repeat: SplitSize = Field(description="Poses measured several times, for repeatability.")
+
+
+class StandsFor(OpenShape):
+    """Built sensors that a data set stands for, or the reason for an idealisation."""
+
+    idealisation: str | None = Field(
+        description="Reason for an idealised sensor; null if built sensors exist."
+    )
+    sensors: Annotated[list[dict[str, Any]], AS_TEXT]
+
+
+class Dataset(OpenShape):
+    """Summary of a data set."""
+
+    name: str
+    version: int
+    detector: str
+    mask: str
+    observation: str = Field(description="Kind of readings: frames, profiles, currents or events.")
+    conditions: list[str]
+    units: str
+    bounds: dict[str, float] = Field(description="Cramer-Rao bound by condition, rms, degrees.")
+    description: str
+    follows: list[str] = Field(
+        description="Studies that the sensor is based on, separated by semicolons."
+    )
+    stands_for: StandsFor = Field(
+        description="Built `sensors` for comparison, or the reason for an `idealisation`."
+    )
+    splits: Splits = Field(description="Samples of each split.")
+    preview: str = Field(description="Address of its picture.")
+    setups: dict[str, dict[str, Any]] = Field(description="Descriptions of the conditions.")
+
+
+class RealismQuery(TableQuestion):
+    """Which data sets."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"dataset": ["qpd-single-aperture"]}]}
+    )
+
+    dataset: Several[DatasetName] = several("Only this data set.")
+
+
+class BestOnDataset(Shape):
+    """The best pipeline on a data set under nominal conditions."""
+
+    dataset: str
+    extractor: str | None = Field(
+        description="Extractor of the best pipeline under nominal conditions."
+    )
+    model: str | None
+    half_fov_deg: float | None
+    rms_deg: float | None
+    bound_deg: float | None = Field(description="Cramer-Rao bound over the field of the data set.")
+    repeatability_deg: float | None
+
+
+class PublishedFigures(Shape):
+    """Published figures of a built sensor, compared with ours."""
+
+    id: str
+    name: str
+    fov_full_deg: float | None = Field(description="Full field of view.")
+    accuracy_deg: float | None = Field(description="As claimed.")
+    accuracy_kind: str | None
+    accuracy_rms_deg: float | None = Field(
+        description="Accuracy converted to RMS: 3-sigma and maximum errors divided by three."
+    )
+    precision_deg: float | None
+    basis: str = Field(description="page: seen on a public page; recalled: not checked.")
+    our_rms_deg: float | None = Field(
+        description="Our RMS error, over its field of view if narrower."
+    )
+    accuracy_ratio: float | None = Field(description="Our error divided by its accuracy.")
+    precision_ratio: float | None = Field(description="Our repeatability divided by its precision.")
+
+
+class Source(Shape):
+    """Where a figure was read."""
+
+    source: str = Field(description="Address, document, study or label of the survey's source.")
+    source_name: str = Field(description="Publisher, document or part of the survey.")
+
+
+class Explanation(Shape):
+    """Whether a difference is explained, and how."""
+
+    explanation: str | None = Field(
+        description="Explanation of a difference, or reason for an idealised sensor."
+    )
+    unexplained: bool = Field(
+        description="Whether a difference of more than a factor of two is unexplained."
+    )
+
+
+# Members of a class stand behind those of the classes named after it.
+class BuiltSensor(Source, PublishedFigures):
+    """Published figures of a built sensor, compared with ours. Null if unknown."""
+
+
+class BuiltSensorRow(Source, Explanation, PublishedFigures, BestOnDataset):
+    """A data set and a built sensor: a row of the table."""
+
+
+class RealismRow(BestOnDataset):
+    """A data set compared with built sensors."""
+
+    idealisation: str | None = Field(
+        description="Reason for an idealised sensor; null if built sensors exist."
+    )
+    accuracy_ratio: float | None = Field(
+        description="1 within the range of the sensors' figures, else the ratio to the nearest."
+    )
+    precision_ratio: float | None = Field(
+        description="Repeatability measured here divided by the published precision."
+    )
+    sentence: str | None = Field(description="Explanation of a difference.")
+    unexplained: bool = Field(
+        description="Whether a difference of more than a factor of two is unexplained."
+    )
+    sensors: list[BuiltSensor]
+
+
+class Realism(Shape):
+    """Data sets compared with built sensors."""
+
+    datasets: list[RealismRow]
+
+
+class Data(Shape):
+    """Published hash of a split under a condition; null if none."""
+
+    condition: str
+    split: str
+    samples: int
+    data_hash: str | None
+    bound_deg: float | None = Field(description="RMS Cramer-Rao bound over the test split.")
+
+
+class DatasetDetail(Dataset):
+    """Description of a data set with all simulation parameters."""
+
+    geometry: dict[str, Any] = Field(description="Dimensions and positions of the sensor's parts.")
+    regime: dict[str, Any] = Field(
+        description="Which effect dominates the image of the aperture: geometry or diffraction."
+    )
+    seeds: dict[str, Any] = Field(description="Seeds of the random numbers, by purpose.")
+    data: list[Data] = Field(description="Splits of the data set under each condition.")
+
+
+class Datasets(Listing):
+    """A page of standard data sets."""
+
+    items: list[Dataset]
+
+
+class DatasetsQuery(SortedQuestion, rows=Dataset):
+    """Which page of the data sets."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})

@@ -1,0 +1,73 @@
+"""Decision flows."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import ConfigDict, Field
+
+from api.schema.base import Shape
+from api.schema.parameters import Flag
+from api.schema.studies import StudyFilters
+
+
+class FlowsQuery(StudyFilters):
+    """Which studies flow, and how they are counted."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"error": ["Electrical"], "detector": ["CMOS"]}]}
+    )
+
+    counting: Literal["studies", "fractional"] = Field(
+        "studies",
+        description=(
+            "studies: number of distinct studies per link. fractional: each study has "
+            "weight one, divided over the combinations of its values, so that inflow "
+            "equals outflow."
+        ),
+    )
+    grouped: Flag = Field(
+        False, description="Show categories of models and families of extractors."
+    )
+
+
+class Node(Shape):
+    """A value at a level of a decision flow."""
+
+    id: str
+    level: str
+    value: str
+    name: str
+    count: float = Field(description="Number of studies, or sum of their fractions.")
+    studies: list[str]
+
+
+class Link(Shape):
+    """Link between two values with its studies."""
+
+    source: str
+    target: str = Field(description="Target node of the link.")
+    value: float = Field(description="Number of studies, or sum of their fractions.")
+    studies: list[str]
+
+
+class LeftOut(Shape):
+    """Studies without a value at a level."""
+
+    level: str
+    count: int
+    studies: list[str]
+
+
+class Flows(Shape):
+    """A decision flow: a Sankey diagram, or the rings of a sunburst."""
+
+    chart: str = Field(description="Name of the chart.")
+    levels: list[str] = Field(description="Attributes of the chart, from left to right.")
+    counting: Literal["studies", "fractional"] = Field(
+        description="studies or fractional: how a study with several values is counted."
+    )
+    studies: int = Field(description="Number of studies that match the filters.")
+    nodes: list[Node]
+    links: list[Link]
+    left_out: list[LeftOut]

@@ -1,0 +1,307 @@
+"""Which studies are asked for, and what is said of them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import ConfigDict, Field
+
+from api.schema import words
+from api.schema.base import CitedQuestion, Listing, Question, Shape, SortedQuestion, TableQuestion
+from api.schema.parameters import (
+    GIVEN,
+    WHOLE,
+    Several,
+    several,
+)
+from api.schema.table import AS_TEXT, ColumnEach
+from registry.fidelity.particulars import Purpose
+from registry.sensors import Basis
+from registry.taxonomy import ATTRIBUTES
+from survey_data.editions import Choice
+
+REPORTED = ("accuracy_deg", "accuracy_kind", "precision_deg", "precision_kind", "fov_deg")
+"""Attributes of studies that are numbers, and the statistics of these."""
+State = Literal["complete", "partial", "none"]
+Grade = Literal["faithful", "close", "stand-in", "none"]
+
+
+def _filter(attribute: str, more: str = "") -> Any:
+    return several(f"Only studies with one of these values of {attribute}{more}.")
+
+
+class OfEdition(Question):
+    """Of which edition of the studies."""
+
+    edition: Choice = Field(
+        "survey",
+        description="Studies of the survey, or all, including added ones.",
+    )
+
+
+class StudyFilters(OfEdition, TableQuestion):
+    """Filters by edition and by the attributes of studies."""
+
+    task: Several[words.Task] = _filter("task")
+    error: Several[words.Error] = _filter("error")
+    accuracy: Several[words.Accuracy] = _filter("accuracy")
+    detector: Several[words.Detector] = _filter("detector")
+    mask: Several[words.Mask] = _filter("mask")
+    model: Several[words.Model] = _filter("model", " (a parent such as ECM covers its kinds)")
+    extractor: Several[words.Extractor] = _filter("extractor")
+
+    def by_attribute(self) -> dict[str, list[str]]:
+        """Return the values asked for, by attribute."""
+        asked = {attribute: getattr(self, attribute) for attribute in ATTRIBUTES}
+        return {attribute: values for attribute, values in asked.items() if values}
+
+
+class StudyQuery(CitedQuestion):
+    """The query of one study."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{}]})
+
+
+class Runs(Shape):
+    """Scored pipelines of a study; basis and assumed are those of its best-supported pipeline."""
+
+    pipelines: int
+    cells: int = Field(description="Number of cells (pipeline, data set, condition) of the study.")
+    scored: int = Field(description="Number of cells with a published score.")
+    basis: dict[str, Basis] = Field(
+        description=(
+            "Basis of detector, mask, extractor and model: stated, inferred, implied by "
+            "the survey's definitions, recalled, or defaulted by a rule."
+        )
+    )
+    assumed: dict[str, str] = Field(description="Reason or rule for each part that is not stated.")
+
+
+class Verification(Shape):
+    """A confirmation of a study's values by an author."""
+
+    name: str
+    date: str = Field(description="YYYY-MM-DD.")
+    confirms: str = Field(description="What the source confirms.")
+    source: str
+
+
+class Headline(Shape):
+    """Best score of a study's pipelines."""
+
+    extractor: str
+    model: str
+    dataset: str
+    condition: str
+    rms_deg: float
+    bound_deg: float | None
+    availability: float | None
+
+
+class Departure(Shape):
+    """A difference between a study and its implementation here."""
+
+    part: Literal["sensor", "condition", "extractor", "model", "compensation"] = Field(
+        description="Part of the sensor or method."
+    )
+    value: str
+    text: str
+    settled_by: str = Field(description="Information needed to remove the difference.")
+
+
+class StudyRow(Shape):
+    """A study: a row of the table."""
+
+    key: str
+    title: str
+    authors: str
+    year: int | None
+    venue: str
+    type: str = Field(
+        description="Kind of publication: journal, conference, preprint, thesis, ... or unknown."
+    )
+    doi: str
+    url: str = Field(description="Address; empty if unknown.")
+    identity: str = Field(description="Whether a public page confirms author, year and topic.")
+    grade: Grade = Field(
+        description="Grade of the implementation: faithful, close, stand-in or none."
+    )
+    state: State = Field(description="complete: every value is implemented; partial: some; none.")
+    values: Annotated[dict[str, list[str]], ColumnEach((*ATTRIBUTES, *REPORTED))] = Field(
+        description="Values by attribute of the taxonomy."
+    )
+    edition: Literal["survey", "extension"] = Field(
+        description="survey, or extension (added after the survey)."
+    )
+    verified: Annotated[list[Verification], AS_TEXT] = Field(
+        description="When and how the entry was checked against the publication; null if not."
+    )
+
+
+class Study(StudyRow):
+    """A study. Texts are empty if unknown."""
+
+    sentence: str = Field(description="Implementation and its differences, one sentence.")
+    runs: Runs = Field(description="Implementation in the Atlas.")
+    headline: Headline | None = Field(
+        description="Lowest error of the best-supported pipelines; null if not measured."
+    )
+
+
+class AttributeValue(Shape):
+    """A value of a study with its source; empty if unknown."""
+
+    attribute: str
+    value: str
+    basis: str
+    source: str = Field(description="Address, document, study or label of the survey's source.")
+    source_name: str = Field(description="Publisher, document or part of the survey.")
+    note: str
+    role: Literal["proposed", "compared", "unknown", ""] = Field(
+        description="Whether the study proposed the method or only compared it."
+    )
+    name_in_study: str = Field(description="Name used in the study, if different.")
+    nearest: bool = Field(description="Whether the value is the nearest one in the taxonomy.")
+
+
+class Setting(Shape):
+    """A data set and condition used for a study."""
+
+    dataset: str
+    condition: str
+    purposes: list[Purpose] = Field(description="Purpose of the study that this shows.")
+
+
+class SettingScore(Setting):
+    """Published score of a pipeline on a data set and condition; status is null if none."""
+
+    status: str | None
+    rms_deg: float | None
+    bound_deg: float | None
+    availability: float | None
+
+
+class StudyPipeline(Shape):
+    """A pipeline of the study with its data sets and scores."""
+
+    detector: str
+    mask: str
+    extractor: str
+    model: str
+    extractor_taxonomy: str
+    model_taxonomy: str
+    stages: list[str] = Field(description="Survey labels of the compensations, then of the model.")
+    basis: dict[str, Basis] = Field(
+        description=(
+            "Basis of detector, mask, extractor and model: stated, inferred, recalled, or "
+            "defaulted by a rule."
+        )
+    )
+    assumed: dict[str, str] = Field(description="Reason or rule for each part that is not stated.")
+    datasets: list[str] = Field(description="Data sets on which it can be scored.")
+    settings: list[Setting] = Field(
+        description="Data sets and conditions used for the study, most relevant first."
+    )
+    scores: list[SettingScore] = Field(description="Published score of each setting.")
+
+
+class Gap(Shape):
+    """A value of a study that is not implemented, with the reason."""
+
+    attribute: str
+    value: str
+    reason: str
+
+
+class Reported(Shape):
+    """A published accuracy or precision with its statistic."""
+
+    value_deg: float = Field(description="The number as published, in degrees.")
+    kind: Literal["1sigma", "3sigma", "p95", "rms", "mean", "max", "unspecified"] = Field(
+        description="Statistic of the error; unspecified if the source does not say."
+    )
+    label: str = Field(description="Description of the number.", examples=["1-sigma precision"])
+    rms_deg: float = Field(
+        description=(
+            "The number converted to RMS: 3 sigma and maximum divided by 3, 95 % by 1.96, "
+            "mean by 0.7979, unspecified as printed."
+        )
+    )
+
+
+class StudyDetail(Study):
+    """A study with the basis of every value and its implementation."""
+
+    note: str
+    attributes: list[AttributeValue]
+    reported_accuracy: Reported | None = Field(
+        description=(
+            "Accuracy that the study reports for its own sensor; `scores` are measured "
+            "here on simulated sensors."
+        )
+    )
+    reported_precision: Reported | None = Field(
+        description=(
+            "Precision (scatter of repeated readings) that the study reports; not an accuracy."
+        )
+    )
+    departures: list[Departure] = Field(description="Differences from the study.")
+    purposes: dict[Purpose, str] = Field(
+        description="Test purposes of the study, with their rules."
+    )
+    pipelines: list[StudyPipeline]
+    gaps: list[Gap] = Field(description="Attributes of the study without a known value.")
+
+
+class Edition(Shape):
+    """An edition of the studies, for citation."""
+
+    name: Literal["survey", "extension"]
+    title: str
+    studies: int
+    version: str = Field(
+        description="Version of the data package, number of studies, first digits of the SHA-256 "
+        "of the edition's tables."
+    )
+
+
+class Editions(Shape):
+    """Studies of the survey, and added ones."""
+
+    items: list[Edition]
+
+
+class Studies(Listing):
+    """A page of studies."""
+
+    items: list[Study]
+
+
+class StudiesQuery(CitedQuestion, StudyFilters, SortedQuestion, rows=StudyRow):
+    """Which studies."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"detector": ["CMOS"], "mask": ["Multi-Ap."], "limit": 1}]}
+    )
+
+    key: Several[words.StudyKey] = several("Only studies with one of these keys.")
+    year_min: Annotated[int | None, WHOLE] = Field(
+        None, ge=0, le=9999, description="Only studies of this year or later."
+    )
+    year_max: Annotated[int | None, WHOLE] = Field(
+        None, ge=0, le=9999, description="Only studies of this year or earlier."
+    )
+    grade: Several[Grade] = several(
+        "Only studies with this grade: faithful (every part is the study's own, "
+        "stated or inferred with a reason), close (one part differs), stand-in (more "
+        "parts differ), none (not implemented)."
+    )
+    state: Several[State] = several("Only studies with this state of implementation.")
+    q: Annotated[str | None, GIVEN] = Field(
+        None,
+        min_length=1,
+        max_length=200,
+        description=(
+            "Search words; all must occur in key, title, authors or venue. Case does not matter."
+        ),
+    )

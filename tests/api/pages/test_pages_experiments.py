@@ -1,0 +1,98 @@
+"""A new experiment is one file: it is planned, measured, recorded, drawn and on a page."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from fastapi import FastAPI
+
+from api.docs.documentation import every_picture
+from api.http.knowledge import Knowledge
+from api.http.measurements import Measurements
+from api.http.service import create_app
+from benchmark import experiments as package
+from benchmark.experiments.__main__ import main
+from tests.api.conftest import Client
+
+MODULE = '''
+"""Powers of small numbers."""
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from benchmark.plot_style import svg
+from benchmark.results.row_file import Row, RowFile
+from benchmark.running.experiment import Recorded
+from files.strict_json import require_members
+
+
+def _require_row(path: Path, row: object) -> None:
+    require_members(row, path, {"cell": str, "cube": int, "parts": list, "key": str})
+
+
+class Cubes(Recorded[str]):
+    """A row of each number, with its cube."""
+
+    name = "cubes"
+    title = "Cubes of numbers"
+    record = RowFile("cubes.json", "cubes", 1, lambda row: row["cell"], _require_row)
+
+    def keys(self) -> Mapping[str, str]:
+        return dict.fromkeys("234", "made up")
+
+    def tasks(self, cells: Sequence[str]) -> Sequence[str]:
+        return cells
+
+    @staticmethod
+    def measure(task: str) -> list[tuple[str, Row]]:
+        return [(task, {"cell": task, "cube": int(task) ** 3, "parts": [int(task)] * 3})]
+
+    def pictures(self) -> Mapping[str, Callable[[], str]]:
+        return {"cubes.svg": lambda: svg(self._figure, "Cubes")}
+
+    def _figure(self):
+        from matplotlib.figure import Figure
+
+        drawn = Figure()
+        drawn.subplots().plot([row["cube"] for row in self.rows()])
+        return drawn
+'''
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A folder with a made-up experiment, which is found beside the others."""
+    (tmp_path / "cubes.py").write_text(MODULE)
+    monkeypatch.setattr(package, "__path__", [*package.__path__, str(tmp_path)])
+    yield tmp_path
+    sys.modules.pop("benchmark.experiments.cubes", None)
+    vars(package).pop("cubes", None)
+
+
+def test_one_file_is_a_whole_experiment(
+    folder: Path,
+    client_of: Callable[[FastAPI], Client],
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    record = folder / "record"
+    command = ["cubes", "--directory", str(record)]
+    assert main([*command, "--check"]) == 1
+    assert capsys.readouterr().out.splitlines() == [f"cubes {n}: absent" for n in (2, 3, 4)]
+    assert main(command) == 0
+    assert main([*command, "--check"]) == 0
+    assert main([*command, "--again", "2"]) == 0
+    assert '"cube":27' in (record / "cubes.json").read_text()
+    assert "cubes.svg" in every_picture()
+    client = client_of(create_app(Knowledge(Measurements(record))))
+    listed = client.get("/experiments.json").json()["items"]
+    assert {"name": "cubes", "title": "Cubes of numbers"}.items() <= listed[-1].items()
+    page = client.get("/experiments/cubes", accept="text/html")
+    assert "A row of each number, with its cube." in page.text
+    assert "/experiments/cubes/cubes.svg" in page.text
+    assert client.get("/experiments/cubes.csv").text == "cell,cube\n2,8\n3,27\n4,64\n"
+    assert "<title>Cubes" in client.get("/experiments/cubes/cubes.svg").text
+    assert client.get("/experiments/cubes/none.svg").status_code == 404
+    assert client.get("/experiments/none").status_code == 404
