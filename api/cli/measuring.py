@@ -19,8 +19,6 @@ from api.cli import completion
 from api.cli.working import working_directory
 from benchmark.contract import Cell
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running.runner import run, stale
-from benchmark.running.times import times_of_code
 from benchmark.suites.selection import SUITES
 
 Row = dict[str, Any]
@@ -123,6 +121,9 @@ def score_cells(
     StoreLockedError, StoreError, DaskMissingError, ClusterError, WorkerLostError
         As `benchmark.running.runner.run`.
     """
+    from benchmark.running.runner import run, stale  # noqa: PLC0415 - slow
+    from benchmark.running.times import times_of_code  # noqa: PLC0415 - slow
+
     wanted = sorted(set(cells))
     shipped, work = stores_of(directory)
     elsewhere = stale(wanted, shipped)

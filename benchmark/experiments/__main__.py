@@ -7,20 +7,15 @@ import secrets
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from benchmark.contract import UnknownNameError
 from benchmark.processes import call_to_end
 from benchmark.results.store import PUBLISHED
-from benchmark.running.experiment import (
-    Recorded,
-    Report,
-    due,
-    experiments,
-    measured,
-    repeated,
-    update,
-)
+from benchmark.results.unchanged import Unchanged
+
+if TYPE_CHECKING:
+    from benchmark.running.experiment import Recorded, Report
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -28,6 +23,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     An experiment that keeps nothing is measured whole and printed.
     """
+    asked = list(sys.argv[1:] if arguments is None else arguments)
+    unchanged = None
+    if "--check" in asked and "--directory" not in " ".join(asked):
+        unchanged = Unchanged(f"experiments {' '.join(asked)}", [PUBLISHED])
+        if unchanged.known() is not None:
+            return 0
+    from benchmark.running.experiment import Recorded, experiments  # noqa: PLC0415 - slow
+
     known = experiments()
     parser = argparse.ArgumentParser(
         prog="python -m benchmark.experiments", description=main.__doc__
@@ -40,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--all", action="store_true", help="measure every cell, due or not")
     parser.add_argument("--workers", type=int, default=1, metavar="N", help="processes")
     parser.add_argument("--directory", type=Path, default=PUBLISHED, help="of the record")
-    options = parser.parse_intermixed_args(arguments)
+    options = parser.parse_intermixed_args(asked)
     if options.workers < 1:
         parser.error(f"--workers must be at least 1; got {options.workers}")
     if options.name is not None and options.name not in known:
@@ -56,10 +59,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 status |= _reported(experiment, options)
         except UnknownNameError as error:
             parser.error(str(error))
+    if unchanged is not None and status == 0:
+        unchanged.keep(answer=True)
     return status
 
 
 def _recorded(experiment: Recorded[Any], options: argparse.Namespace) -> int:
+    from benchmark.running.experiment import due, repeated, update  # noqa: PLC0415 - slow
+
     if options.check:
         waiting = due(experiment)
         for cell, reason in waiting:
@@ -82,6 +89,8 @@ def _recorded(experiment: Recorded[Any], options: argparse.Namespace) -> int:
 
 
 def _reported(experiment: Report[Any], options: argparse.Namespace) -> int:
+    from benchmark.running.experiment import measured  # noqa: PLC0415 - slow
+
     cells = experiment.named(options.cells) if options.cells else experiment.cells()
     found = dict(pair for rows in measured(experiment, cells, options.workers) for pair in rows)
     rows = {cell: found[cell] for cell in cells if cell in found}

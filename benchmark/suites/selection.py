@@ -9,11 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from benchmark.contract import Cell, UnknownNameError
-from benchmark.leaderboard import scope
-from benchmark.plan.parts import Parts
+
+if TYPE_CHECKING:
+    from benchmark.plan.parts import Parts
 
 Scores = Mapping[Cell, Mapping[str, Any]]
 
@@ -47,6 +48,9 @@ def _quick(_scores: Scores, parts: Parts) -> list[Cell]:
     order of names: an extractor before the first model, a model behind an extractor that is read
     there already. A data set with nothing of its own has its first pipeline.
     """
+    from benchmark.leaderboard import scope  # noqa: PLC0415 - slow, for who wants names alone
+    from benchmark.plan.parts import Parts  # noqa: PLC0415 - as above
+
     quick = {name: preset for name, preset in parts.presets.items() if name not in NOT_QUICK}
     plan = scope.first(Parts(quick, parts.extractors, parts.models))
     found: dict[Cell, None] = {}
@@ -71,6 +75,8 @@ def _quick(_scores: Scores, parts: Parts) -> list[Cell]:
 
 def _standard(scores: Scores, parts: Parts) -> list[Cell]:
     """Select all that is published, by the rule of `benchmark.leaderboard.scope`."""
+    from benchmark.leaderboard import scope  # noqa: PLC0415 - as above
+
     return sorted(scope.published_scope(scores, parts))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
@@ -24,13 +24,9 @@ from api.schema.boards import BestOfArchitecture, OverviewQuery, PartOverview
 from api.schema.scores import LeaderboardRow
 from api.schema.table import columns_of
 from benchmark.contract import UnknownNameError
-from benchmark.leaderboard import check as checking
-from benchmark.leaderboard import pages
-from benchmark.leaderboard import update as updating
-from benchmark.leaderboard.board import at_field, within_error
 from benchmark.metrics.rings import EDGES_DEG
 from benchmark.results.store import PUBLISHED
-from benchmark.running import times as running_times
+from benchmark.results.unchanged import Unchanged
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -55,14 +51,14 @@ Row = Mapping[str, Any]
 class Kernels(StrEnum):
     """Numerical kernels that a check measures with."""
 
-    NATIVE = checking.NATIVE
-    OLDER = checking.OLDER
+    NATIVE = "native"
+    OLDER = "older"
     BOTH = "both"
 
     @property
     def chosen(self) -> tuple[str, ...]:
         """Names that `benchmark.leaderboard.check.check` takes."""
-        return checking.KERNELS if self is Kernels.BOTH else (self.value,)
+        return ("native", "older") if self is Kernels.BOTH else (self.value,)
 
 
 @app.callback(invoke_without_command=True)
@@ -183,6 +179,8 @@ def update(workers: ManyWorkersOption = AVAILABLE_WORKERS) -> None:
 
     Data that changed without a new version of their data set are refused, with the data sets named.
     """
+    from benchmark.leaderboard import update as updating  # noqa: PLC0415 - slow
+
     summary = updating.update(PUBLISHED, workers)
     for cell, reason in summary.failed:
         typer.echo(f"failed: {cell}: {reason}", err=True)
@@ -214,6 +212,7 @@ def render(
     leaderboard times`.
     """
     from api.cli.asking import knowledge  # noqa: PLC0415 - slow; measuring does without it
+    from benchmark.leaderboard import pages  # noqa: PLC0415 - as above
 
     board = knowledge().measurements.leaderboard
     if not board["datasets"]:
@@ -230,6 +229,8 @@ def times(store: StoreOption = None, form: FormatOption = Format.TABLE) -> None:
     kept in the local store, shown by the pages and by `sunatlas recommend` and `sunatlas assess`,
     and never published.
     """
+    from benchmark.running import times as running_times  # noqa: PLC0415 - slow
+
     directory = working_directory(store)
     timed = running_times.update(directory)
     kept = running_times.times_of_code(directory)
@@ -240,6 +241,8 @@ def times(store: StoreOption = None, form: FormatOption = Format.TABLE) -> None:
 
 
 def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only: bool) -> None:
+    from benchmark.leaderboard import check as checking  # noqa: PLC0415 - slow
+
     found = checking.check(PUBLISHED, workers, stored_only=stored_only, kernels=kernels)
     rows = [{name: getattr(difference, name) for name in DIFFERENCES} for difference in found]
     if rows or form is not Format.TABLE:
@@ -257,6 +260,12 @@ def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only:
 
 def _architectures(query: Asked, form: Format) -> None:
     """Print the best pipeline of each architecture, as the service answers it."""
+    unchanged = Unchanged(
+        f"architectures {sorted(query.items())}", [PUBLISHED, working_directory()]
+    )
+    if form is Format.TABLE and (known := unchanged.known()):
+        _tell(*known)
+        return
     from api.cli.asking import ask, knowledge  # noqa: PLC0415 - slow; measuring does without it
     from api.http.routers.leaderboard import architectures  # noqa: PLC0415
     from api.schema.parameters import LARGEST_PAGE  # noqa: PLC0415
@@ -266,11 +275,17 @@ def _architectures(query: Asked, form: Format) -> None:
     if not rows:
         raise WrongCallError("nothing is published of such architectures")
     if form is Format.TABLE:
-        typer.echo(architectures_text(rows, line_width()), nl=False)
         record = knowledge().measurements.record
-        typer.echo(f"Record: version {record['version']}, sha256 {record['sha256']}", err=True)
+        told = f"Record: version {record['version']}, sha256 {record['sha256']}"
+        unchanged.keep([rows, told])
+        _tell(rows, told)
     else:
         emit(rows, columns_of(BestOfArchitecture), form, document=answer.document)
+
+
+def _tell(rows: Sequence[Row], record: str) -> None:
+    typer.echo(architectures_text(rows, line_width()), nl=False)
+    typer.echo(record, err=True)
 
 
 def _overview(query: Asked, form: Format) -> None:
@@ -351,8 +366,12 @@ def _judge(
         if field not in EDGES_DEG[1:]:
             edges = ", ".join(map(str, EDGES_DEG[1:]))
             raise WrongCallError(f"--field: no {field}; expected one of {edges}")
+        from benchmark.leaderboard.board import at_field  # noqa: PLC0415 - slow
+
         return at_field(rows, field), FIELD_COLUMNS, "field_rms_deg"
     if max_error is not None:
+        from benchmark.leaderboard.board import within_error  # noqa: PLC0415 - slow
+
         return within_error(rows, max_error), WIDEST_COLUMNS, "widest_field_deg"
     return rows, COLUMNS, "rank"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -16,11 +16,13 @@ from api.cli.measuring import (
     stores_of,
 )
 from api.cli.table_output import Format, FormatOption, emit
-from benchmark.contract import Cell
-from benchmark.running.durations import Estimate
-from benchmark.suites.planning import FAILED, NEW, CellPlan, cells_of
-from benchmark.suites.planning import plan as planned_of
+from benchmark.results.unchanged import Unchanged
 from benchmark.suites.selection import suite as suite_named
+
+if TYPE_CHECKING:
+    from benchmark.contract import Cell
+    from benchmark.running.durations import Estimate
+    from benchmark.suites.planning import CellPlan
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -48,7 +50,17 @@ def plan(
     """
     chosen = suite_named(str(suite))
     stores = stores_of(store)
+    unchanged = Unchanged(f"plan {chosen.name}", [one.directory for one in stores])
+    planned = unchanged.known() if form is Format.TABLE else None
+    if planned is not None:
+        typer.echo(f"{chosen.name}: {_count(0, planned)}", err=True)
+        return
+    from benchmark.suites.planning import cells_of  # noqa: PLC0415 - slow
+    from benchmark.suites.planning import plan as planned_of  # noqa: PLC0415 - slow
+
     found = planned_of(cells_of(chosen, stores), stores)
+    if not found.missing:
+        unchanged.keep(len(found.cells))
     rows: list[dict[str, Any]] = [
         {**asdict(cell), "why": _why(cell, reasons)} for cell, reasons in found.missing.items()
     ]
@@ -74,6 +86,8 @@ def plan(
 
 def _why(cell: Cell, reasons: tuple[str, ...]) -> str:
     """Spell the reasons: what has changed, by name."""
+    from benchmark.suites.planning import FAILED, NEW  # noqa: PLC0415 - slow
+
     if reasons in ((NEW,), (FAILED,)):
         return "new" if reasons == (NEW,) else "failed before"
     named = {"dataset": "data set", "extractor": cell.extractor, "model": cell.model}
@@ -85,15 +99,19 @@ def _why(cell: Cell, reasons: tuple[str, ...]) -> str:
 
 
 def _summary(found: CellPlan, workers: int) -> str:
-    count = f"{len(found.missing)} of {len(found.cells)} cells to be measured"
+    count = _count(len(found.missing), len(found.cells))
     if not found.missing:
         return count
     todo = found.stages
     stages = (
-        f"{todo.data} data sets to generate, {todo.features} features to extract, "
-        f"{todo.predictions} models to fit, {todo.scores} scores to compute"
+        f"data sets to generate {todo.data}, features to extract {todo.features}, "
+        f"models to fit {todo.predictions}, scores to compute {todo.scores}"
     )
-    return f"{count}: {stages}; {_time(found.estimate, workers)}"
+    return f"{count}; {_time(found.estimate, workers)}\nby stage: {stages}"
+
+
+def _count(missing: int, planned: int) -> str:
+    return f"{missing} of {planned} cells to be measured"
 
 
 def _time(estimate: Estimate, workers: int) -> str:

@@ -14,6 +14,7 @@ from benchmark.experiments import __main__ as command
 from benchmark.progress import silent
 from benchmark.results.csv_tables import StoreError
 from benchmark.results.row_file import Row, RowFile
+from benchmark.running import experiment as running
 from benchmark.running.experiment import Recorded, Report, due, experiments, repeated, update
 from files.strict_json import require_members
 
@@ -128,7 +129,7 @@ class Sums(Report[int]):
 def test_a_report_is_printed_and_its_exit_code_says_whether_it_passed(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(command, "experiments", lambda: {"sums": Sums})
+    monkeypatch.setattr(running, "experiments", lambda: {"sums": Sums})
     assert command.main(["sums", "1"]) == 0
     assert capsys.readouterr().out == "1 and itself are 2\n"
     assert command.main(["sums"]) == 1
@@ -151,3 +152,22 @@ def test_calls_that_make_no_sense_are_refused(capsys: pytest.CaptureFixture[str]
         with pytest.raises(SystemExit):
             command.main(call)
         assert said in capsys.readouterr().err
+
+
+def test_a_check_that_found_nothing_due_is_not_made_again(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Until a file changes; a check that found something is."""
+    monkeypatch.setenv("SUNATLAS_STORE", str(tmp_path))
+    monkeypatch.setattr(command, "PUBLISHED", tmp_path / "record")
+    asked: list[str] = []
+
+    def found() -> dict[str, type[Recorded[Any] | Report[Any]]]:
+        asked.append("looked")
+        return {"sums": Sums}
+
+    monkeypatch.setattr(running, "experiments", found)
+    assert command.main(["--check"]) == command.main(["--check"]) == 0
+    assert asked == ["looked"]
+    assert command.main(["sums", "--check"]) == 0
+    assert len(asked) == 2, "another question"
