@@ -84,7 +84,8 @@ class Answer:
         self.question = question
         self.sort = sort
         self.best = question.best
-        every, self._taken = self.best.ranked(question.studies, question.all_stated, sort)
+        counting = question.studies, question.all_stated
+        every, self._taken = question.arrays.ranked(self.best, *counting, sort)
         self.designs: Positions = every[question.matching_designs[every]]
         self._of = question.arrays.place_of[self.designs]
         self._starts = np.flatnonzero(begins(self._of)) if len(self._of) else self._of

@@ -29,8 +29,8 @@ _LARGEST_KEY = 63
 _REQUIREMENT_BITS = 32  # more than there are requirements
 #: Questions whose best pipelines are kept, some 60 kB each.
 MOST_BEST = 64
-#: Orders of designs that are kept for each of these, some 30 kB each.
-MOST_RANKED = 16
+#: Orders of designs that are kept, some 30 kB each.
+MOST_RANKED = 512
 
 
 class BestPipelines:
@@ -64,9 +64,8 @@ class BestPipelines:
         self.at_order = key & ((1 << arrays.design_bits) - 1)
         self.order = np.empty_like(self.at_order)
         self.order[self.at_order] = arrays.numbers
-        self.ranked = lru_cache(MOST_RANKED)(self._ranked)
 
-    def _ranked(self, studies: int, stated: int, sort: Sort) -> tuple[Positions, Positions]:
+    def ranked(self, studies: int, stated: int, sort: Sort) -> tuple[Positions, Positions]:
         """Return all designs by place and rank, and how many studies used each.
 
         What designs are ranked by goes into one number each, the most important part in its
@@ -157,6 +156,7 @@ class DesignArrays(PipelineTable):
         self._study_sets = np.concatenate((self.place_studies, with_model, self.taken), axis=1)
         self.without_studies = np.array([not place.studies for place in places], bool)
         self.best = lru_cache(MOST_BEST)(self._best)
+        self.ranked = lru_cache(MOST_RANKED)(BestPipelines.ranked)
         self.counted = lru_cache(MOST_BEST)(self._counted)
         self.stated = lru_cache(MOST_BEST)(self._stated)
         self.untried = lru_cache(None)(self._untried)
