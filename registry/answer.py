@@ -84,9 +84,10 @@ class Answer:
         self.question = question
         self.sort = sort
         self.best = question.best
-        self._at = np.flatnonzero(question.matching_designs)
-        self._of = question.arrays.place_of[self._at]
-        self.designs: Positions = self._ranked()
+        counting = question.studies, question.all_stated
+        every, self._taken = question.arrays.ranked(self.best, *counting, sort)
+        self.designs: Positions = every[question.matching_designs[every]]
+        self._of = question.arrays.place_of[self.designs]
         self._starts = np.flatnonzero(begins(self._of)) if len(self._of) else self._of
         self.places: Sequence[RankedPlace] = sorted(self._places(), key=attrgetter("key"))
 
@@ -105,7 +106,7 @@ class Answer:
         studies, stated = question.studies, question.all_stated
         facts = _place_facts(question.table)
         starts: list[int] = self._starts.tolist()
-        least = best.at_order[np.minimum.reduceat(best.order[self._at], self._starts)]
+        least = best.at_order[np.minimum.reduceat(best.order[self.designs], self._starts)]
         found = []
         for number, start, end, best_at, row, error in zip(
             self._of[self._starts].tolist(),
@@ -132,37 +133,6 @@ class Answer:
                 )
             )
         return found
-
-    def _ranked(self) -> Positions:
-        """Return all designs by place and rank.
-
-        What designs are ranked by goes into one number each, the most important part in its
-        highest bits: sorting those is many times quicker than sorting by one part after another.
-        The cube root of the support, which rises with it, can be left out.
-        """
-        best, arrays, at = self.best, self.question.arrays, self._at
-        many, with_model, taken = arrays.counted(self.question.studies)
-        if self.question.all_stated != self.question.studies:
-            _, with_model_stated, taken_stated = arrays.counted(self.question.all_stated)
-            with_model = np.where(arrays.measured, with_model, with_model_stated)
-            taken = np.where(arrays.measured, taken, taken_stated)
-        self._taken = taken
-        backing = many[self._of] * with_model[at] * taken[at]
-        most = (1 << arrays.support_bits) - 1
-        backed = (most - backing, arrays.support_bits)
-        error = (best.rank[at], arrays.rank_bits)
-        advised = (arrays.not_advised[at], 1)
-        parts = {
-            "measured": (error, advised, backed),
-            "support": ((arrays.not_stated[at], 1), backed, error, advised),
-            "advice": (error, advised, backed),
-        }[self.sort]
-        key = self._of.astype(np.int64)
-        for values, bits in (*parts, (best.order[at], arrays.design_bits)):
-            key = (key << bits) | values
-        key.sort()
-        ranked: Positions = best.at_order[key & ((1 << arrays.design_bits) - 1)]
-        return ranked
 
     @cached_property
     def usual(self) -> dict[int, int]:
@@ -191,9 +161,12 @@ class Answer:
 
     def reached(self, values: Numbers) -> list[float]:
         """Return the least of some values of designs on each architecture, best first."""
-        least = np.minimum.reduceat(values[self.designs], self._starts).tolist()
-        by_number = dict(zip(self._of[self._starts].tolist(), least, strict=True))
-        return [by_number[place.number] for place in self.places]
+        if values is self.best.error:
+            return [place.error_deg for place in self.places]
+        starts = [place.start for place in self.places]
+        least = np.minimum.reduceat(values[self.designs], self._starts)
+        found: list[float] = least[np.searchsorted(self._starts, starts)].tolist()
+        return found
 
     def reached_by(self, place: RankedPlace, values: Numbers) -> int:
         """Return the design on an architecture that reaches the least of some values."""

@@ -95,14 +95,16 @@ def against_advice(answer: Answer, tasks: Sequence[str]) -> tuple[str, ...]:
     for task, values_of, scale, unit in _MEASURED:
         if tasks and task not in tasks:
             continue
-        advised = [at for at, place in enumerate(places) if task in place.advised_tasks]
-        if not advised or len(advised) == len(places):
+        sides: tuple[list[int], list[int]] = ([], [])
+        for at, place in enumerate(places):
+            sides[task in place.advised_tasks].append(at)
+        others, advised = sides
+        if not advised or not others:
             continue
-        others = [at for at, place in enumerate(places) if task not in place.advised_tasks]
         values = values_of(answer)
-        reached = [scale * number for number in answer.reached(values)]
+        reached = answer.reached(values)
         first, other = (min(side, key=reached.__getitem__) for side in (advised, others))
-        mine, theirs = reached[first], reached[other]
+        mine, theirs = scale * reached[first], scale * reached[other]
         if math.isinf(mine) or mine <= theirs or abs(mine) == abs(theirs):
             continue
         ratio = mine / theirs if mine > 0 else theirs / mine

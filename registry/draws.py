@@ -49,8 +49,10 @@ def unit_ratios(errors_deg: Sequence[float], spread: float) -> tuple[float, ...]
     return tuple(math.exp(logs[int(share * len(logs))] - middle) for share in _SHARES)
 
 
-def drawn_deg(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers) -> Numbers:
-    """Return errors (R, units, benches) of R pipelines by draw.
+def drawn_squares(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers) -> Numbers:
+    """Return squared errors (R, units, benches) of R pipelines by draw.
+
+    Squares are in the order of the errors, so that the root of one is all it takes.
 
     Parameters
     ----------
@@ -63,17 +65,21 @@ def drawn_deg(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers) -> Numbers:
     """
     unit = own_deg[:, None] * ratios
     bench = bench_deg[:, None] * np.array(BENCHES)
-    return np.asarray(np.sqrt(unit[:, :, None] ** 2 + bench[:, None, :] ** 2))
+    return np.asarray(unit[:, :, None] ** 2 + bench[:, None, :] ** 2)
 
 
 def at_confidence(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers, share: float) -> Numbers:
-    """Return the errors (R,) that a share of the draws keeps within; parameters as `drawn_deg`."""
+    """Return the errors (R,) that a share of the draws keeps within.
+
+    Parameters as `drawn_squares`.
+    """
     found = np.array(own_deg, dtype=np.float64)
     known = np.isfinite(found)
     size = UNITS * len(BENCHES)
-    draws = drawn_deg(found[known], ratios[known], bench_deg[known]).reshape(-1, size)
-    place = _fewest(share, draws.shape[1]) - 1
-    found[known] = np.partition(draws, place, axis=1)[:, place] if len(draws) else []
+    draws = drawn_squares(found[known], ratios[known], bench_deg[known]).reshape(-1, size)
+    place = _fewest(share, size) - 1
+    draws.partition(place, axis=1)
+    found[known] = np.sqrt(draws[:, place])
     return found
 
 
@@ -88,14 +94,15 @@ def one_at_confidence(
 def unit_errors(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers, share: float) -> Numbers:
     """Return the error (R, units) that each unit keeps on a share of the benches.
 
-    Parameters as `drawn_deg`. Infinite where a pipeline has no own error.
+    Parameters as `drawn_squares`. Infinite where a pipeline has no own error.
     """
     shares = np.arange(len(BENCHES) + 1) / len(BENCHES)
     fewest = int(np.argmax(shares >= share - 1e-9))
     found = np.full(ratios.shape, np.inf)
     known = np.isfinite(own_deg)
-    draws = drawn_deg(own_deg[known], ratios[known], bench_deg[known])
-    found[known] = np.partition(draws, fewest - 1, axis=2)[:, :, fewest - 1]
+    draws = drawn_squares(own_deg[known], ratios[known], bench_deg[known])
+    draws.partition(fewest - 1, axis=2)
+    found[known] = np.sqrt(draws[:, :, fewest - 1])
     return found
 
 
@@ -108,7 +115,7 @@ def bench_for(own_deg: Numbers, ratios: Numbers, limit_deg: float, share: float)
     Parameters
     ----------
     own_deg, ratios
-        As `drawn_deg`.
+        As `drawn_squares`.
     limit_deg, share
         What is asked for.
     """

@@ -35,6 +35,8 @@ NOT_COUNTED = 255
 
 #: Fields and sets of hazards whose errors are kept, some 200 kB each.
 MOST_ERRORS = 96
+#: Benches and shares whose errors are drawn only where another field has others, and such fields.
+MOST_DRAWS, MOST_FIELDS = 16, 16
 
 
 class PipelineTable:
@@ -56,6 +58,7 @@ class PipelineTable:
         self.scores = lru_cache(None)(self._scores_under)
         self.reading = lru_cache(None)(self._reading)
         self._errors = lru_cache(MOST_ERRORS)(self._errors_under)
+        self._confident = lru_cache(MOST_DRAWS)(_nothing_drawn)
 
     def half_field(self, half_field_deg: float | None) -> float | None:
         """Return the least half field that tells apart the same pipelines as one asked for does.
@@ -130,6 +133,23 @@ class PipelineTable:
         """Return the errors of all pipelines under hazards, over a field, at a confidence."""
         return self._errors(hazards, self.half_field(half_field_deg), draws)
 
+    def at_confidence(self, own_deg: Numbers, bench_deg: Numbers, draws: Draws) -> Numbers:
+        """Return the errors that a share of the draws keeps within (`draws.at_confidence`).
+
+        Another field leaves many of the own errors as they are: those are not drawn again.
+        """
+        known = self._confident(draws)
+        found = np.full(len(own_deg), np.nan)
+        for before_deg, errors_deg in known:
+            same = own_deg == before_deg
+            found[same] = errors_deg[same]
+        left = np.isnan(found)
+        of_left = own_deg[left], self.unit_ratios[left], bench_deg[left]
+        found[left] = at_confidence(*of_left, draws[1])
+        if len(known) < MOST_FIELDS:
+            known.append((own_deg, found))
+        return found
+
     def _errors_under(
         self, hazards: tuple[str, ...], half: float | None, draws: Draws | None
     ) -> PipelineErrors:
@@ -179,8 +199,7 @@ class PipelineErrors:
             np.maximum.at(self.own_deg, scores.rows, scores.over(half))
         self.error_deg = self.own_deg
         if draws is not None:
-            share = draws[1]
-            self.error_deg = at_confidence(self.own_deg, table.unit_ratios, self.bench_deg, share)
+            self.error_deg = table.at_confidence(self.own_deg, self.bench_deg, draws)
         self.by_error = np.lexsort((self.error_deg, table.design_of))
         self.own = lru_cache(None)(self._own)
         self.of = lru_cache(None)(self._judged)
@@ -353,6 +372,11 @@ class Scores:
         for edge, error in reversed(self.cones):
             found = np.where((edge >= half) & ~np.isnan(error), error, found)
         return found
+
+
+def _nothing_drawn(_draws: Draws) -> list[tuple[Numbers, Numbers]]:
+    """Return own errors and those at a confidence, to be filled."""
+    return []
 
 
 def begins(values: Positions) -> Flags:
