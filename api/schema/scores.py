@@ -57,8 +57,8 @@ class Accuracy(OpenShape):
 
     rms_deg: float | None = Field(
         description=(
-            "RMS error, calibrated with true directions; under `on-bench` with directions "
-            "of random benches."
+            "RMS error over the observable samples with an answer, calibrated with true "
+            "directions; under `on-bench` with directions of random benches."
         )
     )
     charged_deg: float | None = Field(

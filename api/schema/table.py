@@ -16,7 +16,7 @@ from typing import Annotated, Any, Literal, TypeAlias, Union, get_args, get_orig
 from pydantic import BaseModel
 
 from api.cells import cell
-from api.schema.vocabulary import MEANINGS, meaning
+from api.schema.vocabulary import MEANINGS, add_to_first_clause, meaning
 from files.csv_writing import csv_text
 from registry.taxonomy import taxonomy_rows
 
@@ -116,7 +116,7 @@ def _columns(model: Model, prefix: str) -> Iterator[Column]:
         column, said = prefix + name, meaning(name, field.description)
         spread = next((one for one in field.metadata if isinstance(one, ColumnEach)), None)
         if AS_TEXT in field.metadata:
-            yield Column(column, "string", said, single=False)
+            yield Column(column, "string", _list_of(said), single=False)
         elif spread is not None:
             yield from (Column(key, "string", _value_of(key), single=False) for key in spread.keys)
         else:
@@ -129,10 +129,14 @@ def _of_type(column: str, kind: Any, said: str) -> Iterator[Column]:
         yield from _columns(kind, f"{column}_")
     elif origin is list or (origin is dict and inner[1] in _TYPES):
         if _is_value(inner[-1]):
-            yield Column(column, "string", said, single=False)
+            yield Column(column, "string", _list_of(said) if origin is list else said, single=False)
     elif _is_value(kind):
         name = "string" if origin is Literal else _TYPES[kind]
         yield Column(column, name, said, single=True)
+
+
+def _list_of(said: str) -> str:
+    return said if "semicolon" in said else add_to_first_clause(said, ", separated by semicolons")
 
 
 def _is_value(kind: Any) -> bool:

@@ -96,6 +96,8 @@ MEANINGS: Mapping[str, str] = {
 
 #: An error in a ring of the field (`benchmark.metrics.rings.Ring.column`).
 _RING = re.compile(r"rms_(\d+)_(\d+)_deg")
+#: Ends at a semicolon or full stop, not at the point of a number.
+_CLAUSE = re.compile(r"^(.+?)(; |\. |\.$)")
 #: By the end of a name.
 _UNITS: Mapping[str, str] = {"deg": "degrees", "us": "microseconds"}
 
@@ -114,6 +116,11 @@ def meaning(name: str, said: str | None = None) -> str:
         return f"RMS error {ring[1]} to {ring[2]} degrees off the axis."
     text = said or MEANINGS.get(name, "")
     unit = _UNITS.get(name.rpartition("_")[2])
-    if text and unit and unit not in text:
-        return f"{text.removesuffix('.')} ({unit})."
+    if unit and unit not in text:
+        return add_to_first_clause(text, f" ({unit})")
     return text
+
+
+def add_to_first_clause(text: str, words: str) -> str:
+    """Return a text with words behind its first clause; what is empty stays empty."""
+    return _CLAUSE.sub(lambda found: f"{found[1]}{words}{found[2]}", text, count=1)

@@ -61,7 +61,9 @@ def test_members_become_columns_by_what_they_hold():
         *("name", "inner_size", "words", "bounds", "kind", "detector", "mask", "notes")
     ]
     assert found["inner_size"] == Column("inner_size", "number", "A size.", single=True)
-    assert found["words"] == Column("words", "string", "Words.", single=False)
+    assert found["words"] == Column(
+        "words", "string", "Words, separated by semicolons.", single=False
+    )
     assert [name for name, column in found.items() if column.single] == [
         *("name", "inner_size", "kind")
     ]
