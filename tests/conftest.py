@@ -20,9 +20,18 @@ settings.register_profile(
 )
 settings.load_profile("any-machine")
 
+#: What compiles kernels comes last: first those of extractors and models, then the simulator's.
+LAST = ("algorithms", "benchmark")
+
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Try properties on a third of their examples where the slow tests are left out too."""
+    """Put side by side what shares readings or kernels, and try fewer examples.
+
+    Each of two workers begins with its half of the tests, and they seldom compile the same kernel
+    at once. Where the slow tests are left out too, properties are tried on a quarter of their
+    examples, the same ones in every run.
+    """
+    items.sort(key=_place)
     if "not slow" not in config.option.markexpr:
         return
     done = set()
@@ -31,8 +40,16 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         own = getattr(test, "_hypothesis_internal_use_settings", None)  # no public way to change it
         if own is not None and test not in done:
             done.add(test)
-            fewer = min(own.max_examples, max(10, own.max_examples // 3))
-            test._hypothesis_internal_use_settings = settings(own, max_examples=fewer)
+            fewer = min(own.max_examples, max(10, own.max_examples // 4))
+            test._hypothesis_internal_use_settings = settings(
+                own, max_examples=fewer, derandomize=True, database=None
+            )
+
+
+def _place(item: pytest.Item) -> int:
+    """Return the place of a test's folder in `LAST`, from 1; 0 for all others."""
+    places = enumerate(LAST, start=1)
+    return next((n for n, name in places if item.nodeid.startswith(f"tests/{name}/")), 0)
 
 
 def pytest_collection_finish() -> None:

@@ -9,7 +9,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numba
 import pytest
 from numba.core import caching
 
@@ -67,14 +66,11 @@ def test_a_change_in_a_kernel_of_another_file_is_noticed(tmp_path):
         assert "Counter()" not in done.stdout
 
 
-def test_numba_itself_refuses_to_cache_as_expected(tmp_path, monkeypatch):
-    """The error `compiled` answers is the one Numba raises when no cache place is writable."""
+def test_a_kernel_that_no_place_is_writable_for_is_compiled_all_the_same(tmp_path, monkeypatch):
     (tmp_path / "frozen.py").write_text("def twice(x):\n    return 2 * x\n")
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr(caching.CacheImpl, "_locator_classes", [])
     twice = importlib.import_module("frozen").twice
-    with pytest.raises(RuntimeError, match="cannot cache function"):
-        numba.njit(cache=True)(twice)
     assert compiled(twice)(21) == 42
 
 

@@ -89,13 +89,6 @@ def test_peers_that_are_there_find_the_spot():
         )
 
 
-@pytest.mark.slow
-def test_scipys_moments_are_opencvs():
-    frames, _ = REFERENCE_SETS["disc"].frames(5)
-    found = speed_extractors_peers.peers()[0]["scipy center_of_mass"](frames)
-    np.testing.assert_allclose(found, speed_extractors_peers.opencv_loop(frames), atol=1e-6)
-
-
 def test_the_report_carries_limits_and_its_status(monkeypatch, capsys):
     given = ["--sets", "disc", "--methods", "tm", "bctm", OPENCV, "--frames", "20"]
     given += ["--repeats", "1", "--format", "json"]
