@@ -43,8 +43,9 @@ $(DEVELOPING): $(SERVING) requirements-dev.lock
 	$(PIP) --require-hashes -r requirements.lock -r requirements-dev.lock
 	touch $@
 
-# Numerical kernels, compiled once and kept: else every first call would wait for its own. The quick
-# tests call fewer than are compiled here, and compile those themselves.
+# Numerical kernels, compiled once and kept: else every first call would wait for its own. It takes
+# as long as the quick tests, since light is drawn and models are fitted for it; those compile what
+# they call while they run.
 $(COMPILED): $(DEVELOPING)
 	$(BIN)/sunatlas compile --workers $(WORKERS) --quiet
 	touch $@
@@ -60,7 +61,7 @@ serve: $(SERVING) ## serve page, guide and API on http://127.0.0.1:8000 (install
 test: $(DEVELOPING) ## run the tests, the slow ones left out
 	$(TEST) -m "not slow"
 
-test-browser: $(COMPILED) ## run what walks the page in headless Chromium, slow tests too
+test-browser: $(DEVELOPING) ## run what walks the page in headless Chromium, slow tests too
 	$(TEST) tests/api/browser
 
 test-slow: $(COMPILED) ## run the slow tests alone
