@@ -12,9 +12,9 @@ import numpy as np
 from algorithms.angles import separation_deg
 from algorithms.chain import Scored
 from algorithms.contract import Floats, Model, SensorGeometry, UnusableDataError
-from api.calibrate.conventions import findings
+from api.calibrate.conventions.finding import Finding, change_of
+from api.calibrate.conventions.findings import findings
 from api.calibrate.exclusions import Excluded, excluded_of, kept_by_model, sound_of
-from api.calibrate.finding import Finding, change_of
 from api.calibrate.frames import of_spots, table_in, with_spots
 from api.calibrate.readings import BEHIND, Readings, joined, readings_of
 from api.calibrate.robust import wrong_poses

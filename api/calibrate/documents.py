@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -23,6 +23,7 @@ from algorithms.contract import Compensation, Floats, Model
 from algorithms.discovery import discover_compensations, discover_models
 from api.calibrate.calibration import Calibration
 from api.calibrate.readings import readings_of
+from api.calibrate.recalibration import Correction
 from api.calibrate.settings import Settings, parse_settings
 from api.calibrate.table import Table
 from api.calibrate.verdict import as_text
@@ -33,7 +34,7 @@ SCHEMA_VERSION = 1
 _MEMBERS = frozenset(
     {
         *("schema", "schema_version", "conventions", "settings", "compensations", "model", "fit"),
-        *("selection", "verdict", "found", "excluded", "made", DIGEST),
+        *("selection", "verdict", "found", "excluded", "made", "correction", DIGEST),
     }
 )
 
@@ -50,6 +51,12 @@ class SavedCalibration:
     model : Model
     factor : float
         Of the model's stated 1-sigma, so that intervals hold.
+    temperature_K : tuple of two float, or None
+        Lowest and highest that was measured, of a model that reads it; beyond, NaN is answered.
+    offset : ndarray, shape (F,)
+        Subtracted from features since a correction; see `api.calibrate.recalibration`.
+    rotation : ndarray, shape (3, 3)
+        Of directions since then.
     document : dict
         All that it says.
     """
@@ -58,14 +65,23 @@ class SavedCalibration:
     compensations: tuple[Compensation, ...]
     model: Model
     factor: float
+    temperature_K: tuple[float, float] | None  # noqa: N815 - the unit's symbol
+    offset: Floats
+    rotation: Floats
     document: dict[str, Any]
 
     def predict(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
         """Return unit vectors (N, 3) of features (N, F); NaN rows outside the hull."""
         told = context or {}
+        features = np.asarray(features, dtype=np.float64) - self.offset
         for stage in self.compensations:
             features = stage.transform(features, told)
-        return self.model.predict(features, told)
+        sun = self.model.predict(features, told) @ self.rotation.T
+        if self.temperature_K is not None:
+            low, high = self.temperature_K
+            measured = np.asarray(told["temperature_K"], dtype=np.float64)
+            sun[~((measured >= low) & (measured <= high))] = np.nan
+        return np.asarray(sun)
 
     def predict_table(self, table: Table) -> Floats:
         """Return unit vectors of the usable rows of a file with the calibration's columns."""
@@ -91,6 +107,7 @@ def document(found: Calibration, command: str = "") -> dict[str, Any]:
             "noise_deg": number(found.noise_deg),
             "interval_factor": 1.0 if found.intervals is None else found.intervals.factor,
             "interval_coverage": None if found.intervals is None else found.intervals.coverage,
+            "temperature_K": _temperatures(found),
             "fit_spread_deg": number(_rms(found.spread_deg)),
             "sensor": {k: v for k, v in asdict(found.geometry).items() if v is not None},
         },
@@ -163,6 +180,8 @@ def load(path: Path) -> SavedCalibration:
                 f"got {stored.get('schema_version')!r}"
             )
         require_whole(stored, _MEMBERS)
+        temperatures = stored["fit"].get("temperature_K")
+        correction = stored.get("correction", {})
         return SavedCalibration(
             parse_settings(stored["settings"], path.name),
             tuple(
@@ -171,12 +190,39 @@ def load(path: Path) -> SavedCalibration:
             ),
             cast("Model", stage_of(stored["model"], discover_models())),
             float(stored["fit"]["interval_factor"]),
+            None if temperatures is None else (float(temperatures[0]), float(temperatures[1])),
+            np.asarray(correction.get("offset", 0.0), dtype=np.float64),
+            np.asarray(correction.get("rotation", np.eye(3)), dtype=np.float64),
             stored,
         )
     except UnreadableCalibrationError:
         raise
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise UnreadableCalibrationError(f"{path.name}: {error}") from error
+
+
+def with_correction(
+    old: SavedCalibration, found: Correction, files: Sequence[Path], command: str = ""
+) -> dict[str, Any]:
+    """Return the document of an old calibration with a correction, on top of those it has."""
+    held = {name: value for name, value in old.document.items() if name != DIGEST}
+    held["correction"] = {
+        **asdict(found),
+        "offset": (np.asarray(found.offset) + old.offset).tolist(),
+        "rotation": (np.asarray(found.rotation) @ old.rotation).tolist(),
+        "onto": old.document[DIGEST],
+        "files": [path.name for path in files],
+        "command": command,
+    }
+    return {**held, DIGEST: digest_of(held)}
+
+
+def _temperatures(found: Calibration) -> list[float] | None:
+    """Return the lowest and the highest that a model which reads it was fitted at."""
+    if "temperature_K" not in tuple(found.model.about.context):
+        return None
+    column = found.readings.context["temperature_K"]
+    return [float(column.min()), float(column.max())]
 
 
 def number(value: Any) -> Any:

@@ -24,7 +24,7 @@ from algorithms.contract import (
     UnusableDataError,
 )
 from algorithms.discovery import discover_chains
-from api.calibrate.conventions import linear_map
+from api.calibrate.conventions.findings import linear_map
 from api.calibrate.face_normals import face_normals
 from api.calibrate.readings import Readings
 from api.calibrate.settings import Settings

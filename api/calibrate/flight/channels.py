@@ -161,8 +161,8 @@ def channel_table(
     judged = _judged(table, signals, exact)
     if not judged.added_deg <= most_deg:
         raise NoTableError(
-            f"polynomials of the channels depart from the chain by {judged.added_deg:.3g} deg, more "
-            f"than it errs"
+            f"polynomials of the channels depart from the chain by {judged.added_deg:.3g} deg, "
+            "more than it errs"
         )
     return judged
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
 
 import typer
 
@@ -39,6 +41,17 @@ COLUMNS = (
 def benchmark(
     *,
     asked: Asked,
+    data: Annotated[
+        Path | None,
+        typer.Option(
+            help="Score models on this turntable file instead, beside the standard data set "
+            "that it behaves like."
+        ),
+    ] = None,
+    config: Annotated[
+        Path | None,
+        typer.Option(help="Of --data: the meaning of its columns, as `sunatlas calibrate` takes."),
+    ] = None,
     workers: ManyWorkersOption = AVAILABLE_WORKERS,
     scheduler: SchedulerOption = None,
     store: StoreOption = None,
@@ -50,6 +63,9 @@ def benchmark(
     without options, all. Published results are reused if code and data are unchanged. New results
     are kept in the local store (see --store), so that an interrupted run can be continued.
     """
+    if data is not None:
+        _on_own_data(data, config, list(asked.get("model") or ()) or None, form)
+        return
     names = {f"{name}s": given for name, given in asked.items()}
     planned = cells(**names)
     if not planned:
@@ -68,6 +84,37 @@ def benchmark(
         f"now; new results are kept in {result.directory}",
         err=True,
     )
+
+
+def _on_own_data(data: Path, config: Path | None, models: list[str] | None, form: Format) -> None:
+    """Print every model that applies on a reader's file, beside the standard set most alike."""
+    from api.calibrate.calibration import calibrate  # noqa: PLC0415 - SciPy
+    from api.calibrate.likeness import alike  # noqa: PLC0415 - as above
+    from api.calibrate.settings import read_settings  # noqa: PLC0415 - as above
+    from api.cli.asking import knowledge  # noqa: PLC0415 - the published record
+
+    settings = None if config is None else read_settings(config)
+    found = calibrate([data], settings, models=models)
+    ranked = alike(found.candidates, knowledge().measurements.nominal)
+    nearest = ranked[0] if ranked else None
+    rows = [
+        {
+            "model": one.name,
+            "rms_deg": one.rms_deg if not one.refused else None,
+            "standard_error_deg": one.spread_deg if not one.refused else None,
+            "dataset": nearest.dataset if nearest else None,
+            "dataset_rms_deg": nearest.errors_deg.get(one.name) if nearest else None,
+            "reason": one.refused,
+        }
+        for one in found.candidates
+    ]
+    emit(rows, tuple(rows[0]), form, title=f"{len(rows)} models on {data.name}")
+    for one in ranked[:3]:
+        typer.echo(
+            f"{one.dataset} ({one.detector}, {one.mask}): errors of {len(one.errors_deg)} models "
+            f"go with yours within a factor of {one.factor:.2g}",
+            err=True,
+        )
 
 
 def _why(refused: Sequence[Incompatible]) -> str:

@@ -39,6 +39,15 @@ def calibrate(
             )
         ),
     ] = None,
+    onto: Annotated[
+        Path | None,
+        typer.Option(
+            help=(
+                "Correct this calibration (JSON of an earlier run) by the poses of the files, "
+                "instead of a new one: a turn or an offset, if they show it."
+            )
+        ),
+    ] = None,
     out: Annotated[Path, typer.Option(help="Output directory for report, JSON and code.")] = Path(
         "calibration"
     ),
@@ -82,6 +91,8 @@ def calibrate(
             f"wrote {init}; correct it and run: sunatlas calibrate {files[0]} --config {init}"
         )
         return 0
+    if onto is not None:
+        return _correct(files, onto, out / f"{name}.json")
     settings = None if config is None else read_settings(config)
     command = shlex.join(["sunatlas", *sys.argv[1:]])
     with terminal_progress("calibrating") as report:
@@ -96,6 +107,24 @@ def calibrate(
         written = write_products(found, out, name, command)
     _print(found, written, out)
     return 0 if found.verdict.word == "good" else 3
+
+
+def _correct(files: list[Path], onto: Path, written: Path) -> int:
+    """Write an old calibration with the correction that a few new poses show."""
+    import json  # noqa: PLC0415 - one use
+
+    from api.calibrate.documents import load, with_correction  # noqa: PLC0415 - SciPy
+    from api.calibrate.recalibration import recalibrate  # noqa: PLC0415 - as above
+    from files.atomic import replace_file  # noqa: PLC0415 - as above
+
+    old = load(onto)
+    found = recalibrate(files, old)
+    typer.echo(found.sentence())
+    stated = with_correction(old, found, files, shlex.join(["sunatlas", *sys.argv[1:]]))
+    written.parent.mkdir(parents=True, exist_ok=True)
+    replace_file(written, json.dumps(stated, indent=1, allow_nan=False) + "\n")
+    typer.echo(f"wrote {written}")
+    return 0
 
 
 def _print(found: Any, written: list[Path], out: Path) -> None:

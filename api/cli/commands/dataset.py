@@ -9,6 +9,7 @@ import typer
 
 from api.cli import completion, spreadsheets
 from api.cli.asking import ask, knowledge
+from api.cli.commands import dataset_fetch
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, say
@@ -37,6 +38,8 @@ app = typer.Typer(
     add_completion=False,
     rich_markup_mode=None,
 )
+
+app.command("fetch")(dataset_fetch.fetch)
 
 COLUMNS = ("name", "version", "detector", "mask", "observation", "conditions", "follows")
 CONDITIONS = ("condition", "bound_deg", "description")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from bench import CENTRE, HEADER, grid, quadrants, spots, sun_of, write
 
-from api.calibrate.conventions import findings
-from api.calibrate.finding import change_of
+from api.calibrate.conventions.finding import change_of
+from api.calibrate.conventions.findings import findings
 from api.calibrate.readings import readings_of
 from api.calibrate.roles import guess
 from api.calibrate.settings import Settings

@@ -8,8 +8,8 @@ from itertools import permutations
 import numpy as np
 
 from algorithms.contract import FeatureKind
+from api.calibrate.conventions.finding import MUCH_BETTER, Finding
 from api.calibrate.face_normals import face_normals
-from api.calibrate.finding import MUCH_BETTER, Finding
 from api.calibrate.readings import Readings, quadrant_balances
 from api.calibrate.robust import robust_map
 from api.calibrate.settings import Settings

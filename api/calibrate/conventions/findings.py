@@ -13,8 +13,8 @@ import numpy as np
 
 from algorithms.angles import tangents_from_sun
 from algorithms.contract import FeatureKind, Floats
-from api.calibrate.channels import of_faces, of_light, of_quadrants
-from api.calibrate.finding import BETTER, MUCH_BETTER, Finding
+from api.calibrate.conventions.channels import of_faces, of_light, of_quadrants
+from api.calibrate.conventions.finding import BETTER, MUCH_BETTER, Finding
 from api.calibrate.readings import MATRICES, Readings, sun_of_angles
 from api.calibrate.robust import SmoothMap, normalised, robust_map, terms
 from api.calibrate.settings import Form, Settings

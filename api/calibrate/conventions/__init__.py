@@ -1,0 +1,1 @@
+"""Conventions that a file follows: axes, angles, rows, runs, light, quadrants, faces."""

@@ -1,0 +1,76 @@
+"""Which standard data set a reader's sensor behaves like, by how models rank on both."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from api.calibrate.selection import Candidate
+
+#: Models that both must have.
+_FEWEST = 4
+
+
+@dataclass(frozen=True)
+class Likeness:
+    """A standard data set beside the reader's own data.
+
+    Attributes
+    ----------
+    dataset, detector, mask, extractor : str
+        The standard one, and the extractor whose features its models read.
+    factor : float
+        By which errors of models, over their middle one, typically differ from the reader's: 1 is
+        the same.
+    errors_deg : mapping of str to float
+        RMS error there, nominal condition, by model.
+    """
+
+    dataset: str
+    detector: str
+    mask: str
+    extractor: str
+    factor: float
+    errors_deg: Mapping[str, float]
+
+
+def alike(
+    candidates: Sequence[Candidate], nominal: Mapping[tuple[str, str, str], Mapping[str, Any]]
+) -> list[Likeness]:
+    """Return the standard data sets, the one where models rank most alike first.
+
+    Only ratios between models count: a sensor with ten times the noise behaves alike where noise is
+    not what tells models apart.
+
+    Parameters
+    ----------
+    candidates : sequence of Candidate
+        Models on the reader's data.
+    nominal : mapping
+        Published scores by data set, extractor and model.
+    """
+    mine = {one.name: one.rms_deg for one in candidates if not one.refused and one.rms_deg > 0}
+    theirs: dict[tuple[str, str], dict[str, Mapping[str, Any]]] = {}
+    for (dataset, extractor, model), row in nominal.items():
+        if model in mine and row["status"] == "ok" and row["rms_deg"]:
+            theirs.setdefault((dataset, extractor), {})[model] = row
+    best: dict[str, Likeness] = {}
+    for (dataset, extractor), rows in theirs.items():
+        names = sorted(rows)
+        if len(names) < min(_FEWEST, len(mine)):
+            continue
+        own = np.log([mine[name] for name in names])
+        other = np.log([float(rows[name]["rms_deg"]) for name in names])
+        apart = (own - np.median(own)) - (other - np.median(other))
+        first = rows[names[0]]
+        found = Likeness(
+            dataset, first["detector"], first["mask"], extractor,
+            float(np.exp(np.sqrt(np.mean(apart**2)))),
+            {name: float(rows[name]["rms_deg"]) for name in names},
+        )  # fmt: skip
+        if dataset not in best or found.factor < best[dataset].factor:
+            best[dataset] = found
+    return sorted(best.values(), key=lambda one: one.factor)
