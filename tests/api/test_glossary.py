@@ -35,7 +35,10 @@ def test_a_word_of_a_kind_has_one_meaning():
     [
         ("term,meaning\n", "expected columns"),
         ("term,name,meaning,see,avoid\nbound,,a limit,x.md,\n", "line 2"),
-        ("term,name,meaning,see,avoid\na,a,b,x.md,\na,a,c,x.md,\n", "line 3: 'a' stands there twice"),
+        (
+            "term,name,meaning,see,avoid\na,a,b,x.md,\na,a,c,x.md,\n",
+            "line 3: 'a' stands there twice",
+        ),
     ],
 )
 def test_a_table_that_is_not_sound_is_refused_with_its_line(tmp_path, monkeypatch, text, message):
