@@ -112,7 +112,7 @@ def against_advice(answer: Answer, tasks: Sequence[str]) -> tuple[str, ...]:
             continue
         named = ", ".join(_words(places[at]) for at in advised if math.isfinite(reached[at]))
         found.append(
-            f"For {task} the survey advises {named}. The best of these, "
+            f"For {task} the survey advises {named.rstrip('.')}. The best of these, "
             f"{_where(answer, places[first], values)}, reaches {abs(mine):.3g} {unit}; "
             f"{_where(answer, places[other], values)}, not advised, reaches {abs(theirs):.3g} "
             f"{unit}"

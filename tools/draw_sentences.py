@@ -24,7 +24,7 @@ SHARES = {"pages": 0.5, "docs": 0.3, "help": 0.1, "openapi": 0.1}
 #: Words of the shortest sentence that is drawn; a name or a label is none.
 SHORTEST = 5
 PAGES = (
-    *("/", "/answer?task=Accuracy", "/answer?task=Cost&max_error_deg=0.1", "/studies", "/claims"),
+    *("/", "/?task=Accuracy", "/?task=Cost&max_error_deg=0.1", "/studies", "/claims"),
     *(
         "/datasets",
         "/leaderboard",
@@ -34,7 +34,7 @@ PAGES = (
         "/calibrate",
         "/glossary",
     ),
-    *("/charts", "/search?q=albedo", "/bibliography", "/figures/cross-analysis", "/figures/error"),
+    *("/search?q=albedo", "/bibliography", "/figures/cross-analysis", "/figures/error"),
 )
 #: Lists of which some members' pages are drawn from.
 LISTS = {"/studies": "key", "/datasets": "name", "/claims": "id", "/algorithms": "name"}

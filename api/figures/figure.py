@@ -85,4 +85,4 @@ def in_words(left_out: Sequence[LeftOut], names: Mapping[str, str]) -> str:
     if not left_out:
         return ""
     parts = [f"{names[left.level].lower()}: {len(left.studies)}" for left in left_out]
-    return f"Studies of which a value is not known ({'; '.join(parts)}) have no mark there."
+    return f"Studies with an unknown value are not drawn ({'; '.join(parts)})."

@@ -67,7 +67,7 @@ def table(found: Sequence[Case], seed: int) -> str:
         cells = [str(counted[outcome]) for outcome in OUTCOMES]
         lines.append(f"| {kind} | {' | '.join(cells)} | {named} |")
     reasons = Counter((case.kind, case.said) for case in found if case.outcome == HARMLESS)
-    lines += ["", "What was taken, and why that harms nobody:", ""]
+    lines += ["", "Accepted damage, with the reason why it is harmless:", ""]
     lines += [f"- {kind}, {count}: {why}." for (kind, why), count in sorted(reasons.items())]
     return "\n".join(lines) + "\n\n"
 

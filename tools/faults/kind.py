@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 #: Why a file that is not as it was may be taken.
-SAME = "reads as before: bytes that mean nothing"
+SAME = "reads as before: the damaged bytes have no meaning"
 OFFERED = (
     "is another sound table: nobody knows what it should say, its plan shows every cell that "
     "differs, and nothing is written unasked"

@@ -144,7 +144,8 @@ def _plain(text: str) -> str:
         codes.append(found[0].strip("`").replace(". ", "."))
         return f"\0{len(codes) - 1}\0"
 
-    text = _MARK.sub("", _FORMULA.sub("x", _CODE.sub(keep, text)))
+    text = _FORMULA.sub(lambda found: f"`{found[0].strip('$')}`", text)
+    text = _MARK.sub("", _CODE.sub(keep, text))
     return " ".join(re.sub("\0(\\d+)\0", lambda at: f"`{codes[int(at[1])]}`", text).split())
 
 
