@@ -37,7 +37,7 @@ class Answer(JSONResponse):
     Parameters
     ----------
     document : the JSON object
-    columns : of the CSV, one of the tables of `api.columns`
+    columns : of the CSV, as `api.schema.table.columns_of` names them
     rows : gives the rows of the CSV
     link : value of the Link header, if any
     status_code : which FastAPI documents by its default
