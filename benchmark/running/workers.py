@@ -7,8 +7,10 @@ process is killed they end by themselves (`benchmark.processes`).
 from __future__ import annotations
 
 import atexit
+import ctypes
 import os
 import signal
+import sys
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
@@ -43,8 +45,8 @@ _ONE_THREAD = dict.fromkeys(
 )
 
 
-#: Frames take tens of MB: the C library (glibc) keeps what is freed for the next ones, which costs
-#: less than to have the system clear pages for each.
+#: Frames take tens of MB: within a piece of work the C library (glibc) keeps what is freed for the
+#: next ones, which costs less than to have the system clear pages for each.
 _MEMORY = {
     "MALLOC_MMAP_THRESHOLD_": str(64 * 2**20),
     "MALLOC_TRIM_THRESHOLD_": str(256 * 2**20),
@@ -70,7 +72,7 @@ class LocalHands:
 
     def give(self, work: Callable[[], Any]) -> None:
         """Have a worker do a piece of work."""
-        self._executor.submit(work).add_done_callback(self._done.put)
+        self._executor.submit(_do, work).add_done_callback(self._done.put)
         self._given += 1
 
     def take(self) -> Any:
@@ -165,6 +167,16 @@ def _begin(coordinator: int, tables: Path) -> None:
     process_executor._USE_PSUTIL = False  # noqa: SLF001 - there is no public way
     work_for(coordinator)
     memory.share_tables(tables)
+
+
+def _do(work: Callable[[], A]) -> A:
+    """Do a piece of work; memory that is free after it goes back to the system."""
+    try:
+        return work()
+    finally:
+        if sys.platform == "linux":
+            with suppress(AttributeError):  # another C library than glibc
+                ctypes.CDLL(None).malloc_trim(0)
 
 
 def _kill() -> None:
