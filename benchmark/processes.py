@@ -30,7 +30,7 @@ INTERRUPTED, TERMINATED = 128 + signal.SIGINT, 128 + signal.SIGTERM
 _PR_SET_PDEATHSIG = 1
 _EVERY_S = 0.5
 #: How long a process has to end tidily, seconds.
-_TIDY_S = 1.0
+_TIDY_S = 0.8
 
 #: Signals that told this process to end.
 _told: list[int] = []
