@@ -16,7 +16,7 @@ from algorithms.inputs import as_frames
 @documented
 @dataclass(frozen=True)
 class DoubleBalance(Extractor):
-    """Balance of five areas in a window of 21 x 21 pixels around the brightest pixel.
+    """Our variant of DBCM: balance of five areas in a window of 21 x 21 pixels around the spot.
 
     The window is found by winner-takes-it-all and moved until the light left and right of its
     centre column, above and below its centre row, differs by less than that column or row would

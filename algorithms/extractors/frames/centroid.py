@@ -86,7 +86,7 @@ class BasicCentroid(Extractor):
 @documented
 @dataclass(frozen=True)
 class ThresholdedCentroid(Extractor):
-    """Intensity-weighted mean position of the light above a threshold.
+    """Our variant of BCTM: intensity-weighted mean position of the light above a threshold.
 
     The threshold is subtracted and everything below it set to zero, so that background and noise
     under it add nothing; the light just above it still counts little.

@@ -33,7 +33,7 @@ Candidates = Literal["search", "brightest"]
 @documented
 @dataclass(frozen=True)
 class TemplateMatch(Extractor):
-    """Position at which the aperture's outline differs from the lit pixels in the fewest pixels.
+    """Our variant of TM: position where outline and lit pixels differ in the fewest pixels.
 
     Both frame and template have two levels only, so neither the light within the spot nor noise
     below the threshold matters; what remains is the pixels' grid, which is searched to 1/16 px.

@@ -44,7 +44,7 @@ _LONGEST = 8.0
 @documented
 @dataclass(frozen=True)
 class ImageCorrelation(MaskSpots, Extractor):
-    """Middle of the summed correlations of all spots with their templates.
+    """Our variant of FEIC: centre of the summed correlations of all spots with their templates.
 
     Windows are placed at the predicted spots. Each is correlated with the image its aperture
     should cast, and because all spots move alike, the sum of the correlations is one peak that
