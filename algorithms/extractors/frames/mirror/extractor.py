@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import (
@@ -101,7 +102,11 @@ class MirrorRegistration(Extractor):
         """Centres (N, 2) in frames (N, H, W); ValueError on wrong input."""
         from algorithms.extractors.frames.mirror.registration import register  # noqa: PLC0415 - Numba
 
-        return register(as_frames(observations), None, self.longest_px).features
+        frames = as_frames(observations)
+        centres = register(frames, None, self.longest_px).features
+        if frames.dtype.kind == "f":  # measure alone answers for a frame that lacks pixels
+            centres[~np.isfinite(frames).all(axis=(1, 2))] = np.nan
+        return centres
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
         """Centres, covariances and doubts of frames (N, H, W) or of one; bad pixels are left out.
