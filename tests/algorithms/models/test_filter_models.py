@@ -62,7 +62,7 @@ def test_faces_are_learnt_with_their_tilts_gains_warmth_and_the_earth() -> None:
     shone = np.column_stack([earth_columns(sun, nadir, normal) @ earth for normal in tilted])
     signals = 0.3 + gain * (direct + shone)
     known = known_of(nadir, kelvin)
-    learnt = FaceReadings.learnt(CUBE, signals, sun, known, "faces")
+    learnt = FaceReadings.from_calibration(CUBE, signals, sun, known, "faces")
     found = read(learnt, sun, known)
     assert np.sqrt(np.mean((found - signals) ** 2)) < 0.003 * gain.mean()
     off_deg = np.degrees(np.linalg.norm(learnt.design[:, :3] - tilted, axis=1))
@@ -81,7 +81,7 @@ def test_spots_are_learnt_with_as_high_an_order_as_they_need() -> None:
     bent = straight * 1.0
     bent[:, 0] += 30.0 * beta**3 + 0.02 * (kelvin - kelvin.mean())
     for spots, order in ((straight, 1), (bent, 3)):
-        learnt = SpotReadings.learnt(spots, sun, known, "spots")
+        learnt = SpotReadings.from_calibration(spots, sun, known, "spots")
         assert order <= learnt.settings()["order"] <= 5
         assert np.abs(read(learnt, sun, known) - spots).max() < 0.05
     assert learnt.warm[0, 0] == pytest.approx(0.02, abs=5e-4)

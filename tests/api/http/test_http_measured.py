@@ -351,6 +351,6 @@ def test_a_published_file_that_cannot_be_read_stops_the_start(tmp_path, componen
 
 
 def test_a_score_of_something_unknown_stops_the_start(tmp_path):
-    Store(tmp_path).write(stored_scores(), [], Components("h"))
+    Store(tmp_path).write(stored_scores(), [], Components({"data": "h"}))
     with pytest.raises(ComponentsError, match="cmos-single-aperture"):
         Knowledge(Measurements(tmp_path)).load_all()

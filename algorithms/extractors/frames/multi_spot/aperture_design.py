@@ -1,18 +1,12 @@
-"""What a sensor's design says of its mask's pattern of apertures, and what a pattern must be."""
+"""What a sensor's design says of its mask's pattern of apertures."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import Any
 
 from algorithms.contract import SensorGeometry, UnsuitableDesignError
-from algorithms.extractors.frames.multi_spot.aperture_pattern import FieldPx, nearest_distance
-from algorithms.inputs import require_positive
-
-if TYPE_CHECKING:
-    from algorithms.extractors.frames.multi_spot.mask_spots import MaskSpots
+from algorithms.extractors.frames.multi_spot.aperture_pattern import FieldPx
 
 PATTERN_NEEDS = ("focal_length_mm", "pixel_pitch_mm", "aperture_width_mm", "aperture_shape")
 """Fields of a sensor's design that `design_pattern` reads; slits have no shape there."""
@@ -70,34 +64,3 @@ def _field(geometry: SensorGeometry, focal_px: float) -> FieldPx | None:
         return None
     reach = focal_px * math.tan(math.radians(edge + _ASTRAY_DEG))
     return (*centre, round(reach, 6))
-
-
-def require_pattern(search: MaskSpots) -> None:
-    """Raise ValueError naming the first parameter of a pattern that is out of range."""
-    by, tolerance_px, field_px = search.about.name, search.tolerance_px, search.field_px
-    rows = (
-        np.array(search.apertures_px, dtype=np.float64) if search.apertures_px else np.empty((0, 3))
-    )
-    if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) == 0 or not np.isfinite(rows).all():
-        raise ValueError(f"{by}: apertures_px must be rows of finite x, y, width; got {rows.shape}")
-    if not (rows[:, 2] > 0).all():
-        raise ValueError(f"{by}: widths in apertures_px must be positive; got {rows[:, 2].min()}")
-    if not (math.isfinite(search.blur_px) and search.blur_px >= 0):
-        raise ValueError(f"{by}: blur_px must be finite and not negative; got {search.blur_px!r}")
-    if not 0.0 < search.threshold < 1.0:
-        raise ValueError(f"{by}: threshold must be in (0, 1); got {search.threshold!r}")
-    require_positive(by, tolerance_px=tolerance_px)
-    if search.faulty_lines < 0:
-        raise ValueError(f"{by}: faulty_lines must not be negative; got {search.faulty_lines!r}")
-    if field_px is not None and not (
-        len(field_px) == 3 and all(map(math.isfinite, field_px)) and field_px[2] > 0
-    ):
-        raise ValueError(
-            f"{by}: field_px must be None or finite x, y and a positive reach; got {field_px!r}"
-        )
-    nearest = nearest_distance(rows)
-    if not tolerance_px < nearest / 4.0:
-        raise ValueError(
-            f"{by}: tolerance_px must be below a quarter of the least distance of two apertures, "
-            f"{nearest:.4g} px; got {tolerance_px!r}"
-        )

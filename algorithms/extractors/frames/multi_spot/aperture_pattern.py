@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,14 +15,14 @@ from algorithms.extractors.frames.multi_spot.pattern_memory import found_once
 from algorithms.extractors.frames.multi_spot.records import Lattice, Matches, Seen, Views
 from algorithms.row_arithmetic import medians
 
-if TYPE_CHECKING:
-    from algorithms.extractors.frames.multi_spot.mask_spots import MaskSpots
-
 Apertures = tuple[tuple[float, float, float], ...]
 """A row an aperture: x, y from the middle of the mask, and width, px."""
 
 FieldPx = tuple[float, float, float]
 """Where the pattern is for a Sun on the boresight, x and y, and how far it moves from there, px."""
+
+Limits = tuple[float, float, int, FieldPx | None, bool]
+"""Of a search: `MaskSpots`' blur, tolerance, faulty lines and field, and whether frames follow."""
 
 #: Pixels of a spot above its threshold, over those of its aperture: the least of the smallest,
 #: the most of the largest with the Sun's image, which grows with incidence.
@@ -155,20 +154,19 @@ def frame_levels(frames: NDArray[Any], apertures_px: Apertures, threshold: float
 
 
 def find_pattern(
-    search: MaskSpots, frames: NDArray[Any], levels: Levels, *, sequence: bool = False
+    frames: NDArray[Any], levels: Levels, apertures_px: Apertures, limits: Limits
 ) -> Pattern:
     """Find the pattern in each of the frames (N, H, W) of `as_frames`.
 
     The spots are centroids of the light above the threshold. Each frame is read by itself; in a
-    `sequence`, one that leaves several displacements open has that which is within a quarter of
+    sequence, one that leaves several displacements open has that which is within a quarter of
     the least distance of two apertures from the frame before's. Not to be written to: it may be
     another method's too (`pattern_memory.shared_patterns`).
     """
-    limits = search.blur_px, search.tolerance_px, search.faulty_lines, search.field_px, sequence
     return found_once(
         frames,
-        (search.apertures_px, limits, levels.threshold.tobytes()),
-        lambda: _find_pattern(frames, levels, search.apertures_px, limits),
+        (apertures_px, limits, levels.threshold.tobytes()),
+        lambda: _find_pattern(frames, levels, apertures_px, limits),
     )
 
 
@@ -176,9 +174,9 @@ def _find_pattern(
     frames: NDArray[Any],
     levels: Levels,
     apertures_px: Apertures,
-    limits: tuple[float, float, int, FieldPx | None, bool],
+    limits: Limits,
 ) -> Pattern:
-    """`find_pattern` without remembering; `limits` are its parameters from `blur_px` on."""
+    """`find_pattern` without remembering."""
     from algorithms.extractors.frames.multi_spot import (  # noqa: PLC0415 - Numba on first use
         aperture_grid_kernel,
         evidence_kernel,
@@ -248,62 +246,6 @@ def room_for_spots(count: int, room: int, cuts: int) -> Seen:
 def margin_px(blur_px: float) -> float:
     """How far a spot reaches beyond its aperture: half the Sun's image, and a pixel cut."""
     return blur_px / 2.0 + 1.0
-
-
-def follow_pattern(
-    search: MaskSpots,
-    frames: NDArray[Any],
-    follow: Callable[[NDArray[Any], Levels, Pattern], Floats],
-) -> Floats:
-    """Displacements (N, 2) of spots followed through a sequence, verified frame by frame.
-
-    Parameters
-    ----------
-    search
-        The method.
-    frames
-        (N, H, W) of `as_frames`, in the order of time.
-    follow
-        ``follow(frames, levels, pattern)`` follows the spots through some of the frames, of whose
-        first alone it is given the pattern, and returns their displacements, NaN from where it
-        lost them.
-
-    Returns
-    -------
-    ndarray, shape (N, 2)
-        NaN where no pattern was found. Where the pattern moves by a quarter of the least distance
-        of two apertures or more, or what is followed is as far from it, the spots are taken anew
-        from the pattern.
-    """
-    levels = frame_levels(frames, search.apertures_px, search.threshold)
-    pattern = find_pattern(search, frames, levels, sequence=True)
-    count = len(pattern.displacement)
-    found = np.full((count, 2), np.nan)
-    astray = lattice(search.apertures_px).nearest_px / 4.0
-    known: NDArray[np.bool_] = np.isfinite(pattern.displacement[:, 0])
-    start = 0
-    while start < count:
-        if not known[start]:
-            start += 1
-            continue
-        end = start + 1
-        while end < count and known[end]:
-            step = pattern.displacement[end] - pattern.displacement[end - 1]
-            if math.hypot(*step) >= astray:
-                break
-            end += 1
-        here = Pattern(
-            pattern.displacement[start : start + 1],
-            pattern.spots[start : start + 1],
-            pattern.ambiguous[start : start + 1],
-        )
-        part = follow(frames[start:end], levels.part(start, end), here)
-        away = np.hypot(*(part - pattern.displacement[start:end]).T)
-        lost = np.flatnonzero(~(away < astray))
-        done = int(lost[0]) if len(lost) else end - start
-        found[start : start + done] = part[:done]
-        start += max(done, 1)  # a frame in which the pattern is not followed is passed over
-    return found
 
 
 def _floor_and_noise(frames: NDArray[Any]) -> tuple[Floats, Floats]:

@@ -22,7 +22,6 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     SHARE,
     Levels,
     Pattern,
-    follow_pattern,
     lattice,
     margin_px,
     nearest_distance,
@@ -171,7 +170,7 @@ class MeanShift(MaskSpots, Extractor):
         def follow(frames: NDArray[Any], levels: Levels, first: Pattern) -> Floats:
             return self._shift(frames, levels, first, sequence=True)[0]
 
-        return follow_pattern(self, as_frames(observations), follow)
+        return self._follow(as_frames(observations), follow)
 
     def _locate(
         self, frames: Frames, levels: Levels, pattern: Pattern
