@@ -12,8 +12,8 @@ from api.figures.figure import Figure
 from api.figures.flow_figures import CHAINS, flow_figure
 from api.figures.matrix import matrix_figure
 from api.figures.publications import publications_figure
+from api.figures.rows import COLUMNS, ROWS
 from api.figures.sunburst import sunburst_figure
-from api.schema.figures import COLUMNS, ROWS
 from registry.catalogue import catalogue
 from registry.evidence import Evidence
 from registry.flows import Where
