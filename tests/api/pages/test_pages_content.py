@@ -239,9 +239,8 @@ def test_what_stands_between_backquotes_is_code_and_nothing_else_of_a_text_chang
 
 @pytest.mark.parametrize(
     "path",
-    ["/algorithms/escm", "/datasets/cmos-encoded", "/datasets/qpd-maskless-pyramid",
-     "/search?q=sqrt"],
-)  # fmt: skip
+    ["/algorithms/escm", "/datasets/cmos-encoded", "/datasets/qpd-maskless-pyramid"],
+)
 def test_no_page_shows_the_backquotes_of_its_sources(atlas: Client, path: str) -> None:
     page = atlas.get(path, accept="text/html").text
     assert "<code>" in page

@@ -56,7 +56,7 @@ def components(**digests: str) -> Components:
 def copied(source, target):
     """Copy a record without the files of a run; return where it is."""
     for path in source.rglob("*.*"):
-        if path.is_file() and path.parent.name != ".sunatlas":
+        if path.is_file() and ".sunatlas" not in path.parts:
             (target / path.relative_to(source)).parent.mkdir(parents=True, exist_ok=True)
             (target / path.relative_to(source)).write_bytes(path.read_bytes())
     return target

@@ -52,7 +52,7 @@ def states(directory):
     return {
         str(path.relative_to(directory)): (path.read_bytes(), path.stat().st_mtime_ns)
         for path in directory.rglob("*.*")
-        if path.is_file() and path.parent.name != ".sunatlas"
+        if path.is_file() and ".sunatlas" not in path.parts
     }
 
 
