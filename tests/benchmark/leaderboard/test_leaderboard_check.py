@@ -236,9 +236,10 @@ def test_results_of_other_code_are_named_without_measuring(published, log):
     newer = type("Newer", (LeastSquares,), {"about": about, "__module__": "fake_atlas"})
     parts = fake_plan.parts(newer, presets=(Diodes(), Diodes(name="fake-second", n=200)))
     found = check(published, stored_only=True, parts=parts)
-    conditions = [f"datasets/fake-second/{name}" for name in parts.presets["fake-second"].conditions]
+    conditions = parts.presets["fake-second"].conditions
+    cells = {f"datasets/fake-second/{name}" for name in conditions} | {"models/fake-least-squares"}
     assert {d.file for d in found} == {"components.json"}
-    assert sorted(d.cell for d in found) == sorted([*conditions, "models/fake-least-squares"])
+    assert sorted(d.cell for d in found) == sorted(cells)
     assert {d.measured for d in found} == {"another: code or parameters have changed"}
     assert log() == []
 
