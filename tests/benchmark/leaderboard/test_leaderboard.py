@@ -59,7 +59,7 @@ def states(directory):
 def changed_lines(before, after):
     """Count lines by file that are not in the other version of it."""
     found = {}
-    for name in before.keys() | after.keys():
+    for name in sorted(before.keys() | after.keys()):
         one, two = (
             state[name][0].decode().splitlines() if name in state else []
             for state in (before, after)
