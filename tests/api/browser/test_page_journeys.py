@@ -161,7 +161,7 @@ def test_the_keyboard_alone_walks_from_the_answer_to_a_calibration(wide: Visit) 
     assert page.evaluate("document.activeElement.className") == "skip"
     page.keyboard.press("Enter")
     assert page.evaluate("document.activeElement.id") == "content"
-    tab_to(page, ".calibration .design .below a")
+    tab_to(page, ".calibration a[href^='/algorithms/']")
     page.keyboard.press("Enter")
     page.wait_for_url("**/algorithms/**")
     expect(page.locator("#ranks")).to_be_visible()
