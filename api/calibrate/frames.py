@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,7 +90,7 @@ def of_spots(settings: Settings) -> Settings:
     return settings.model_copy(update={"readings": readings})
 
 
-def _extractor(settings: Settings):  # type: ignore[no-untyped-def]
+def _extractor(settings: Settings) -> Any:
     known = {
         name: cls
         for name, cls in discover_extractors().items()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +13,9 @@ from algorithms.contract import Floats
 from api.calibrate.calibration import Calibration
 from api.calibrate.readings import Readings
 from api.calibrate.uncertainty import tangent_offsets
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _SIZE = (5.2, 4.4)
 #: Samples that are drawn one by one; more are thinned evenly.
@@ -46,10 +50,10 @@ def _flat(sun: Floats) -> Floats:
     return np.column_stack([off * np.cos(around), off * np.sin(around)])
 
 
-def _axes(equal: bool = True):  # type: ignore[no-untyped-def]
-    from matplotlib.figure import Figure  # noqa: PLC0415 - a second that only pictures need
+def _axes(equal: bool = True) -> tuple[Figure, Any]:
+    from matplotlib import figure as drawing  # noqa: PLC0415 - a second that only pictures need
 
-    figure = Figure(figsize=_SIZE, layout="constrained")
+    figure = drawing.Figure(figsize=_SIZE, layout="constrained")
     axes = figure.add_subplot()
     if equal:
         axes.set_aspect("equal")
@@ -58,7 +62,7 @@ def _axes(equal: bool = True):  # type: ignore[no-untyped-def]
     return figure, axes
 
 
-def _svg(figure) -> str:  # type: ignore[no-untyped-def]
+def _svg(figure: Figure) -> str:
     import matplotlib as mpl  # noqa: PLC0415 - as above
 
     with mpl.rc_context({"svg.hashsalt": "sunatlas", "svg.fonttype": "path"}):

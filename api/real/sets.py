@@ -51,7 +51,7 @@ class RealSet:
     Attributes
     ----------
     name, about : str
-        What it is called here, and what it is.
+        Name in the Atlas, and a description.
     address : str
         Of a fixed version; paths of files follow it.
     licence, citation : str

@@ -30,7 +30,7 @@ class Splits(OpenShape):
 
 
 class StandsFor(OpenShape):
-    """Built sensors that a data set stands for, or the reason for an idealisation."""
+    """Built sensors that a data set models, or the reason for an idealisation."""
 
     idealisation: str | None = Field(
         description="Reason for an idealised sensor; null if built sensors exist."

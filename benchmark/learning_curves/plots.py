@@ -32,9 +32,14 @@ Row = Mapping[str, Any]
 
 _ABOUT = "Own error of each data set's leaders against the poses that calibrate them"
 _LAYOUT = Layout(
-    *(236, 224),
-    *(44, 12, 66, 30),
-    *(78, 22),
+    width=236,
+    height=224,
+    left=44,
+    right=12,
+    top=66,
+    bottom=30,
+    head=78,
+    foot=22,
     explained=39,
     legend=49,
 )

@@ -35,9 +35,14 @@ DRAWN = ("noise", "size", "phase")
 _LINEAR = frozenset({"phase"})
 
 _LAYOUT = Layout(
-    *(214, 172),
-    *(46, 10, 36, 30),
-    *(58, 20),
+    width=214,
+    height=172,
+    left=46,
+    right=10,
+    top=36,
+    bottom=30,
+    head=58,
+    foot=20,
     explained=-9,
     legend=33,
 )

@@ -2,8 +2,8 @@
 
 A hypothesis is a displacement of the mask on the detector. It explains a spot that falls where it
 has an aperture; its faults are the spots it leaves unexplained and the apertures in view that it
-finds dark. `algorithms.calibration.coded.table` makes what is handed around: spots (K, 3), x and y
-px and logarithm of the width that their light stands for; `Code`, the apertures in the order of y,
+finds dark. `algorithms.calibration.coded.table` makes the arguments: spots (K, 3), x and y in px
+and the logarithm of the width of an aperture with their light; `Code`, the apertures by y,
 their cells and the table of spacings; and the view, the detector and how far light reaches on it.
 `Room` holds hypotheses (H, 3), displacement and logarithm of light's width over the apertures', how
 many spots they leave (H,), and the aperture of each spot (K,).

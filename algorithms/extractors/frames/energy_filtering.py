@@ -45,7 +45,7 @@ class AdaptiveEnergyFilter(Extractor):
     While the light is still, variation of a pixel from frame to frame is noise. The energies of a
     sequence are averaged for as long as the spot stays, and start anew when the frames' mean shift
     against them is more than noise; the threshold falls with their noise. `extract_sequence` does
-    so; `extract` knows of no time and takes each frame alone.
+    so; `extract` reads each frame by itself.
 
     Parameters
     ----------

@@ -65,8 +65,8 @@ class PeakPositionEstimate(SlitLines):
     and D overlap, which then have one amplitude. Shifts are found to a pixel first, as the
     maxi-min of the pattern; a step is held to half a half width. A line's median is subtracted.
     Ours: any number of slits a slant, lines that see one slant only, and two means to make the
-    steps end: which pixels count is told at the start and where they end, and steps that shrink by
-    a constant ratio are summed at once.
+    steps end: the pixels that count are chosen once at the start and once at the end, and steps
+    that shrink by a constant ratio are summed at once.
 
     Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
     a NaN or infinity, where a slit's spot is missing or off the line, where light elsewhere is

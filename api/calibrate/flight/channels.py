@@ -101,7 +101,7 @@ def terms_of(unit: Floats, squared: bool) -> Floats:
 def channel_table(
     model: Model, signals: Floats, context: Mapping[str, Floats], most_deg: float
 ) -> ChannelTable:
-    """Return polynomials that stand for a fitted chain of channels.
+    """Fit polynomials to the answers of a fitted chain of channels.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def _judged(table: ChannelTable, signals: Floats, exact: Floats) -> ChannelTable
     off = separation_deg(table.predict(signals), exact)
     off = off[np.isfinite(off)]
     if not len(off) or np.abs(table.coefficients).max() > _LARGEST:
-        raise NoTableError("no polynomial of the channels stands for the chain")
+        raise NoTableError("no polynomial of the channels fits the chain's answers")
     added, largest = float(np.sqrt(np.mean(off**2))), float(off.max())
     return replace(table, added_deg=added, largest_deg=largest)
 
