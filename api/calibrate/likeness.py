@@ -10,7 +10,7 @@ import numpy as np
 
 from api.calibrate.selection import Candidate
 
-#: Models that both must have.
+#: Models that both must have: of fewer, some data set has the same ratios by chance.
 _FEWEST = 4
 
 
@@ -42,6 +42,8 @@ def alike(
 ) -> list[Likeness]:
     """Return the standard data sets, the one where models rank most alike first.
 
+    None where fewer than four models answer on both.
+
     Only ratios between models count: a sensor with ten times the noise behaves alike where noise is
     not what tells models apart.
 
@@ -60,7 +62,7 @@ def alike(
     best: dict[str, Likeness] = {}
     for (dataset, extractor), rows in theirs.items():
         names = sorted(rows)
-        if len(names) < min(_FEWEST, len(mine)):
+        if len(names) < _FEWEST:
             continue
         own = np.log([mine[name] for name in names])
         other = np.log([float(rows[name]["rms_deg"]) for name in names])

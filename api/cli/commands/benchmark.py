@@ -17,6 +17,7 @@ from api.cli.measuring import (
 )
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit
+from api.cli.wrong_call import WrongCallError
 from api.schema.scores import Score, ScoresQuery
 from api.schema.table import columns_of
 from benchmark.plan.combinations import Incompatible, cells, incompatible
@@ -64,8 +65,12 @@ def benchmark(
     are kept in the local store (see --store), so that an interrupted run can be continued.
     """
     if data is not None:
+        if others := sorted(name for name, given in asked.items() if given and name != "model"):
+            raise WrongCallError(f"--data takes --model and --config; got --{others[0]}, too")
         _on_own_data(data, config, list(asked.get("model") or ()) or None, form)
         return
+    if config is not None:
+        raise WrongCallError("--config belongs to --data FILE, which is not given")
     names = {f"{name}s": given for name, given in asked.items()}
     planned = cells(**names)
     if not planned:
@@ -109,6 +114,8 @@ def _on_own_data(data: Path, config: Path | None, models: list[str] | None, form
         for one in found.candidates
     ]
     emit(rows, tuple(rows[0]), form, title=f"{len(rows)} models on {data.name}")
+    if not ranked:
+        typer.echo("fewer than four models answer here and on a standard data set", err=True)
     for one in ranked[:3]:
         typer.echo(
             f"{one.dataset} ({one.detector}, {one.mask}): errors of {len(one.errors_deg)} models "

@@ -11,6 +11,7 @@ import typer
 from api.calibrate.likeness import alike
 from api.calibrate.selection import Candidate
 from api.cli.commands.benchmark import app
+from api.cli.wrong_call import WrongCallError
 
 MINE = [
     Candidate(name, rms_deg=rms)
@@ -38,6 +39,19 @@ def test_ratios_between_models_decide_and_not_their_size():
     assert [(one.dataset, one.extractor) for one in found] == [("near", "x"), ("flat", "x")]
     assert found[0].factor == pytest.approx(1.0)
     assert set(found[0].errors_deg) == set("abcde")
+
+
+def test_few_models_are_like_nothing():
+    nominal = scored("near", "x", a=1.0, b=2.0, c=10.0)
+    assert alike(MINE[:3], nominal) == []
+
+
+@pytest.mark.parametrize(
+    "call", [["--config", "a.toml"], ["--data", "a.csv", "--dataset", "ccd-slit"]]
+)
+def test_options_that_would_count_for_nothing_are_refused(call):
+    with pytest.raises(WrongCallError, match="--data"):
+        typer.main.get_command(app).main(call, standalone_mode=False)
 
 
 def test_own_data_are_scored_beside_a_standard_set(tmp_path, capsys):
