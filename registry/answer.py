@@ -34,8 +34,8 @@ from registry.relaxation import BlockingConstraint, explain
 Numbers = NDArray[np.float64]
 Positions = NDArray[np.int64]
 
-#: Architectures of questions whose advice and measures are kept, some 200 bytes each.
-MOST_PLACES = 4096
+#: Tasks and accuracies whose advice is kept, and architectures whose measures are.
+MOST_ADVISING, MOST_PLACES = 128, 4096
 
 
 class RankedPlace(NamedTuple):
@@ -48,7 +48,8 @@ class RankedPlace(NamedTuple):
     studies : its studies (bits) that have what is asked of studies
     stated : those of them whose stated numbers keep the limits, too
     start, end : its part of `Answer.designs`
-    best_at : position of the design with the smallest error
+    best, row : the design with the smallest error and its pipeline, by position; -1 for none
+    rank_of_best : of that design on the architecture
     advice : the survey's advice for what is asked
     advised_tasks : tasks of that advice
     measures : the own measures of the tasks asked for
@@ -61,7 +62,9 @@ class RankedPlace(NamedTuple):
     stated: int
     start: int
     end: int
-    best_at: int
+    best: int
+    row: int
+    rank_of_best: int
     error_deg: float
     advice: tuple[Advice, ...]
     advised_tasks: frozenset[str]
@@ -85,8 +88,9 @@ class Answer:
         self.sort = sort
         self.best = question.best
         counting = question.studies, question.all_stated
-        every, self._taken = question.arrays.ranked(self.best, *counting, sort)
+        every, used = question.arrays.ranked(self.best, *counting, sort)
         self.designs: Positions = every[question.matching_designs[every]]
+        self._used = used
         self._of = question.arrays.place_of[self.designs]
         self._starts = np.flatnonzero(begins(self._of)) if len(self._of) else self._of
         self.places: Sequence[RankedPlace] = sorted(self._places(), key=attrgetter("key"))
@@ -105,13 +109,19 @@ class Answer:
         tasks, of_errors = include.get("task", ()), "error" in include
         studies, stated = question.studies, question.all_stated
         facts = _place_facts(question.table)
+        advice_of = facts.advice(advising)
         starts: list[int] = self._starts.tolist()
-        least = best.at_order[np.minimum.reduceat(best.order[self.designs], self._starts)]
+        order = best.order[self.designs]
+        least = np.minimum.reduceat(order, self._starts)
+        ends = (*starts[1:], self.count)
+        places_of_best = np.flatnonzero(order == np.repeat(least, np.subtract(ends, starts)))
+        least = self.designs[places_of_best]
         found = []
-        for number, start, end, best_at, row, error in zip(
+        for number, start, end, at, design, row, error in zip(
             self._of[self._starts].tolist(),
             starts,
-            (*starts[1:], self.count),
+            ends,
+            places_of_best.tolist(),
             least.tolist(),
             best.row[least].tolist(),
             best.error[least].tolist(),
@@ -119,7 +129,7 @@ class Answer:
         ):
             place = question.table.places[number]
             has = place.studies & studies
-            advice, advised_tasks = facts.advice(number, advising)
+            advice, advised_tasks = advice_of[number]
             own: float | None = None
             measures: tuple[TaskMeasure, ...] = ()
             if tasks:
@@ -129,35 +139,27 @@ class Answer:
             found.append(
                 RankedPlace(
                     *(key, number, place, has, place.studies & stated, start, end),
-                    *(best_at, error, advice, advised_tasks, measures),
+                    *(design, row, at - start + 1, error, advice, advised_tasks, measures),
                 )
             )
         return found
 
     @cached_property
-    def usual(self) -> dict[int, int]:
-        """The measured calibration that most studies used, by architecture; both by position.
+    def usual(self) -> dict[int, tuple[int, int]]:
+        """The measured calibration that most studies used, by architecture, and its pipeline.
 
-        Of several the one with the smallest error, then the first.
+        Of several the one with the smallest error, then the first. All by position.
         """
-        arrays = self.question.arrays
-        taken = self._taken[self.designs]
-        at = np.flatnonzero(arrays.measured[self.designs] & (taken > 0))
-        designs = self.designs[at]
-        of = arrays.place_of[designs]
-        at = at[np.lexsort((self.best.rank[designs], -taken[at], of))]
-        first = at[begins(of)]
-        places = arrays.place_of[self.designs[first]].tolist()
-        return dict(zip(places, self.designs[first].tolist(), strict=True))
+        used = self._used[self.question.matching_designs[self._used]]
+        places = self.question.arrays.place_of[used]
+        first = begins(places)
+        designs = used[first]
+        found = zip(designs.tolist(), self.best.row[designs].tolist(), strict=True)
+        return dict(zip(places[first].tolist(), found, strict=True))
 
     def candidate(self, design: int) -> Candidate:
         """Return a design, given by position, with its best pipeline."""
         return self.best.candidate(design)
-
-    def rank_of_best(self, place: RankedPlace) -> int:
-        """Return the rank of the design with the smallest error on its architecture."""
-        designs = self.designs[place.start : place.end]
-        return 1 if designs[0] == place.best_at else int((designs == place.best_at).argmax()) + 1
 
     def reached(self, values: Numbers) -> list[float]:
         """Return the least of some values of designs on each architecture, best first."""
@@ -182,7 +184,7 @@ class Answer:
             return None
         least = min(self.places, key=attrgetter("error_deg"))
         first = self.candidate(int(self.designs[self.places[0].start]))
-        return regret(first, self.candidate(least.best_at))
+        return regret(first, self.candidate(least.best))
 
     @cached_property
     def pareto(self) -> frozenset[int]:
@@ -213,13 +215,13 @@ class _PlaceFacts:
 
     def __init__(self, table: DesignTable) -> None:
         self._table = table
-        self.advice = lru_cache(MOST_PLACES)(self._advice)
+        self.advice = lru_cache(MOST_ADVISING)(self._advice)
         self.measures = lru_cache(MOST_PLACES)(self._measures)
 
     def _advice(
-        self, number: int, advising: tuple[tuple[str, ...] | None, ...]
-    ) -> tuple[tuple[Advice, ...], frozenset[str]]:
-        return advice_for(self._table.places[number], advising)
+        self, advising: tuple[tuple[str, ...] | None, ...]
+    ) -> list[tuple[tuple[Advice, ...], frozenset[str]]]:
+        return [advice_for(place, advising) for place in self._table.places]
 
     def _measures(
         self, number: int, tasks: tuple[str, ...], errors: PipelineErrors, row: int, error: float

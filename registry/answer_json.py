@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import hashlib
 import weakref
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from pydantic_core import to_json
@@ -20,17 +20,49 @@ from registry.contradiction import against_advice, against_literature, regret_wo
 from registry.design_arrays import design_arrays
 from registry.designs import DesignTable
 from registry.judging import OF_STUDIES, Question, advice_for
-from registry.path_arrays import MOST_SETS, PathTexts, path_arrays
+from registry.path_texts import PathTexts
 from registry.paths import path_table
 from registry.pipelines import NOT_COUNTED, PipelineErrors
 from registry.ranking import TaskMeasure, support
-from registry.requirements import Requirements
+from registry.requirements import CONFIDENCE, Requirements
 
-#: Texts that are kept of each kind, some 16 MB of calibrations, and architectures made of these.
-MOST_TEXTS, MOST_ARCHITECTURES = 8192, 4096
-#: Places for what hangs on the whole answer; JSON has no such byte.
-_RANK, _HEAD, _PARETO, _MEASURES = b"\0rank", b"\0head", b"\0pareto", b"\0measures"
-_MEASURED, _STATED = b"\0measured", b"\0stated"
+#: Texts that are kept of each kind, some 16 MB of calibrations and 20 MB of architectures.
+MOST_TEXTS, MOST_ARCHITECTURES = 8192, 3072
+
+
+class _ShownArchitecture(NamedTuple):
+    """All that the text of an architecture depends on but its rank and what none beats.
+
+    Attributes
+    ----------
+    errors : of all pipelines
+    judged, advising : what is judged and what advice is asked for (`Question`)
+    number : position of the architecture
+    studies, stated, measures, rank_of_best : as in `RankedPlace`
+    total : how many of its designs meet the requirements
+    finer : pipeline that answers too seldom and is named; -1 for none
+    usual : the design that most studies used and its pipeline; -1 for none
+    best, row : the design with the smallest error and its pipeline; -1 for none
+    designs, rows : those that are listed and their pipelines, packed
+    units : of all pipelines of all these how many units keep the limit; none without one
+    """
+
+    errors: PipelineErrors
+    judged: tuple[str, ...]
+    advising: tuple[tuple[str, ...] | None, ...]
+    number: int
+    studies: int
+    stated: int
+    measures: tuple[TaskMeasure, ...]
+    rank_of_best: int
+    total: int
+    finer: int
+    usual: tuple[int, int]
+    best: int
+    row: int
+    designs: bytes
+    rows: bytes
+    units: tuple[bytes, ...]
 
 
 def encoded(value: Any) -> bytes:
@@ -49,19 +81,17 @@ class AnswerTexts:
     def __init__(self, table: DesignTable) -> None:
         self.table = table
         self.arrays = design_arrays(table)
-        self.paths = path_arrays(table)
-        self._table = path_table(table.facts)
-        self._left_out = encoded([left.to_dict() for left in self._table.left_out])
+        paths = path_table(table.facts)
+        self._left_out = encoded([left.to_dict() for left in paths.left_out])
         self._places = table.places
         self._keys = [encoded(key) for key in table.facts.keys]
         self._studies = lru_cache(MOST_TEXTS)(self._studies_text)
-        self._paths_text = PathTexts(self._table, self._studies).text
+        self._paths = PathTexts(paths, self.arrays, self._studies).text
         self._head = lru_cache(MOST_TEXTS)(self._head_text)
-        self._measures = lru_cache(MOST_TEXTS)(_measures_text)
-        self._architecture = lru_cache(MOST_ARCHITECTURES)(self._architecture_pieces)
+        self._architecture = lru_cache(MOST_ARCHITECTURES)(self._architecture_text)
         self._contradiction = lru_cache(MOST_TEXTS)(self._contradiction_text)
         self._calibration = lru_cache(MOST_TEXTS)(self._calibration_text)
-        self._ends = lru_cache(MOST_SETS)(_ends_text)
+        self._ends = lru_cache(MOST_TEXTS)(_ends_text)
         self._design = lru_cache(None)(self._design_text)
         self._best_rows = lru_cache(MOST_TEXTS)(self._rows_on_datasets)
         self._pipeline = lru_cache(MOST_TEXTS)(self._pipeline_text)
@@ -75,7 +105,7 @@ class AnswerTexts:
 
     def document(self, answer: Answer, limit: int | None, calibrations: int | None) -> list[bytes]:
         """Return an answer in parts: the first architectures, the first calibrations of each."""
-        regret, blocked, sets = answer.regret, answer.blocked, self.paths.sets(answer)
+        regret, blocked = answer.regret, answer.blocked
         untried = {
             hazard: [{"detector": detector, "mask": mask} for detector, mask in pairs]
             for hazard, pairs in answer.untried.items()
@@ -92,112 +122,71 @@ class AnswerTexts:
             ),
             encoded(None if regret is None else regret.to_dict(regret_words(regret))),
             *(b',"untried":', encoded(untried), b',"untimed":%d' % answer.untimed),
-            *(b',"paths":[', self._paths_text(sets), b'],"left_out":', self._left_out),
+            *(b',"paths":[', self._paths(answer), b'],"left_out":', self._left_out),
             *(b',"blocked":', b"null" if blocked is None else encoded(blocked.to_dict()), b"}"),
         ]
 
     def _architectures(
         self, answer: Answer, limit: int | None, calibrations: int | None
     ) -> list[bytes]:
-        question, places = answer.question, answer.places[:limit]
-        errors, advising = answer.best.errors, question.advice_key
-        ends = [self._ends(question.judged, studied) for studied in (False, True)]
+        unbeaten = answer.pareto
         parts: list[bytes] = []
-        shown = zip(places, *self._shown(answer, places, calibrations), strict=True)
-        for rank, (place, packed, units) in enumerate(shown, 1):
-            filled = {
-                _RANK: b',{"rank":%d,' % rank if rank > 1 else b'{"rank":1,',
-                _HEAD: self._head(place.number, place.studies, advising),
-                _PARETO: b"true" if rank - 1 in answer.pareto else b"false",
-                _MEASURES: self._measures(place.measures),
-                **ends[bool(place.studies)],
-            }
-            pieces = self._architecture(errors, place.studies, place.stated, packed, units)
-            parts += [filled.get(piece, piece) for piece in pieces]
+        for at, shown in enumerate(self._shown(answer, answer.places[:limit], calibrations)):
+            begun, ended = self._architecture(shown)
+            flag = b"true" if at in unbeaten else b"false"
+            parts += (b'%b{"rank":%d,' % (b"," if at else b"", at + 1), begun, flag, ended)
         return parts
 
     def _shown(
         self, answer: Answer, places: Sequence[RankedPlace], calibrations: int | None
-    ) -> tuple[list[bytes], list[bytes]]:
-        """Return what the text of each architecture depends on beside studies and errors, packed.
+    ) -> Iterator[_ShownArchitecture]:
+        """Yield what the text of each architecture depends on."""
+        question, best, first_row = answer.question, answer.best, self.arrays.first_row
+        asked = best.errors, question.judged, question.advice_key
+        finer, usual, limit = question.finer, answer.usual, question.asked.largest_deg
+        units = b"" if limit is None else best.errors.units_within(limit).tobytes()
+        designs, rows = answer.designs.tobytes(), best.row[answer.designs].tobytes()
+        size = answer.designs.itemsize
+        for place in places:
+            end = place.end if calibrations is None else place.start + calibrations
+            listed = slice(size * place.start, size * min(end, place.end))
+            counted = () if limit is None else (place.best, *_unpacked(designs[listed]))
+            yield _ShownArchitecture(
+                *(*asked, place.number, place.studies, place.stated, place.measures),
+                *(place.rank_of_best, place.end - place.start),
+                *(finer.get(place.number, -1), usual.get(place.number, (-1, -1))),
+                place.best,
+                place.row,
+                designs[listed],
+                rows[listed],
+                tuple([units[first_row[one] : first_row[one + 1]] for one in counted]),
+            )
 
-        First integers: the number of its designs, the rank of the best of them, the finest
-        pipeline that answers too seldom, the design that most studies used and its pipeline; the
-        best design and those that are shown, then the pipelines of these; all by position, -1 for
-        none. Second of all pipelines of these designs how many units keep the limit on the error;
-        nothing where none is asked.
-        """
-        if not places:
-            return [], []
-        question, best, designs = answer.question, answer.best, answer.designs
-        finer, usual = question.finer, answer.usual
-        of_places = [
-            (p.start, p.end, p.best_at, finer.get(p.number, -1), usual.get(p.number, -1))
-            for p in places
-        ]
-        start, end, best_at, finest, used = np.array(of_places).T
-        count, numbers = end - start, self.arrays.numbers
-        at = start[:, None] + numbers[: count.max() if calibrations is None else calibrations]
-        # Columns as above: five numbers, then designs, then pipelines.
-        width = 1 + at.shape[1]
-        packed = np.empty((len(places), 5 + 2 * width), int)
-        shown, rows = packed[:, 5 : 5 + width], packed[:, 5 + width :]
-        shown[:, 0] = best_at
-        shown[:, 1:] = designs.take(at, mode="clip")
-        shown[:, 1:][at >= end[:, None]] = -1
-        rows[:] = best.row[shown]
-        rows[shown < 0] = -1
-        place_in = np.empty_like(numbers)
-        place_in[designs] = numbers[: len(designs)]
-        packed[:, 0] = count
-        packed[:, 1] = place_in[best_at] - start + 1
-        packed[:, 2] = finest
-        packed[:, 3] = used
-        packed[:, 4] = best.row[used]
-        packed[:, 4][used < 0] = -1
-        limit = question.asked.largest_deg
-        if limit is None:
-            return [row.tobytes() for row in packed], [b""] * len(places)
-        units = np.append(best.errors.units_within(limit), np.uint8(NOT_COUNTED))
-        of_rows = units[self.arrays.rows_of[shown]]
-        return [row.tobytes() for row in packed], [row.tobytes() for row in of_rows]
-
-    def _architecture_pieces(
-        self, errors: PipelineErrors, studies: int, stated: int, packed: bytes, units: bytes
-    ) -> list[bytes]:
-        """Return an architecture in pieces, with places for what hangs on the whole answer.
-
-        Parameters
-        ----------
-        errors : of all pipelines
-        studies : studies of the architecture with what is asked of studies (bits)
-        stated : those of them whose stated numbers keep the limits, too
-        packed, units : as `_shown` packs them
-        """
-        count, rank_of_best, finest, used, used_row, *more = np.frombuffer(packed, int).tolist()
-        designs, rows = more[: len(more) // 2], more[len(more) // 2 :]
-        size = len(units) // len(designs)
+    def _architecture_text(self, of: _ShownArchitecture) -> tuple[bytes, bytes]:
+        """Return an architecture in two parts, between them whether none beats it."""
+        errors, studies = of.errors, of.studies
+        measured, stated = self._ends(of.judged, bool(studies))
+        designs, rows = (of.best, *_unpacked(of.designs)), (of.row, *_unpacked(of.rows))
+        units = of.units or (b"",) * len(designs)
+        best, *listed = (
+            self._calibration(design, row, of.stated, studies) + stated
+            if row < 0
+            else self._calibration(design, row, studies, studies, errors, of.finer, within)
+            + measured
+            for design, row, within in zip(designs, rows, units, strict=True)
+        )
         contradiction = b"null"
-        if used >= 0:
-            best = designs[0], rows[0], studies if rows[0] >= 0 else stated
-            contradiction = self._contradiction(errors, studies, used, used_row, *best)
-        pieces = [_RANK, _HEAD]
-        for at, (design, row) in enumerate(zip(designs, rows, strict=True)):
-            if design < 0:
-                break
-            if row < 0:
-                end, text = _STATED, self._calibration(design, row, stated, studies)
-            else:
-                within = units[at * size : (at + 1) * size]
-                of_row = (errors, finest, within)
-                end, text = _MEASURED, self._calibration(design, row, studies, studies, *of_row)
-            pieces += (b'%b{"rank":%d' % (b"," if at > 1 else b"", at or rank_of_best), text, end)
-            if not at:
-                pieces += (
-                    *(b',"pareto":', _PARETO, b',"contradiction":', contradiction),
-                    *(b',"measures":', _MEASURES, b',"count":%d,"calibrations":[' % count),
-                )
-        return [*pieces, b"]}"]
+        if of.usual[0] >= 0:
+            first = of.best, of.row, studies if of.row >= 0 else of.stated
+            contradiction = self._contradiction(errors, studies, *of.usual, *first)
+        head = self._head(of.number, studies, of.advising)
+        measures = encoded([measure.to_dict() for measure in of.measures])
+        texts = b",".join([b'{"rank":%d%b' % ranked for ranked in enumerate(listed, 1)])
+        return (
+            b'%b{"rank":%d%b,"pareto":' % (head, of.rank_of_best, best),
+            b',"contradiction":%b,"measures":%b,"count":%d,"calibrations":[%b]}'
+            % (contradiction, measures, of.total, texts),
+        )
 
     def _head_text(
         self, number: int, studies: int, advising: tuple[tuple[str, ...] | None, ...]
@@ -321,7 +310,12 @@ class AnswerTexts:
         return b",".join([key for key, flag in zip(self._keys, flags, strict=False) if flag == "1"])
 
 
-def _ends_text(judged: tuple[str, ...], studied: bool) -> dict[bytes, bytes]:
+def _unpacked(positions: bytes) -> list[int]:
+    found: list[int] = np.frombuffer(positions, np.int64).tolist()
+    return found
+
+
+def _ends_text(judged: tuple[str, ...], studied: bool) -> tuple[bytes, bytes]:
     """Return the end of a calibration, measured or stated: what each requirement is judged on.
 
     Parameters
@@ -331,15 +325,11 @@ def _ends_text(judged: tuple[str, ...], studied: bool) -> dict[bytes, bytes]:
     """
     of_studies = "studies" if studied else "advised"
     known = {**dict.fromkeys(OF_STUDIES, of_studies), "properties": "assessed"}
-    return {
-        kind: b',"basis":%b}'
-        % encoded({name: known.get(name, kind[1:].decode()) for name in judged})
-        for kind in (_MEASURED, _STATED)
-    }
-
-
-def _measures_text(measures: tuple[TaskMeasure, ...]) -> bytes:
-    return encoded([measure.to_dict() for measure in measures])
+    measured, stated = (
+        b',"basis":%b}' % encoded({name: known.get(name, kind) for name in judged})
+        for kind in ("measured", "stated")
+    )
+    return measured, stated
 
 
 _TEXTS: weakref.WeakKeyDictionary[DesignTable, AnswerTexts] = weakref.WeakKeyDictionary()
@@ -353,7 +343,15 @@ def answer_json(answer: Answer, limit: int | None = None, calibrations: int | No
     answer : the answer
     limit, calibrations : the most architectures, and calibrations of each; None for all
     """
-    return b"".join(_texts(answer).document(answer, limit, calibrations))
+    return b"".join(_texts(answer.question.table).document(answer, limit, calibrations))
+
+
+def prepare(table: DesignTable) -> None:
+    """Make what answers about a table share, so that no question has to wait for it."""
+    texts = _texts(table)
+    _ = texts.digest
+    for half in (None, *texts.arrays.edges):
+        _ = texts.arrays.errors((), half, (None, CONFIDENCE)).unit_errors_deg
 
 
 def answer_digest(answer: Answer, *shown: object) -> bytes:
@@ -367,11 +365,11 @@ def answer_digest(answer: Answer, *shown: object) -> bytes:
     shown : what else the JSON depends on
     """
     told = encoded((answer.sort, *shown))
-    return b"%b[%b,%b" % (_texts(answer).digest, answer.question.asked_json, told[1:])
+    digest = _texts(answer.question.table).digest
+    return b"%b[%b,%b" % (digest, answer.question.asked_json, told[1:])
 
 
-def _texts(answer: Answer) -> AnswerTexts:
-    table = answer.question.table
+def _texts(table: DesignTable) -> AnswerTexts:
     texts = _TEXTS.get(table)
     if texts is None:
         texts = _TEXTS[table] = AnswerTexts(table)

@@ -66,7 +66,11 @@ class BestPipelines:
         self.order[self.at_order] = arrays.numbers
 
     def ranked(self, studies: int, stated: int, sort: Sort) -> tuple[Positions, Positions]:
-        """Return all designs by place and rank, and how many studies used each.
+        """Return all designs by place and rank, and those that a study used by place and use.
+
+        The second are measured ones, those first that most studies used; of these the one with the
+        smallest error, then the first.
+
 
         What designs are ranked by goes into one number each, the most important part in its
         highest bits: sorting those is many times quicker than sorting by one part after another.
@@ -95,7 +99,10 @@ class BestPipelines:
         for values, bits in (*parts, (self.order, arrays.design_bits)):
             key = (key << bits) | values
         key.sort()
-        return self.at_order[key & ((1 << arrays.design_bits) - 1)], taken
+        every = self.at_order[key & ((1 << arrays.design_bits) - 1)]
+        used = every[(arrays.measured & (taken > 0))[every]]
+        by_use = np.lexsort((self.rank[used], -taken[used], arrays.place_of[used]))
+        return every, used[by_use]
 
     @cached_property
     def repeatability_deg(self) -> Numbers:
@@ -168,17 +175,6 @@ class DesignArrays(PipelineTable):
             raise ValueError(
                 f"{len(self.designs)} designs of {studies} studies are too many to be ranked"
             )
-
-    @cached_property
-    def rows_of(self) -> Positions:
-        """Pipelines of each design, shape (designs + 1, most of one); none is `len(rows)`.
-
-        The last design has none: it stands for no design, whose position is -1.
-        """
-        counts = np.diff(self.first_row, append=self.first_row[-1])
-        along = np.arange(counts.max(initial=0))
-        at = np.array(self.first_row)[:, None] + along
-        return np.where(along < counts[:, None], at, len(self.rows))
 
     @cached_property
     def _designs_with(self) -> Mapping[tuple[str, str], Flags]:

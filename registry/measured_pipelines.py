@@ -270,7 +270,8 @@ class MeasuredPipeline:
         partly
             Pipelines on the same sensor that answer too seldom, of which one may be far finer.
         """
-        units = self.unit_own_deg
+        names, units = tuple(hazards), self.unit_own_deg
+        nominal = self.over(self.nominal, half_field_deg) if names else own
         return {
             "dataset": self.dataset,
             "extractor": self.extractor,
@@ -278,15 +279,15 @@ class MeasuredPipeline:
             "error_deg": _finite(judged.error_deg),
             "condition": judged.condition,
             "field_deg": judged.field_deg if math.isfinite(judged.error_deg) else None,
-            "nominal_deg": _finite(self.over(self.nominal, half_field_deg).error_deg),
+            "nominal_deg": _finite(nominal.error_deg),
             "nominal": self.nominal.to_dict(),
             "conditions": {
                 score.condition: _finite(self.over(score, half_field_deg).error_deg)
-                for name in hazards
+                for name in names
                 for score in self.hazards.get(name, ())
             },
             "fov_deg": None if self.half_fov_deg is None else 2 * self.half_fov_deg,
-            "availability": self.availability(hazards),
+            "availability": self.availability(names),
             "latency_us": self.latency_us,
             "own_deg": _finite(own.error_deg),
             "bench_deg": self.bench_deg if bench_deg is None else bench_deg,

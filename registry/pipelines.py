@@ -6,6 +6,7 @@ modules that answer questions import it.
 
 from __future__ import annotations
 
+import bisect
 import itertools
 import math
 from collections.abc import Iterable, Sequence
@@ -68,14 +69,15 @@ class PipelineTable:
         """
         if half_field_deg is None:
             return None
-        at = int(np.searchsorted(self._edges, half_field_deg))
-        return float(self._edges[at]) if at < len(self._edges) else math.inf
+        at = bisect.bisect_left(self.edges, half_field_deg)
+        return self.edges[at] if at < len(self.edges) else math.inf
 
     @cached_property
-    def _edges(self) -> Numbers:
+    def edges(self) -> list[float]:
+        """Half fields of cones and data sets, ascending."""
         halves = {half for row in self.rows for s in _scores(row) for half, _ in s.cones}
         halves |= {row.half_fov_deg for row in self.rows if row.half_fov_deg is not None}
-        return np.array(sorted(halves), float)
+        return sorted(map(float, halves))
 
     @cached_property
     def half_fov_deg(self) -> Numbers:
@@ -223,7 +225,7 @@ class PipelineErrors:
         return PipelineJudgement(float(self.error_deg[row]), own.condition, own.field_deg)
 
     @cached_property
-    def _unit_errors(self) -> Numbers:
+    def unit_errors_deg(self) -> Numbers:
         """Error that each of ten units keeps at the confidence, shape (10, pipelines)."""
         assert self.draws is not None  # noqa: S101 - without draws no unit is counted
         ratios, share = self.table.unit_ratios, self.draws[1]
@@ -237,7 +239,8 @@ class PipelineErrors:
         """
         if limit_deg is None or self.draws is None:
             return np.full(len(self.own_deg), NOT_COUNTED, np.uint8)
-        found: NDArray[np.uint8] = (self._unit_errors <= limit_deg).sum(axis=0, dtype=np.uint8)
+        within = (self.unit_errors_deg <= limit_deg).view(np.uint8)
+        found: NDArray[np.uint8] = within.sum(axis=0, dtype=np.uint8)
         found[np.isinf(self.own_deg)] = NOT_COUNTED
         return found
 

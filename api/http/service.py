@@ -32,6 +32,8 @@ DESCRIPTION = (
     "strong `ETag`. Errors are problem documents (RFC 9457) with the nearest valid value. In CSV "
     "an empty cell is an unknown value, and `none stated` is the survey's value `None`."
 )
+#: New objects after which the collector runs: an answer makes thousands, few of them in cycles.
+COLLECTED_AFTER = 20_000
 ROUTERS = (*SERVICE, *PAGES)
 ROUTES = [route for router in ROUTERS for route in router.routes if isinstance(route, APIRoute)]
 
@@ -84,10 +86,13 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     # them would hold up each of their answers. Before a service answers it is nobody's loss.
     await asyncio.to_thread(app.openapi)  # it asks path functions, each in a loop of its own
     # What is loaded now stays: the collector need not walk it again for every few answers.
+    before = gc.get_threshold()
+    gc.set_threshold(COLLECTED_AFTER)
     gc.collect()
     gc.freeze()
     yield
     gc.unfreeze()
+    gc.set_threshold(*before)
 
 
 def _version() -> str:
