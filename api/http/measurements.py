@@ -138,7 +138,9 @@ class Measurements:
         """The survey's assessment beside the measured one, with definitions and totals."""
         from benchmark.assessment import assess as assessment  # noqa: PLC0415 - imports every implementation
 
-        return assessment.document(assessment.assess(self._store.directory, times=self.times))
+        directory = self._store.directory
+        assessed = assessment.assess(directory, times=self.times, scores=self.scores)
+        return assessment.document(assessed)
 
     @cached_property
     def claims(self) -> Mapping[str, Entry]:

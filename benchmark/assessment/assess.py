@@ -18,9 +18,8 @@ from typing import TYPE_CHECKING, Any
 from algorithms.contract import Extractor
 from algorithms.discovery import discover_extractors
 from benchmark.assessment.definitions import DEFINITIONS, Definition
-from benchmark.assessment.measures import SCORED, SWEPT, NotMeasuredError, Quantity, Values
+from benchmark.assessment.measures import SCORED, SWEPT, NotMeasuredError, Quantity, Row, Values
 from benchmark.metrics.score import store
-from benchmark.results.csv_tables import Row
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running.times import Place, Time
 from benchmark.sweeps.record import swept
@@ -102,6 +101,7 @@ def assess(
     directory: Path | str = PUBLISHED,
     extractors: Mapping[str, type[Extractor]] | None = None,
     times: Mapping[Place, Time] | None = None,
+    scores: Sequence[Row] | None = None,
 ) -> list[MethodAssessment]:
     """Assess every method of the survey's table from published results.
 
@@ -113,6 +113,8 @@ def assess(
         Implementations by name; those installed by default.
     times
         Of this machine (`benchmark.running.times`); none by default.
+    scores
+        Published scores of the standard unit, where they have been read already.
 
     Raises
     ------
@@ -121,7 +123,8 @@ def assess(
     """
     known = discover_extractors() if extractors is None else extractors
     store = Store(directory)
-    evidence = _Evidence(swept(store.directory), store.rows(), list((times or {}).values()))
+    rows: Sequence[Row] = store.rows() if scores is None else scores
+    evidence = _Evidence(swept(store.directory), rows, list((times or {}).values()))
     tables = load()
     table = tables.feature_assessment
     methods = list(dict.fromkeys(zip(table["extractor"], table["case_study"], strict=True)))
@@ -130,9 +133,9 @@ def assess(
     for method, study in methods:
         shared = sum(value == taxonomy[method] for value in taxonomy.values()) > 1
         names = _implementations(known, taxonomy[method], study if shared else None)
-        scores = table[table["extractor"] == method].set_index("property")["score"]
+        said = table[table["extractor"] == method].set_index("property")["score"]
         verdicts = tuple(
-            _verdict(definition, int(scores[name]), names, evidence)
+            _verdict(definition, int(said[name]), names, evidence)
             for name, definition in DEFINITIONS.items()
         )
         found.append(MethodAssessment(method, taxonomy[method], study, tuple(names), verdicts))

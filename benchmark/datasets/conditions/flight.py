@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Any, cast
 
 import numpy as np
@@ -44,6 +45,10 @@ BOUND_NOTE = (
     "Samples in eclipse are not observable and do not enter; there a "
     "single-sample estimator should find nothing (NaN), and whatever it does find counts as error."
 )
+
+
+#: Flights and splits whose directions of the Sun are kept: every condition of a data set has one.
+MOST_FLIGHTS = 16
 
 
 @dataclass(frozen=True)
@@ -155,7 +160,7 @@ class Flight:
     def sun(self, split: Split, generator: np.random.Generator) -> Floats:
         """(N, 3) unit vectors of a split, body frame; nothing is random."""
         del generator
-        return self.leg(split).sun_body
+        return _sun_body(self, split).copy()
 
     def card(self) -> dict[str, dict[str, Any]]:
         """By split: size, times and motion."""
@@ -176,6 +181,11 @@ class Flight:
                 "eclipse_fraction": round(orbit.eclipse_half_width(sun) / math.pi, 4),
             }
         return found
+
+
+@lru_cache(MOST_FLIGHTS)
+def _sun_body(flight: Flight, split: Split) -> Floats:
+    return flight.leg(split).sun_body
 
 
 @dataclass(frozen=True)
