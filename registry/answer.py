@@ -165,10 +165,9 @@ class Answer:
         """Return the least of some values of designs on each architecture, best first."""
         if values is self.best.error:
             return [place.error_deg for place in self.places]
-        starts = [place.start for place in self.places]
-        least = np.minimum.reduceat(values[self.designs], self._starts)
-        found: list[float] = least[np.searchsorted(self._starts, starts)].tolist()
-        return found
+        least = np.minimum.reduceat(values[self.designs], self._starts).tolist()
+        of_start = dict(zip(self._starts.tolist(), least, strict=True))
+        return [of_start[place.start] for place in self.places]
 
     def reached_by(self, place: RankedPlace, values: Numbers) -> int:
         """Return the design on an architecture that reaches the least of some values."""

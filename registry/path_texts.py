@@ -97,7 +97,9 @@ class PathTexts:
 
     def _all_text(self, measured: int, studies: int, others: int, stated: int) -> bytes:
         """Return the text of paths of which some studies count, and others of which others do."""
-        paths = self._among(measured, studies) | self._among(others, stated)
+        paths = self._among(measured, studies)
+        if others:
+            paths |= self._among(others, stated)
         links = self._paths_of_links.joined(paths)
         words = np.concatenate((paths, self._links_of_nodes.joined(links), links), axis=1)
         at = np.bitwise_or.reduce(words, axis=0).nonzero()[0]
