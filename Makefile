@@ -43,9 +43,7 @@ $(DEVELOPING): $(SERVING) requirements-dev.lock
 	$(PIP) --require-hashes -r requirements.lock -r requirements-dev.lock
 	touch $@
 
-# Numerical kernels, compiled once and kept: else every first call would wait for its own. It takes
-# as long as the quick tests, since light is drawn and models are fitted for it; those compile what
-# they call while they run.
+# Numerical kernels, compiled once and kept: else every first call would wait for its own.
 $(COMPILED): $(DEVELOPING)
 	$(BIN)/sunatlas compile --workers $(WORKERS) --quiet
 	touch $@
@@ -58,10 +56,10 @@ serve: $(SERVING) ## serve page, guide and API on http://127.0.0.1:8000 (install
 	$(BIN)/sunatlas guide build --quiet
 	$(BIN)/sunatlas serve --port $(PORT)
 
-test: $(DEVELOPING) ## run the tests, the slow ones left out
+test: $(COMPILED) ## run the tests, the slow ones left out
 	$(TEST) -m "not slow"
 
-test-browser: $(DEVELOPING) ## run what walks the page in headless Chromium, slow tests too
+test-browser: $(COMPILED) ## run what walks the page in headless Chromium, slow tests too
 	$(TEST) tests/api/browser
 
 test-slow: $(COMPILED) ## run the slow tests alone

@@ -67,6 +67,7 @@ def test_kernels_work_where_nothing_can_be_cached():
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, timeout=600)
 
 
+@pytest.mark.slow
 def test_a_change_in_a_kernel_of_another_file_is_noticed(tmp_path):
     """The caller's machine code has the callee's inside, and Numba looks at the caller's alone."""
     (tmp_path / "caller.py").write_text(

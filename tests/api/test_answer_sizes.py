@@ -38,6 +38,7 @@ def test_no_answer_is_large_unasked(atlas, operations):
             assert len(answer.content) <= LARGEST, (path, accept)
 
 
+@pytest.mark.slow
 def test_of_no_data_set_is_an_answer_large_unasked(atlas):
     names = [row["name"] for row in atlas.get("/v1/datasets?limit=500").json()["items"]]
     for name in names:

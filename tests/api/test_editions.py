@@ -37,6 +37,7 @@ def addresses() -> list[str]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("edition", ["all", pytest.param("survey", marks=pytest.mark.slow)])
 def test_everything_is_served_of_both_editions(atlas: Client, edition: str) -> None:
     asked = [f"{address}?edition={edition}" for address in addresses()]

@@ -84,6 +84,7 @@ def test_publishing_draws_what_lacks_and_removes_what_is_of_other_code(
     assert lacking.read_bytes() == preview_png(datasets.get("qpd-single-aperture"))
 
 
+@pytest.mark.slow
 def test_another_process_draws_what_the_data_set_draws(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -137,7 +137,9 @@ def test_a_program_ends_tidily_with_the_one_it_works_for_even_by_a_kill(tmp_path
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "number", [signal.SIGKILL, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)]
+)
 def test_workers_end_with_their_coordinator_busy_or_not(
     tmp_path: Path, number: signal.Signals
 ) -> None:

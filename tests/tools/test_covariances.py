@@ -21,6 +21,7 @@ def test_what_is_judged_is_the_distance_from_one_where_enough_answers_tell():
     assert [verdict.holds for verdict in verdicts(rows)] == [True, False]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stretch", [1.0, 2.0])
 def test_squares_are_those_of_the_errors_in_units_of_what_is_stated(monkeypatch, stretch):
     """Errors drawn from a covariance, and from four times it, which oblique axes do not hide."""

@@ -7,10 +7,15 @@ from tools.faults.kinds import GIVEN
 from tools.faults.kinds_measured import MEASURED
 
 NAMES = ("facts", "table", "bibl", "times", "saved", "journal", "export, forged", "claim")
-QUICK = [kind for kind in (*GIVEN, *MEASURED) if kind.name.startswith(NAMES)]
+#: Of one kind each file is judged by all code: seconds.
+KINDS = [
+    pytest.param(kind, marks=pytest.mark.slow if kind.name.startswith("claim") else ())
+    for kind in (*GIVEN, *MEASURED)
+    if kind.name.startswith(NAMES)
+]
 
 
-@pytest.mark.parametrize("kind", QUICK, ids=lambda kind: kind.name)
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
 def test_no_damaged_file_is_taken_wrongly_or_ends_in_a_traceback(kind, tmp_path):
     count = 2 if kind.name.startswith("claim") else 4  # each looks through all code
     tried = list(cases(kind, count, 2, tmp_path))

@@ -255,6 +255,7 @@ def test_the_same_seed_prints_the_same_errors(capsys):
     assert [one["set_name"] for one in found["measured"]] == ["disc", "disc", "no Sun", "no Sun"]
 
 
+@pytest.mark.slow
 def test_the_table_names_the_seed_and_a_broken_limit_is_the_status(monkeypatch, capsys):
     monkeypatch.setattr(robustness, "verdicts", lambda rows, ours: [])
     assert robustness.main(["--sets", "disc", "--methods", "pm", "--frames", "8"]) == 0

@@ -68,6 +68,7 @@ def expected() -> NDArray[np.float64]:
     return (PIXELS - 1) / 2 + HEIGHT / PITCH * np.array(PLACES)
 
 
+@pytest.mark.slow
 def test_places_are_those_of_waves_added_up_one_by_one(profiles: NDArray[np.float64]) -> None:
     fit = SlitImage.for_sensor(DRAWN)
     assert np.abs(fit.extract(700.0 * profiles + 3.0) - expected()).max() < 0.003
@@ -75,6 +76,7 @@ def test_places_are_those_of_waves_added_up_one_by_one(profiles: NDArray[np.floa
         assert np.abs(other.for_sensor(DRAWN).extract(profiles) - expected()).max() > 0.006
 
 
+@pytest.mark.slow
 def test_a_part_of_each_pixel_that_is_deaf_is_found_with_the_place() -> None:
     deaf = np.array([cast(tangents, fill=0.85) for tangents in PLACES])
     assert np.abs(SlitImage.for_sensor(DRAWN).extract(deaf) - expected()).max() < 0.004

@@ -184,6 +184,7 @@ def test_a_response_is_inverted_within_its_range():
     assert bend_and_slope(np.array([-0.2]), KELLY, 1e-4)[0][0] == pytest.approx(0.0, abs=1e-12)
 
 
+@pytest.mark.slow
 @given(st.integers(0, 2**32 - 1))
 @settings(max_examples=3, deadline=None)
 def test_answers_do_not_hang_on_rounding(seed):

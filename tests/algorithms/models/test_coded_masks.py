@@ -169,7 +169,9 @@ def _evidence(listed, view, widest, tolerance):
     return np.array(at), np.array(found)
 
 
-@pytest.mark.parametrize("cls", MODELS)
+@pytest.mark.parametrize(
+    "cls", [CodedCorrelation, pytest.param(CodedSpacing, marks=pytest.mark.slow)]
+)
 def test_what_is_read_is_what_trying_every_place_finds(cls):
     """Holes missing, spots too many and noisy: read is what is far likelier than all others."""
     model, rng = model_of(cls), np.random.default_rng(21)

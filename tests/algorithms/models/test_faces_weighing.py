@@ -122,6 +122,7 @@ def test_the_lights_spread_and_the_noise_are_told_apart(flicker, low, high):
     np.testing.assert_allclose(weighing.noise, noise, rtol=0.1)
 
 
+@pytest.mark.slow
 def test_flickering_light_costs_a_calibration_nothing_to_speak_of():
     """Its strength is common to the faces of a sample: normals come out as in steady light."""
     sun, wrong = spread(300), {}

@@ -99,6 +99,7 @@ def test_what_lies_beyond_a_fold_is_left_out(tmp_path):
     assert found.chosen.rms_deg < 0.3
 
 
+@pytest.mark.slow
 def test_a_cross_of_poses_is_said_to_leave_parts_of_the_field_untested(tmp_path):
     line = np.linspace(-50, 50, 60)
     cross = np.vstack([np.column_stack([line, 0 * line]), np.column_stack([0 * line, line])])
@@ -116,7 +117,13 @@ def test_one_axis_is_refused_with_what_would_settle_it(turned, tmp_path):
         calibrate([path])
 
 
-@pytest.mark.parametrize("model", ["pinhole", "homography", "polynomial-2d"])
+@pytest.mark.parametrize(
+    "model",
+    [
+        "homography",
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("pinhole", "polynomial-2d")),
+    ],
+)
 def test_no_model_calls_a_mirrored_file_good_without_leave_to_mirror(model, tmp_path):
     mirrored = (spots(SUN, 1) - CENTRE) * [-1, 1] + CENTRE
     path = write(tmp_path / "mirrored.csv", HEADER, mirrored, ANGLES)
@@ -181,7 +188,10 @@ def test_python_without_the_package_answers_what_the_model_does(camera, tmp_path
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="no C compiler here")
-@pytest.mark.parametrize("flags", [["-O2"], ["-O2", "-fsanitize=undefined,address"]])
+@pytest.mark.parametrize(
+    "flags",
+    [["-O2", "-fsanitize=undefined,address"], pytest.param(["-O2"], marks=pytest.mark.slow)],
+)
 def test_the_c_code_passes_its_own_test_without_a_warning(camera, flags, tmp_path):
     write_products(camera, tmp_path, "cam")
     command = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", *flags]

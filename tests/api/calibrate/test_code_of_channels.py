@@ -35,7 +35,10 @@ def run(directory, *command, **known):
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="no C compiler here")
-@pytest.mark.parametrize("more", [["-O2"], ["-O2", "-fsanitize=undefined,address"]])
+@pytest.mark.parametrize(
+    "more",
+    [["-O2", "-fsanitize=undefined,address"], pytest.param(["-O2"], marks=pytest.mark.slow)],
+)
 def test_c_agrees_with_its_vectors_and_with_python(more, made):
     found, out = made
     build = ["gcc", *FLAGS, *more, "box.c", "box_table.c"]

@@ -37,6 +37,7 @@ def few(path, spots, stated=SUN):
     return bench.write(path, bench.HEADER, spots, bench.angles_of(stated))
 
 
+@pytest.mark.slow
 def test_a_turned_sensor_is_corrected_by_twelve_poses_one_of_them_wrong(old, tmp_path):
     turn = bench.turn("x", 0.7) @ bench.turn("z", 0.4)
     stated = SUN @ turn.T
@@ -63,6 +64,7 @@ def test_a_turned_sensor_is_corrected_by_twelve_poses_one_of_them_wrong(old, tmp
     assert np.nanmean(separation_deg(answered, FRESH)) < 0.02
 
 
+@pytest.mark.slow
 def test_moved_readings_are_told_from_a_turn(old, tmp_path):
     moved = bench.spots(SUN, 2) + np.array([3.0, -4.0])
     found = recalibrate([few(tmp_path / "few.csv", moved)], load(old))

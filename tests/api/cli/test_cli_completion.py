@@ -33,6 +33,7 @@ def completed(line, shell="bash"):
     return shown.stdout.split("\n")[:-1] if shell == "bash" else shown.stdout
 
 
+@pytest.mark.slow
 def test_the_program_itself_answers_a_shell():
     line = "sunatlas studies Chang200"
     shown = subprocess.run(

@@ -49,6 +49,7 @@ def test_what_is_kept_is_what_was_made(made, rows):
     assert len(again.rows) > 3000
 
 
+@pytest.mark.slow
 def test_it_is_made_anew_where_what_it_is_made_of_has_changed(made, tmp_path, monkeypatch):
     prepared_measurements.measure()
     (tmp_path / "times.csv").write_text("dataset,extractor,model\n")

@@ -87,6 +87,7 @@ def test_a_suite_is_planned_run_and_then_there(small: Path) -> None:
     assert "0 of" in sunatlas("plan").stderr
 
 
+@pytest.mark.slow
 def test_a_plan_says_what_failed_and_how_long_its_like_took(small: Path) -> None:
     wanted = first(planning.installed_parts())
     store = Store(small)
@@ -170,6 +171,7 @@ def bytes_without_manifest(folder: Path) -> int:
     return sum(path.stat().st_size for path in files if path.name != manifest.FILE)
 
 
+@pytest.mark.slow
 def test_gc_tells_and_with_yes_does(working: Path) -> None:
     store = Store(working)
     wanted = cells("pd-maskless-cube", "nominal", models="basic")

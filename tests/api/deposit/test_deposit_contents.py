@@ -172,6 +172,7 @@ def test_the_crate_names_every_file_with_its_checksum(built):
                 assert reference["@id"] in graph
 
 
+@pytest.mark.slow
 def test_samples_are_whole_exports_of_the_stated_size(built):
     listed = rows(built.directory / "benchmark" / "frames.csv")
     assert {row["dataset"] for row in listed} == set(FRAMES)

@@ -48,6 +48,7 @@ def test_every_document_is_valid_and_names_files_as_they_are(built: Bundle) -> N
             assert file["contentSize"] == f"{there.stat().st_size} B"
 
 
+@pytest.mark.slow
 def test_the_record_is_loaded_with_its_types(built: Bundle) -> None:
     dataset = read(built.directory / "croissant" / "record.json")
     document = json.loads((built.directory / "croissant" / "record.json").read_text("utf-8"))

@@ -63,6 +63,7 @@ def test_of_a_bundle_with_an_altered_zip_nothing_is_sent(journey, name):
     assert [path.name for path in journey.bundle.parent.iterdir() if path.name[0] == "."] == []
 
 
+@pytest.mark.slow
 def test_every_changed_byte_of_a_zip_is_seen(whole, tmp_path):
     """Each byte turned, but of what is packed only where the same comes out of it."""
     packed = tmp_path / "bundle.zip"

@@ -70,7 +70,12 @@ def own_errors(measurements: Measurements) -> dict[tuple[str, str, str], float]:
 
 
 @pytest.mark.parametrize(
-    ("rows", "columns"), [("detector", "mask"), ("detector", "extractor"), ("mask", "model")]
+    ("rows", "columns"),
+    [
+        ("detector", "mask"),
+        pytest.param("detector", "extractor", marks=pytest.mark.slow),
+        pytest.param("mask", "model", marks=pytest.mark.slow),
+    ],
 )
 def test_each_pair_is_in_the_state_that_sets_of_studies_and_scores_say(
     rows: str,
@@ -152,6 +157,7 @@ def test_pairs_that_no_extractor_can_read_are_impossible_where_no_study_has_them
     assert against == {("CMOS", "ESCM"): ["Merchan2023"], ("PVA", "BCTM"): ["Post2013"]}
 
 
+@pytest.mark.slow
 def test_a_gap_leads_to_what_could_be_measured(evidence: Evidence) -> None:
     for rows, columns in (("detector", "mask"), ("extractor", "model"), ("detector", "model")):
         for row in evidence_map(facts(), {}, rows, columns, evidence=evidence).rows:

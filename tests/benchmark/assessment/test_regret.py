@@ -33,6 +33,7 @@ def test_of_a_hundred_sets_the_best_is_named_first_and_the_usual_answer_tells_it
     assert "in 0 of 100" in printed
 
 
+@pytest.mark.slow
 def test_the_best_is_named_first_and_regret_told_for_a_few_sets():
     found = list(regret.regrets(Store(), 12, 3))
     assert [one.asked for one in found if not one.kept] == []

@@ -71,6 +71,7 @@ def test_what_cannot_be_is_said_by_check_and_ledger(
     assert dict(due(Claims(directory)))[QUICK]
 
 
+@pytest.mark.slow
 def test_a_forged_number_is_found_by_measuring_again_and_no_true_one(directory: Path) -> None:
     change(directory, lambda d: first(d).__setitem__(1, first(d)[1] * 1.001))
     ((cell, text),) = repeated(Claims(directory), 1, 3)

@@ -131,6 +131,7 @@ def test_trials_that_place_their_points_differently_are_refused():
         outcome_of(claims()["C04"], made)
 
 
+@pytest.mark.slow
 def test_a_changed_rule_or_code_makes_an_outcome_stale(tmp_path):
     keep(tmp_path, trials())
     experiment, row = Claims(tmp_path), RECORD.read(tmp_path)["C04"]
@@ -185,6 +186,7 @@ def test_the_second_method_disagrees_where_a_rule_comes_out_otherwise(tmp_path):
     assert judge(entry.claim.rule("little"), [0.5] * 6).standing == "fails"
 
 
+@pytest.mark.slow
 def test_only_what_is_asked_for_is_measured(tmp_path, monkeypatch, capsys):
     row = row_of(outcome_of(claims()["C04"], trials()))
     monkeypatch.setattr(Claims, "measure", staticmethod(lambda name: [(name, row)]))

@@ -49,6 +49,7 @@ def measured(directory: Path, preset: Unbounded) -> Store:
     return store
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("undefined", [np.inf, np.nan])
 def test_errors_are_scored_and_ranked_and_everything_named_bound_is_null(
     undefined: float, tmp_path: Path

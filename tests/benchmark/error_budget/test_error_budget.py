@@ -132,6 +132,7 @@ def quadrant():
     return found, outcome.score
 
 
+@pytest.mark.slow
 def test_as_it_is_the_chain_errs_as_the_runner_says(quadrant):
     found, score = quadrant
     assert found.judged == 400

@@ -164,6 +164,7 @@ def test_an_extractor_s_new_code_renews_its_own_rows_and_its_digest_alone(tmp_pa
     assert all("/fake-plugged" in line for line in moved["sweeps.json"])
 
 
+@pytest.mark.slow
 def test_a_changed_model_or_stage_renews_what_they_are_in(published, monkeypatch):
     about = dataclasses.replace(LeastSquares.about, version=2)
     newer = type("Newer", (LeastSquares,), {"about": about, "__module__": "fake_atlas"})

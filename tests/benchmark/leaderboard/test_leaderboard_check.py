@@ -119,6 +119,7 @@ def test_an_error_that_contradicts_its_ratio_to_the_bound_is_found_without_measu
     assert Difference(SCORES, f"{CELL}/rms_deg", "0.123", str(right), NATIVE) in check(published)
 
 
+@pytest.mark.slow
 def test_a_number_of_another_unit_is_named_with_its_unit(published):
     cell = dataclasses.replace(CELL, condition="quiet", unit=3)
     altered(published, cell, max_deg=9.0)
@@ -168,6 +169,7 @@ def test_a_row_too_much_is_named(published):
     assert difference == Difference("scores", f"{extra}/row", "present", "not planned")
 
 
+@pytest.mark.slow
 def test_a_missing_pin_is_named_and_an_altered_one_by_what_differs(published):
     store = Store(published)
     first, *rest = store.pins().values()
@@ -193,6 +195,7 @@ def test_a_missing_pin_is_named_and_an_altered_one_by_what_differs(published):
     assert (difference.committed, difference.measured) == ("version 4", "version 1")
 
 
+@pytest.mark.slow
 def test_a_changed_bound_is_named_by_its_data_set(published):
     store = Store(published)
     pins = store.pins()
@@ -313,6 +316,7 @@ def test_a_changed_page_is_a_named_line(published):
 POINT = "faces/noise/50/fake-currents"
 
 
+@pytest.mark.slow
 def test_a_changed_sweep_is_named_by_its_point(published):
     rows = SWEEPS.read(published)
     row = next(row for point, row in rows.items() if str(point) == POINT)

@@ -161,6 +161,7 @@ def store(tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_the_file_is_the_same_for_any_number_of_workers_and_nothing_is_measured_twice(store):
     first = update(LearningCurves(store, PARTS), 1, silent)
     path = store / RECORD.name
@@ -177,6 +178,7 @@ def test_the_file_is_the_same_for_any_number_of_workers_and_nothing_is_measured_
         update(LearningCurves(store, PARTS), 0, silent)
 
 
+@pytest.mark.slow
 def test_what_is_of_other_code_data_or_leaders_is_named_and_renewed_alone(store):
     update(LearningCurves(store, PARTS), 1, silent)
     path = store / RECORD.name

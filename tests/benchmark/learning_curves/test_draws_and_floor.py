@@ -84,6 +84,7 @@ def test_units_have_floors_of_their_own():
     assert found.error_deg == pytest.approx([1, 2], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_noisy_floor_lies_in_its_range_about_as_often_as_said():
     inside, found = 0, []
     for seed in range(25):

@@ -155,6 +155,7 @@ def bounds_by_pitch(sunlit_e: float, read_noise_e: float) -> list[np.ndarray]:
     return found
 
 
+@pytest.mark.slow
 def test_counting_photons_finer_pixels_gain_ever_less() -> None:
     """What a pixel blurs is lost at the dim rim of the spot: first order in the pitch."""
     coarse, middle, fine = bounds_by_pitch(sunlit_e=1e6, read_noise_e=0.0)
@@ -169,6 +170,7 @@ def test_read_noise_makes_finer_pixels_worse_in_proportion() -> None:
     assert fine / middle == pytest.approx(2.0, rel=0.03)
 
 
+@pytest.mark.slow
 def test_the_near_test_of_observability_agrees_with_the_far_one() -> None:
     """Where both can be asked: a deviation just below and just above the step."""
     setup, pattern = setup_of("cmos-single-aperture", "high-noise")

@@ -155,6 +155,7 @@ def test_below_a_count_the_bound_is_still_reached(
     assert math.sqrt(reached / promised) == pytest.approx(1.0, rel=0.1)
 
 
+@pytest.mark.slow
 def test_sensors_whose_elements_do_not_differ_each_by_itself_have_no_second_bound() -> None:
     """Absent, never equal to the first one."""
     setup = datasets.get("event-l-slit").setups["nominal"]

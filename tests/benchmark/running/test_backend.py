@@ -105,6 +105,7 @@ def test_a_scheduler_is_asked_though_there_is_one_worker_and_one_task(
     assert hands.seen == ["tcp://somewhere:1", 1, "left"]
 
 
+@pytest.mark.slow
 def test_a_worker_of_this_machine_that_is_killed_ends_the_run_by_name(
     tmp_path: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:

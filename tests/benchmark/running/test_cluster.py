@@ -248,6 +248,7 @@ def test_a_scheduler_without_workers_is_told_from_none(
         measured(Store(tmp_path), scheduler="tcp://somewhere:1")
 
 
+@pytest.mark.slow
 def test_threads_of_a_worker_measure_one_after_another() -> None:
     """They share what is kept of a data set, and how many threads linear algebra takes."""
     both, met = Barrier(2), []

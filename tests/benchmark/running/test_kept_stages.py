@@ -75,6 +75,7 @@ def doings(log, monkeypatch):
     return done
 
 
+@pytest.mark.slow
 def test_numbers_are_the_same_without_kept_stages_with_them_and_from_them(tmp_path, doings):
     known = parts()
     stores = [Store(tmp_path / name) for name in ("none", "cold", "warm")]

@@ -25,7 +25,7 @@ def test_every_item_is_done_once(workers: int) -> None:
     assert sorted(as_completed(math.sqrt, iter(items), workers)) == expected
 
 
-@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize("workers", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_an_error_of_the_work_is_raised_here(workers: int) -> None:
     with pytest.raises(ValueError, match="math domain"):
         list(as_completed(math.sqrt, [1.0, -1.0], workers))
@@ -36,6 +36,7 @@ def test_a_killed_worker_is_told_by_name() -> None:
         list(as_completed(kill, [1.0, 2.0, 3.0], 2))
 
 
+@pytest.mark.slow
 def test_who_stops_early_can_ask_again() -> None:
     first = as_completed(math.sqrt, [4.0] * 50, 2)
     assert next(first) == 2.0

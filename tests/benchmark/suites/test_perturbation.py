@@ -20,6 +20,7 @@ def test_counts_stay_and_other_numbers_move_by_a_rounding():
     np.testing.assert_array_equal(moved, perturb(values, "test"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "wanted",
     [

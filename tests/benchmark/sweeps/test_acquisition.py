@@ -7,6 +7,7 @@ import pytest
 from benchmark.sweeps.acquisition import Acquisition, acquisition
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["coded-spacing", "coded-correlation"])
 def test_no_direction_is_told_wrongly(model):
     """Nearly all rightly where nothing is missing; none wrongly with a fifth of the holes gone."""

@@ -8,6 +8,7 @@ import pytest
 from benchmark.sweeps import flight_picture
 
 
+@pytest.mark.slow
 def test_errors_along_a_flight_end_with_the_light_for_single_samples_alone() -> None:
     found = flight_picture.along(*flight_picture.PANELS[0])
     assert {len(column) for column in found.values()} == {1740}

@@ -99,6 +99,7 @@ def test_bounds_fall_with_the_signal(series):
     assert (np.diff(found) < 0).all()
 
 
+@pytest.mark.slow
 def test_independent_spots_and_slits_divide_the_bound_by_the_root_of_their_number():
     for series, many in ((GRID, "25"), (SLITS, "5")):
         one = series.draw(setting(series, "features", "1")).bound

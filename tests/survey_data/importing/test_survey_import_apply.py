@@ -117,6 +117,7 @@ def test_only_the_cells_taken_over_change(copy: Any) -> None:
     assert {path.name for path in others if path.suffix not in {".csv", ".json"}} == {"theirs.txt"}
 
 
+@pytest.mark.slow
 def test_who_imports_while_another_writes_reads_what_that_one_wrote(copy: Any) -> None:
     """Both are kept: the second compares after it has waited, not before."""
     ours = import_table(offer(copy, "Key,Mask\nAlvi2014,Lens\n"), copy.directory)

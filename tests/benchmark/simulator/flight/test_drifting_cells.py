@@ -60,6 +60,7 @@ def test_every_cell_warms_and_ages_by_its_own_coefficients() -> None:
     assert np.ptp(pattern["gain_per_k"]) > 1e-4
 
 
+@pytest.mark.slow
 def test_what_is_not_known_of_the_unit_is_drawn_over_units() -> None:
     """Variance over 2000 units without references, against the stated one."""
     sensor = replace(flown(), normal_error_deg=0.0)

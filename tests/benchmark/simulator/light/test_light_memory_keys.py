@@ -102,6 +102,7 @@ def light(sensor: Any, scene: Scene) -> Any:
     return shown(scene) if shown is not None else sensor.shares(scene.sun)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "what"),
     [

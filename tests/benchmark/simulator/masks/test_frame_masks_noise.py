@@ -85,6 +85,7 @@ def test_values_are_normal_as_a_test_of_four_million_shows() -> None:
     assert abs(np.corrcoef(values[::2], values[1::2])[0, 1]) < 4 / 2**10.5
 
 
+@pytest.mark.slow
 def test_frames_have_the_mean_and_variance_they_promise() -> None:
     count = 1000
     pattern = SENSOR.fixed_pattern("unit")

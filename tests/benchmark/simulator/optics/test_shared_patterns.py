@@ -95,6 +95,7 @@ def test_holes_further_off_than_the_masks_errors_are_refused() -> None:
         sensor.lit(seen(0.0, 0.0), pattern)
 
 
+@pytest.mark.slow
 def test_pixels_of_a_bound_are_all_that_a_step_lights() -> None:
     sensor = sensor_of(0.8, holes=3)
     scene, pattern = seen(41.0, -30.0), sensor.fixed_pattern("test")

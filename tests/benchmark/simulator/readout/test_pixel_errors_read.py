@@ -98,6 +98,7 @@ def test_lines_spill_within_their_array_alone() -> None:
     assert sensor.expected(scene, unit) == pytest.approx(numbers, rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["cmos-single-aperture", "cmos-encoded", "ccd-slit"])
 def test_other_draws_stay_when_an_error_is_switched_on(name: str) -> None:
     """A tiny error changes no code but where rounding sat on an edge: no noise is drawn anew."""

@@ -88,6 +88,7 @@ def test_a_burst_leaves_no_faster_than_the_bus_and_in_the_order_it_came(name: st
     assert (delays <= 0.5 * order + 3e-6).all()
 
 
+@pytest.mark.slow
 def test_an_event_that_still_waits_at_the_timeout_is_lost() -> None:
     events = seen("event-l-slit", 4, service_us=20.0, timeout_us=1_000.0)
     first = seen("event-l-slit", 4, service_us=0.0)[:, 0, 2]

@@ -85,6 +85,7 @@ def test_the_sun_is_black_within_a_white_halo_wherever_it_stands(
         assert centre == pytest.approx((x, y), abs=0.25)
 
 
+@pytest.mark.slow
 def test_noise_is_that_of_the_sample_that_varies() -> None:
     """Spread over 120 pictures against `variance`, outside the kinks between the regimes."""
     sensor = sensor_of()

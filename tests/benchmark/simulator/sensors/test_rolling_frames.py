@@ -186,6 +186,7 @@ def test_motion_within_the_exposure_blurs_by_its_variance() -> None:
     assert np.mean(moved - fixed) == pytest.approx(smear**2 / 12, rel=0.03)
 
 
+@pytest.mark.slow
 def test_the_row_through_the_spot_tells_the_time() -> None:
     """Sheared, stretched and blurred as it is, the spot lies where that of the scene's Sun does."""
     still = square(0.01)
