@@ -33,7 +33,7 @@ _RANK, _HEAD, _PARETO, _MEASURES = b"\0rank", b"\0head", b"\0pareto", b"\0measur
 _MEASURED, _STATED = b"\0measured", b"\0stated"
 
 
-def encoded(value: Any) -> bytes:
+def to_json_bytes(value: Any) -> bytes:
     """Return a value as JSON, what is not finite as null."""
     return to_json(value, inf_nan_mode="null")
 
@@ -51,9 +51,9 @@ class AnswerTexts:
         self.arrays = design_arrays(table)
         self.paths = path_arrays(table)
         self._table = path_table(table.facts)
-        self._left_out = encoded([left.to_dict() for left in self._table.left_out])
+        self._left_out = to_json_bytes([left.to_dict() for left in self._table.left_out])
         self._places = table.places
-        self._keys = [encoded(key) for key in table.facts.keys]
+        self._keys = [to_json_bytes(key) for key in table.facts.keys]
         self._studies = lru_cache(MOST_TEXTS)(self._studies_text)
         self._paths_text = PathTexts(self._table, self._studies).text
         self._head = lru_cache(MOST_TEXTS)(self._head_text)
@@ -75,25 +75,31 @@ class AnswerTexts:
 
     def document(self, answer: Answer, limit: int | None, calibrations: int | None) -> list[bytes]:
         """Return an answer in parts: the first architectures, the first calibrations of each."""
-        regret, blocked, sets = answer.regret, answer.blocked, self.paths.sets(answer)
+        regret, blocked, sets = answer.regret, answer.blocking_constraint, self.paths.sets(answer)
         untried = {
             hazard: [{"detector": detector, "mask": mask} for detector, mask in pairs]
-            for hazard, pairs in answer.untried.items()
+            for hazard, pairs in answer.untested_architectures.items()
         }
         return [
-            *(b'{"requirements":', answer.question.asked_json),
+            *(b'{"requirements":', answer.question.requirements_json),
             b',"sort":"%b","count":%d,"designs":%d,"architectures":['
             % (answer.sort.encode(), len(answer.places), answer.count),
             *self._architectures(answer, limit, calibrations),
             *(
                 b'],"contradictions":',
-                encoded(against_advice(answer, answer.question.asked.include.get("task", ()))),
+                to_json_bytes(
+                    against_advice(answer, answer.question.requirements.include.get("task", ()))
+                ),
                 b',"regret":',
             ),
-            encoded(None if regret is None else regret.to_dict(regret_words(regret))),
-            *(b',"untried":', encoded(untried), b',"untimed":%d' % answer.untimed),
+            to_json_bytes(None if regret is None else regret.to_dict(regret_words(regret))),
+            *(b',"untried":', to_json_bytes(untried), b',"untimed":%d' % answer.untimed_count),
             *(b',"paths":[', self._paths_text(sets), b'],"left_out":', self._left_out),
-            *(b',"blocked":', b"null" if blocked is None else encoded(blocked.to_dict()), b"}"),
+            *(
+                b',"blocked":',
+                b"null" if blocked is None else to_json_bytes(blocked.to_dict()),
+                b"}",
+            ),
         ]
 
     def _architectures(
@@ -101,9 +107,9 @@ class AnswerTexts:
     ) -> list[bytes]:
         question, places = answer.question, answer.places[:limit]
         errors, advising = answer.best.errors, question.advice_key
-        ends = [self._ends(question.judged, studied) for studied in (False, True)]
+        ends = [self._ends(question.judged_requirements, studied) for studied in (False, True)]
         parts: list[bytes] = []
-        shown = zip(places, *self._shown(answer, places, calibrations), strict=True)
+        shown = zip(places, *self._pack_designs(answer, places, calibrations), strict=True)
         for rank, (place, packed, units) in enumerate(shown, 1):
             filled = {
                 _RANK: b',{"rank":%d,' % rank if rank > 1 else b'{"rank":1,',
@@ -112,11 +118,13 @@ class AnswerTexts:
                 _MEASURES: self._measures(place.measures),
                 **ends[bool(place.studies)],
             }
-            pieces = self._architecture(errors, place.studies, place.stated, packed, units)
+            pieces = self._architecture(
+                errors, place.studies, place.studies_within_limits, packed, units
+            )
             parts += [filled.get(piece, piece) for piece in pieces]
         return parts
 
-    def _shown(
+    def _pack_designs(
         self, answer: Answer, places: Sequence[RankedPlace], calibrations: int | None
     ) -> tuple[list[bytes], list[bytes]]:
         """Return what the text of each architecture depends on beside studies and errors, packed.
@@ -130,7 +138,7 @@ class AnswerTexts:
         if not places:
             return [], []
         question, best, designs = answer.question, answer.best, answer.designs
-        finer, usual = question.finer, answer.usual
+        finer, usual = question.finest_partial_answers, answer.usual
         of_places = [
             (p.start, p.end, p.best_at, finer.get(p.number, -1), usual.get(p.number, -1))
             for p in places
@@ -155,7 +163,7 @@ class AnswerTexts:
         packed[:, 3] = used
         packed[:, 4] = best.row[used]
         packed[:, 4][used < 0] = -1
-        limit = question.asked.largest_deg
+        limit = question.requirements.largest_deg
         if limit is None:
             return [row.tobytes() for row in packed], [b""] * len(places)
         units = np.append(best.errors.units_within(limit), np.uint8(NOT_COUNTED))
@@ -222,7 +230,7 @@ class AnswerTexts:
             "advised": bool(advice),
             "advice": [one.to_dict() for one in advice],
         }
-        return b'%b,"studies":[%b],"best":' % (encoded(members)[1:-1], self._studies(studies))
+        return b'%b,"studies":[%b],"best":' % (to_json_bytes(members)[1:-1], self._studies(studies))
 
     def _contradiction_text(  # noqa: PLR0917 - by these it is kept
         self,
@@ -242,11 +250,11 @@ class AnswerTexts:
         designs = arrays.designs
         said = against_literature(
             arrays.candidate(usual, usual_row, errors),
-            (designs[usual].taken & studies).bit_count(),
+            (designs[usual].users & studies).bit_count(),
             arrays.candidate(best, best_row, errors),
-            (designs[best].taken & best_studies).bit_count(),
+            (designs[best].users & best_studies).bit_count(),
         )
-        return encoded(said)
+        return to_json_bytes(said)
 
     def _calibration_text(  # noqa: PLR0917 - by these it is kept
         self,
@@ -269,7 +277,7 @@ class AnswerTexts:
         units_within : units of each of its pipelines that keep the limit, nothing without one
         """
         of = self.arrays.designs[design]
-        with_model, taken = of.with_model & studies, of.taken & studies
+        with_model, taken = of.with_model & studies, of.users & studies
         counts = (of_place.bit_count(), with_model.bit_count(), taken.bit_count())
         measured = [b"null"]
         if errors is not None:
@@ -283,7 +291,7 @@ class AnswerTexts:
             self._design(design),
             self._studies(taken),
             counts[1],
-            encoded(round(support(*counts), 4)),
+            to_json_bytes(round(support(*counts), 4)),
             measured[0],
             b",".join(measured[1:]),
         )
@@ -296,7 +304,7 @@ class AnswerTexts:
             "model": of.model,
             "advised": [advice.id for advice in of.advice],
         }
-        return b',%b,"studies":[' % encoded(members)[1:-1]
+        return b',%b,"studies":[' % to_json_bytes(members)[1:-1]
 
     def _rows_on_datasets(self, design: int, row: int, errors: PipelineErrors) -> tuple[int, ...]:
         """Return a pipeline of a calibration, and its best on each other data set."""
@@ -312,7 +320,7 @@ class AnswerTexts:
 
     def _pipeline_text(self, row: int, errors: PipelineErrors, finer: int) -> list[bytes]:
         """Return a pipeline in two parts, between them the number of units that keep a limit."""
-        text = encoded(errors.document(row, finer))
+        text = to_json_bytes(errors.document(row, finer))
         return text.replace(b'"meeting":null', b'"meeting":\0').split(b"\0")
 
     def _studies_text(self, studies: int) -> bytes:
@@ -333,13 +341,13 @@ def _ends_text(judged: tuple[str, ...], studied: bool) -> dict[bytes, bytes]:
     known = {**dict.fromkeys(OF_STUDIES, of_studies), "properties": "assessed"}
     return {
         kind: b',"basis":%b}'
-        % encoded({name: known.get(name, kind[1:].decode()) for name in judged})
+        % to_json_bytes({name: known.get(name, kind[1:].decode()) for name in judged})
         for kind in (_MEASURED, _STATED)
     }
 
 
 def _measures_text(measures: tuple[TaskMeasure, ...]) -> bytes:
-    return encoded([measure.to_dict() for measure in measures])
+    return to_json_bytes([measure.to_dict() for measure in measures])
 
 
 _TEXTS: weakref.WeakKeyDictionary[DesignTable, AnswerTexts] = weakref.WeakKeyDictionary()
@@ -366,8 +374,8 @@ def answer_digest(answer: Answer, *shown: object) -> bytes:
     answer : the answer
     shown : what else the JSON depends on
     """
-    told = encoded((answer.sort, *shown))
-    return b"%b[%b,%b" % (_texts(answer).digest, answer.question.asked_json, told[1:])
+    told = to_json_bytes((answer.sort, *shown))
+    return b"%b[%b,%b" % (_texts(answer).digest, answer.question.requirements_json, told[1:])
 
 
 def _texts(answer: Answer) -> AnswerTexts:

@@ -153,7 +153,7 @@ class Evidence:
             if unknown
             else "unstudied"
         )
-        judged = [one for one in done if one.nominal.available]
+        judged = [one for one in done if one.nominal.is_available]
         # names decide between equal errors: the order of a set is another in each process
         best = min(
             judged,

@@ -59,7 +59,7 @@ class PathArrays:
         self._sets = lru_cache(MOST_SETS)(self._present)
         self._studies = arrays.words_of(table.sets)
         # Paths that lead to each design, as bits.
-        leading = [sum(1 << at for at in table.of(d)) if d.taken else 0 for d in arrays.designs]
+        leading = [sum(1 << at for at in table.of(d)) if d.users else 0 for d in arrays.designs]
         size = 8 * (self._size // WORD_BITS + 1)
         data = b"".join(paths.to_bytes(size, "little") for paths in leading)
         words = np.frombuffer(data, "<u8").reshape(len(leading), size // 8)
@@ -84,15 +84,15 @@ class PathArrays:
         """
         if not self._size:
             return StudySets((), (), ())
-        question, measured = answer.question, self.arrays.measured
-        include, exclude = question.asked.include, question.asked.exclude
+        question, measured = answer.question, self.arrays.is_measured
+        include, exclude = question.requirements.include, question.requirements.exclude
         among = self._of_tasks(include.get("task"), exclude.get("task", ()))
-        if question.studies == question.all_stated:
+        if question.studies == question.studies_within_limits:
             designs = question.matching_designs[None]
             studies: tuple[int, ...] = (question.studies,)
         else:
             designs = question.matching_designs & np.stack((measured, ~measured))
-            studies = (question.studies, question.all_stated)
+            studies = (question.studies, question.studies_within_limits)
         led = self._led_to(designs) & among
         return self._sets(tuple(zip(map(bytes, led), studies, strict=True)))
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from benchmark.metrics.ranking import Spread
 from benchmark.metrics.score import is_available
-from registry.measured_pipelines import Partly, finer_for
+from registry.measured_pipelines import PartialAnswer, finer_for
 
 Board = Mapping[str, Any]
 Row = Mapping[str, Any]
@@ -116,13 +116,13 @@ def _quote(ranked: Sequence[Sequence[Row]]) -> float | None:
 def _finer(best: Row, ranked: Sequence[Sequence[Row]]) -> Row:
     """Return what errs far less than the best, answering seldom; nothing where nothing does."""
     seldom = (
-        Partly(row["charged_deg"], row["availability"] or 0.0, row)
+        PartialAnswer(row["charged_deg"], row["availability"] or 0.0, row)
         for rows in ranked
         for row in rows
         if not is_available(row)
     )
     found = finer_for(best["own_deg"], seldom)
-    return {} if found is None else found.of
+    return {} if found is None else found.subject
 
 
 def _order(row: Row) -> tuple[bool, bool, float, str, str]:

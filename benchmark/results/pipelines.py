@@ -158,4 +158,4 @@ def _score(row: Row, share: float) -> Score:
             break
     plain: dict[str, Any] = {name: row[name] for name in _PLAIN}
     own = None if error is None else share * error
-    return Score(**plain, rms_deg=own, available=is_available(row), cones=tuple(cones))
+    return Score(**plain, rms_deg=own, is_available=is_available(row), cones=tuple(cones))

@@ -51,7 +51,7 @@ def scores(condition: str) -> st.SearchStrategy[Score]:
         condition=st.just(condition),
         rms_deg=st.none() | numbers,
         availability=st.sampled_from([0.4, 0.5, 0.97, 1.0]),
-        available=st.booleans(),
+        is_available=st.booleans(),
         cones=cones,
     )
 
@@ -155,7 +155,7 @@ def error_over(row: MeasuredPipeline, score: Score, full_field: float | None) ->
                 return error
         if row.half_fov_deg is None or 2 * row.half_fov_deg < full_field:
             return math.inf
-    return math.inf if score.rms_deg is None or not score.available else score.rms_deg
+    return math.inf if score.rms_deg is None or not score.is_available else score.rms_deg
 
 
 def error_of(row: MeasuredPipeline, ask: Ask) -> float | None:

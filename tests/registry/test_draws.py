@@ -107,7 +107,7 @@ def test_an_error_is_judged_on_the_bench_asked_for_and_one_that_would_do_is_name
     assert measured() == []
     only = {"max_error_deg": 0.0042, "detector": "CMOS", "mask": "Single-Ap.", "survive": []}
     assert row.judge(draws=(None, 0.9)).error_deg > 0.0158
-    blocked = recommend({**only, "min_availability": 0.5}, [row]).blocked
+    blocked = recommend({**only, "min_availability": 0.5}, [row]).blocking_constraint
     assert blocked is not None
     assert "bench good to" in blocked.detail
 
