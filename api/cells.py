@@ -37,8 +37,8 @@ def cell(value: Any) -> str:  # noqa: PLR0911 - a kind of value each
     Numbers have all their digits; the record spells its own shorter, to be compared by line
     (`benchmark.results.csv_tables.format_cell`).
     """
-    # What most cells hold is told by its exact type: tables have hundreds of thousands of them, and
-    # asking whether text is a mapping takes longer than to write it.
+    # What most cells hold is known by its exact type: tables have hundreds of thousands of them,
+    # and asking whether text is a mapping takes longer than to write it.
     kind = type(value)
     if kind is str:
         return NONE_STATED if value == NO_IMPLEMENTATION_STATED else str(value)

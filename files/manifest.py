@@ -110,14 +110,14 @@ def differences(folder: Path, names: Collection[str], *, required: bool = False)
         return [Problem(FILE, None, None, "the file is missing")] if required else []
     found: list[Problem] = []
     for name in sorted({*names, *entries}):
-        told = list(_of_file(folder, name, entries.get(name), name in names))
+        summary = list(_of_file(folder, name, entries.get(name), name in names))
         if (
-            told
+            summary
             and coming is not None
             and not list(_of_file(folder, name, coming.get(name), name in names))
         ):
             continue  # a killed command had come this far
-        found += told
+        found += summary
     return found
 
 
@@ -311,8 +311,8 @@ def _places(name: str, data: bytes, entry: Entry) -> Iterator[Problem]:
     while end < min(len(now), len(then)) - same and now[-1 - end] == then[-1 - end]:
         end += 1
     here, there = len(now) - same - end, len(then) - same - end
-    told = f"{here or 'no'} rows where there were {there or 'none'}"
-    yield Problem(name, same + 1, None, f"{told}: {BY_HAND}")
+    summary = f"{here or 'no'} rows where there were {there or 'none'}"
+    yield Problem(name, same + 1, None, f"{summary}: {BY_HAND}")
 
 
 def _said(line: bytes, columns: tuple[str, ...], data: bytes) -> str:

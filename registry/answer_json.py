@@ -374,8 +374,8 @@ def answer_digest(answer: Answer, *shown: object) -> bytes:
     answer : the answer
     shown : what else the JSON depends on
     """
-    told = to_json_bytes((answer.sort, *shown))
-    return b"%b[%b,%b" % (_texts(answer).digest, answer.question.requirements_json, told[1:])
+    text = to_json_bytes((answer.sort, *shown))
+    return b"%b[%b,%b" % (_texts(answer).digest, answer.question.requirements_json, text[1:])
 
 
 def _texts(answer: Answer) -> AnswerTexts:

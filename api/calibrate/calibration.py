@@ -78,7 +78,7 @@ class Calibration:
     fold_deg : float or None
         Smallest off-axis angle of samples whose reading another direction gives too; left out.
     geometry : SensorGeometry
-        The drawing as the models were told.
+        The drawing as given to the models.
     candidates : tuple of Candidate
         Every model tried, the smallest error first.
     chosen : Candidate

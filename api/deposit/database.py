@@ -151,8 +151,8 @@ def _describe(base: sqlite3.Connection, tables: Sequence[TypedTable]) -> None:
 
 def _table_row(resource: Mapping[str, Any]) -> tuple[Value, ...]:
     licence = resource["licenses"][0]["name"]
-    told = (resource["title"], resource["description"], licence, resource["path"])
-    return (plain(resource["name"]), *told)
+    row = (resource["title"], resource["description"], licence, resource["path"])
+    return (plain(resource["name"]), *row)
 
 
 def _insert(base: sqlite3.Connection, name: str, rows: Sequence[Sequence[Value]]) -> None:

@@ -1,4 +1,4 @@
-"""Tables of the bundle that are told from facts and plan: resolution, verdicts, publications."""
+"""Tables of the bundle that are derived from facts and plan: resolution, verdicts, publications."""
 
 from __future__ import annotations
 

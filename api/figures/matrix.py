@@ -75,9 +75,11 @@ def matrix_figure(
             pair = (rows, row), (columns, column)
             unknown = sorted({*might(pair[0], columns), *might(pair[1], rows)})
             known = evidence.of(*pair, keys, unknown)
-            told = _told(pair, known)
+            cell_evidence = _evidence_members(pair, known)
             given = {rows: row, columns: column}
-            href = addresses.of(keys, given, len(table)) if keys else told["leads_to"] or None
+            href = (
+                addresses.of(keys, given, len(table)) if keys else cell_evidence["leads_to"] or None
+            )
             cells[row, column] = Cell(
                 len(keys), _title(pair, len(keys), known), href, known.state, known.pipelines > 0
             )
@@ -92,7 +94,7 @@ def matrix_figure(
                     "state": known.state,
                     "count": len(keys),
                     "studies": list(keys),
-                    **told,
+                    **cell_evidence,
                 }
             )
     lines = {
@@ -118,7 +120,7 @@ def matrix_figure(
     )
 
 
-def _told(pair: tuple[Value, Value], known: PairEvidence) -> dict[str, Any]:
+def _evidence_members(pair: tuple[Value, Value], known: PairEvidence) -> dict[str, Any]:
     """Return what the table tells of a pair besides its studies."""
     best = known.best
     command = leads_to = ""

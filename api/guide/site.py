@@ -130,7 +130,7 @@ def build(out: Path, progress: ProgressCallback = silent) -> list[str]:
     out = out.resolve()
     require_replaceable(out)
     _require_ours(out)
-    told = io.StringIO()
+    log = io.StringIO()
     with temporary_directory() as scratch, replace_all(out) as (made,):
         try:
             sphinx = Sphinx(
@@ -141,7 +141,7 @@ def build(out: Path, progress: ProgressCallback = silent) -> list[str]:
                 buildername="html",
                 confoverrides=_settings(),
                 status=None,
-                warning=told,
+                warning=log,
                 freshenv=True,
             )
             _count(sphinx, progress)
@@ -149,7 +149,7 @@ def build(out: Path, progress: ProgressCallback = silent) -> list[str]:
         except SphinxError as error:
             raise GuideError(f"the guide cannot be built: {error}") from error
         (made / ".buildinfo").unlink(missing_ok=True)
-        warnings = [w for w in _COLOUR.sub("", told.getvalue()).splitlines() if w.strip()]
+        warnings = [w for w in _COLOUR.sub("", log.getvalue()).splitlines() if w.strip()]
         # Sphinx warns of a file that it cannot write, and goes on.
         unwritten = [line for line in warnings if _UNWRITTEN.search(line)]
         if unwritten:

@@ -45,7 +45,7 @@ class Answer(JSONResponse):
 
     offered: ClassVar[tuple[str, ...]] = (JSON, CSV)
     digest: str | None = None
-    """Of the JSON, where making it has told."""
+    """Digest of the JSON, if making it gave one."""
 
     def __init__(
         self,
@@ -112,7 +112,7 @@ class CitedAnswer(Answer):
     ----------
     answer : the document and the table
     studies : that are cited
-    name : file name without suffix that a client is told to save references under
+    name : file name without suffix that a client saves references under
     status_code : which FastAPI documents by its default
     narrowed : whether the answer was narrowed to columns, which references cannot be
     """
@@ -165,7 +165,7 @@ class Columns(Response):
     Parameters
     ----------
     content : the file's bytes
-    name : that a client is told to save it under
+    name : under which a client saves it
     links : values of the Link header
     status_code : which FastAPI documents by its default
     """
@@ -287,8 +287,8 @@ class AnswerRoute(StrictRoute):
             wanted = wanted_type(query, request.headers.get("accept"), offered)
             if request.method != "GET":
                 posted = cast("CacheableResponse", await compute(request))
-                told = as_asked(posted.representation(wanted), wanted, request)
-                return told.respond(request, conditional=False)
+                response = as_asked(posted.representation(wanted), wanted, request)
+                return response.respond(request, conditional=False)
             asked = (request.scope["path"], query, wanted, str(request.base_url) if whole else "")
             found = kept.get(asked)
             if found is None:

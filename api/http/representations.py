@@ -37,7 +37,7 @@ class Representation:
     content_type : value of the header
     headers : further headers, such as `Link`
     compressible : whether gzip is worth trying
-    digest : what tells the body from all others, where making it has told; found when it is needed
+    digest : digest that identifies the body, if making it gave one; computed when it is needed
         otherwise
     """
 

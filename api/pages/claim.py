@@ -80,7 +80,7 @@ def _chart(document: Mapping[str, Any]) -> LineChart:
         for name, line in document["lines"].items()
     ]
     across = document["across"] or ""
-    # What stands across may be words, such as conditions: those are told as a table.
+    # What stands across may be words, such as conditions: those are shown as a table.
     drawn = [
         line
         for line in lines

@@ -138,7 +138,7 @@ _APPLIES = (
 )
 _RECORDED = (
     "the table marks the {part} its case study used. Its 0 says that the study used another, which "
-    "no measurement contradicts: what the method reaches with this {part} is told, not judged"
+    "no measurement contradicts: what the method reaches with this {part} is stated, not judged"
 )
 
 
@@ -204,7 +204,7 @@ _ALL = (
     Definition(
         "Feature pattern agnostic",
         "",
-        "what a method must be told of the mask's pattern is part of how it is defined; an "
+        "what a method must know of the mask's pattern is part of how it is defined; an "
         "experiment over patterns would measure the choice of patterns",
         "never",
     ),

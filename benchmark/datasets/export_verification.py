@@ -157,10 +157,12 @@ def _read(path: Path, described: Mapping[str, Any]) -> dict[str, NDArray[Any]] |
     try:
         with zipfile.ZipFile(path) as archive:
             for member in archive.infolist():
-                told = described.get(member.filename.removesuffix(".npy"))
-                if told is None:
+                stated = described.get(member.filename.removesuffix(".npy"))
+                if stated is None:
                     return f"{member.filename} is no array of the card"
-                most = np.dtype(told["dtype"]).itemsize * math.prod(told["shape"]) + _HEADER_BYTES
+                most = (
+                    np.dtype(stated["dtype"]).itemsize * math.prod(stated["shape"]) + _HEADER_BYTES
+                )
                 if member.file_size > most:
                     return f"{member.filename} unpacks to more than the card says"
         return read_archive(path)
@@ -218,8 +220,8 @@ def _against_another(
         )
         said = f"the data set {card['name']} says"
         found = [
-            (CARD, f"{place} is {_short(told)}, {said} {_short(should)}")
-            for place, told, should in _unlike(card, made.card)
+            (CARD, f"{place} is {_short(stated)}, {said} {_short(should)}")
+            for place, stated, should in _unlike(card, made.card)
         ]
         if found:
             return found

@@ -30,7 +30,7 @@ PARTS: Mapping[str, str] = {
     "poses": "the number of calibration poses",
     "extractor": "the extractor's bias",
     "model": "the model's form",
-    "method": "the method itself (extractor and model are not told apart)",
+    "method": "the method itself (extractor and model are not distinguished)",
 }
 _WITHOUT: Mapping[str, str] = {
     "lamp": "with an even, steady lamp",

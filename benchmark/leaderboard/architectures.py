@@ -131,7 +131,7 @@ def _order(row: Row) -> tuple[bool, bool, float, str, str]:
 
 
 def _tie(best: Row, runner_up: Row) -> dict[str, Any]:
-    """Say whether the runner-up is told apart from the best, and on how many units it errs more."""
+    """Whether the runner-up is distinguished from the best, and on how many units it errs more."""
     pairs = [
         (one, other)
         for one, other in zip(

@@ -68,7 +68,7 @@ def build(
         choose it, ``references`` used, ``bench_deg`` and ``bench_aligned_deg`` that a calibration
         bench adds, ``controls``, ``folded``: how many rows are far behind) and ``rows``. A row is
         the score row of the standard unit with ``rank`` (null where there is no error), ``group``
-        (1 for what is not told apart from the leader), ``tied`` (whether others share the rank),
+        (1 for what is not distinguished from the leader), ``tied`` (whether others share the rank),
         ``best_of_extractor`` (whether no other pipeline of its extractor ranks before it there),
         ``own_deg`` (geometric mean over units of the error over all answers), ``own_se`` (its
         relative standard error), the errors of all units ``unit_rms_deg`` and their range

@@ -92,6 +92,6 @@ def _of_bounds(file: str, pins: Mapping[Place, Pin], scores: Mapping[Cell, Row])
 def _of_ratios(row: Row) -> Iterator[tuple[str, str, str]]:
     for ratio, bound in (("over_bound", "bound_deg"), ("over_bound_unit", "bound_unit_deg")):
         over, of, by = row[ratio], row["rms_deg"], row[bound]
-        told = over is not None and of is not None and by
-        if told and not math.isclose(over, of / by, rel_tol=_ROUNDED):
+        complete = over is not None and of is not None and by
+        if complete and not math.isclose(over, of / by, rel_tol=_ROUNDED):
             yield ratio, f"{over:g}", f"{of / by:.5g}, the ratio of rms_deg and {bound}"

@@ -1,6 +1,6 @@
 """`python -m benchmark.leaderboard.fresh_units`: leaders of boards on units nobody has seen.
 
-The first group of every board, its leader and what is not told apart from it, is scored on five
+The first group of every board, its leader and what is not distinguished from it, is scored on five
 more units, and so are the next five pipelines behind it. Printed is for each board whether its
 leader is in the first group of these there, too, and how much more it errs than the first.
 """

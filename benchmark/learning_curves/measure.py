@@ -189,13 +189,13 @@ class _Trial:
         geometry = self.task.preset.geometry_for(self.task.leaders[0].condition)
         model = self.model.for_sensor(geometry, self.extractor.about.kind)
         pipeline = Pipeline(self.extractor, model)
-        told: Mapping[str, NDArray[Any]] | None = None
+        context: Mapping[str, NDArray[Any]] | None = None
         if self.known.context is not None:
-            told = {
+            context = {
                 column: np.asarray(values)[rows] for column, values in self.known.context.items()
             }
         try:
-            pipeline.fit_features(self.known.features[name][rows], self.known.sun[rows], told)
+            pipeline.fit_features(self.known.features[name][rows], self.known.sun[rows], context)
         except UnusableDataError as error:
             return _Point(refusal=reason_of(error))
         predicted = pipeline.predict_features(self.asked.features[name], self.asked.context)

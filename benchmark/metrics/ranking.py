@@ -78,9 +78,9 @@ class Place:
     rank
         Of the first of its group; None without an error.
     group
-        1 for what is not told apart from the leader, 2 for what is not told apart from the best of
-        the others, and so on; None where it was scored on too few units, or on other units than
-        the board's first condition has.
+        1 for what is not distinguished from the leader, 2 for what is not distinguished from the
+        best of the others, and so on; None where it was scored on too few units, or on other units
+        than the board's first condition has.
     tied
         Whether others share its rank.
     """
@@ -137,7 +137,7 @@ def spreads(rows: Iterable[Row]) -> dict[Cell, Spread]:
 
 
 def judged(rows: Sequence[Row], spread: Sequence[Spread]) -> Judged:
-    """Order the rows of a board, and group what is not told apart.
+    """Order the rows of a board, and group what is not distinguished.
 
     Parameters
     ----------

@@ -126,7 +126,7 @@ class Directions:
     sun
         (N, 3) true unit vectors to the Sun.
     observable
-        (N,) of bool: whether the direction can be told at all.
+        (N,) of bool: whether the direction can be determined at all.
     bound_deg
         (N,) Cramer-Rao standard deviation of the angle in degrees; not finite where there is none.
     """

@@ -168,7 +168,7 @@ def shared_out(
     durations: Durations,
 ) -> Iterator[_Timed]:
     """Hand bundles out, longest first, and what is left of them as it becomes known."""
-    known = Durations(dict(durations.known))  # who is told of results adds to the other
+    known = Durations(dict(durations.known))  # who gets results adds to the other
     most = longest_of(total_seconds(tasks, known, follow_ups), workers)
     waiting = Waiting(bundles(tasks, known, most, follow_ups))
 

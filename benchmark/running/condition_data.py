@@ -286,9 +286,9 @@ def _of_another_unit(
 
 
 def _pin(preset: Preset, condition: str, split: str, samples: Samples, bound: Bound) -> Pin:
-    told: dict[str, Any] = {}
+    pins: dict[str, Any] = {}
     if split == "test":
-        told = {
+        pins = {
             "observable": int(np.asarray(bound.observable, dtype=np.bool_).sum()),
             "bound_deg": rms_bound(bound),
             "head_bound_deg": rms_bound(bound, HEAD),
@@ -302,7 +302,7 @@ def _pin(preset: Preset, condition: str, split: str, samples: Samples, bound: Bo
         len(samples.sun),
         samples_hash(samples),
         head_hash(samples),
-        **told,
+        **pins,
     )
 
 

@@ -315,5 +315,5 @@ def _generate(wanted: tuple[Preset, str]) -> tuple[Preset, str, tuple[Pin, ...],
     with one_thread():
         try:
             return preset, condition, generated_pins(preset, condition), ""
-        except Exception as error:  # noqa: BLE001 - any error of a dataset is told with its name
+        except Exception as error:  # noqa: BLE001 - any error of a dataset is reported with its name
             return preset, condition, (), reason_of(error)

@@ -214,7 +214,7 @@ def known_cells(cells: Iterable[Cell], parts: Parts) -> list[Cell]:
 
 @dataclass
 class _Count:
-    """How far measuring has come, for who is told."""
+    """How far measuring has come, for the progress display."""
 
     report: ProgressCallback
     total: int

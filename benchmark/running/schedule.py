@@ -1,6 +1,6 @@
 """Which tasks go to a worker together, and in which order: longest first, data made once.
 
-Tasks that share data (one data set, condition and unit) are never told apart, as making the data
+Tasks that share data (one data set, condition and unit) are never distinguished, as making the data
 often costs more than all else. Conditions of a unit see the same light and units look it up in
 the same tables: these stay together, too, unless they would keep a worker for longer than the
 others.

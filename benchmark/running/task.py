@@ -236,7 +236,7 @@ def _own(
     features: dict[str, Floats],
     data: ConditionData,
 ) -> Answers:
-    """Let a pipeline answer that was told the true directions of its calibration."""
+    """Let a pipeline answer that was given the true directions of its calibration."""
     pipeline = _pipeline(task, extractor, model)
     _fit(pipeline, features, data, data.splits["calibration"].truth)
     repeated = None
@@ -259,9 +259,9 @@ def _on_benches(
     known, test = data.splits["calibration"].truth, data.splits["test"]
     answers = []
     for draw in range(BENCHES):
-        told = report(on_bench, task.preset.conditions[0], np.asarray(known), draw)
+        reported = report(on_bench, task.preset.conditions[0], np.asarray(known), draw)
         pipeline = _pipeline(task, extractor, model)
-        _fit(pipeline, features, data, told)
+        _fit(pipeline, features, data, reported)
         answers.append(pipeline.predict_features(features["test"], test.context))
     return Answers(tuple(answers))
 

@@ -99,7 +99,7 @@ class PerturbationResult:
 def search(
     cells: Iterable[Cell],
     parts: Parts,
-    told: Callable[[Sensitive], object] = lambda _: None,
+    report: Callable[[Sensitive], object] = lambda _: None,
     progress: ProgressCallback = silent,
     *,
     observations: bool = True,
@@ -113,7 +113,7 @@ def search(
         Which; of one data set, condition, unit and extractor those share the extraction.
     parts
         Data sets and implementations.
-    told
+    report
         Called with each finding at once.
     progress
         Called with cells done and in all.
@@ -130,7 +130,7 @@ def search(
             progress(count, len(order), board[0].dataset)
             count += len(board)
             for finding in _of_one_extraction(board, parts, observations, draw):
-                told(finding)
+                report(finding)
                 found.append(finding)
     return PerturbationResult(count, tuple(found))
 
@@ -226,13 +226,13 @@ def _moved_features(
     known = cast("Any", data.splits["calibration"])
     truth = perturb(known.truth, *names, "directions")
     truth /= np.linalg.norm(truth, axis=1, keepdims=True)
-    told = cast("Samples", _Told(known, truth))
+    report = cast("Samples", _Reported(known, truth))
     moved = {split: perturb(found, *names) for split, found in features.items()}
-    return replace(data, splits={**data.splits, "calibration": told}), moved
+    return replace(data, splits={**data.splits, "calibration": report}), moved
 
 
 @dataclass(frozen=True)
-class _Told:
+class _Reported:
     """Calibration samples with other directions: what fits read of them."""
 
     samples: Samples

@@ -231,9 +231,9 @@ def _check_evidence(reader: _Reader, name: str, cells: Row, at: int) -> None:
         reader.fault(f"{name}: expected a basis, got none", name, at, "basis")
         return
     reader.word(basis, bases, name, at, "basis")
-    told = TOLD.get(basis, "")
-    if told and not cells[told]:
-        reader.fault(f"{name}: the basis {basis} needs a {told}", name, at, "basis")
+    column = TOLD.get(basis, "")
+    if column and not cells[column]:
+        reader.fault(f"{name}: the basis {basis} needs a {column}", name, at, "basis")
     if wrong := source_fault(cells["source"], reader.vocabulary.hosts):
         reader.fault(f"source: {wrong}", name, at, "source")
 

@@ -252,7 +252,7 @@ def test_settings_of_the_survey_are_conditions_that_data_sets_have(
         ("Frezza2022", "pd-orbit", "nominal"),
         ("Nurgizat2021", "pva-maskless-panels", "albedo"),
         ("Hermoso2022b", "pva-maskless-panels", "hot"),  # the temperature of its panels
-        ("Zhang2022b", "pva-orbit", "nominal"),  # albedo and its cells' temperature, both told
+        ("Zhang2022b", "pva-orbit", "nominal"),  # albedo and its cells' temperature, both given
         ("Pita2014", "pva-maskless-pyramid", "nominal"),
         ("Chang2008", "cmos-single-aperture", "nominal"),  # a bench, the data set made after it
     ],

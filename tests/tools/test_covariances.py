@@ -55,11 +55,11 @@ def test_methods_that_state_a_covariance_are_measured_on_spots_and_grids(capsys)
         if chosen.name in {"gaussian", "2x2 clean"}
         for row in measure(chosen, 5, 20)
     ]
-    told = {row.method for row in rows if row.stated}
-    assert {"mirror", "gaussian-fit", "weighted-spots"} <= told
+    methods = {row.method for row in rows if row.stated}
+    assert {"mirror", "gaussian-fit", "weighted-spots"} <= methods
     print_table([*rows, replace(ROW, method="mute", squares=math.nan, stated=0)])
     printed = capsys.readouterr().out
-    assert all(method in printed for method in told)
+    assert all(method in printed for method in methods)
     assert "states no covariance: " in printed
     assert "mute" in printed.rsplit("states no covariance: ", maxsplit=1)[1]
 

@@ -119,14 +119,14 @@ def sets() -> list[FrameSet | GridSet]:
 
 def print_table(rows: Sequence[Calibrated]) -> None:
     """Print the mean squares of every method that states a covariance somewhere."""
-    told = {row.method for row in rows if row.stated}
-    silent = sorted({row.method for row in rows} - told)
+    methods = {row.method for row in rows if row.stated}
+    silent = sorted({row.method for row in rows} - methods)
     print(
         "mean squares of errors over the stated covariance, an axis, +- what chance leaves open;\n"
         "of how many answers, and the share of answers with a covariance\n"
     )
     for row in rows:
-        if row.method not in told or not row.answered:
+        if row.method not in methods or not row.answered:
             continue
         where = f"{row.group:<26} {row.set_name:<16} {row.method:<16}"
         share = row.stated / row.answered

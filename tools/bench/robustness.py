@@ -42,7 +42,7 @@ _FEWER = {64: 1.0, 256: 0.25, 512: 0.12}
 _GRID_SHARE = 0.3
 #: Seconds that a method that no limit is for may take for a set, and frames that it always sees.
 _SECONDS, _LEAST = 0.25, 8
-#: Frames and turns from which the time is told; a run that takes longer is not repeated.
+#: Frames and turns from which the time is measured; a run that takes longer is not repeated.
 _TIMED_FRAMES, _TURNS, _LONG_S = 100, 5, 0.05
 #: Cut-outs for fits hold this many times the spot's longest axis.
 _CUT_OUT = 1.6

@@ -151,8 +151,8 @@ def _difference(before: str, after: str | None) -> str:
     except SyntaxError:
         return ""
     changes = list(difflib.unified_diff(before.splitlines(), after.splitlines(), n=0))[2:]
-    told = [line for line in changes if not line.startswith("@@")]
-    return "\n".join(f"{line[0]}{line[1:].strip()}" for line in told)
+    changed = [line for line in changes if not line.startswith("@@")]
+    return "\n".join(f"{line[0]}{line[1:].strip()}" for line in changed)
 
 
 def _item(mutant: Mutant) -> WorkItem:

@@ -86,14 +86,14 @@ def _agreement(dimensions: int, squares: float, noise: Noise) -> float:
     for prior in range(2):
         freedom, variance, cost = noise[3 * prior], noise[3 * prior + 1], noise[3 * prior + 2]
         all_of = 0.5 * (freedom + dimensions)
-        told = (
+        evidence = (
             math.lgamma(all_of)
             - math.lgamma(0.5 * freedom)
             - 0.5 * dimensions * math.log(math.pi * freedom * variance)
             - all_of * math.log1p(squares / (freedom * variance))
             - cost
         )
-        high, low = max(found, told), min(found, told)
+        high, low = max(found, evidence), min(found, evidence)
         found = high + math.log1p(math.exp(low - high))
     return found
 
@@ -109,14 +109,14 @@ def _dark_odds(dark_ones: int, noise: Noise) -> float:
 def _width_evidence(off: float, noise: Noise) -> float:
     """Logarithm of the density of a width's residual, over that of one nothing is known of."""
     design, odd = off / noise[_WIDTH], off / noise[_ODD_WIDTH]
-    told = (1.0 - noise[_ODD]) * math.exp(-0.5 * design * design) / noise[_WIDTH]
-    told += noise[_ODD] * math.exp(-0.5 * odd * odd) / noise[_ODD_WIDTH]
-    return math.log(max(told * noise[_ODD_WIDTH], noise[_ODD] * 1e-3))
+    evidence = (1.0 - noise[_ODD]) * math.exp(-0.5 * design * design) / noise[_WIDTH]
+    evidence += noise[_ODD] * math.exp(-0.5 * odd * odd) / noise[_ODD_WIDTH]
+    return math.log(max(evidence * noise[_ODD_WIDTH], noise[_ODD] * 1e-3))
 
 
 @compiled
 def _widths(spots: Floats, count: int, places: Floats, partners: Indices, noise: Noise) -> float:
-    """Evidence that widths told by light give for the partners: about their median, as they lie."""
+    """Evidence for the partners from widths estimated from light, about their median."""
     off = np.empty(count)
     number = 0
     for s in range(count):
@@ -224,19 +224,19 @@ def _compare(  # noqa: C901, PLR0912, PLR0917 - one pass over places; positional
             if left[h] > most:
                 continue
             at = trials[h]
-            told = _evidence(spots, count, at, best - noise[_ODDS], code, view, noise, partners)
-            if told == -math.inf:
+            evidence = _evidence(spots, count, at, best - noise[_ODDS], code, view, noise, partners)
+            if evidence == -math.inf:
                 continue
             if known and abs(at[0] - place[0]) <= apart and abs(at[1] - place[1]) <= apart:
-                best = max(best, told)
-            elif told > best:
+                best = max(best, evidence)
+            elif evidence > best:
                 if known:
                     second = best
-                best, known = told, True
+                best, known = evidence, True
                 place[:] = at
             else:
-                second = max(second, told)
-    if sets <= most:  # other places cannot be told
+                second = max(second, evidence)
+    if sets <= most:  # other places cannot be determined
         second = best
     return best, second
 

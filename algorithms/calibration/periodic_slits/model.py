@@ -50,7 +50,7 @@ class RulerModel(DeflectedSlits):
 
     @abstractmethod
     def read(self, lines: Floats, found: Raster, middle: float, shifts: Floats) -> None:
-        """Write into `shifts` (M,) the pattern's, px, on lines (M, L) whose middle is told."""
+        """Write into `shifts` (M,) the pattern's, px, on lines (M, L) whose middle is given."""
         ...
 
     def raster(self) -> Raster:

@@ -82,7 +82,7 @@ class LightCheck(NamedTuple):
         (N,) `algorithms.measurement.QualityFlag` flags. Those that `refused_flags` is true of leave
         no answer; NO_SPOT where there is none, or it is of something else than the light.
     noise
-        (N, 2) variance of a dark pixel, and what a unit of light adds to it; NaN where not told.
+        (N, 2) variance of a dark pixel, and what a unit of light adds to it; NaN where unknown.
     centres
         (N, 2) centres that registration finds, px; NaN where it finds none or was not asked.
     """

@@ -89,7 +89,7 @@ class ReticlePhase(RulerModel):
             )
 
     def read(self, lines: Floats, found: Raster, middle: float, shifts: Floats) -> None:
-        """Write into `shifts` (M,) the pattern's, px, on lines (M, L) whose middle is told."""
+        """Write into `shifts` (M,) the pattern's, px, on lines (M, L) whose middle is given."""
         from algorithms.calibration.periodic_slits import phase_kernel  # noqa: PLC0415 - Numba, at first use
 
         waves = phase_kernel.waves(self.line_pixels, found.period)

@@ -108,7 +108,8 @@ class FacesFit:
 
         method: Literal["lm", "trf"] = "lm" if self._used.sum() >= len(start) else "trf"
         weighing = Weighing.even(self._used)
-        # where the numbers are only just settled, the lamp's strength cannot be told from them
+        # where the numbers are only just settled, the lamp's strength cannot be distinguished from
+        # them
         rounds = _ROUNDS if self._used.sum() > 2 * (len(start) + len(self.sun)) else 1
         for number in range(rounds):
 

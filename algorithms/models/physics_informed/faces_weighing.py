@@ -66,9 +66,11 @@ class Weighing:
             m, r = modelled / noise, off / noise
             power, along = (m**2).sum(axis=1), (m * r).sum(axis=1)
             tried = _SPREADS / power.mean()
-            told = tried[:, None] * power  # (spreads, n): how well a sample tells its strength
-            left = (r**2).sum() - (tried[:, None] * along**2 / (1.0 + told)).sum(axis=1)
-            turned = np.log1p(told).sum(axis=1)
+            information = (
+                tried[:, None] * power
+            )  # (spreads, n): how well a sample tells its strength
+            left = (r**2).sum() - (tried[:, None] * along**2 / (1.0 + information)).sum(axis=1)
+            turned = np.log1p(information).sum(axis=1)
             total = float(count.sum())
             best = int(np.argmin(total * np.log(np.maximum(left, 1e-300)) + turned))
             ratio = float(tried[best])

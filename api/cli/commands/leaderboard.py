@@ -276,9 +276,9 @@ def _architectures(query: Asked, form: Format) -> None:
         raise WrongCallError("nothing is published of such architectures")
     if form is Format.TABLE:
         record = knowledge().measurements.record
-        told = f"Record: version {record['version']}, sha256 {record['sha256']}"
-        unchanged.keep([rows, told])
-        _tell(rows, told)
+        line = f"Record: version {record['version']}, sha256 {record['sha256']}"
+        unchanged.keep([rows, line])
+        _tell(rows, line)
     else:
         emit(rows, columns_of(BestOfArchitecture), form, document=answer.document)
 

@@ -91,11 +91,11 @@ def _why(cell: Cell, reasons: tuple[str, ...]) -> str:
     if reasons in ((NEW,), (FAILED,)):
         return "new" if reasons == (NEW,) else "failed before"
     named = {"dataset": "data set", "extractor": cell.extractor, "model": cell.model}
-    told = [
+    parts = [
         f"{what} {named[what]}" if what in ("extractor", "model") else named.get(what, what)
         for what in reasons
     ]
-    return f"{', '.join(told)} changed"
+    return f"{', '.join(parts)} changed"
 
 
 def _summary(found: CellPlan, workers: int) -> str:

@@ -248,16 +248,16 @@ def by_name(files: list[tuple[str, StoredFile]]) -> dict[str, StoredFile]:
     return found
 
 
-def about(asked: str, reply: T, told: str) -> T:
+def about(asked: str, reply: T, record: str) -> T:
     """Return an answer about the record that was asked for.
 
     Raises
     ------
     ReplyError
-        Where it is about another (`told`).
+        If `record` is another one.
     """
-    if told != asked:
-        raise ReplyError(f"the archive answered of record {told}, expected {asked}")
+    if record != asked:
+        raise ReplyError(f"the archive answered of record {record}, expected {asked}")
     return reply
 
 

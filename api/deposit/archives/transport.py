@@ -263,8 +263,8 @@ class Transport:
         advice = _ADVICE.get(status, "").format(
             variable=self.server.variable, address=self.server.address
         )
-        told = reasons(*answer) if holds_json(answer[0]) else ""
-        parts = (f"{what}: {status} {answer[0].reason_phrase}", told, advice)
+        reason = reasons(*answer) if holds_json(answer[0]) else ""
+        parts = (f"{what}: {status} {answer[0].reason_phrase}", reason, advice)
         return RefusedError(self._said("; ".join(part for part in parts if part)), status)
 
     def _said(self, text: str) -> str:

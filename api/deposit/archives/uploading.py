@@ -134,7 +134,7 @@ def _settle(
 
 
 def _open(
-    archive: Archive, memory: Memory, version_of: str | None, draft: str | None, told: Description
+    archive: Archive, memory: Memory, version_of: str | None, draft: str | None, record: Description
 ) -> OpenDraft:
     """Find or open the draft."""
     if draft is not None:
@@ -160,7 +160,7 @@ def _open(
                 ) from None
             # Deleted by hand, or published since: a draft of its own is wanted.
     if version_of is None:
-        opened, fresh = archive.create(told), True
+        opened, fresh = archive.create(record), True
     else:
         opened, fresh = archive.new_version(version_of), False
     memory.keep(opened.id, version_of)

@@ -173,8 +173,8 @@ def headline(resolution: Resolution, known: Knowledge) -> dict[str, Any] | None:
     for pipeline in resolution.nearest:
         score = _scores(pipeline, known)[0]
         if score["rms_deg"] is not None:
-            told = {name: score[name] for name in ("dataset", "condition", *_NUMBERS[1:])}
-            found.append({"extractor": pipeline.extractor, "model": pipeline.model, **told})
+            members = {name: score[name] for name in ("dataset", "condition", *_NUMBERS[1:])}
+            found.append({"extractor": pipeline.extractor, "model": pipeline.model, **members})
     return min(found, key=lambda score: score["rms_deg"], default=None)
 
 

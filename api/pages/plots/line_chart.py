@@ -33,9 +33,9 @@ class Line:
     bound: bool = False
 
     def __post_init__(self) -> None:
-        told = [(x, _told(y)) for x, y in self.points]
-        object.__setattr__(self, "points", told)
-        band = [(x, _told(low), _told(high)) for x, low, high in self.band]
+        points = [(x, _finite(y)) for x, y in self.points]
+        object.__setattr__(self, "points", points)
+        band = [(x, _finite(low), _finite(high)) for x, low, high in self.band]
         whole = [(x, *((a, b) if None not in {a, b} else (None, None))) for x, a, b in band]
         object.__setattr__(self, "band", whole)
 
@@ -104,7 +104,7 @@ class LineChart:
         return any(y is not None for line in self.lines for _, y in line.points)
 
 
-def _told(value: float | None) -> float | None:
+def _finite(value: float | None) -> float | None:
     return None if value is None or not math.isfinite(value) else value
 
 

@@ -236,9 +236,9 @@ def test_a_turned_head_sees_what_turning_the_sun_shows() -> None:
 
 
 def test_readings_that_err_alike_for_some_steps_tell_as_much_as_fewer() -> None:
-    """An autoregression of 0.8 lasts for nine steps: 100 runs, told of that and not."""
+    """An autoregression of 0.8 lasts for nine steps: 100 runs, with and without knowing it."""
     space, first = SPACES["spot"], first_doubt(SPACES["spot"])
-    told = SunSpace(pinhole(), 0.01 * np.eye(2), GYROSCOPE, (), steps=np.full(2, 9.0))
+    with_steps = SunSpace(pinhole(), 0.01 * np.eye(2), GYROSCOPE, (), steps=np.full(2, 9.0))
     runs = drawn(space, first=first, seed=15, steps=200)
     clean = np.array(
         [
@@ -250,10 +250,10 @@ def test_readings_that_err_alike_for_some_steps_tell_as_much_as_fewer() -> None:
     for step in range(1, len(white)):
         white[step] = 0.8 * white[step - 1] + 0.6 * white[step]
     lasting = replace(runs, readings=clean + white)
-    knowing, innovations = squared_errors(told, ExtendedKalman(), lasting, first)
+    knowing, innovations = squared_errors(with_steps, ExtendedKalman(), lasting, first)
     ignoring, _ = squared_errors(space, ExtendedKalman(), lasting, first)
     assert 0.7 < knowing[40:].mean() / 2.0 < 1.3
-    # what was told so far has the error of the reading, too: innovations are somewhat less
+    # the estimate so far has the error of the reading, too: innovations are somewhat less
     assert 0.4 < innovations[40:].mean() < 1.1
     assert ignoring[40:].mean() / 2.0 > 2.0
 

@@ -73,15 +73,15 @@ def own_fit(nominal, signals, sun, test):
 def test_no_standard_data_set_is_read_better_by_an_independent_fit(name, unit):
     """Of what both answer and the readings settle: its error, within two per cent."""
     preset = datasets.get(name).for_unit(unit)
-    told = preset.generate("nominal", "calibration")
+    calibration = preset.generate("nominal", "calibration")
     asked = preset.generate("nominal", "test", 400)
     nominal = np.array(preset.geometry.face_normals)
     model = AssembledFaces.for_sensor(preset.geometry, FeatureKind.SIGNALS)
     error = separation_deg(
-        model.fit(told.observations, told.sun).predict(asked.observations), asked.sun
+        model.fit(calibration.observations, calibration.sun).predict(asked.observations), asked.sun
     )
     other = separation_deg(
-        own_fit(nominal, told.observations, told.sun, asked.observations), asked.sun
+        own_fit(nominal, calibration.observations, calibration.sun, asked.observations), asked.sun
     )
     both = preset.bound("nominal", n=400).observable & np.isfinite(error)
     assert both.mean() > 0.9

@@ -83,9 +83,12 @@ def test_sqlite_holds_what_csv_holds_under_plain_names(built):
             listed = ", ".join(plain(field["name"]) for field in fields)
             made = base.execute(f"SELECT {listed} FROM {name} ORDER BY rowid").fetchall()
             cells = rows(built.directory / resource["path"])
-            for row, told in zip(made, cells, strict=True):
+            for row, stored in zip(made, cells, strict=True):
                 for value, field in zip(tuple(row), fields, strict=True):
-                    assert agrees(told[field["name"]], value, field["type"]), (name, field["name"])
+                    assert agrees(stored[field["name"]], value, field["type"]), (
+                        name,
+                        field["name"],
+                    )
             keys = {r["from"] for r in base.execute(f"PRAGMA foreign_key_list({name})")}
             wanted = resource["schema"].get("foreignKeys", ())
             assert keys == {plain(f) for key in wanted for f in key["fields"]}
@@ -93,10 +96,10 @@ def test_sqlite_holds_what_csv_holds_under_plain_names(built):
 
 def test_sqlite_says_what_its_columns_hold(built):
     with closing(sqlite3.connect(built.directory / "sun-sensor-atlas.sqlite")) as base:
-        told = base.execute("SELECT name, column_name FROM columns_of_the_atlas").fetchall()
-        for name, column in told:
+        stored = base.execute("SELECT name, column_name FROM columns_of_the_atlas").fetchall()
+        for name, column in stored:
             base.execute(f"SELECT {column} FROM {name} LIMIT 1")
-        assert len(told) == sum(len(r["schema"]["fields"]) for r in tables(built.directory))
+        assert len(stored) == sum(len(r["schema"]["fields"]) for r in tables(built.directory))
 
 
 @pytest.mark.parametrize("name", ["select", "two words", "1st", "a-b", "Group", "a;drop", ""])

@@ -161,9 +161,9 @@ def test_hostile_files_are_refused_within_time_and_memory():
     run = subprocess.run(
         [sys.executable, "-c", code, __file__], check=True, capture_output=True, text=True
     )
-    told = [json.loads(line) for line in run.stdout.splitlines()]
-    assert [name for name, _, _ in told] == list(HOSTILE)
-    for name, said, largest in told:
+    lines = [json.loads(line) for line in run.stdout.splitlines()]
+    assert [name for name, _, _ in lines] == list(HOSTILE)
+    for name, said, largest in lines:
         assert said != "accepted", name
         assert "over 20 s" not in said, name
         assert "ended early" not in said, name

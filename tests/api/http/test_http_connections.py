@@ -1,4 +1,4 @@
-"""Over real sockets: half requests are closed in time, too many are told when to come back."""
+"""Over real sockets: half requests are closed in time, too many get a time to retry."""
 
 import json
 import socket

@@ -49,7 +49,7 @@ def test_what_is_no_seed_is_refused(capsys):
 
 
 @pytest.mark.parametrize(
-    ("measured", "advice", "told", "kept"),
+    ("measured", "advice", "ratio", "kept"),
     [
         (0.1, 0.3, 3.0, True),
         (0.2, 0.3, 1.5, False),  # not the best first
@@ -59,7 +59,7 @@ def test_what_is_no_seed_is_refused(capsys):
         (0.1, math.inf, 1.0, False),
     ],
 )
-def test_an_answer_that_hides_its_regret_is_found(measured, advice, told, kept):
+def test_an_answer_that_hides_its_regret_is_found(measured, advice, ratio, kept):
     first = {"measured": measured, "advice": advice}
-    one = regret.DrawnRequirement({}, 0.1, 0.1, 0.1, first, {"measured": 1.0, "advice": told})
+    one = regret.DrawnRequirement({}, 0.1, 0.1, 0.1, first, {"measured": 1.0, "advice": ratio})
     assert one.kept == kept

@@ -1,4 +1,4 @@
-"""Outcomes that cannot be of their plan, and forged ones that can, are told."""
+"""Outcomes that cannot be of their plan, and forged ones that can, are reported."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_no_published_outcome_contradicts_its_plan() -> None:
     found = {
         name: list(contradictions(claims()[name], one)) for name, one in read_outcomes().items()
     }
-    assert {name for name, told in found.items() if told} == set()
+    assert {name for name, entry in found.items() if entry} == set()
     assert len(found) >= 50
 
 

@@ -98,12 +98,12 @@ def test_an_earth_that_costs_little_or_far_more_refutes():
 
 @pytest.mark.parametrize("preset", [pd_maskless_cube.PRESET, pd_orbit.PRESET])
 def test_true_directions_come_with_the_same_readings(preset):
-    told, truly = (
+    reported, truly = (
         one.generate("nominal", "calibration", 40) for one in (preset, with_true_directions(preset))
     )
-    np.testing.assert_array_equal(truly.observations, told.observations)
-    assert np.abs(told.sun - told.true_sun).max() > 1e-5
-    np.testing.assert_allclose(truly.sun, told.true_sun, atol=1e-15)
+    np.testing.assert_array_equal(truly.observations, reported.observations)
+    assert np.abs(reported.sun - reported.true_sun).max() > 1e-5
+    np.testing.assert_allclose(truly.sun, reported.true_sun, atol=1e-15)
 
 
 def test_an_assembly_that_is_better_left_alone_refutes():

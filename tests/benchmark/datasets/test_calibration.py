@@ -186,8 +186,8 @@ def test_the_effect_can_be_seen_beside_a_perfect_calibration(name: str) -> None:
 
 def test_hashes_cover_the_truth_where_readings_stand_beside_it() -> None:
     plain = Samples(np.arange(2.0), np.ones((2, 3)), None)
-    told = replace(plain, true_sun=np.ones((2, 3)))
+    changed = replace(plain, true_sun=np.ones((2, 3)))
     moved = replace(plain, true_sun=np.zeros((2, 3)))
-    assert len({samples_hash(samples) for samples in (plain, told, moved)}) == 3
+    assert len({samples_hash(samples) for samples in (plain, changed, moved)}) == 3
     assert plain.truth is plain.sun
-    assert list(told.arrays()) == ["observations", "sun", "origin_px", "true_sun"]
+    assert list(changed.arrays()) == ["observations", "sun", "origin_px", "true_sun"]

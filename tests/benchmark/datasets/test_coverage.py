@@ -114,8 +114,8 @@ def test_coverage_is_counted_of_what_studies_use_and_data_sets_have():
     simulated = {"b": ("CMOS", "Slit"), "a": ("CMOS", "Slit"), "c": ("Event", "Slit")}
     reasons = {("PD", "Slit"): "too dim", ("CMOS", "Lens"): "too bright"}
     found = coverage(simulated, known=known, reasons=reasons)
-    told = {(p.detector, p.mask): (p.studies, p.datasets, p.reason) for p in found.pairs}
-    assert told == {
+    pairs = {(p.detector, p.mask): (p.studies, p.datasets, p.reason) for p in found.pairs}
+    assert pairs == {
         ("CMOS", "Slit"): (("S0", "S1"), ("a", "b"), ""),
         ("PD", "Slit"): (("S0",), (), "too dim"),
         ("CMOS", "Lens"): (("S1",), (), "too bright"),

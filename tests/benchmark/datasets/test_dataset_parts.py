@@ -93,8 +93,8 @@ def test_every_stream_is_named_after_what_it_is_for(condition: str, split: str) 
     light, stray = LIGHT.draw(count, generator(*names, "irradiance"))
     if split == "calibration":
         light = STANDARD_BENCH.light(sun, "fake-teller", 3, "bench")
-        told = STANDARD_BENCH.report(sun, "fake-teller", 3, "bench")
-        np.testing.assert_array_equal(found.sun, told)
+        reported = STANDARD_BENCH.report(sun, "fake-teller", 3, "bench")
+        np.testing.assert_array_equal(found.sun, reported)
     origin = generator(*names, "window").integers(0, 1000, (count, 2))
     level = {"nominal": 1.0, "brighter": 2.0}[condition]
     unit = level * len(repr(("fake-teller", 3, "unit")))

@@ -106,7 +106,7 @@ def test_errors_of_independent_parts_add_as_squares():
             (
                 "with calibration, unit and readings perfect it is 0.040 deg (8.0 times), fitted "
                 "to the test poses as well 0.039 deg: the method itself (extractor and model are "
-                "not told apart) holds it back."
+                "not distinguished) holds it back."
             ),
         ),
         (

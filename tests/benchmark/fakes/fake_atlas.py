@@ -85,8 +85,8 @@ class Diodes:
 
     `late` is a current added to one diode from the tenth sample on, `looseness` a factor of the
     bound, `unit_share` how many times it is where the unit is not known, `reference_error` that of
-    the calibration's directions, `dark` a share of the test samples that no direction can be told
-    of.
+    the calibration's directions, `dark` a share of the test samples that no direction can be
+    determined of.
     """
 
     name: str = "fake-diodes"

@@ -1,4 +1,4 @@
-"""Ranks by own error over units, and groups of what is not told apart."""
+"""Ranks by own error over units, and groups of what is not distinguished."""
 
 import math
 

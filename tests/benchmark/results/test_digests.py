@@ -253,12 +253,12 @@ def test_a_condition_s_digest_depends_on_its_own_parameters_and_those_of_its_ref
     assert list(before) == list(fake_atlas.Diodes().conditions) == ["quiet", "noisy"]
     monkeypatch.setattr(corrected, "reference_condition", lambda *_: "quiet")
     before = condition_digests(fake_atlas.Diodes())
-    told = fake_atlas.Diodes.parameters
+    parameters = fake_atlas.Diodes.parameters
     for changed, expected in (("noisy", ["noisy"]), ("quiet", ["quiet", "noisy"])):
 
         def moved(self, condition, changed=changed):
             more = {"more": 1} if condition == changed else {}
-            return {**told(self, condition), **more}
+            return {**parameters(self, condition), **more}
 
         with monkeypatch.context() as patch:
             patch.setattr(fake_atlas.Diodes, "parameters", moved)

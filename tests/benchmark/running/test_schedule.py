@@ -95,7 +95,7 @@ def run(seconds: dict[Task, float], durations: Durations, workers: int) -> Worke
 
 @pytest.fixture
 def known(seconds: dict[Task, float], monkeypatch: pytest.MonkeyPatch) -> Durations:
-    """What an earlier run has told of times; nothing is measured really."""
+    """What an earlier run has recorded of times; nothing is measured really."""
     monkeypatch.setattr(backend, "measure", lambda task: task)
     durations = Durations()
     for one, takes in seconds.items():

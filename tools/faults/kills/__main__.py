@@ -42,7 +42,7 @@ def main(arguments: list[str] | None = None) -> int:
             found.append(one)
             for said in one.wrong:
                 print(f"{one.command}, {one.signal} after {one.at_s:.2f} s: {said}", flush=True)
-            _keep(asked.report, found, met)  # a campaign that is broken off has told something
+            _keep(asked.report, found, met)  # a campaign that is broken off has found something
         draw = random.Random(asked.seed)
         for number, what in enumerate(() if asked.no_pairs else PAIRS):
             met.append(meet(what, work / f"pair {number}", draw))

@@ -123,5 +123,5 @@ def _again(command: Command, known: Undisturbed, place: Path) -> list[str]:
         time.sleep(0.1)
     more, less = sorted(now.keys() - known.made.keys()), sorted(known.made.keys() - now.keys())
     other = sorted(n for n in now.keys() & known.made.keys() if now[n] != known.made[n])
-    told = {"left behind": more, "missing": less, "of other bytes": other}
-    return [f"{len(them)} {what}: {them[0]}" for what, them in told.items() if them]
+    differences = {"left behind": more, "missing": less, "of other bytes": other}
+    return [f"{len(them)} {what}: {them[0]}" for what, them in differences.items() if them]

@@ -27,7 +27,7 @@ from algorithms.kernels.records import Records
 #: A pair is left out whose difference departs by so many deviations, this share of the slope and
 #: this of the peak: at first, and when the fit is good.
 _BAD, _BAD_SLOPE, _BAD_PEAK = (5.0, 4.5), (0.4, 0.05), (0.1, 0.003)
-#: Square of the share of the slope by which sharp rims depart: little of noise is told where that
+#: Square of the share of the slope by which sharp rims depart: little is known of noise where that
 #: is above the noise that is there in the dark.
 _SHARP, _FLOOR_SQUARE = 0.03**2, FLOOR**2
 #: Variance of the mean of N neighbours' departures, over its square and times N: half of a normal

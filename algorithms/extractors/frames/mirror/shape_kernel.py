@@ -189,7 +189,7 @@ def _scatter(  # noqa: PLR0917 - Numba takes no keyword-only ones
     departing, leniently = fold(lanes, 0, _LANES), fold(lanes, 1, _LANES)
     scale = number / max(total, 1e-30)
     count = max(number - 2.0, 0.0) + _EXPECTED
-    # a variance that is itself told by so many departures: that of Student's distribution
+    # a variance that is itself estimated from so many departures: that of Student's distribution
     student = count / (count - 2.0)
     departing = student * (departing * scale + _EXPECTED) / count
     return departing, (leniently * scale + _EXPECTED) / count

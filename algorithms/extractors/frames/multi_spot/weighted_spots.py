@@ -75,9 +75,9 @@ class WeightedSpots(MaskSpots, Extractor):
     alike on the pixels: 0.0003 px of a disc seven pixels wide, 0.001 to 0.002 px of strong rings.
 
     Failure: a NaN row where the pattern is not found, as for MCAM, and where no spot's centre can
-    be fitted. With less than four spots none can be told to be the wrong one; with one aperture,
-    also where registration (`algorithms.extractors.frames.mirror`) does not find one whole
-    symmetric light within half a pixel of the answer.
+    be fitted. With less than four spots none can be determined to be the wrong one; with one
+    aperture, also where registration (`algorithms.extractors.frames.mirror`) does not find one
+    whole symmetric light within half a pixel of the answer.
 
     Cost: as MCAM, and some 150 operations a pixel of the spots' surroundings.
 

@@ -150,7 +150,7 @@ def test_the_covariance_is_about_that_of_the_errors(name, own):
 @pytest.mark.parametrize("dark", [0.0, 50.0])
 @pytest.mark.parametrize("name", ["gaussian-fit", "mirror"])
 def test_frames_without_noise_are_answered(name, dark):
-    """Nothing scatters that an error could be told by: no covariance, or next to none."""
+    """Nothing scatters that an error could be determined by: no covariance, or next to none."""
     line = np.exp(-((np.arange(SIZE) - 31.4) ** 2) / 18.0)
     for light, centre in ((disc(30.3, 31.6), [30.3, 31.6]), (np.outer(line, line), [31.4, 31.4])):
         found = METHODS[name].measure(dark + 900.0 * light)

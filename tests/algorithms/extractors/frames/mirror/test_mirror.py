@@ -119,7 +119,8 @@ def test_turning_or_transposing_the_frame_does_so_with_the_answer():
     turned = MirrorRegistration().extract(frames[:, ::-1, ::-1])
     np.testing.assert_allclose(turned, SIZE - 1 - found, atol=1e-6)
     swapped = MirrorRegistration().extract(frames.transpose(0, 2, 1))
-    # Noise, and so the weights, are told by neighbours along the rows: a tenth of an error's size.
+    # Noise, and so the weights, are estimated from neighbours along the rows: a tenth of an error's
+    # size.
     np.testing.assert_allclose(swapped, found[:, ::-1], atol=1e-3)
 
 
