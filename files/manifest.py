@@ -252,9 +252,9 @@ def finish_interrupted_write(folder: Path) -> None:
     path = folder / NEXT
     if not path_exists(path):
         return
-    coming, standing = read_manifest(folder, NEXT) or {}, read_manifest(folder) or {}
-    for entries, act in ((coming, lambda: path.replace(folder / FILE)), (standing, path.unlink)):
-        names = {*coming, *standing}
+    coming, present = read_manifest(folder, NEXT) or {}, read_manifest(folder) or {}
+    for entries, act in ((coming, lambda: path.replace(folder / FILE)), (present, path.unlink)):
+        names = {*coming, *present}
         if not any(list(_of_file(folder, n, entries.get(n), n in entries)) for n in names):
             act()
             return

@@ -321,7 +321,7 @@ class AnswerTexts:
     def _pipeline_text(self, row: int, errors: PipelineErrors, finer: int) -> list[bytes]:
         """Return a pipeline in two parts, between them the number of units that keep a limit."""
         text = to_json_bytes(errors.document(row, finer))
-        return text.replace(b'"meeting":null', b'"meeting":\0').split(b"\0")
+        return text.replace(b'"within_limit":null', b'"within_limit":\0').split(b"\0")
 
     def _studies_text(self, studies: int) -> bytes:
         """Return the keys of studies (bits), with commas between them."""

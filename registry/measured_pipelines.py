@@ -299,7 +299,7 @@ class MeasuredPipeline:
                 "count": len(units),
                 "least_deg": min(units),
                 "largest_deg": max(units),
-                "meeting": None,
+                "within_limit": None,
                 "of": UNITS,
             }
             if units

@@ -248,17 +248,17 @@ def _broken_by_studies(
     alone = [n for n in asked if n not in tasks]
     broken = [0 for _ in everyone]
     for name in alone:
-        meeting = Question(question.table, _only(question.requirements, [name])).studies
+        matching = Question(question.table, _only(question.requirements, [name])).studies
         for at in everyone:
-            broken[at] |= 0 if meeting >> at & 1 else bit[name]
+            broken[at] |= 0 if matching >> at & 1 else bit[name]
     found: list[set[int]] = [set() for _ in everyone]
     for size in range(len(tasks) + 1):
         for dropped in itertools.combinations(tasks, size):
             kept = [n for n in tasks if n not in dropped]
-            meeting = Question(question.table, _only(question.requirements, kept)).studies
+            matching = Question(question.table, _only(question.requirements, kept)).studies
             given_up = sum(bit[n] for n in dropped)
             for at in everyone:
-                if meeting >> at & 1 and not any(b & given_up == b for b in found[at]):
+                if matching >> at & 1 and not any(b & given_up == b for b in found[at]):
                     found[at].add(given_up)
     return [{bits | broken[at] for bits in found[at]} for at in everyone]
 
@@ -333,9 +333,9 @@ def _widest(table: DesignTable, requirements: Requirements) -> float | None:
     arrays = rest.arrays
     rows = rest.matching_designs[arrays.design_of]
     widest = 0.0
-    for half, having in arrays.cone_edges:
+    for half, has_error in arrays.cone_edges:
         over = requirements.with_value("min_fov_deg", 2.0 * half)
-        if (rows & having & _within_limits(arrays, over)).any():
+        if (rows & has_error & _within_limits(arrays, over)).any():
             widest = 2.0 * half
             break
     return max(widest, *_stated_numbers(Question(table, requirements), "fov_deg"), 0.0) or None

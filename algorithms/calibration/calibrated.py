@@ -40,7 +40,7 @@ _LOST_DEG, _FEWEST_LOST = 45.0, 10
 
 @dataclass
 class CalibratedModel(Model):
-    """A model that learns from calibration samples, refuses what does not determine it, and doubts.
+    """A model that learns from calibration samples, refuses too few, and flags answers.
 
     A subclass is a dataclass that writes `about`, `learn` and `answer`. It gets only rows with
     features; a refused fit leaves the model as it was. Outside the convex hull of what it was

@@ -15,7 +15,7 @@ from benchmark.leaderboard.realism import realism
 from benchmark.results.store import Store
 
 
-def standings() -> str:
+def best_pipelines() -> str:
     """Set every data set's best pipeline beside its bound and the built sensors' accuracy."""
     built, pins = _build(), Store().pins()
     rows = []

@@ -29,7 +29,7 @@ def tallies() -> str:
 def refuted_claims() -> str:
     """List refuted claims, each with its first criterion that fails."""
     return _criteria(
-        (entry, next(rule for rule in entry.rules if rule.standing == "fails"))
+        (entry, next(rule for rule in entry.rules if rule.result == "fails"))
         for entry in ledger()
         if entry.verdict == "refuted"
     )

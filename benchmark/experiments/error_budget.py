@@ -24,7 +24,7 @@ from benchmark.results.store import Store
 from benchmark.running.experiment import Recorded
 
 #: What measures the variants of a chain, with the data and methods that it is handed.
-_CODE = "benchmark.error_budget.measure:held"
+_CODE = "benchmark.error_budget.measure:score_variants"
 #: Less is none: another machine's rounding, and where iterations stop.
 _NOTHING_DEG = 1e-6
 #: Data set, extractor, model.

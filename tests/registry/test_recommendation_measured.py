@@ -355,7 +355,7 @@ def test_a_score_says_its_bound_its_answers_and_its_spread_over_units() -> None:
     (place,) = recommend({}, [row], sort="measured", limit=1).architectures
     assert place.best.measured is not None
     assert place.best.measured["units"] == {
-        "count": 3, "least_deg": 0.05, "largest_deg": 0.3, "meeting": None, "of": 10,
+        "count": 3, "least_deg": 0.05, "largest_deg": 0.3, "within_limit": None, "of": 10,
     }  # fmt: skip
     assert place.best.measured["latency_us"] == 3.0
     nominal = place.best.measured["nominal"]

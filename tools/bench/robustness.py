@@ -143,7 +143,7 @@ def measure(
 def judged(found: Floats, scenes: Scenes) -> tuple[float, float, float]:
     """Return the root mean square error px of answers, and shares of wrong and missing ones.
 
-    Every finite answer is meant: `extract` has no other way to say that it doubts. Where there is
+    Every finite answer is meant: `extract` has no other way to raise a flag. Where there is
     no spot every answer is wrong, and with two equal lights that at the one which is not the Sun.
     """
     answered = np.isfinite(found).all(axis=1)

@@ -76,9 +76,9 @@ class Weighing:
             ratio = float(tried[best])
             # given the strength's, the noise expected of each face
             level = ratio * along / (1.0 + ratio * power)
-            doubt = ratio / (1.0 + ratio * power)
+            shrinkage = ratio / (1.0 + ratio * power)
             size = float(left[best]) / total
-            rest = (r - level[:, None] * m) ** 2 + size * doubt[:, None] * m**2
+            rest = (r - level[:, None] * m) ** 2 + size * shrinkage[:, None] * m**2
             spread = float(np.sqrt(ratio * size))
             before, noise = (
                 noise,

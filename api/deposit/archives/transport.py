@@ -1,4 +1,4 @@
-"""Requests to one server: with the token to it and to nobody else, patient, and never in doubt.
+"""Requests to one server: the token goes to it alone; retries are patient and safe.
 
 An address elsewhere is not asked, and a redirect is followed to the same server alone, where
 something is only looked at. What fails for the moment (429, 5xx, a connection that drops) is tried

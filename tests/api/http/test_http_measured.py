@@ -259,7 +259,7 @@ def test_recommendations_carry_what_is_measured(measured):
             "count": 5,
             "least_deg": 0.009,
             "largest_deg": 0.03,
-            "meeting": None,
+            "within_limit": None,
             "of": 10,
         },
         "finer": None,

@@ -65,7 +65,7 @@ def test_verdicts_follow_from_the_published_numbers():
         rows = table[table["claim"] == entry.claim.id]
         assert set(document["values"]) == set(rows["rule"])
         assert entry.verdict in VERDICTS
-        standings = {one.rule.name: one.standing for one in entry.rules}
+        results = {one.rule.name: one.result for one in entry.rules}
         for row in rows.itertuples():
             values = pd.Series(document["values"][row.rule], dtype=float).dropna()
             assert len(document["values"][row.rule]) == entry.claim.trials >= 5
@@ -79,7 +79,7 @@ def test_verdicts_follow_from_the_published_numbers():
                     "<=": low > float(row.limit),
                 }
                 if row.relation in outside and abs(half) > 1e-9:
-                    assert (standings[row.rule] == "fails") == outside[row.relation]
+                    assert (results[row.rule] == "fails") == outside[row.relation]
 
 
 def test_what_is_not_reproduced_is_explained():
@@ -182,7 +182,7 @@ def test_the_second_method_disagrees_where_a_rule_comes_out_otherwise(tmp_path):
     said.write_text("claim,verdict,says\n")
     (entry,) = (e for e in ledger(tmp_path, said) if e.claim.id == "C04")
     assert entry.agrees is False
-    assert judge(entry.claim.rule("little"), [0.5] * 6).standing == "fails"
+    assert judge(entry.claim.rule("little"), [0.5] * 6).result == "fails"
 
 
 def test_only_what_is_asked_for_is_measured(tmp_path, monkeypatch, capsys):

@@ -99,9 +99,9 @@ def test_an_answer_to_something_else_than_the_light_is_none():
     frames, centres = scenes("one", 4, np.random.default_rng(773))
     centres[1] += 0.8
     centres[2] = np.nan
-    doubts = judge(frames, centres).doubts
-    assert doubts.tolist() == [0, int(QualityFlag.NO_SPOT), int(QualityFlag.NO_SPOT), 0]
-    assert refused_flags(doubts).tolist() == [False, True, True, False]
+    flags = judge(frames, centres).flags
+    assert flags.tolist() == [0, int(QualityFlag.NO_SPOT), int(QualityFlag.NO_SPOT), 0]
+    assert refused_flags(flags).tolist() == [False, True, True, False]
 
 
 def test_designs_without_a_hole_take_any_light_but_no_hot_pixel():
