@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from benchmark.leaderboard.architectures import architectures as best_of_each
 from registry.measured_pipelines import PartialAnswer, finer_for
 from registry.taxonomy import InvalidValueError
-from survey_data.nearest import nearest
+from survey_data.nearest import nearest_name
 
 if TYPE_CHECKING:
     from api.http.knowledge import Knowledge
@@ -77,7 +77,7 @@ def compare_pipelines(
         if pipeline not in by:
             expected = f"extractor{SEPARATOR}model, a pipeline that is scored on {dataset}"
             raise InvalidValueError(
-                "pipeline", pipeline, expected, nearest(pipeline, sorted(by), cutoff=0)
+                "pipeline", pipeline, expected, nearest_name(pipeline, sorted(by), cutoff=0)
             )
     items = [_item(known, by[pipeline], condition) for pipeline in pipelines]
     return {"dataset": dataset, "condition": condition, "items": _with_ratio(items)}
@@ -231,5 +231,5 @@ def _count(what: str, given: Sequence[str]) -> None:
 
 def _one_of(what: str, given: str, words: Sequence[str]) -> None:
     if given not in words:
-        near = nearest(given, words, cutoff=0)
+        near = nearest_name(given, words, cutoff=0)
         raise InvalidValueError(what, given, f"one of {', '.join(words)}", near)

@@ -89,7 +89,7 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
         "poses": curves.counts,
         "tallies": measured_facts.tallies,
         "refuted": measured_facts.refuted_claims,
-        "useful": measured_facts.useful,
+        "useful": measured_facts.reproduced_claims,
     },
     "guide/glossary.md": {"terms": words.terms, "abbreviations": words.abbreviations},
     "guide/data-dictionary.md": {

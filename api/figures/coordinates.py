@@ -39,7 +39,7 @@ def coordinates_figure(facts: Facts, addresses: Addresses, where: Where) -> Figu
             colour=_COLOURS[row["accuracy"]],
             title=_title(row, facts),
             href=addresses.of([row["study"]], {}, at),
-            dashed=row["accuracy_kind"] == UNSPECIFIED,
+            is_dashed=row["accuracy_kind"] == UNSPECIFIED,
         )
         for at, row in enumerate(rows)
     ]

@@ -122,7 +122,7 @@ def matrix_figure(
 
 def _evidence_members(pair: tuple[Value, Value], known: PairEvidence) -> dict[str, Any]:
     """Return what the table tells of a pair besides its studies."""
-    best = known.best
+    best = known.best_pipeline
     command = leads_to = ""
     if best is not None:
         command = PipelineRun(best.dataset, best.extractor, best.model).command
@@ -132,11 +132,11 @@ def _evidence_members(pair: tuple[Value, Value], known: PairEvidence) -> dict[st
             leads_to = architecture_page(sensor["detector"], sensor["mask"])
     elif known.state == "impossible":
         pass
-    elif known.planned is not None:
-        command, leads_to = known.planned.command, dataset_page(known.planned.dataset)
-    elif known.nearest:
-        command = f"sunatlas benchmark --dataset {known.nearest}"
-        leads_to = dataset_page(known.nearest)
+    elif known.possible_run is not None:
+        command, leads_to = known.possible_run.command, dataset_page(known.possible_run.dataset)
+    elif known.nearest_dataset:
+        command = f"sunatlas benchmark --dataset {known.nearest_dataset}"
+        leads_to = dataset_page(known.nearest_dataset)
     return {
         "reason": known.reason,
         "unknown": list(known.unknown),
@@ -156,8 +156,8 @@ def _title(pair: tuple[Value, Value], count: int, known: PairEvidence) -> str:
     parts = [wording.studies(count) if count else "no study"]
     if known.pipelines:
         parts.append(f"{wording.plural(known.pipelines, 'pipeline', 'pipelines')} measured here")
-    if known.best is not None:
-        parts.append(f"best own error {known.best.nominal.rms_deg:.3g}° on {known.best.dataset}")
+    if (best := known.best_pipeline) is not None:
+        parts.append(f"best own error {best.nominal.rms_deg:.3g}° on {best.dataset}")
     if known.state == "impossible":
         parts.append(f"impossible ({known.reason})")
     if known.state == "unknown":

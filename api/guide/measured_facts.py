@@ -35,7 +35,7 @@ def refuted_claims() -> str:
     )
 
 
-def useful() -> str:
+def reproduced_claims() -> str:
     """List reproduced claims, each with its first criterion.
 
     Raises

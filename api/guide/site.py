@@ -70,7 +70,7 @@ def missing_builders() -> tuple[str, ...]:
     return tuple(missing)
 
 
-def documented() -> list[str]:
+def documented_modules() -> list[str]:
     """Name the modules whose docstrings are on the page of the Python interface."""
     page = source() / "guide" / "python.md"
     return _DOCUMENTED.findall(page.read_text("utf-8")) if page.is_file() else []
@@ -90,7 +90,7 @@ def digest() -> str:
             if path.is_file() and path.suffix in {".md", ".svg", ".png", ".py", ".css"}:
                 summed.update(f"\0{path.relative_to(root).as_posix()}\0".encode())
                 summed.update(path.read_bytes())
-    for module in documented():
+    for module in documented_modules():
         summed.update(f"\0{module}\0".encode() + _file_of(module).read_bytes())
     for name in (*BUILDERS, "latex2mathml"):
         summed.update(f"{name} {version(name)}\n".encode())

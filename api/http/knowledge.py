@@ -93,7 +93,7 @@ class Knowledge:
         return Evidence(self.catalogue, self.measurements.pipelines, scorable())
 
     @cached_property
-    def measured(self) -> Measured:
+    def measured_pipelines(self) -> Measured:
         """What is measured of every pipeline, as recommendations take it."""
         return Measured(self.measurements.pipelines)
 
@@ -125,7 +125,12 @@ class Knowledge:
             Where a file of facts or of published results cannot be read.
         """
         _ = self.resolutions, self.measurements.scores, self.measurements.times
-        _ = self.evidence, self.measured, self.measurements.leaderboard, self.measurements.cards
+        _ = (
+            self.evidence,
+            self.measured_pipelines,
+            self.measurements.leaderboard,
+            self.measurements.cards,
+        )
         _ = self.measurements.sweeps, self.measurements.curves, self.measurements.assessment
         _ = self.measurements.claims, self.index.find("warm")
         _ = self.facts_digest, self.measurements.digest
@@ -174,9 +179,9 @@ class KnowledgeOfAll(Knowledge):
         return self._survey.evidence
 
     @property
-    def measured(self) -> Measured:
+    def measured_pipelines(self) -> Measured:
         """What is measured of every pipeline, as recommendations take it."""
-        return self._survey.measured
+        return self._survey.measured_pipelines
 
     @property
     def index(self) -> Index:

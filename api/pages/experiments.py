@@ -30,7 +30,7 @@ class Drawing(Response):
     """An SVG."""
 
     media_type = SVG
-    offered: ClassVar = (SVG,)
+    media_types: ClassVar = (SVG,)
 
     def representation(self, wanted: str) -> Representation:
         """Return the drawing."""

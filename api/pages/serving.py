@@ -39,7 +39,7 @@ class View(Response):
     """
 
     media_type = HTML
-    offered: ClassVar = OFFERED
+    media_types: ClassVar = OFFERED
 
     def __init__(
         self,

@@ -105,8 +105,8 @@ def directions(
 ) -> tuple[Floats, dict[str, Floats]]:
     """Return true directions (N, 3) of a test split, and a pipeline's ``as_is`` and ``perfect``.
 
-    Parameters as `score_variants`; answers as its variants of these names, NaN rows where there is none. A
-    variant is left out where the model refuses its calibration.
+    Parameters as `score_variants`; answers as its variants of these names, NaN rows where there is
+    none. A variant is left out where the model refuses its calibration.
     """
     with one_thread():
         memory.cache_for((preset.name, 0), preset.name)

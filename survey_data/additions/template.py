@@ -115,7 +115,7 @@ def _of_attribute(definition: Definition) -> Iterator[str]:
         for value, name in definition.words.items():
             yield f"#   {value}" + ("" if name == value else f": {name}")
     else:
-        yield f"#   a number from {definition.least:g} to {definition.most:g}"
+        yield f"#   a number from {definition.minimum:g} to {definition.maximum:g}"
     yield f"# [[{definition.attribute}]]"
     yield '# value = ""' if definition.words else "# value ="
     yield from ('# basis = ""', '# source = ""', '# note = ""')

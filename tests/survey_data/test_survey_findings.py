@@ -16,8 +16,8 @@ from survey_data.findings.checks import (
     FindingSyntaxError,
     Vocabulary,
     evaluate,
+    finding_verdict,
     study_values,
-    whole,
 )
 
 
@@ -185,7 +185,7 @@ def test_a_method_or_a_sensor_part_that_a_finding_names_is_in_a_clause_of_it() -
     ],
 )
 def test_a_finding_is_reproduced_only_where_all_of_it_is(clauses: Any, verdict: str) -> None:
-    assert whole(clauses) == verdict
+    assert finding_verdict(clauses) == verdict
 
 
 # Made-up studies: errors A > B > C = D, four masks, two extractors.

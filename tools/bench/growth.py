@@ -155,7 +155,7 @@ def answering(studies: int, methods: int, known: Knowledge) -> tuple[int, Any]:
     grown = replace(of_survey, studies={study.key: study for study in made[:studies]})
     rows = [
         replace(row, model=f"{row.model}-{copy}")
-        for row in known.measured.rows
+        for row in known.measured_pipelines.rows
         for copy in range(methods)
     ]
     pipelines = Measurements(rows)

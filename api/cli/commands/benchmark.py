@@ -85,8 +85,8 @@ def benchmark(
     for warning in result.warnings:
         typer.echo(f"warning: {warning}", err=True)
     typer.echo(
-        f"{result.published} published, {result.kept} measured before, {result.measured} measured "
-        f"now; new results are kept in {result.directory}",
+        f"{result.published_count} published, {result.stored_count} measured before, "
+        f"{result.measured_count} measured now; new results are kept in {result.directory}",
         err=True,
     )
 

@@ -56,7 +56,7 @@ class Kernels(StrEnum):
     BOTH = "both"
 
     @property
-    def chosen(self) -> tuple[str, ...]:
+    def names(self) -> tuple[str, ...]:
         """Names that `benchmark.leaderboard.check.check` takes."""
         return ("native", "older") if self is Kernels.BOTH else (self.value,)
 
@@ -146,7 +146,7 @@ def leaderboard(
     if asked and (listing or check):
         raise WrongCallError("--detector and --mask narrow architectures and --overview alone")
     if check:
-        _check(workers, form, (kernels or Kernels.BOTH).chosen, stored_only=stored)
+        _check(workers, form, (kernels or Kernels.BOTH).names, stored_only=stored)
     elif stored or kernels:
         raise WrongCallError(f"{'--stored' if stored else '--kernels'} goes with --check")
     elif field is not None and max_error is not None:

@@ -145,7 +145,7 @@ def _write_template(key: str, file: Path | None, chosen_key: str | None, folder:
     digits = "".join(letter for letter in key if letter.isdigit())
     publication = {"key": key, "year": digits}
     known = vocabulary(folder)
-    if taken := known.taken.get(key.casefold()):
+    if taken := known.used_names.get(key.casefold()):
         raise WrongCallError(f"--init: {key}: {taken}")
     if file is not None and file.suffix.casefold() in SUFFIXES:
         found = choose(read_publications(file), chosen_key, file.name)

@@ -148,7 +148,7 @@ def legacy(described: Description) -> dict[str, Any]:
         "description": described.html,
         "creators": [
             {
-                "name": author.inverted,
+                "name": author.sort_name,
                 **({"orcid": author.orcid} if author.orcid else {}),
                 **({"affiliation": author.affiliation} if author.affiliation else {}),
             }

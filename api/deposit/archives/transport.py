@@ -269,7 +269,7 @@ class Transport:
 
     def _said(self, text: str) -> str:
         shown = "".join(letter if letter.isprintable() else " " for letter in text)
-        return self._token.hidden(" ".join(shown.split()))[:600]
+        return self._token.hide(" ".join(shown.split()))[:600]
 
 
 def _host(url: str) -> str:

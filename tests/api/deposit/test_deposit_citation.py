@@ -10,9 +10,9 @@ from api.deposit.archives.replies import Deposition, Record
 from api.deposit.citation import (
     Author,
     CitationError,
+    author_problems,
     authors,
     check_digit,
-    unpublishable,
     wrong_orcid,
 )
 from tests.api.deposit import small_bundle
@@ -71,7 +71,7 @@ def test_what_is_nobody_s_orcid_is_refused(orcid, why):
     ],
 )
 def test_who_is_nobody_is_not_published(listed, why):
-    assert any(why in text for text in unpublishable(listed))
+    assert any(why in text for text in author_problems(listed))
 
 
 @pytest.mark.parametrize(
@@ -84,14 +84,14 @@ def test_who_is_nobody_is_not_published(listed, why):
     ],
 )
 def test_who_is_somebody_is(listed):
-    assert unpublishable(listed) == []
+    assert author_problems(listed) == []
 
 
 def test_this_project_s_authors_are_not_filled_in_yet_and_so_not_published():
     """Once a person has filled in CITATION.cff this says that the list is publishable."""
     listed = authors((ROOT / "CITATION.cff").read_text("utf-8"), "CITATION.cff")
     placeholder = any(author.name.endswith("contributors") for author in listed)
-    assert bool(unpublishable(listed)) == placeholder
+    assert bool(author_problems(listed)) == placeholder
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,7 @@ def test_what_is_not_known_leaves_a_gap_in_the_line_and_its_band(nothing: float 
     assert drawn.count('class="band ') == 2
     assert drawn.count('class="dot ') == 4
     assert line.at(3.0) is None
-    assert not LineChart([Line("none", [(1.0, nothing)])], "x", "y", "nothing").drawn
+    assert not LineChart([Line("none", [(1.0, nothing)])], "x", "y", "nothing").has_points
 
 
 def test_no_claim_draws_what_was_not_measured(atlas: Client) -> None:
