@@ -94,7 +94,7 @@ class Repeats(Protocol):
         """Times every pose is observed, pass after pass."""
         ...
 
-    def chosen(self, test_samples: int) -> NDArray[Any]:
+    def pose_indices(self, test_samples: int) -> NDArray[Any]:
         """Places (P,) of the poses in a test split of so many samples."""
         ...
 

@@ -87,7 +87,7 @@ def resolve(
     study : Study or str
         A study or its key; InvalidValueError for an unknown key.
     plan : Plan
-        What can be scored, as `benchmark.plan.combinations.scorable` gives it.
+        What can be scored, as `benchmark.plan.combinations.scorable_plan` gives it.
     data_sets : optional
         What the plan's data sets show, as `benchmark.plan.shown.data_sets` gives it; one that is
         missing shows its nominal condition alone.

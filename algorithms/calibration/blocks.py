@@ -170,7 +170,7 @@ def splits(fold: NDArray[np.int64]) -> list[tuple[NDArray[np.bool_], NDArray[np.
     return found
 
 
-def best(
+def best_candidate(
     candidates: Sequence[Candidate], error: Callable[[Candidate], float], by: str
 ) -> tuple[Candidate, float]:
     """Return the candidate with the smallest error on what was left out, and that error.

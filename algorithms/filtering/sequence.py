@@ -342,7 +342,7 @@ class SunFilter(Model):
         return Track(
             sun=states[:, 6:9],
             deviation_deg=np.degrees(np.sqrt(0.5 * (variance[:, 0] + variance[:, 1]))),
-            read=read,
+            is_read=read,
             squared_innovation=squared,
             series=np.cumsum(~follows) - int(count > 0 and not follows[0]),
             drift=states[:, 12 : 12 + drifts],
@@ -352,12 +352,12 @@ class SunFilter(Model):
 
     def _answers(self, track: Track) -> Floats:
         """Directions of rows that were read, from a series' second reading on."""
-        total = np.cumsum(track.read)
+        total = np.cumsum(track.is_read)
         start = np.zeros(int(track.series.max()) + 1)
         first = np.r_[True, np.diff(track.series) > 0]
-        start[track.series[first]] = (total - track.read)[first]
+        start[track.series[first]] = (total - track.is_read)[first]
         counted = total - start[track.series]
-        held = track.read & (counted >= _FEWEST_READ) & (track.deviation_deg <= self.worst_deg)
+        held = track.is_read & (counted >= _FEWEST_READ) & (track.deviation_deg <= self.worst_deg)
         return np.where(held[:, None], track.sun, np.nan)
 
     def _known(self, columns: dict[str, Floats]) -> Floats:

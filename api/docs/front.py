@@ -158,7 +158,7 @@ def _distance() -> str:
     rows = list(ERROR_BUDGET.read().values())
     ratios = [row["rms_deg"] / bound_of(row) for row in rows]
     low, middle, high = statistics.quantiles(ratios, n=4)
-    near = sum(verdict(row).near for row in rows)
+    near = sum(verdict(row).is_near_bound for row in rows)
     return (
         f"**On {near} of {len(rows)} data sets the best pipeline is within {NEAR:g} times the "
         f"physical limit.** Its error is {middle:.1f} times the Cramer-Rao bound "

@@ -78,19 +78,19 @@ class Knowledge:
     @cached_property
     def resolutions(self) -> Mapping[str, Resolution]:
         """What is scored of each study, by key."""
-        from benchmark.plan.combinations import scorable  # noqa: PLC0415 - loads the simulator
+        from benchmark.plan.combinations import scorable_plan  # noqa: PLC0415 - loads the simulator
         from benchmark.plan.shown import data_sets  # noqa: PLC0415 - likewise
 
         return resolve_all(
-            scorable(), data_sets=data_sets(), catalogue=self.catalogue, facts=self.facts
+            scorable_plan(), data_sets=data_sets(), catalogue=self.catalogue, facts=self.facts
         )
 
     @cached_property
     def evidence(self) -> Evidence:
         """What is measured of pairs of values, what could be, and what cannot."""
-        from benchmark.plan.combinations import scorable  # noqa: PLC0415 - loads the simulator
+        from benchmark.plan.combinations import scorable_plan  # noqa: PLC0415 - loads the simulator
 
-        return Evidence(self.catalogue, self.measurements.pipelines, scorable())
+        return Evidence(self.catalogue, self.measurements.pipelines, scorable_plan())
 
     @cached_property
     def measured_pipelines(self) -> Measured:
@@ -165,12 +165,12 @@ class KnowledgeOfAll(Knowledge):
     @cached_property
     def resolutions(self) -> Mapping[str, Resolution]:
         """What is scored of each study, by key."""
-        from benchmark.plan.combinations import scorable  # noqa: PLC0415 - loads the simulator
+        from benchmark.plan.combinations import scorable_plan  # noqa: PLC0415 - loads the simulator
         from benchmark.plan.shown import data_sets  # noqa: PLC0415 - likewise
 
         ours, facts = self._survey.resolutions, (self._survey.facts, self.facts)
         shown, catalogue = data_sets(), self.catalogue
-        later = resolve_later(scorable(), *facts, data_sets=shown, catalogue=catalogue)
+        later = resolve_later(scorable_plan(), *facts, data_sets=shown, catalogue=catalogue)
         return {**ours, **later}
 
     @property

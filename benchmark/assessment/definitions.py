@@ -70,7 +70,7 @@ class Definition:
     larger_is_better: bool = False
 
     @property
-    def measured(self) -> bool:
+    def has_experiment(self) -> bool:
         """Whether there is an experiment."""
         return bool(self.source)
 
@@ -91,7 +91,7 @@ class Definition:
         measured
             2, 1 or 0; None where nothing is measured.
         """
-        if not self.measured:
+        if not self.has_experiment:
             return self.measure
         beyond = (self.judged == "claimed" and survey == NOT) or (
             self.judged == "failed" and measured == FULL
@@ -100,7 +100,7 @@ class Definition:
 
     def limits(self) -> str:
         """Say the limits in words, and where they are no judgement."""
-        if not self.measured:
+        if not self.has_experiment:
             return ""
         how = "at least" if self.larger_is_better else "at most"
         unit = f" {self.unit}" if self.unit else ""

@@ -57,7 +57,7 @@ class DrawnRequirement:
 
     Attributes
     ----------
-    asked
+    requirements
         The requirements.
     best_deg
         Least error by brute force; infinite where no measured pipeline meets them.
@@ -71,7 +71,7 @@ class DrawnRequirement:
         or its availability is too low), and the ratio to the best that the answer states.
     """
 
-    asked: Asked
+    requirements: Asked
     best_deg: float
     best_there_deg: float
     own_ratio: float
@@ -79,7 +79,7 @@ class DrawnRequirement:
     stated_ratio: Mapping[Sort, float | None]
 
     @property
-    def kept(self) -> bool:
+    def is_consistent(self) -> bool:
         """Whether the best is first by measurement, and the usual answer states its regret."""
         if not math.isclose(self.first_deg["measured"], self.best_deg, rel_tol=SAME):
             return False

@@ -23,7 +23,7 @@ from benchmark.datasets import Preset, Samples, UnknownDatasetError
 from benchmark.datasets.checksums import CHECKSUMS, differences, read_checksums, sha256
 from benchmark.datasets.export import CARD, ExportError, card_of, export, read_card
 from benchmark.datasets.export_arrays import read_archive, table_text
-from benchmark.datasets.pins import BOUND_TOLERANCE, Pin, Place, alike
+from benchmark.datasets.pins import BOUND_TOLERANCE, Pin, Place, bounds_agree
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.metrics.score import store
 from benchmark.progress import ProgressCallback, silent
@@ -197,7 +197,7 @@ def _unpinned(
     if entry["samples"] == pin.n:
         if entry["data_hash"] != pin.data_hash:
             yield f"hash of the data is {entry['data_hash']}, of the published {pin.data_hash}"
-        elif pin.split == "test" and not alike(pin.bound_deg, _rms(arrays)):
+        elif pin.split == "test" and not bounds_agree(pin.bound_deg, _rms(arrays)):
             yield f"bound_rms_deg is {_rms(arrays)}, of the published {pin.bound_deg}"
     elif entry["samples"] >= HEAD and (head := head_hash(_samples(arrays))) != pin.head_hash:
         yield f"hash of the first {HEAD} samples is {head}, of the published {pin.head_hash}"
@@ -297,7 +297,7 @@ def _is_number(value: Any) -> bool:
 
 def _alike(one: Any, other: Any) -> bool:
     known = (one is None or _is_number(one)) and (other is None or _is_number(other))
-    return known and alike(one, other)
+    return known and bounds_agree(one, other)
 
 
 def _rms(arrays: Mapping[str, NDArray[Any]]) -> float | None:

@@ -280,7 +280,7 @@ class Preset:
         pattern = self.fixed_pattern(condition)
         streams = NoiseStreams.named(*self._of_unit(*self.streams, condition, split))
         # passes over the same poses share their light where light is remembered
-        poses = len(self.repeats.chosen(self._tested))
+        poses = len(self.repeats.pose_indices(self._tested))
         size = poses if split == REPEAT else self.batch or BATCH
         batch = sensor.observe(scene.part(0, size), pattern, streams)
         # filled batch by batch: joining a list of batches would hold everything twice

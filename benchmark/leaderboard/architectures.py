@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from benchmark.metrics.ranking import Spread
+from benchmark.metrics.ranking import UnitErrors
 from benchmark.metrics.score import is_available
 from registry.measured_pipelines import PartialAnswer, finer_for
 
@@ -106,7 +106,10 @@ def _quote(ranked: Sequence[Sequence[Row]]) -> float | None:
         for row in rows
         if row["group"] is not None and is_available(row)
         for even, odd in [
-            (Spread(tuple(row["unit_rms_deg"][::2])), Spread(tuple(row["unit_rms_deg"][1::2])))
+            (
+                UnitErrors(tuple(row["unit_rms_deg"][::2])),
+                UnitErrors(tuple(row["unit_rms_deg"][1::2])),
+            )
         ]
         if even.own_deg is not None and odd.own_deg is not None
     ]

@@ -30,7 +30,7 @@ from benchmark.results.components import current
 from benchmark.results.csv_tables import Row
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import pinning
-from benchmark.running.experiment import Recorded, due, experiments
+from benchmark.running.experiment import RecordedExperiment, experiments, list_due
 from benchmark.running.kernels import update_with_older_kernels
 from benchmark.running.runner import RunInterruptedError
 from benchmark.sweeps.differences import differences
@@ -270,13 +270,13 @@ def _outdated(store: Store, parts: Parts) -> Iterator[Difference]:
     there = {"/".join(place) for place in pinning.places(parts)}
     yield from _unlike(store.pins_path.name, pinned, there, "pinned")
     for name, kind in experiments().items():
-        if issubclass(kind, Recorded) and _is_of(kind, store):
+        if issubclass(kind, RecordedExperiment) and _is_of(kind, store):
             should = f"renewed by `python -m benchmark.experiments {name}`"
-            for cell, why in due(kind(store.directory, parts)):
+            for cell, why in list_due(kind(store.directory, parts)):
                 yield Difference(kind.record.name, str(cell), why, should)
 
 
-def _is_of(kind: type[Recorded[Any]], store: Store) -> bool:
+def _is_of(kind: type[RecordedExperiment[Any]], store: Store) -> bool:
     """Say whether a record has an experiment; others than the published one need only sweeps."""
     wanted = store.directory == PUBLISHED or kind is Sweeps
     return wanted or (store.directory / kind.record.name).is_file()

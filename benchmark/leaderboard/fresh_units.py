@@ -70,7 +70,7 @@ def first_groups(
     for dataset, group in groupby(ranked, key=lambda cell: cell.dataset):
         board = list(group)
         logs = _logs(board, scores, range(scope.UNITS))
-        leader = paired.best(logs)
+        leader = paired.best_method(logs)
         groups, means = paired.groups(logs, leader), np.nanmean(logs, axis=1)
         order = sorted(range(len(board)), key=lambda at: float(means[at]))
         first = [board[at] for at in order if groups[at] == 1 and at != leader]
@@ -95,7 +95,7 @@ def score_fresh_units(
     found = []
     for dataset, cells in boards.items():
         logs = _logs(cells, measured, FRESH)
-        best = paired.best(logs)
+        best = paired.best_method(logs)
         holds = not paired.separate(logs, best)[0]
         over = float(paired.over(logs, best)[0])
         pipelines = sum(cell.dataset == dataset for cell in scope.first(known))

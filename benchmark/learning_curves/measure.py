@@ -64,7 +64,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Learnt:
+class CurveErrors:
     """Errors of one pipeline by unit, draw and size.
 
     Attributes
@@ -98,7 +98,7 @@ class _Part:
     context: Context | None
 
 
-def measure(task: Task) -> list[Learnt]:
+def measure(task: Task) -> list[CurveErrors]:
     """Calibrate every leader of a data set on every subset of poses, and score it.
 
     Raises
@@ -210,11 +210,11 @@ def _learnt(
     units: Sequence[Sequence[Sequence[_Point]]],
     *,
     in_order: bool,
-) -> Learnt:
+) -> CurveErrors:
     def table(name: str, kind: Any) -> NDArray[Any]:
         return np.array([[[getattr(p, name) for p in d] for d in u] for u in units], dtype=kind)
 
-    return Learnt(
+    return CurveErrors(
         leader,
         steps,
         in_order,

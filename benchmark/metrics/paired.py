@@ -62,7 +62,7 @@ def logarithms(errors_deg: Sequence[Sequence[float | None]]) -> Floats:
     return found
 
 
-def best(logs: Floats) -> int:
+def best_method(logs: Floats) -> int:
     """Return the place of the method with the least mean log error, of those with the most units.
 
     Parameters
@@ -105,7 +105,7 @@ def groups(logs: Floats, leader: int) -> list[int | None]:
     while len(left):
         group += 1
         some = logs[left]
-        first = int(np.flatnonzero(left == leader)[0]) if group == 1 else best(some)
+        first = int(np.flatnonzero(left == leader)[0]) if group == 1 else best_method(some)
         apart = separate(some, first)
         for place in left[~apart]:
             found[place] = group

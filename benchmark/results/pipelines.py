@@ -20,7 +20,7 @@ from registry.measured_pipelines import MeasuredPipeline, Score
 from registry.requirements import NEEDS
 
 _PLAIN = tuple(
-    f.name for f in dataclasses.fields(Score) if f.name not in {"rms_deg", "available", "cones"}
+    f.name for f in dataclasses.fields(Score) if f.name not in {"rms_deg", "is_available", "cones"}
 )
 #: Half field of view of a sensor that is made for all directions.
 ALL_DIRECTIONS_DEG = 180.0

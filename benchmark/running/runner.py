@@ -155,7 +155,7 @@ def measure_missing(
     done = 0
     if missing:
         with terminal_progress() if progress is None else nullcontext(progress) as report:
-            expected = Durations.read([record.store]).expected(missing)
+            expected = Durations.read([record.store]).seconds_by_task(missing)
             counted = _Count(report, len(missing), sum(expected.values()))
             for stage in filter(None, stages):
                 tasks = tasks_of(stage, parts, record.pins, kept)

@@ -21,7 +21,7 @@ from stand_ins import (
     stand_ins,
 )
 
-from benchmark.plan.combinations import scorable
+from benchmark.plan.combinations import scorable_plan
 from benchmark.plan.parts import installed_parts
 from benchmark.plan.shown import data_sets
 from registry.fidelity.grading import GRADES, Grade, tally, tally_text
@@ -209,7 +209,7 @@ def test_grades_are_counted_nearest_first() -> None:
 
 @pytest.fixture(scope="module")
 def everything() -> dict[str, Resolution]:
-    return resolve_all(scorable(), data_sets=data_sets())
+    return resolve_all(scorable_plan(), data_sets=data_sets())
 
 
 def test_grades_of_the_survey_follow_from_their_departures(

@@ -7,7 +7,7 @@ from types import MappingProxyType
 import pytest
 from stand_ins import EXTRACTORS, MODELS, planned, stand_ins
 
-from benchmark.plan.combinations import cells, scorable
+from benchmark.plan.combinations import cells, scorable_plan
 from benchmark.plan.parts import installed_parts
 from benchmark.plan.shown import data_sets
 from registry.catalogue import catalogue
@@ -137,14 +137,14 @@ def test_detectors_and_masks_go_together_only_as_the_study_combined_them(facts_o
 
 @pytest.fixture(scope="module")
 def everything() -> dict[str, Resolution]:
-    return resolve_all(scorable(), data_sets=data_sets())
+    return resolve_all(scorable_plan(), data_sets=data_sets())
 
 
 def test_the_plan_by_architecture_is_the_plan() -> None:
     presets = installed_parts().presets
     announced = {
         (dataset, *pair, *architecture)
-        for architecture, pairs in scorable().items()
+        for architecture, pairs in scorable_plan().items()
         for pair, datasets in pairs.items()
         for dataset in datasets
     }
@@ -160,7 +160,7 @@ def test_all_129_studies_resolve_each_with_a_cell(
 ) -> None:
     assert list(everything) == list(survey.studies)
     assert len(everything) == 129
-    plan = scorable()
+    plan = scorable_plan()
     for key, resolution in everything.items():
         study = survey.studies[key]
         assert resolution.pipelines, key

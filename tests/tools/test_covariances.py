@@ -10,9 +10,16 @@ import pytest
 
 from algorithms.measurement import Measurement
 from tools.bench import covariances
-from tools.bench.covariances import Calibrated, extractors, measure, print_table, sets, verdicts
+from tools.bench.covariances import (
+    CovarianceResult,
+    extractors,
+    measure,
+    print_table,
+    sets,
+    verdicts,
+)
 
-ROW = Calibrated("shapes", "disc", "mirror", 1.04, 2000, 2000)
+ROW = CovarianceResult("shapes", "disc", "mirror", 1.04, 2000, 2000)
 
 
 def test_what_is_judged_is_the_distance_from_one_where_enough_answers_tell():

@@ -19,10 +19,10 @@ from algorithms.calibration.coded.identity_kernel import (
     Code,
     Indices,
     Room,
-    dark,
+    are_near,
+    find_dark,
     leave,
     name_of,
-    near,
     partners_of,
     places_of_spot,
     room_for,
@@ -66,7 +66,7 @@ def _pair(spots: Floats, count: int, most: int, code: Code) -> Indices:
         sets += 1
         fewest = -1
         for j in range(i + 1, count):
-            if mates[j] < 0 and near(spots, i, j, code[5][0]):
+            if mates[j] < 0 and are_near(spots, i, j, code[5][0]):
                 number = spacings(spots, i, j, code)
                 if fewest < 0 or number < fewest:
                     fewest = number
@@ -176,7 +176,9 @@ def _evidence(  # noqa: PLR0917 - Numba takes no keyword-only ones
         found += _widths(spots, count, places, partners, noise)
     if found < least:
         return -math.inf
-    closed = dark(count, at, int(min((found - least) / noise[_DARK], 1e6)), code, view, partners)
+    closed = find_dark(
+        count, at, int(min((found - least) / noise[_DARK], 1e6)), code, view, partners
+    )
     found += _dark_odds(closed, noise)
     return found if found >= least else -math.inf
 
@@ -272,7 +274,7 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if math.isnan(found[k, 0]) or best < noise[_MASK] - count * noise[_VIEW] + noise[_ODDS]:
             continue
         explained = count - partners_of(spots, count, found[k], code, own)
-        lit = explained + dark(count, found[k], len(code[0]), code, view, own)
+        lit = explained + find_dark(count, found[k], len(code[0]), code, view, own)
         if explained >= max(float(agreeing), share * count, share * lit):
             verdicts[k] = READ if best - second >= noise[_ODDS] else SEVERAL
         if verdicts[k] != READ:

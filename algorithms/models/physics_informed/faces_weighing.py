@@ -20,7 +20,7 @@ _SPREADS = np.concatenate([[0.0], 10.0 ** np.arange(-3.0, 6.01, 0.125)])
 
 
 @dataclass(frozen=True)
-class Weighing:
+class ResidualWeights:
     """Weights of residuals that share, sample by sample, an unknown strength of the light.
 
     A lamp flickers and drifts, the Sun is nearer in January: sample i of K faces reads

@@ -26,7 +26,7 @@ from api.schema.table import columns_of
 from benchmark.contract import UnknownNameError
 from benchmark.metrics.rings import EDGES_DEG
 from benchmark.results.store import PUBLISHED
-from benchmark.results.unchanged import Unchanged
+from benchmark.results.unchanged import KeptAnswer
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -260,10 +260,10 @@ def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only:
 
 def _architectures(query: Asked, form: Format) -> None:
     """Print the best pipeline of each architecture, as the service answers it."""
-    unchanged = Unchanged(
+    unchanged = KeptAnswer(
         f"architectures {sorted(query.items())}", [PUBLISHED, working_directory()]
     )
-    if form is Format.TABLE and (known := unchanged.known()):
+    if form is Format.TABLE and (known := unchanged.recall()):
         _tell(*known)
         return
     from api.cli.asking import ask, knowledge  # noqa: PLC0415 - slow; measuring does without it

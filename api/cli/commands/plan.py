@@ -16,7 +16,7 @@ from api.cli.measuring import (
     stores_of,
 )
 from api.cli.table_output import Format, FormatOption, emit
-from benchmark.results.unchanged import Unchanged
+from benchmark.results.unchanged import KeptAnswer
 from benchmark.suites.selection import suite as suite_named
 
 if TYPE_CHECKING:
@@ -50,8 +50,8 @@ def plan(
     """
     chosen = suite_named(str(suite))
     stores = stores_of(store)
-    unchanged = Unchanged(f"plan {chosen.name}", [one.directory for one in stores])
-    planned = unchanged.known() if form is Format.TABLE else None
+    unchanged = KeptAnswer(f"plan {chosen.name}", [one.directory for one in stores])
+    planned = unchanged.recall() if form is Format.TABLE else None
     if planned is not None:
         typer.echo(f"{chosen.name}: {_count(0, planned)}", err=True)
         return

@@ -7,7 +7,7 @@ from algorithms.extractors.frames.multi_spot import aperture_grid_kernel as kern
 from algorithms.extractors.frames.multi_spot import evidence_kernel as evidence
 from algorithms.extractors.frames.multi_spot import view_kernel as view
 from algorithms.extractors.frames.multi_spot.aperture_pattern import lattice
-from algorithms.extractors.frames.multi_spot.records import Matches, Seen, Views
+from algorithms.extractors.frames.multi_spot.records import Matches, SpotLists, Views
 
 #: Asymmetric, so that no turn, mirror or shift of it is itself.
 APERTURES = ((-30.0, -8.0, 6.0), (-9.0, 7.0, 6.0), (4.0, -6.0, 8.0), (22.0, 9.0, 6.0))
@@ -44,7 +44,7 @@ def test_the_nearest_aperture_is_that_of_all():
     for x, y in rng.uniform((-45, -20), (40, 22), (400, 2)):
         away = (TABLE[:, 0] - x) ** 2 + (TABLE[:, 1] - y) ** 2
         for reach in (3.0, 9.0):
-            a, squared = kernel.nearest(known, x, y, reach)
+            a, squared = kernel.nearest_aperture(known, x, y, reach)
             if away.min() < reach**2:
                 assert a == away.argmin()
                 assert squared == pytest.approx(away.min())
@@ -106,7 +106,7 @@ def matched(spots, shape, tolerance=1.0, share=0.3):
     for x, y, *_ in spots:
         frame[0, round(y) - 1 : round(y) + 2, round(x) - 1 : round(x) + 2] = 2.0
     none = np.zeros(1, dtype=np.int64)
-    seen = Seen(listed, np.array([len(spots)]), np.empty((1, 4, 3)), none)
+    seen = SpotLists(listed, np.array([len(spots)]), np.empty((1, 4, 3)), none)
     all_of = 1, 24, len(APERTURES)
     matches = Matches(np.empty((1, 24, 2)), np.empty(all_of, dtype=np.int32), none.copy())
     kernel.match(seen, known, shape, tolerance, 4.0, matches)

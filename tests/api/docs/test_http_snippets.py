@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tools.bench.service import serving
+from tools.bench.service import serve
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "http.md"
 SNIPPETS = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
@@ -14,7 +14,7 @@ SNIPPETS = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), 
 @pytest.fixture(scope="module")
 def address(atlas):
     # the application has loaded what it answers, or does with its first answer
-    with serving([atlas.app], lifespan="off") as (connection,):
+    with serve([atlas.app], lifespan="off") as (connection,):
         yield f"http://{connection.host}:{connection.port}"
 
 

@@ -13,7 +13,7 @@ import pytest
 
 from api.figures.catalogue import evidence_map
 from api.http.measurements import Measurements
-from benchmark.plan.combinations import cells, scorable
+from benchmark.plan.combinations import cells, scorable_plan
 from benchmark.results.store import PUBLISHED, Store
 from registry.catalogue import catalogue
 from registry.evidence import Evidence
@@ -51,7 +51,7 @@ def measurements() -> Measurements:
 
 @pytest.fixture(scope="module")
 def evidence(measurements: Measurements) -> Evidence:
-    return Evidence(catalogue(), measurements.pipelines, scorable())
+    return Evidence(catalogue(), measurements.pipelines, scorable_plan())
 
 
 def place(row: Any) -> tuple[str, str, str]:

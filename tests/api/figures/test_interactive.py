@@ -12,7 +12,7 @@ import pytest
 from api.figures.catalogue import MATRIX, TITLES, evidence_map, figure
 from api.figures.interactive import specification
 from api.http.measurements import Measurements
-from benchmark.plan.combinations import scorable
+from benchmark.plan.combinations import scorable_plan
 from registry.catalogue import catalogue
 from registry.evidence import Evidence
 from registry.studies import facts
@@ -20,7 +20,7 @@ from registry.studies import facts
 
 @functools.cache
 def evidence():
-    return Evidence(catalogue(), Measurements().pipelines, scorable())
+    return Evidence(catalogue(), Measurements().pipelines, scorable_plan())
 
 
 def drawn(name):

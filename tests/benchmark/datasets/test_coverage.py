@@ -12,7 +12,7 @@ import pytest
 import survey_data
 from benchmark import datasets
 from benchmark.datasets.coverage import REASONS, CoverageError, coverage
-from benchmark.plan.combinations import scorable
+from benchmark.plan.combinations import scorable_plan
 from registry.resolution import resolve_all
 from registry.studies import facts
 
@@ -92,7 +92,7 @@ def test_every_pair_that_a_study_has_is_simulated():
 
 
 def test_a_data_set_follows_studies_of_its_own_architecture():
-    resolved = resolve_all(scorable())
+    resolved = resolve_all(scorable_plan())
     for preset in map(datasets.get, datasets.names()):
         for key in preset.follows:
             pairs = {(p.detector, p.mask) for p in resolved[key].pipelines}

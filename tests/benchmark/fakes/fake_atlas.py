@@ -75,7 +75,7 @@ class FakeRepeats:
 
     passes: int = 4
 
-    def chosen(self, test_samples: int) -> Any:
+    def pose_indices(self, test_samples: int) -> Any:
         return np.arange(0, test_samples, 20)
 
 

@@ -17,7 +17,7 @@ import time
 from pathlib import Path
 
 from tools.faults.kills.commands import COMMANDS, preload
-from tools.faults.kills.pairs import PAIRS, Met, meet
+from tools.faults.kills.pairs import PAIRS, PairResult, meet
 from tools.faults.kills.report import complaints, report
 from tools.faults.kills.trials import Kill, kills
 
@@ -58,7 +58,7 @@ def main(arguments: list[str] | None = None) -> int:
     return 1 if wrong else 0
 
 
-def _keep(path: Path | None, found: list[Kill], met: list[Met]) -> None:
+def _keep(path: Path | None, found: list[Kill], met: list[PairResult]) -> None:
     """Write the report of what has been tried so far."""
     if path is not None:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -19,7 +19,7 @@ from algorithms.extractors.frames.mirror.lines_kernel import (
     departure_noise,
     fold,
     mirror_below,
-    padded,
+    padded_length,
 )
 from algorithms.extractors.frames.mirror.records import Box, State
 from algorithms.kernels.records import Records
@@ -164,7 +164,7 @@ def leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
         box, state = boxes[k], states[k]
         if not np.isfinite(state.xx):
             continue
-        n, p = padded(box), core_start(box)
+        n, p = padded_length(box), core_start(box)
         before = state.gain
         kept = keep[k, :n]
         variance, light = _noise(

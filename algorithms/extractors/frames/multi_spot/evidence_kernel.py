@@ -8,7 +8,7 @@ import numpy as np
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
-from algorithms.extractors.frames.multi_spot.aperture_grid_kernel import nearest
+from algorithms.extractors.frames.multi_spot.aperture_grid_kernel import nearest_aperture
 from algorithms.extractors.frames.multi_spot.records import (
     Flags,
     FrameView,
@@ -16,7 +16,7 @@ from algorithms.extractors.frames.multi_spot.records import (
     Lattice,
     Matches,
     Partners,
-    Seen,
+    SpotLists,
     States,
     Views,
     Work,
@@ -29,8 +29,7 @@ FOUND, NOTHING, SEVERAL, UNCERTAIN = 0, 1, 2, 3
 #: Price of a dark line of apertures, and of one of it: one over those in view, within limits.
 _DARKNESS, _DARK_ONE = 1.0, (0.25, 0.34)
 #: The same of lit ones that a displacement leaves unexplained: no reflection is as bright as they.
-#: For an uncertain answer suffices a line of them that may be one of its own seen twice: as a dark
-#: one.
+#: A line of them that may be one of its own seen twice makes an answer uncertain: as a dark one.
 _LIGHT, _LIGHT_ONE, _DOUBLED = 2.0, (0.8, 0.8), 1.0
 #: The same of a Sun out of the field.
 _OUTSIDE = 1.0
@@ -86,7 +85,7 @@ def _dark_alone(  # noqa: PLR0917 - Numba takes no keyword-only ones
         faults[a] = dim or state[a] == DARK
         if faults[a]:
             x, y = apertures[a, 0] + away_x, apertures[a, 1] + away_y
-            faults[a] = nearest(lattice, x, y, reach)[0] < 0
+            faults[a] = nearest_aperture(lattice, x, y, reach)[0] < 0
             some |= faults[a]
     return some
 
@@ -314,7 +313,7 @@ def _take_stock(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 @compiled
 def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    seen: Seen,
+    seen: SpotLists,
     lattice: Lattice,
     tolerance: float,
     limits: tuple[float, float],

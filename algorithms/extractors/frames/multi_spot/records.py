@@ -44,7 +44,7 @@ class Lattice(NamedTuple):
     lines: Indices
 
 
-class Seen(NamedTuple):
+class SpotLists(NamedTuple):
     """Spots of frames.
 
     Attributes
