@@ -133,13 +133,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
             f"{one.leader.extractor} + {one.leader.model} "
             f"{'holds' if one.holds else 'is behind'} on fresh units, {one.over:.3f} of the first\n"
         )
-    holding = sum(one.holds for one in found)
+    holds = sum(one.holds for one in found)
     small = sum(one.first < 0.1 * one.pipelines for one in found)
     sys.stdout.write(
-        f"{holding} of {len(found)} leaders are in the first group on units {FRESH[0]} to "
+        f"{holds} of {len(found)} leaders are in the first group on units {FRESH[0]} to "
         f"{FRESH[-1]}; on {small} boards the first group has fewer than 10 % of the pipelines\n"
     )
-    return 0 if holding >= 0.95 * len(found) else 1
+    return 0 if holds >= 0.95 * len(found) else 1
 
 
 if __name__ == "__main__":

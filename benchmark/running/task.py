@@ -126,7 +126,7 @@ def measure(task: Task) -> TaskResult:
             data = _data(task, truth)
         except Exception as error:  # noqa: BLE001 - any error of a dataset is a row with its reason
             return _failed(task, error, "generating data")
-        answers = [_kept_answers(task, model) for model in task.models]
+        answers = [_stored_answers(task, model) for model in task.models]
         if None in answers:
             try:
                 extractor, features = _extractor(task), _features(task)
@@ -202,7 +202,7 @@ def _features(task: Task) -> dict[str, Floats]:
     return found
 
 
-def _kept_answers(task: Task, model: Scored) -> Answers | None:
+def _stored_answers(task: Task, model: Scored) -> Answers | None:
     found: Answers | None = None
     if task.kept is not None:
         found = task.kept.get(PREDICTIONS, _cell(task, model))

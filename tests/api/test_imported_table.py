@@ -76,7 +76,7 @@ import survey_data
 from api.deposit import against_record, bundle
 from api.deposit.verification import verify
 from api.guide import site
-from benchmark.plan.combinations import scorable
+from benchmark.plan.combinations import scorable_plan
 from registry.resolution import resolve_all
 from registry.studies import facts
 
@@ -87,7 +87,8 @@ wrong += against_record.differences(made.directory, frames=("pd-slit",), anew=Fa
 warnings = site.build(out / "guide") if not site.missing_builders() else []
 json.dump({"survey": survey_data.__file__, "files": made.files, "wrong": wrong,
            "warnings": warnings, "pages": len(list((out / "guide").rglob("*.html"))),
-           "resolved": len(resolve_all(scorable())), "studies": len(facts().studies)}, sys.stdout)
+           "resolved": len(resolve_all(scorable_plan())),
+           "studies": len(facts().studies)}, sys.stdout)
 """
 
 

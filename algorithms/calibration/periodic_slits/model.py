@@ -1,4 +1,4 @@
-"""`RulerModel`: slits on a raster over two lines of pixels, read together."""
+"""`PeriodicSlitModel`: slits on a raster over two lines of pixels, read together."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from algorithms.models.geometric.single_slit import DeflectedSlits
 
 
 @dataclass
-class RulerModel(DeflectedSlits):
+class PeriodicSlitModel(DeflectedSlits):
     """A model of the assembly of equal slits that are read together.
 
     Parameters

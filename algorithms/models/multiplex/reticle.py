@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from algorithms.calibration.periodic_slits.model import RulerModel
+from algorithms.calibration.periodic_slits.model import PeriodicSlitModel
 from algorithms.calibration.periodic_slits.pattern_fit import Raster
 from algorithms.calibration.slit_sensor import NEEDS
 from algorithms.contract import (
@@ -19,7 +19,7 @@ from algorithms.documented import documented
 
 @documented
 @dataclass
-class ReticlePhase(RulerModel):
+class ReticlePhase(PeriodicSlitModel):
     """Reticle of equal slits over a line of pixels, located by the phase of its light.
 
     All slits are read together: the light is correlated with the reticle's period, so that N slits

@@ -1,4 +1,4 @@
-"""Optical verniers: slits that gain on the marks of a fixed ruler of pixels (Periodic)."""
+"""Optical verniers: slits that gain on the marks of a fixed scale of pixels (Periodic)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from algorithms.calibration.periodic_slits.model import RulerModel
+from algorithms.calibration.periodic_slits.model import PeriodicSlitModel
 from algorithms.calibration.periodic_slits.pattern_fit import Raster
 from algorithms.calibration.slit_sensor import NEEDS
 from algorithms.contract import (
@@ -21,7 +21,7 @@ from algorithms.documented import documented
 
 @documented
 @dataclass
-class OpticalVernier(RulerModel):
+class OpticalVernier(PeriodicSlitModel):
     """Vernier: slits slightly farther apart than marks of three pixels each.
 
     Slits cross the marks one after the other as the light moves, so few large pixels resolve fine

@@ -127,7 +127,7 @@ def test_the_part_that_contributes_most_is_named_with_what_was_measured(errors, 
     )
 
 
-def test_what_is_near_its_bound_is_held_back_by_nothing():
+def test_what_is_near_its_bound_has_no_leading_part():
     found = sentences.verdict(_row() | {"rms_deg": 0.006})
     assert found.is_near_bound
     assert found.sentence == (

@@ -136,7 +136,7 @@ class Diodes:
     def truth(self, condition: str, split: str) -> Any:
         if split == "repeat":
             test = self.truth(condition, "test")
-            return np.tile(test[self.repeats.chosen(self.n)], (self.repeats.passes, 1))
+            return np.tile(test[self.repeats.pose_indices(self.n)], (self.repeats.passes, 1))
         rng = np.random.default_rng([self.seed, *f"{self.name} {condition} {split}".encode()])
         off = np.deg2rad(25.0) * np.sqrt(rng.random(self.n))
         around = 2 * np.pi * rng.random(self.n)

@@ -43,7 +43,7 @@ def trial(number: int) -> Trial:
 
 def _error(seen: ConditionView, half_deg: float, model: LinearFit | AxisPolynomial) -> float:
     known, asked = (
-        Poses.of(seen, VoltageBalance, split).chosen(seen.incidence_deg(split) <= half_deg)
+        Poses.of(seen, VoltageBalance, split).select(seen.incidence_deg(split) <= half_deg)
         for split in ("calibration", "test")
     )
     return rms(errors(model, known, asked))

@@ -57,7 +57,7 @@ def _sensor(preset: Preset, unit: int) -> tuple[float, float, list[list[float]]]
     seen = ConditionView(with_true_directions(preset), unit=unit)
     known, asked = (Poses.of(seen, VoltageBalance, split) for split in ("calibration", "test"))
     rng, rows = generator("claims", "C05", preset.name, unit), np.arange(len(known.sun))
-    few = [known.chosen(draw(rows, FEW, rng)) for _ in range(DRAWS)]
+    few = [known.select(draw(rows, FEW, rng)) for _ in range(DRAWS)]
     return (
         worse(known, asked),
         geometric([worse(poses, asked) for poses in few]),

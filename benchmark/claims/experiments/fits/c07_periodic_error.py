@@ -89,7 +89,7 @@ class _Sensor:
     def measured(self, waves: float, timed: bool = False) -> WaveResult:
         """Measure both models under so many waves over the field; run times where timed."""
         known, asked = (
-            poses.moved(self._wave(poses.features, waves)) for poses in (self.known, self.asked)
+            poses.shift(self._wave(poses.features, waves)) for poses in (self.known, self.asked)
         )
         unknowing = rms(errors(FourierBalance(extrapolation=0.1), self.known, asked))
         fourier, polynomial = FourierBalance(), AxisPolynomial()

@@ -53,7 +53,7 @@ def trial(number: int) -> Trial:
     known, asked = (_read(seen, split) for split in ("calibration", "test"))
     narrow = np.full(len(asked.whole), math.nan)
     narrow[asked.whole] = errors(
-        AxisNetworks(), known.displaced.chosen(known.whole), asked.displaced.chosen(asked.whole)
+        AxisNetworks(), known.displaced.select(known.whole), asked.displaced.select(asked.whole)
     )
     wide = errors(AxisNetworks(), known.displaced, asked.displaced)
     plain = errors(AxisNetworks(), known.averaged, asked.averaged)

@@ -1,6 +1,6 @@
 """Picture of errors along a flight: single samples, and filters of the same readings.
 
-``python -m benchmark.sweeps.flight_picture docs/filters-in-orbit.svg`` draws it anew.
+``python -m benchmark.sweeps.flight_plot docs/filters-in-orbit.svg`` draws it anew.
 """
 
 from __future__ import annotations
