@@ -7,7 +7,7 @@ from algorithms.extractors.frames.multi_spot import aperture_grid_kernel as kern
 from algorithms.extractors.frames.multi_spot import evidence_kernel as evidence
 from algorithms.extractors.frames.multi_spot import view_kernel as view
 from algorithms.extractors.frames.multi_spot.aperture_pattern import lattice
-from algorithms.extractors.frames.multi_spot.records import Matches, SpotLists, Views
+from algorithms.extractors.frames.multi_spot.records import Matches, Seen, Views
 
 #: Asymmetric, so that no turn, mirror or shift of it is itself.
 APERTURES = ((-30.0, -8.0, 6.0), (-9.0, 7.0, 6.0), (4.0, -6.0, 8.0), (22.0, 9.0, 6.0))
@@ -106,7 +106,7 @@ def matched(spots, shape, tolerance=1.0, share=0.3):
     for x, y, *_ in spots:
         frame[0, round(y) - 1 : round(y) + 2, round(x) - 1 : round(x) + 2] = 2.0
     none = np.zeros(1, dtype=np.int64)
-    seen = SpotLists(listed, np.array([len(spots)]), np.empty((1, 4, 3)), none)
+    seen = Seen(listed, np.array([len(spots)]), np.empty((1, 4, 3)), none)
     all_of = 1, 24, len(APERTURES)
     matches = Matches(np.empty((1, 24, 2)), np.empty(all_of, dtype=np.int32), none.copy())
     kernel.match(seen, known, shape, tolerance, 4.0, matches)

@@ -17,7 +17,7 @@ from algorithms.extractors.frames.multi_spot.image_correlation import (
 )
 from algorithms.extractors.frames.multi_spot.mean_shift import MeanShift
 from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
-from algorithms.extractors.frames.multi_spot.records import SpotLists
+from algorithms.extractors.frames.multi_spot.records import Seen
 from algorithms.extractors.frames.multi_spot.spots_kernel import segment
 
 WIDTH = 9.0
@@ -48,7 +48,7 @@ def test_spots_are_scipys_labels_of_touching_pixels(seed, density, height, width
     spots, cuts = np.full((1, 900, 4), np.nan), np.full((1, 900, 3), np.nan)
     counts, cut_counts = np.zeros((2, 1), dtype=np.int64)
     maxima, level = frame.max(axis=1)[None], np.array([9.0])
-    segment(frame[None], maxima, level, 2.0, 40.0, SpotLists(spots, counts, cuts, cut_counts))
+    segment(frame[None], maxima, level, 2.0, 40.0, Seen(spots, counts, cuts, cut_counts))
 
     above = np.maximum(frame - 9.0, 0.0)
     labels, number = ndimage.label(above > 0, structure=np.ones((3, 3)))
@@ -76,7 +76,7 @@ def test_more_spots_than_there_is_room_for_are_said_so():
     spots, cuts = np.empty((1, 5, 4)), np.empty((1, 5, 3))
     counts, cut_counts = np.zeros((2, 1), dtype=np.int64)
     maxima, level = frame.max(axis=2), np.array([1.0])
-    segment(frame, maxima, level, 1.0, 4.0, SpotLists(spots, counts, cuts, cut_counts))
+    segment(frame, maxima, level, 1.0, 4.0, Seen(spots, counts, cuts, cut_counts))
     assert counts[0] == -1
 
 

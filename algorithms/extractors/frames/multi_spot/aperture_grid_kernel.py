@@ -14,7 +14,7 @@ from algorithms.extractors.frames.multi_spot.records import (
     Lattice,
     Matches,
     Partners,
-    SpotLists,
+    Seen,
 )
 
 Votes = NDArray[np.int16]
@@ -259,7 +259,7 @@ def _explanations(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 @compiled
 def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    seen: SpotLists,
+    seen: Seen,
     lattice: Lattice,
     frame: tuple[int, int],
     tolerance: float,

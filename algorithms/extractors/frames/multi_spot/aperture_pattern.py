@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from algorithms.extractors.frames.multi_spot.pattern_memory import found_once
-from algorithms.extractors.frames.multi_spot.records import Lattice, Matches, SpotLists, Views
+from algorithms.extractors.frames.multi_spot.records import Lattice, Matches, Seen, Views
 from algorithms.row_arithmetic import medians
 
 Apertures = tuple[tuple[float, float, float], ...]
@@ -233,9 +233,9 @@ def _find_pattern(
     return Pattern(displacement, positions, reason >= evidence_kernel.SEVERAL)
 
 
-def room_for_spots(count: int, room: int, cuts: int) -> SpotLists:
+def room_for_spots(count: int, room: int, cuts: int) -> Seen:
     """Room for the spots of so many frames: whole ones and cut ones of each."""
-    return SpotLists(
+    return Seen(
         np.zeros((count, room, 4)),
         np.empty(count, dtype=np.int64),
         np.zeros((count, cuts, 3)),

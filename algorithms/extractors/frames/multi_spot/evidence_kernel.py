@@ -16,7 +16,7 @@ from algorithms.extractors.frames.multi_spot.records import (
     Lattice,
     Matches,
     Partners,
-    SpotLists,
+    Seen,
     States,
     Views,
     Work,
@@ -313,7 +313,7 @@ def _take_stock(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 @compiled
 def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    seen: SpotLists,
+    seen: Seen,
     lattice: Lattice,
     tolerance: float,
     limits: tuple[float, float],

@@ -44,7 +44,7 @@ class Lattice(NamedTuple):
     lines: Indices
 
 
-class SpotLists(NamedTuple):
+class Seen(NamedTuple):
     """Spots of frames.
 
     Attributes

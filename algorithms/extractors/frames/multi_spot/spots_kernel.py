@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
-from algorithms.extractors.frames.multi_spot.records import SpotLists
+from algorithms.extractors.frames.multi_spot.records import Seen
 from algorithms.kernels.records import Records, record
 from algorithms.kernels.regions import join_runs, root_of
 
@@ -116,7 +116,7 @@ def segment(  # noqa: PLR0917 - Numba takes no keyword-only ones
     levels: Floats,
     least: float,
     most: float,
-    seen: SpotLists,
+    seen: Seen,
 ) -> None:
     """Write the spots of each frame, in the order their first pixels are read.
 

@@ -14,7 +14,7 @@ from algorithms.extractors.frames.multi_spot.records import (
     Flags,
     Matches,
     Partners,
-    SpotLists,
+    Seen,
     States,
     Views,
 )
@@ -135,7 +135,7 @@ def _usual(spots: Floats, partner: Partners, bright: Flags) -> float:
 def look(  # noqa: PLR0917 - Numba takes no keyword-only ones
     frames: NDArray[Any],
     levels: Floats,
-    seen: SpotLists,
+    seen: Seen,
     apertures: Floats,
     margin: float,
     share: float,
