@@ -79,7 +79,7 @@ def with_spots(
     said = [f"{len(names)} frames were read by {settings.readings.extractor}"]
     if colours:
         said.append(f"{colours} frames in colour were read by their luminance")
-    said += [f"{count} frames: {doubt}" for doubt, count in sorted(flags.items())]
+    said += [f"{count} frames: {name}" for name, count in sorted(flags.items())]
     columns = {**table.columns, **dict(zip(SPOT, spots.T, strict=True))}
     return replace(table, columns=columns), said
 

@@ -14,7 +14,7 @@ from algorithms.contract import Floats, UnusableDataError
 from api.calibrate.readings import Readings
 from api.calibrate.uncertainty import tangent_offsets
 
-Word = Literal["good", "model misfit", "poses missing", "conventions in doubt"]
+Word = Literal["good", "model misfit", "poses missing", "conventions uncertain"]
 #: Ratio of the difference of two halves' fits to what their stated uncertainties add up to.
 RATIO_GOOD, RATIO_MISFIT = (0.7, 1.4), 2.0
 #: Share of the residuals' variance that a pattern explains to be named, and its significance.
@@ -49,7 +49,7 @@ class Verdict:
 
     Attributes
     ----------
-    word : {"good", "model misfit", "poses missing", "conventions in doubt"}
+    word : {"good", "model misfit", "poses missing", "conventions uncertain"}
     reason : str
         In one or two sentences.
     split_ratio : float
@@ -126,7 +126,7 @@ def judge(  # noqa: PLR0917 - the numbers it is made of
     return Verdict(word, reason, split_ratio, patterns, next_poses)
 
 
-def with_doubt(verdict: Verdict, found: str) -> Verdict:
+def with_uncertain_conventions(verdict: Verdict, found: str) -> Verdict:
     """Return a verdict that is good only if the file's conventions are as stated after all.
 
     Parameters
@@ -137,7 +137,7 @@ def with_doubt(verdict: Verdict, found: str) -> Verdict:
         The convention that the file seems to follow instead, in a sentence.
     """
     reason = f"{found}: apply that or state it; as stated, {verdict.reason}"
-    return replace(verdict, word="conventions in doubt", reason=reason)
+    return replace(verdict, word="conventions uncertain", reason=reason)
 
 
 def patterns_in(offsets: Floats, readings: Readings) -> tuple[Pattern, ...]:

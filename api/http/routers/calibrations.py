@@ -52,7 +52,7 @@ _BODY: dict[str, Any] = {
                     "apply": {
                         **_TEXT,
                         "enum": ["true", "false"],
-                        "description": "Whether conventions found beyond doubt are applied.",
+                        "description": "Whether conventions found with certainty are applied.",
                     },
                     "answer": {
                         **_TEXT,

@@ -121,9 +121,9 @@ def test_no_model_calls_a_mirrored_file_good_without_leave_to_mirror(model, tmp_
     mirrored = (spots(SUN, 1) - CENTRE) * [-1, 1] + CENTRE
     path = write(tmp_path / "mirrored.csv", HEADER, mirrored, ANGLES)
     found = calibrate([path], models=(model,))
-    assert found.verdict.word == "conventions in doubt"
+    assert found.verdict.word == "conventions uncertain"
     assert "mirror-x" in found.verdict.reason
-    assert calibrate([path], models=(model,), apply=True).verdict.word != "conventions in doubt"
+    assert calibrate([path], models=(model,), apply=True).verdict.word != "conventions uncertain"
 
 
 @pytest.mark.parametrize("seed", range(5))
