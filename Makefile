@@ -19,7 +19,7 @@ export OMP_NUM_THREADS = 1
 export OPENBLAS_NUM_THREADS = 1
 export MKL_NUM_THREADS = 1
 export NUMBA_NUM_THREADS = 1
-# Some containers forbid bytecode. Each process would then compile what it imports, pip having left
+# Some containers forbid bytecode. Each process would then compile what it imports, as pip left
 # that to the first import: seconds for each worker, and for each process that tests start.
 unexport PYTHONDONTWRITEBYTECODE
 

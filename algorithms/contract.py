@@ -106,7 +106,7 @@ class Extractor(Protocol):
         ...
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
-        """Features as `extract`, their covariance and doubts; see `algorithms.measurement`.
+        """Features as `extract`, their covariance and flags; see `algorithms.measurement`.
 
         A single sample is a batch of one; `bad`, True for a bad pixel, has one sample's shape.
         """

@@ -1,4 +1,4 @@
-"""What an extractor found, how sure it is, and why it doubts: the result of `Extractor.measure`."""
+"""Result of `Extractor.measure`: features, their covariance and flags."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _COLOURS = 3, 4
 class QualityFlag(enum.IntFlag):
     """Why an answer is missing or may be wrong; several at once are joined by ``|``.
 
-    A row of NaN carries its reason; beside a finite answer a doubt says what to be careful of.
+    A row of NaN carries its reason; a flag beside a finite answer says what to be careful of.
     """
 
     NO_SPOT = 1
@@ -42,13 +42,13 @@ class QualityFlag(enum.IntFlag):
 
     @classmethod
     def _missing_(cls, value: object) -> Any:
-        """Take NumPy's integers, as `Measurement.doubts` holds them."""
+        """Take NumPy's integers, as `Measurement.flags` holds them."""
         return super()._missing_(int(value) if isinstance(value, np.integer) else value)
 
 
 @dataclass(frozen=True)
 class Measurement:
-    """Features with their covariance and doubts.
+    """Features with their covariance and flags.
 
     What `Extractor.measure` returns; one row, matrix and flag a sample.
 
@@ -59,8 +59,8 @@ class Measurement:
     covariance : ndarray, shape (N, F, F)
         Of the errors that noise makes, in the features' units squared; NaN where the method states
         none.
-    doubts : ndarray of int, shape (N,)
-        Joined `QualityFlag` flags; 0 for none. ``QualityFlag(doubts[k])`` names them.
+    flags : ndarray of int, shape (N,)
+        Joined `QualityFlag` members; 0 for none. ``QualityFlag(flags[k])`` names them.
 
     Raises
     ------
@@ -70,7 +70,7 @@ class Measurement:
     Examples
     --------
     >>> found = Measurement(np.array([[3.0, 4.0]]), np.eye(2)[None], np.array([8]))
-    >>> QualityFlag(found.doubts[0]) is QualityFlag.SATURATED
+    >>> QualityFlag(found.flags[0]) is QualityFlag.SATURATED
     True
     >>> found.deviations
     array([[1., 1.]])
@@ -78,14 +78,14 @@ class Measurement:
 
     features: NDArray[np.float64]
     covariance: NDArray[np.float64]
-    doubts: NDArray[np.int64]
+    flags: NDArray[np.int64]
 
     def __post_init__(self) -> None:
         n, f = self.features.shape
-        if self.covariance.shape != (n, f, f) or self.doubts.shape != (n,):
+        if self.covariance.shape != (n, f, f) or self.flags.shape != (n,):
             raise ValueError(
-                f"features {self.features.shape} go with covariance ({n}, {f}, {f}) and doubts "
-                f"({n},); got {self.covariance.shape} and {self.doubts.shape}"
+                f"features {self.features.shape} go with covariance ({n}, {f}, {f}) and flags "
+                f"({n},); got {self.covariance.shape} and {self.flags.shape}"
             )
 
     @property
@@ -294,5 +294,5 @@ def measurement_of(
     features = extract(batch)
     n, f = features.shape
     missing = np.isnan(features).any(axis=1)
-    doubts = np.where(missing, int(QualityFlag.NO_SPOT), 0).astype(np.int64)
-    return Measurement(features, np.full((n, f, f), np.nan), doubts)
+    flags = np.where(missing, int(QualityFlag.NO_SPOT), 0).astype(np.int64)
+    return Measurement(features, np.full((n, f, f), np.nan), flags)

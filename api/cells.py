@@ -13,16 +13,16 @@ LIST_SEPARATOR = "; "
 _PLAIN = frozenset((str, int, bool, type(None)))
 
 
-def plain(value: Any) -> Any:
+def plain_value(value: Any) -> Any:
     """Return a value made of what JSON knows: sets sorted, numbers that are not finite None."""
     if type(value) in _PLAIN:
         return value
     if isinstance(value, Mapping):
-        return {str(name): plain(member) for name, member in value.items()}
+        return {str(name): plain_value(member) for name, member in value.items()}
     if isinstance(value, set | frozenset):
-        return sorted(plain(member) for member in value)
+        return sorted(plain_value(member) for member in value)
     if isinstance(value, Sequence) and not isinstance(value, str):
-        return [plain(member) for member in value]
+        return [plain_value(member) for member in value]
     if isinstance(value, bool | int | str) or value is None:
         return value
     if isinstance(value, float):
@@ -37,8 +37,8 @@ def cell(value: Any) -> str:  # noqa: PLR0911 - a kind of value each
     Numbers have all their digits; the record spells its own shorter, to be compared by line
     (`benchmark.results.csv_tables.format_cell`).
     """
-    # What most cells hold is told by its exact type: tables have hundreds of thousands of them, and
-    # asking whether text is a mapping takes longer than to write it.
+    # What most cells hold is known by its exact type: tables have hundreds of thousands of them,
+    # and asking whether text is a mapping takes longer than to write it.
     kind = type(value)
     if kind is str:
         return NONE_STATED if value == NO_IMPLEMENTATION_STATED else str(value)
@@ -49,7 +49,7 @@ def cell(value: Any) -> str:  # noqa: PLR0911 - a kind of value each
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, Mapping):
-        return json.dumps(plain(value), ensure_ascii=False)
+        return json.dumps(plain_value(value), ensure_ascii=False)
     if isinstance(value, Sequence | frozenset | set) and not isinstance(value, str):
-        return LIST_SEPARATOR.join(cell(member) for member in plain(value))
+        return LIST_SEPARATOR.join(cell(member) for member in plain_value(value))
     return str(value)

@@ -1,4 +1,4 @@
-"""Two to four pipelines of a data set, or architectures, side by side."""
+"""Compare two to four pipelines of a data set, or architectures."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from benchmark.leaderboard.architectures import architectures as best_of_each
-from registry.measured_pipelines import Partly, finer_for
+from registry.measured_pipelines import PartialAnswer, finer_for
 from registry.taxonomy import InvalidValueError
-from survey_data.nearest import nearest
+from survey_data.nearest import nearest_name
 
 if TYPE_CHECKING:
     from api.http.knowledge import Knowledge
@@ -43,26 +43,27 @@ def compare_pipelines(
 
     Parameters
     ----------
-    known : what is measured
+    known : scores and studies
     dataset : name of a standard data set
-    pipelines : "extractor:model" each, by the names of the implementations
-    condition : of the data set; its first by default
+    pipelines : two to four "extractor:model", by the names of the implementations
+    condition : condition of the data set; its first by default
 
     Returns
     -------
     dict
-        ``dataset``, ``condition`` and ``items``, a row a pipeline in the order given: names, error,
-        bound, availability, times, studies; ``needed_poses`` and what else its learning curve says
-        (None where it has none, as all but the leaders); ``conditions``, its error and availability
-        by condition; ``rings``, its error by angle off the boresight. Numbers are None where
-        undefined; ``reason`` says why a pipeline has no score. ``over_least`` is its error over the
-        least of those compared. ``finer`` is of architectures alone, and None here.
+        ``dataset``, ``condition`` and ``items``: one item a pipeline, in the given order, with
+        names, error, bound, availability, times and studies. ``needed_poses`` and the other members
+        of its learning curve are None for a pipeline without a curve (most have none).
+        ``conditions`` holds error and availability by condition, ``rings`` the error by angle from
+        the boresight. Undefined numbers are None; ``reason`` says why a pipeline has no score.
+        ``over_least`` is its error divided by the smallest error compared. ``finer`` is for
+        architectures only, and None here.
 
     Raises
     ------
     InvalidValueError
-        For a condition the data set lacks, fewer than two or more than four pipelines, and one that
-        is not scored there.
+        If the data set has no such condition, if there are fewer than two or more than four
+        pipelines, or if a pipeline is not scored on the data set.
     """
     _count("pipeline", pipelines)
     rows = known.measurements.board_rows(dataset)
@@ -76,35 +77,34 @@ def compare_pipelines(
         if pipeline not in by:
             expected = f"extractor{SEPARATOR}model, a pipeline that is scored on {dataset}"
             raise InvalidValueError(
-                "pipeline", pipeline, expected, nearest(pipeline, sorted(by), cutoff=0)
+                "pipeline", pipeline, expected, nearest_name(pipeline, sorted(by), cutoff=0)
             )
     items = [_item(known, by[pipeline], condition) for pipeline in pipelines]
-    return {"dataset": dataset, "condition": condition, "items": _beside(items)}
+    return {"dataset": dataset, "condition": condition, "items": _with_ratio(items)}
 
 
 def compare_architectures(known: Knowledge, architectures: Sequence[str]) -> dict[str, Any]:
-    """Compare architectures, each by its best pipeline under nominal conditions.
+    """Compare architectures, each by its most accurate pipeline under nominal conditions.
 
     Parameters
     ----------
-    known : what is measured
-    architectures : "detector:mask" each
+    known : scores and studies
+    architectures : two to four "detector:mask"
 
     Returns
     -------
     dict
-        As `compare_pipelines`, with ``dataset`` and ``condition`` None, as each item has its own:
-        of several data sets of an architecture the one whose best pipeline errs least. Fields of
-        view differ (``half_fov_deg``); ``rings`` compare at equal angles. ``finer`` is what errs
-        far less on the part of the samples that it answers, by the leaderboard's rule; that of a
-        condition is any pipeline of the data set that errs far less there and answers half of the
-        samples or more, as another than the nominal best is chosen where that condition is asked
-        for (`registry.measured_pipelines.finer_for`). None where nothing does.
+        As `compare_pipelines`, but ``dataset`` and ``condition`` are None: each item has its own
+        data set, the one with the smallest error if an architecture has several. Fields of view
+        differ (``half_fov_deg``); ``rings`` compare at equal angles. ``finer`` is a pipeline below
+        the availability limit that is far more accurate on the samples it answers, or None
+        (`registry.measured_pipelines.finer_for`); each condition has its own.
 
     Raises
     ------
     InvalidValueError
-        For fewer than two or more than four, and for one that neither a data set nor a study has.
+        If there are fewer than two or more than four architectures, or if neither a data set nor a
+        study has one of them.
     """
     _count("architecture", architectures)
     best = {
@@ -121,7 +121,7 @@ def compare_architectures(known: Knowledge, architectures: Sequence[str]) -> dic
         items.append(_architecture(known, name, best.get(name)))
     for item, name in zip(items, architectures, strict=True):
         item["proposed"] = sorted(proposed.get(name, ()))
-    return {"dataset": None, "condition": None, "items": _beside(items)}
+    return {"dataset": None, "condition": None, "items": _with_ratio(items)}
 
 
 def _architecture(known: Knowledge, name: str, best: Mapping[str, Any] | None) -> dict[str, Any]:
@@ -144,9 +144,9 @@ def _architecture(known: Knowledge, name: str, best: Mapping[str, Any] | None) -
     board = known.measurements.board_rows(best["dataset"])
     rows = {row["condition"]: row for row in board if _name(row) == wanted}
     item = _item(known, rows, known.measurements.presets[best["dataset"]].conditions[0])
-    for condition, told in item["conditions"].items():
+    for condition, scored in item["conditions"].items():
         others = [row for row in board if row["condition"] == condition and _name(row) != wanted]
-        told["finer"] = _finer(others, told["rms_deg"])
+        scored["finer"] = _finer(others, scored["rms_deg"])
     finer = {name: best[f"finer_{name}"] for name in _FINER}
     return {**item, "finer": None if finer["dataset"] is None else finer}
 
@@ -158,12 +158,12 @@ def _finer(rows: Sequence[Mapping[str, Any]], error_deg: float | None) -> dict[s
     found = finer_for(
         error_deg,
         [
-            Partly(row["rms_deg"], row["availability"] or 0.0, row)
+            PartialAnswer(row["rms_deg"], row["availability"] or 0.0, row)
             for row in rows
             if row["rms_deg"] is not None
         ],
     )
-    return None if found is None else {name: found.of[name] for name in _FINER}
+    return None if found is None else {name: found.subject[name] for name in _FINER}
 
 
 def _item(
@@ -173,7 +173,7 @@ def _item(
     if condition in rows:
         row = rows[condition]
     else:
-        # Not planned there: the pipeline is named, and that is all.
+        # Not planned under this condition: names only.
         named = ("dataset", "extractor", "model", "half_fov_deg")
         row = {
             **dict.fromkeys(_SCORE),
@@ -199,7 +199,7 @@ def _item(
 
 
 def _rings(row: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return the error by off-axis angle, of the rings that have one."""
+    """Return the error of each ring of off-axis angles that has one."""
     found = []
     for name, value in row.items():
         parts = name.split("_")  # rms_<inner>_<outer>_deg
@@ -209,8 +209,8 @@ def _rings(row: Mapping[str, Any]) -> list[dict[str, Any]]:
     return found
 
 
-def _beside(items: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return items with their error over the least of them."""
+def _with_ratio(items: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Add to each item its error divided by the smallest of them."""
     least = min((i["rms_deg"] for i in items if i["rms_deg"] is not None), default=None)
     for item in items:
         error = item["rms_deg"]
@@ -231,5 +231,5 @@ def _count(what: str, given: Sequence[str]) -> None:
 
 def _one_of(what: str, given: str, words: Sequence[str]) -> None:
     if given not in words:
-        near = nearest(given, words, cutoff=0)
+        near = nearest_name(given, words, cutoff=0)
         raise InvalidValueError(what, given, f"one of {', '.join(words)}", near)

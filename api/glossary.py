@@ -104,7 +104,7 @@ def words() -> tuple[Term, ...]:
 def _survey() -> tuple[Term, ...]:
     """Return the values of the taxonomy; "None" with what it is none of."""
     taxonomy = facts().taxonomy
-    told = {one.term: one.meaning for one in words()}
+    meanings = {one.term: one.meaning for one in words()}
     # One word for a mask and for a model means two things.
     times = Counter(value for attribute in _KINDS for value in taxonomy.values(attribute))
     found = []
@@ -114,8 +114,8 @@ def _survey() -> tuple[Term, ...]:
             category = taxonomy.category(attribute, value)
             if value == "None":
                 meaning = f"{kind}: the study has none, or none is needed."
-            elif value in told and times[value] == 1:
-                meaning = told[value]
+            elif value in meanings and times[value] == 1:
+                meaning = meanings[value]
             elif category and category not in {"Sensor goal", "Mask", "Performance", value}:
                 meaning = f"{kind}, {category.lower() if attribute != 'model' else category}."
             else:

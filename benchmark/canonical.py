@@ -32,7 +32,7 @@ def canonical_json(value: object) -> str:
         For a value that has no canonical spelling.
     """
     return json.dumps(
-        plain(value, _round_to, _arguments),
+        to_plain(value, _round_to, _arguments),
         sort_keys=True,
         separators=(",", ":"),
         ensure_ascii=False,
@@ -45,7 +45,7 @@ def digest(value: object) -> str:
     return hashlib.sha256(canonical_json(value).encode()).hexdigest()[:DIGITS]
 
 
-def plain(value: object, number: Number, members: Members) -> Any:
+def to_plain(value: object, number: Number, members: Members) -> Any:
     """Return a value as JSON has it: objects, arrays, strings, numbers, booleans and null.
 
     Parameters
@@ -67,11 +67,11 @@ def plain(value: object, number: Number, members: Members) -> Any:
     if isinstance(value, float):
         return number(float(value))
     if isinstance(value, Enum):
-        return plain(value.value, number, members)
+        return to_plain(value.value, number, members)
     if isinstance(value, np.generic):
-        return plain(value.item(), number, members)
+        return to_plain(value.item(), number, members)
     if isinstance(value, np.ndarray):
-        return {"dtype": value.dtype.str, "values": plain(value.tolist(), number, members)}
+        return {"dtype": value.dtype.str, "values": to_plain(value.tolist(), number, members)}
     return _plain_container(value, number, members)
 
 
@@ -80,13 +80,13 @@ def _plain_container(value: object, number: Number, members: Members) -> Any:
         value = members(value)
     if isinstance(value, Mapping):
         return {
-            str(plain(name, number, members)): plain(item, number, members)
+            str(to_plain(name, number, members)): to_plain(item, number, members)
             for name, item in value.items()
         }
     if isinstance(value, AbstractSet):
-        return sorted((plain(item, number, members) for item in value), key=canonical_json)
+        return sorted((to_plain(item, number, members) for item in value), key=canonical_json)
     if isinstance(value, list | tuple):
-        return [plain(item, number, members) for item in value]
+        return [to_plain(item, number, members) for item in value]
     raise TypeError(f"{type(value).__name__} has no canonical spelling: {value!r}")
 
 

@@ -13,7 +13,7 @@ from typing import Any, Protocol
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats, Observation, SensorGeometry
-from survey_data.nearest import nearest
+from survey_data.nearest import nearest_name
 
 #: Every split of a dataset.
 SPLITS = ("calibration", "test", "repeat")
@@ -94,7 +94,7 @@ class Repeats(Protocol):
         """Times every pose is observed, pass after pass."""
         ...
 
-    def chosen(self, test_samples: int) -> NDArray[Any]:
+    def pose_indices(self, test_samples: int) -> NDArray[Any]:
         """Places (P,) of the poses in a test split of so many samples."""
         ...
 
@@ -188,7 +188,7 @@ class UnknownNameError(LookupError):
         self.what = what
         self.name = name
         self.known = tuple(sorted(known))
-        self.nearest = nearest(name, self.known)
+        self.nearest = nearest_name(name, self.known)
         known_ones = f"known: {', '.join(self.known)}"
         hint = f"did you mean {self.nearest!r}?" if self.nearest else known_ones
         super().__init__(f"no {what} named {name!r}; {hint}")

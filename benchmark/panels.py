@@ -164,6 +164,6 @@ def dots(colour: str, size: float, *, edge: float = 0.0, hollow: bool = False) -
     }
 
 
-def dashed(colour: str, width: float) -> dict[str, Any]:
+def bound_style(colour: str, width: float) -> dict[str, Any]:
     """Return the style of a bound."""
     return {"color": colour, "linestyle": _DASHED, "linewidth": width}

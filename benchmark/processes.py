@@ -1,10 +1,10 @@
-"""Processes that end as they should: with the process they work for, and tidily when told to.
+"""Processes that end as they should: with the process they work for, and tidily on a signal.
 
-A process that is killed cannot end those that work for it. So each asks the system to be told when
-its coordinator ends (Linux's ``PR_SET_PDEATHSIG``), and elsewhere, or should that be missed, looks
-every half second. A request to terminate is taken as Ctrl-C is, so that what is half made goes.
-What does not end so within two seconds, such as a compiler at work, is ended hard: what is on disk
-is then as safe as when the process is killed.
+A process that is killed cannot end those that work for it. So each asks the system for a signal
+when its coordinator ends (Linux's ``PR_SET_PDEATHSIG``), and elsewhere, or should that be missed,
+looks every half second. A request to terminate is taken as Ctrl-C is, so that what is half made
+goes. What does not end so within two seconds, such as a compiler at work, is ended hard: what is on
+disk is then as safe as when the process is killed.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _EVERY_S = 0.5
 #: How long a process has to end tidily, seconds.
 _TIDY_S = 0.8
 
-#: Signals that told this process to end.
+#: Signals that ask this process to end.
 _told: list[int] = []
 #: Whether the end was spoken of.
 _said = threading.Event()
@@ -51,7 +51,7 @@ def terminate_as_interrupt() -> None:
 
 
 def termination_requested() -> bool:
-    """Say whether a signal told this process to end.
+    """Say whether a signal asked this process to end.
 
     Whatever error ends it then is of that signal: some code makes another of a KeyboardInterrupt,
     such as an ImportError where an extension module was being loaded.
@@ -60,7 +60,7 @@ def termination_requested() -> bool:
 
 
 def end_if_requested() -> None:
-    """Raise KeyboardInterrupt once more where a signal told this process to end.
+    """Raise KeyboardInterrupt once more where a signal asked this process to end.
 
     The first one is lost where it meets a callback of a library, as of the compiler.
     """
@@ -74,7 +74,7 @@ def exit_code() -> int:
 
 
 def say_interrupted(line: str = "interrupted") -> None:
-    """Write on standard error that this process was told to end."""
+    """Write on standard error that this process was asked to end."""
     _said.set()
     with suppress(OSError, ValueError):  # nobody is left to read it
         sys.stderr.write(f"{line}\n")

@@ -110,14 +110,14 @@ def differences(folder: Path, names: Collection[str], *, required: bool = False)
         return [Problem(FILE, None, None, "the file is missing")] if required else []
     found: list[Problem] = []
     for name in sorted({*names, *entries}):
-        told = list(_of_file(folder, name, entries.get(name), name in names))
+        summary = list(_of_file(folder, name, entries.get(name), name in names))
         if (
-            told
+            summary
             and coming is not None
             and not list(_of_file(folder, name, coming.get(name), name in names))
         ):
             continue  # a killed command had come this far
-        found += told
+        found += summary
     return found
 
 
@@ -252,9 +252,9 @@ def finish_interrupted_write(folder: Path) -> None:
     path = folder / NEXT
     if not path_exists(path):
         return
-    coming, standing = read_manifest(folder, NEXT) or {}, read_manifest(folder) or {}
-    for entries, act in ((coming, lambda: path.replace(folder / FILE)), (standing, path.unlink)):
-        names = {*coming, *standing}
+    coming, present = read_manifest(folder, NEXT) or {}, read_manifest(folder) or {}
+    for entries, act in ((coming, lambda: path.replace(folder / FILE)), (present, path.unlink)):
+        names = {*coming, *present}
         if not any(list(_of_file(folder, n, entries.get(n), n in entries)) for n in names):
             act()
             return
@@ -311,8 +311,8 @@ def _places(name: str, data: bytes, entry: Entry) -> Iterator[Problem]:
     while end < min(len(now), len(then)) - same and now[-1 - end] == then[-1 - end]:
         end += 1
     here, there = len(now) - same - end, len(then) - same - end
-    told = f"{here or 'no'} rows where there were {there or 'none'}"
-    yield Problem(name, same + 1, None, f"{told}: {BY_HAND}")
+    summary = f"{here or 'no'} rows where there were {there or 'none'}"
+    yield Problem(name, same + 1, None, f"{summary}: {BY_HAND}")
 
 
 def _said(line: bytes, columns: tuple[str, ...], data: bytes) -> str:

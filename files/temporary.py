@@ -2,8 +2,9 @@
 
 What is being made lies beside its place under a hidden name that ends in `SUFFIX` and carries the
 number of the process, for people. `tempfile` removes nothing after a kill, and whether a process
-still lives cannot be told from its number, which may be another's by now or another container's:
-so the maker holds a lock on the name (`files.locks`), and what nobody has locked is stale.
+still lives cannot be distinguished from its number, which may be another's by now or another
+container's: so the maker holds a lock on the name (`files.locks`), and what nobody has locked is
+stale.
 """
 
 from __future__ import annotations

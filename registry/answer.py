@@ -46,7 +46,7 @@ class RankedPlace(NamedTuple):
     key : what it is ranked by
     number : its position in the table
     studies : its studies (bits) that have what is asked of studies
-    stated : those of them whose stated numbers keep the limits, too
+    studies_within_limits : those of them whose stated numbers keep the limits, too
     start, end : its part of `Answer.designs`
     best, row : the design with the smallest error and its pipeline, by position; -1 for none
     rank_of_best : of that design on the architecture
@@ -59,7 +59,7 @@ class RankedPlace(NamedTuple):
     number: int
     place: Place
     studies: int
-    stated: int
+    studies_within_limits: int
     start: int
     end: int
     best: int
@@ -86,9 +86,9 @@ class Answer:
     def __init__(self, question: Question, sort: Sort) -> None:
         self.question = question
         self.sort = sort
-        self.best = question.best
-        counting = question.studies, question.all_stated
-        every, used = question.arrays.ranked(self.best, *counting, sort)
+        self.best = question.best_pipelines
+        counting = question.studies, question.studies_within_limits
+        every, used = question.arrays.rank_designs(self.best, *counting, sort)
         self.designs: Positions = every[question.matching_designs[every]]
         self._used = used
         self._of = question.arrays.place_of[self.designs]
@@ -105,9 +105,9 @@ class Answer:
         if not self.count:
             return []
         question, best, sort = self.question, self.best, self.sort
-        include, advising = question.asked.include, question.advice_key
+        include, advising = question.requirements.include, question.advice_key
         tasks, of_errors = include.get("task", ()), "error" in include
-        studies, stated = question.studies, question.all_stated
+        studies, stated = question.studies, question.studies_within_limits
         facts = _place_facts(question.table)
         advice_of = facts.advice(advising)
         starts: list[int] = self._starts.tolist()
@@ -161,7 +161,7 @@ class Answer:
         """Return a design, given by position, with its best pipeline."""
         return self.best.candidate(design)
 
-    def reached(self, values: Numbers) -> list[float]:
+    def least_by_place(self, values: Numbers) -> list[float]:
         """Return the least of some values of designs on each architecture, best first."""
         if values is self.best.error:
             return [place.error_deg for place in self.places]
@@ -169,7 +169,7 @@ class Answer:
         of_start = dict(zip(self._starts.tolist(), least, strict=True))
         return [of_start[place.start] for place in self.places]
 
-    def reached_by(self, place: RankedPlace, values: Numbers) -> int:
+    def design_with_least(self, place: RankedPlace, values: Numbers) -> int:
         """Return the design on an architecture that reaches the least of some values."""
         designs = self.designs[place.start : place.end]
         found = values[designs]
@@ -191,22 +191,25 @@ class Answer:
         return pareto([(-one.studies.bit_count(), one.error_deg) for one in self.places])
 
     @property
-    def untried(self) -> dict[str, tuple[tuple[str, str], ...]]:
+    def untested_architectures(self) -> dict[str, tuple[tuple[str, str], ...]]:
         """Architectures that no data set tries a hazard on, by the hazards asked for."""
         question = self.question
-        return {hazard: question.arrays.untried(hazard) for hazard in question.asked.survive}
+        return {
+            hazard: question.arrays.untested_architectures(hazard)
+            for hazard in question.requirements.survive
+        }
 
     @property
-    def untimed(self) -> int:
+    def untimed_count(self) -> int:
         """How many measured pipelines a limit on latency cannot judge; 0 where none is asked."""
-        if self.question.asked.max_latency_us is None:
+        if self.question.requirements.max_latency_us is None:
             return 0
         return int(np.isinf(self.question.arrays.latency_us).sum())
 
     @cached_property
-    def blocked(self) -> BlockingConstraint | None:
+    def blocking_constraint(self) -> BlockingConstraint | None:
         """Why nothing meets the requirements, if nothing does."""
-        return None if self.places else explain(self.question.table, self.question.asked)
+        return None if self.places else explain(self.question.table, self.question.requirements)
 
 
 class _PlaceFacts:

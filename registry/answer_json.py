@@ -65,7 +65,7 @@ class _ShownArchitecture(NamedTuple):
     units: tuple[bytes, ...]
 
 
-def encoded(value: Any) -> bytes:
+def to_json_bytes(value: Any) -> bytes:
     """Return a value as JSON, what is not finite as null."""
     return to_json(value, inf_nan_mode="null")
 
@@ -82,9 +82,9 @@ class AnswerTexts:
         self.table = table
         self.arrays = design_arrays(table)
         paths = path_table(table.facts)
-        self._left_out = encoded([left.to_dict() for left in paths.left_out])
+        self._left_out = to_json_bytes([left.to_dict() for left in paths.left_out])
         self._places = table.places
-        self._keys = [encoded(key) for key in table.facts.keys]
+        self._keys = [to_json_bytes(key) for key in table.facts.keys]
         self._studies = lru_cache(MOST_TEXTS)(self._studies_text)
         self._paths = PathTexts(paths, self.arrays, self._studies).text
         self._head = lru_cache(MOST_TEXTS)(self._head_text)
@@ -105,25 +105,31 @@ class AnswerTexts:
 
     def document(self, answer: Answer, limit: int | None, calibrations: int | None) -> list[bytes]:
         """Return an answer in parts: the first architectures, the first calibrations of each."""
-        regret, blocked = answer.regret, answer.blocked
+        regret, blocked = answer.regret, answer.blocking_constraint
         untried = {
             hazard: [{"detector": detector, "mask": mask} for detector, mask in pairs]
-            for hazard, pairs in answer.untried.items()
+            for hazard, pairs in answer.untested_architectures.items()
         }
         return [
-            *(b'{"requirements":', answer.question.asked_json),
+            *(b'{"requirements":', answer.question.requirements_json),
             b',"sort":"%b","count":%d,"designs":%d,"architectures":['
             % (answer.sort.encode(), len(answer.places), answer.count),
             *self._architectures(answer, limit, calibrations),
             *(
                 b'],"contradictions":',
-                encoded(against_advice(answer, answer.question.asked.include.get("task", ()))),
+                to_json_bytes(
+                    against_advice(answer, answer.question.requirements.include.get("task", ()))
+                ),
                 b',"regret":',
             ),
-            encoded(None if regret is None else regret.to_dict(regret_words(regret))),
-            *(b',"untried":', encoded(untried), b',"untimed":%d' % answer.untimed),
+            to_json_bytes(None if regret is None else regret.to_dict(regret_words(regret))),
+            *(b',"untried":', to_json_bytes(untried), b',"untimed":%d' % answer.untimed_count),
             *(b',"paths":[', self._paths(answer), b'],"left_out":', self._left_out),
-            *(b',"blocked":', b"null" if blocked is None else encoded(blocked.to_dict()), b"}"),
+            *(
+                b',"blocked":',
+                b"null" if blocked is None else to_json_bytes(blocked.to_dict()),
+                b"}",
+            ),
         ]
 
     def _architectures(
@@ -131,19 +137,23 @@ class AnswerTexts:
     ) -> list[bytes]:
         unbeaten = answer.pareto
         parts: list[bytes] = []
-        for at, shown in enumerate(self._shown(answer, answer.places[:limit], calibrations)):
+        for at, shown in enumerate(self._pack_designs(answer, answer.places[:limit], calibrations)):
             begun, ended = self._architecture(shown)
             flag = b"true" if at in unbeaten else b"false"
             parts += (b'%b{"rank":%d,' % (b"," if at else b"", at + 1), begun, flag, ended)
         return parts
 
-    def _shown(
+    def _pack_designs(
         self, answer: Answer, places: Sequence[RankedPlace], calibrations: int | None
     ) -> Iterator[_ShownArchitecture]:
         """Yield what the text of each architecture depends on."""
         question, best, first_row = answer.question, answer.best, self.arrays.first_row
-        asked = best.errors, question.judged, question.advice_key
-        finer, usual, limit = question.finer, answer.usual, question.asked.largest_deg
+        asked = best.errors, question.judged_requirements, question.advice_key
+        finer, usual, limit = (
+            question.finest_partial_answers,
+            answer.usual,
+            question.requirements.largest_deg,
+        )
         units = b"" if limit is None else best.errors.units_within(limit).tobytes()
         designs, rows = answer.designs.tobytes(), best.row[answer.designs].tobytes()
         size = answer.designs.itemsize
@@ -152,7 +162,7 @@ class AnswerTexts:
             listed = slice(size * place.start, size * min(end, place.end))
             counted = () if limit is None else (place.best, *_unpacked(designs[listed]))
             yield _ShownArchitecture(
-                *(*asked, place.number, place.studies, place.stated, place.measures),
+                *(*asked, place.number, place.studies, place.studies_within_limits, place.measures),
                 *(place.rank_of_best, place.end - place.start),
                 *(finer.get(place.number, -1), usual.get(place.number, (-1, -1))),
                 place.best,
@@ -180,7 +190,7 @@ class AnswerTexts:
             first = of.best, of.row, studies if of.row >= 0 else of.stated
             contradiction = self._contradiction(errors, studies, *of.usual, *first)
         head = self._head(of.number, studies, of.advising)
-        measures = encoded([measure.to_dict() for measure in of.measures])
+        measures = to_json_bytes([measure.to_dict() for measure in of.measures])
         texts = b",".join([b'{"rank":%d%b' % ranked for ranked in enumerate(listed, 1)])
         return (
             b'%b{"rank":%d%b,"pareto":' % (head, of.rank_of_best, best),
@@ -211,7 +221,7 @@ class AnswerTexts:
             "advised": bool(advice),
             "advice": [one.to_dict() for one in advice],
         }
-        return b'%b,"studies":[%b],"best":' % (encoded(members)[1:-1], self._studies(studies))
+        return b'%b,"studies":[%b],"best":' % (to_json_bytes(members)[1:-1], self._studies(studies))
 
     def _contradiction_text(  # noqa: PLR0917 - by these it is kept
         self,
@@ -231,11 +241,11 @@ class AnswerTexts:
         designs = arrays.designs
         said = against_literature(
             arrays.candidate(usual, usual_row, errors),
-            (designs[usual].taken & studies).bit_count(),
+            (designs[usual].users & studies).bit_count(),
             arrays.candidate(best, best_row, errors),
-            (designs[best].taken & best_studies).bit_count(),
+            (designs[best].users & best_studies).bit_count(),
         )
-        return encoded(said)
+        return to_json_bytes(said)
 
     def _calibration_text(  # noqa: PLR0917 - by these it is kept
         self,
@@ -258,7 +268,7 @@ class AnswerTexts:
         units_within : units of each of its pipelines that keep the limit, nothing without one
         """
         of = self.arrays.designs[design]
-        with_model, taken = of.with_model & studies, of.taken & studies
+        with_model, taken = of.with_model & studies, of.users & studies
         counts = (of_place.bit_count(), with_model.bit_count(), taken.bit_count())
         measured = [b"null"]
         if errors is not None:
@@ -272,7 +282,7 @@ class AnswerTexts:
             self._design(design),
             self._studies(taken),
             counts[1],
-            encoded(round(support(*counts), 4)),
+            to_json_bytes(round(support(*counts), 4)),
             measured[0],
             b",".join(measured[1:]),
         )
@@ -285,7 +295,7 @@ class AnswerTexts:
             "model": of.model,
             "advised": [advice.id for advice in of.advice],
         }
-        return b',%b,"studies":[' % encoded(members)[1:-1]
+        return b',%b,"studies":[' % to_json_bytes(members)[1:-1]
 
     def _rows_on_datasets(self, design: int, row: int, errors: PipelineErrors) -> tuple[int, ...]:
         """Return a pipeline of a calibration, and its best on each other data set."""
@@ -301,8 +311,8 @@ class AnswerTexts:
 
     def _pipeline_text(self, row: int, errors: PipelineErrors, finer: int) -> list[bytes]:
         """Return a pipeline in two parts, between them the number of units that keep a limit."""
-        text = encoded(errors.document(row, finer))
-        return text.replace(b'"meeting":null', b'"meeting":\0').split(b"\0")
+        text = to_json_bytes(errors.document(row, finer))
+        return text.replace(b'"within_limit":null', b'"within_limit":\0').split(b"\0")
 
     def _studies_text(self, studies: int) -> bytes:
         """Return the keys of studies (bits), with commas between them."""
@@ -326,7 +336,7 @@ def _ends_text(judged: tuple[str, ...], studied: bool) -> tuple[bytes, bytes]:
     of_studies = "studies" if studied else "advised"
     known = {**dict.fromkeys(OF_STUDIES, of_studies), "properties": "assessed"}
     measured, stated = (
-        b',"basis":%b}' % encoded({name: known.get(name, kind) for name in judged})
+        b',"basis":%b}' % to_json_bytes({name: known.get(name, kind) for name in judged})
         for kind in ("measured", "stated")
     )
     return measured, stated
@@ -364,9 +374,9 @@ def answer_digest(answer: Answer, *shown: object) -> bytes:
     answer : the answer
     shown : what else the JSON depends on
     """
-    told = encoded((answer.sort, *shown))
+    text = to_json_bytes((answer.sort, *shown))
     digest = _texts(answer.question.table).digest
-    return b"%b[%b,%b" % (digest, answer.question.asked_json, told[1:])
+    return b"%b[%b,%b" % (digest, answer.question.requirements_json, text[1:])
 
 
 def _texts(table: DesignTable) -> AnswerTexts:

@@ -102,7 +102,7 @@ def against_advice(answer: Answer, tasks: Sequence[str]) -> tuple[str, ...]:
         if not advised or not others:
             continue
         values = values_of(answer)
-        reached = answer.reached(values)
+        reached = answer.least_by_place(values)
         first, other = (min(side, key=reached.__getitem__) for side in (advised, others))
         mine, theirs = scale * reached[first], scale * reached[other]
         if math.isinf(mine) or mine <= theirs or abs(mine) == abs(theirs):
@@ -140,13 +140,13 @@ def _words(place: RankedPlace) -> str:
 
 
 def _where(answer: Answer, place: RankedPlace, values: Numbers) -> str:
-    row = answer.best.pipeline(answer.reached_by(place, values))
+    row = answer.best.pipeline(answer.design_with_least(place, values))
     pipeline = "" if row is None else f"{pipeline_name(row.extractor, row.model)} on {row.dataset}"
     return f"{_words(place)} ({pipeline})"
 
 
 def _error(candidate: Candidate) -> str:
-    judged = candidate.judged
+    judged = candidate.judgement
     if not math.isfinite(judged.error_deg):
         nominal = None if candidate.row is None else candidate.row.nominal
         if nominal is None or nominal.rms_deg is None or nominal.availability is None:

@@ -50,7 +50,7 @@ class BestPipelines:
         self.limits = limits
         self.errors = arrays.errors(limits.hazards, limits.half_field_deg, limits.draws)
         by_error = self.errors.by_error
-        by_error = by_error[self.errors.keeping(limits)[by_error]]
+        by_error = by_error[self.errors.within_limits(limits)[by_error]]
         designs = arrays.design_of[by_error]
         first = by_error[begins(designs)]
         has = arrays.design_of[first]
@@ -59,18 +59,17 @@ class BestPipelines:
         self.error = np.full(len(arrays.designs), np.inf)
         self.error[has] = self.errors.error_deg[first]
         self.rank = np.unique(self.error, return_inverse=True)[1]
-        key = ((self.rank << 1 | ~arrays.measured) << arrays.design_bits) | arrays.numbers
+        key = ((self.rank << 1 | ~arrays.is_measured) << arrays.design_bits) | arrays.numbers
         key.sort()
         self.at_order = key & ((1 << arrays.design_bits) - 1)
         self.order = np.empty_like(self.at_order)
         self.order[self.at_order] = arrays.numbers
 
-    def ranked(self, studies: int, stated: int, sort: Sort) -> tuple[Positions, Positions]:
+    def rank_designs(self, studies: int, stated: int, sort: Sort) -> tuple[Positions, Positions]:
         """Return all designs by place and rank, and those that a study used by place and use.
 
         The second are measured ones, those first that most studies used; of these the one with the
         smallest error, then the first.
-
 
         What designs are ranked by goes into one number each, the most important part in its
         highest bits: sorting those is many times quicker than sorting by one part after another.
@@ -82,17 +81,17 @@ class BestPipelines:
         sort : what comes first
         """
         arrays = self.arrays
-        many, with_model, taken = arrays.counted(studies)
+        many, with_model, taken = arrays.count_studies(studies)
         if stated != studies:
-            _, with_model_stated, taken_stated = arrays.counted(stated)
-            with_model = np.where(arrays.measured, with_model, with_model_stated)
-            taken = np.where(arrays.measured, taken, taken_stated)
+            _, with_model_stated, taken_stated = arrays.count_studies(stated)
+            with_model = np.where(arrays.is_measured, with_model, with_model_stated)
+            taken = np.where(arrays.is_measured, taken, taken_stated)
         backing = many[arrays.place_of] * with_model * taken
         backed = ((1 << arrays.support_bits) - 1 - backing, arrays.support_bits)
         error, advised = (self.rank, arrays.rank_bits), (arrays.not_advised, 1)
         parts = {
             "measured": (error, advised, backed),
-            "support": ((arrays.not_stated, 1), backed, error, advised),
+            "support": ((arrays.not_specified, 1), backed, error, advised),
             "advice": (error, advised, backed),
         }[sort]
         key = arrays.place_of.astype(np.int64)
@@ -100,7 +99,7 @@ class BestPipelines:
             key = (key << bits) | values
         key.sort()
         every = self.at_order[key & ((1 << arrays.design_bits) - 1)]
-        used = every[(arrays.measured & (taken > 0))[every]]
+        used = every[(arrays.is_measured & (taken > 0))[every]]
         by_use = np.lexsort((self.rank[used], -taken[used], arrays.place_of[used]))
         return every, used[by_use]
 
@@ -147,26 +146,28 @@ class DesignArrays(PipelineTable):
         self.places = places
         self.designs: tuple[Design, ...] = tuple(d for place in places for d in place.designs)
         self.numbers = np.arange(len(self.designs))
-        self.place_of = _repeated([len(place.designs) for place in places])
-        design_of = _repeated([len(design.rows) for design in self.designs])
+        self.place_of = _repeat_positions([len(place.designs) for place in places])
+        design_of = _repeat_positions([len(design.rows) for design in self.designs])
         rows = tuple(row for design in self.designs for row in design.rows)
         super().__init__(rows, self.place_of[design_of], design_of)
         self.first_row = [0, *itertools.accumulate(len(design.rows) for design in self.designs)]
         self.words = studies // WORD_BITS + 1
-        self.taken = self.words_of(design.taken for design in self.designs)
-        self.measured = np.array([bool(design.rows) for design in self.designs], bool)
-        self.not_advised = np.array([not design.advised for design in self.designs], np.int64)
-        self.not_stated = np.array([not design.stated for design in self.designs], np.int64)
-        self.unmeasured = np.flatnonzero(~self.measured)
+        self.users = self.words_of(design.users for design in self.designs)
+        self.is_measured = np.array([bool(design.rows) for design in self.designs], bool)
+        self.not_advised = np.array([not design.is_advised for design in self.designs], np.int64)
+        self.not_specified = np.array(
+            [not design.is_specified for design in self.designs], np.int64
+        )
+        self.unmeasured_designs = np.flatnonzero(~self.is_measured)
         self.place_studies = self.words_of(place.studies for place in places)
         with_model = self.words_of(design.with_model for design in self.designs)
-        self._study_sets = np.concatenate((self.place_studies, with_model, self.taken), axis=1)
+        self._study_sets = np.concatenate((self.place_studies, with_model, self.users), axis=1)
         self.without_studies = np.array([not place.studies for place in places], bool)
-        self.best = lru_cache(MOST_BEST)(self._best)
-        self.ranked = lru_cache(MOST_RANKED)(BestPipelines.ranked)
-        self.counted = lru_cache(MOST_BEST)(self._counted)
-        self.stated = lru_cache(MOST_BEST)(self._stated)
-        self.untried = lru_cache(None)(self._untried)
+        self.best_pipelines = lru_cache(MOST_BEST)(self._best_pipelines)
+        self.rank_designs = lru_cache(MOST_RANKED)(BestPipelines.rank_designs)
+        self.count_studies = lru_cache(MOST_BEST)(self._count_studies)
+        self.unmeasured_designs_of = lru_cache(MOST_BEST)(self._unmeasured_designs_of)
+        self.untested_architectures = lru_cache(None)(self._untested_architectures)
         self.design_bits = max(1, len(self.designs).bit_length())
         self.rank_bits = len(self.designs).bit_length()
         self.support_bits = max(1, (studies**3).bit_length())
@@ -190,7 +191,7 @@ class DesignArrays(PipelineTable):
         return found
 
     @cached_property
-    def _advised(self) -> Mapping[tuple[str, str], Flags]:
+    def _advised_places(self) -> Mapping[tuple[str, str], Flags]:
         """Architectures that the survey advises for each value of what is asked of studies."""
         found: dict[tuple[str, str], Flags] = {}
         for at, place in enumerate(self.places):
@@ -205,7 +206,7 @@ class DesignArrays(PipelineTable):
 
     def advised_for(self, requirement: str, values: Iterable[str]) -> Flags:
         """Return the architectures that the survey advises for one of some values."""
-        return _one_of(self._advised, requirement, values, len(self.places))
+        return _one_of(self._advised_places, requirement, values, len(self.places))
 
     def with_one_of(self, studies: int) -> Flags:
         """Return the architectures that one of some studies (bits) has."""
@@ -219,7 +220,7 @@ class DesignArrays(PipelineTable):
         data = b"".join(bits.to_bytes(size, "little") for bits in sets)
         return np.ascontiguousarray(np.frombuffer(data, "<u8").reshape(-1, self.words).T)
 
-    def _counted(self, studies: int) -> tuple[Positions, Positions, Positions]:
+    def _count_studies(self, studies: int) -> tuple[Positions, Positions, Positions]:
         """Return how many of some studies (bits) have each architecture, and use each design.
 
         Of designs first those that use compensations and model, then those that use the extractor,
@@ -230,23 +231,23 @@ class DesignArrays(PipelineTable):
         first, second = len(self.places), len(self.places) + len(self.designs)
         return counts[:first], counts[first:second], counts[second:]
 
-    def _stated(self, studies: int) -> Flags:
+    def _unmeasured_designs_of(self, studies: int) -> Flags:
         """Return the designs that nothing measures and one of some studies (bits) used."""
         found = np.zeros(len(self.designs), bool)
-        taken = self.taken[:, self.unmeasured] & self.words_of([studies])
-        found[self.unmeasured] = taken.any(axis=0)
+        taken = self.users[:, self.unmeasured_designs] & self.words_of([studies])
+        found[self.unmeasured_designs] = taken.any(axis=0)
         return found
 
     def candidate(self, design: int, row: int, errors: PipelineErrors) -> Candidate:
         """Return a design with one of its pipelines; both by position, -1 for no pipeline."""
         if row < 0:
             return Candidate(self.designs[design], None, NOTHING)
-        return Candidate(self.designs[design], self.rows[row], errors.of(row))
+        return Candidate(self.designs[design], self.rows[row], errors.judgement(row))
 
-    def broken(self, designs_with: Mapping[int, Flags]) -> Positions:
-        """Return, of each design, the requirements (bits) that it breaks.
+    def broken_requirements(self, designs_with: Mapping[int, Flags]) -> Positions:
+        """Return for each design the bit set of the requirements that it does not meet.
 
-        `designs_with` maps a requirement's bit to the designs that meet it.
+        `designs_with` maps the bit of a requirement to the mask of the designs that meet it.
         """
         found = np.zeros(len(self.designs), np.int64)
         for bit, designs in designs_with.items():
@@ -256,9 +257,10 @@ class DesignArrays(PipelineTable):
     def broken_by_place(
         self, by_design: Positions, by_row: Iterable[tuple[int, Flags]]
     ) -> list[set[int]]:
-        """Return, of each place, the sets of requirements (bits) that its pipelines break.
+        """Return for each architecture the bit sets of requirements that its pipelines do not meet.
 
-        Each breaks those of its design, beside one of the sets that it is among the flags of.
+        Each is the bit set of the design joined with one of its pipeline (`by_row`: pairs of a bit
+        set and the mask of the pipelines with it).
         """
         found: list[set[int]] = [set() for _ in self.places]
         for bits, rows in by_row:
@@ -269,12 +271,12 @@ class DesignArrays(PipelineTable):
                 found[pair >> _REQUIREMENT_BITS].add(pair & (1 << _REQUIREMENT_BITS) - 1)
         return found
 
-    def _best(self, limits: Limits) -> BestPipelines:
+    def _best_pipelines(self, limits: Limits) -> BestPipelines:
         return BestPipelines(self, limits)
 
-    def _untried(self, hazard: str) -> tuple[tuple[str, str], ...]:
+    def _untested_architectures(self, hazard: str) -> tuple[tuple[str, str], ...]:
         """Return the architectures that no data set tries a hazard on."""
-        tried = set(self.row_place[self.tried(hazard)].tolist())
+        tried = set(self.row_place[self.covers(hazard)].tolist())
         return tuple(p.architecture for at, p in enumerate(self.places) if at not in tried)
 
 
@@ -289,7 +291,7 @@ def _one_of(
     return found
 
 
-def _repeated(lengths: Sequence[int]) -> Positions:
+def _repeat_positions(lengths: Sequence[int]) -> Positions:
     return np.repeat(np.arange(len(lengths)), np.array(lengths, int))
 
 

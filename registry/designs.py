@@ -27,38 +27,38 @@ COMPENSATIONS = "Physics-Informed"
 Stages = tuple[str, ...]
 
 NOTHING = PipelineJudgement(math.inf, "", None)
-"""What is not measured."""
+"""Judgement of a design without a measured pipeline."""
 
 
 @dataclass(frozen=True, eq=False)
 class Design:
     """A calibration on an architecture.
 
-    ``with_model`` are the studies (bits) that stand for its stages on the architecture, ``taken``
-    those of them that extract features as it does.
+    ``with_model`` is the bit set of the studies that use its compensations and model on the
+    architecture, ``users`` of those that use its extractor, too.
     """
 
     architecture: Architecture
     extractor: str
     stages: Stages
     with_model: int
-    taken: int
+    users: int
     rows: tuple[MeasuredPipeline, ...]
     advice: tuple[Advice, ...]
 
     @cached_property
-    def advised(self) -> bool:
+    def is_advised(self) -> bool:
         """Whether the survey advises it by name."""
         return bool(self.advice)
 
     @property
     def model(self) -> str:
-        """The model, behind all compensations."""
+        """The model: the last stage, after the compensations."""
         return self.stages[-1]
 
     @cached_property
-    def stated(self) -> bool:
-        """Whether it names an extractor and a model: studies need not state one."""
+    def is_specified(self) -> bool:
+        """Whether extractor and stages are all known: a study may state none."""
         return NO_IMPLEMENTATION_STATED not in (self.extractor, *self.stages)
 
 
@@ -68,12 +68,12 @@ class Candidate:
 
     design: Design
     row: MeasuredPipeline | None
-    judged: PipelineJudgement
+    judgement: PipelineJudgement
 
     @property
     def error_deg(self) -> float:
         """The error it is judged by; infinite where there is none."""
-        return self.judged.error_deg
+        return self.judgement.error_deg
 
 
 @dataclass(frozen=True)
@@ -111,11 +111,11 @@ class DesignTable:
     def __init__(self, facts: Facts, measurements: Measurements) -> None:
         self.facts = facts
         self.designs_with = _designs_with(facts)
-        self.stated = {
+        self.stated_numbers = {
             attribute: tuple(
                 (at, number)
                 for at, study in enumerate(facts.studies.values())
-                if (number := _stated(study, attribute)) is not None
+                if (number := _stated_number(study, attribute)) is not None
             )
             for attribute in ("accuracy_deg", "fov_deg")
         }
@@ -129,7 +129,7 @@ class DesignTable:
                     )
                 ),
             )
-            for attribute, pairs in self.stated.items()
+            for attribute, pairs in self.stated_numbers.items()
         }
         order = {
             attribute: {v: i for i, v in enumerate(facts.taxonomy.values(attribute))}
@@ -165,7 +165,7 @@ class DesignTable:
         measured: dict[tuple[str, Stages], list[MeasuredPipeline]] = {}
         for row in rows:
             measured.setdefault((row.extractor_taxonomy, row.stages), []).append(row)
-        uses = [_Use(at, study, taxonomy) for at, study in studies.items()]
+        uses = [_StudyMethods(at, study, taxonomy) for at, study in studies.items()]
         found = {key: _sets(uses, *key) for key in measured}
         stated = (
             (use, *pair) for use in uses for pair in itertools.product(use.extractors, use.models)
@@ -207,8 +207,8 @@ class DesignTable:
 
 
 @dataclass
-class _Use:
-    """What a study stands for: its methods, and all that they mean."""
+class _StudyMethods:
+    """Methods of a study, with the parents of each."""
 
     at: int
     study: Study
@@ -216,30 +216,30 @@ class _Use:
     extractors: tuple[str, ...] = field(init=False)
     models: tuple[str, ...] = field(init=False)
     kinds: frozenset[str] = field(init=False)
-    bare: bool = field(init=False)  # compensations, and no model behind them
+    only_compensates: bool = field(init=False)  # compensations, and no model behind them
 
     def __post_init__(self) -> None:
         self.extractors = self.study.has_value("extractor")
         self.models = self.study.has_value("model")
         kinds = (self.taxonomy.kinds("model", model) for model in self.models)
         self.kinds = frozenset(itertools.chain.from_iterable(kinds))
-        self.bare = all(
+        self.only_compensates = all(
             self.taxonomy.category("model", model) == COMPENSATIONS for model in self.models
         )
 
-    def stands_for(self, stages: Stages) -> bool:
-        """Say whether the study stands for all stages; for the last if it states no model."""
+    def uses(self, stages: Stages) -> bool:
+        """Return whether the study uses all stages; any model counts if it states none."""
         *compensations, model = stages
         if not all(stage in self.kinds for stage in compensations):
             return False
-        return model in self.kinds or bool(compensations and self.bare)
+        return model in self.kinds or bool(compensations and self.only_compensates)
 
 
-def _sets(uses: Iterable[_Use], extractor: str, stages: Stages) -> tuple[int, int]:
-    """Return the studies that stand for the stages, and for the extractor too."""
+def _sets(uses: Iterable[_StudyMethods], extractor: str, stages: Stages) -> tuple[int, int]:
+    """Return bit sets of the studies that use the stages, and of those with the extractor, too."""
     with_model = taken = 0
     for use in uses:
-        if use.stands_for(stages):
+        if use.uses(stages):
             with_model |= 1 << use.at
             taken |= (extractor in use.extractors) << use.at
     return with_model, taken
@@ -259,7 +259,7 @@ def _name_of(
     )
 
 
-def _stated(study: Study, attribute: str) -> float | None:
+def _stated_number(study: Study, attribute: str) -> float | None:
     """Return a number that a study states as a limit is judged by it: an accuracy as an RMS."""
     if attribute != "accuracy_deg":
         return study.number(attribute)

@@ -55,12 +55,12 @@ class PairEvidence:
         Studies that have the one value, and of which the other is unknown.
     pipelines
         How many are measured with both and have an error, counted once a data set.
-    best
+    best_pipeline
         Whichever of them errs least under the first condition of its data set, of those that
         answer often enough; None where none does.
-    planned
+    possible_run
         A pipeline with both that a data set can score and that was not tried; None without one.
-    nearest
+    nearest_dataset
         A data set with one of the two values, where none has both; empty where one has.
     """
 
@@ -68,9 +68,9 @@ class PairEvidence:
     reason: str
     unknown: tuple[str, ...]
     pipelines: int
-    best: MeasuredPipeline | None
-    planned: PipelineRun | None
-    nearest: str
+    best_pipeline: MeasuredPipeline | None
+    possible_run: PipelineRun | None
+    nearest_dataset: str
 
 
 class Evidence:
@@ -153,7 +153,7 @@ class Evidence:
             if unknown
             else "unstudied"
         )
-        judged = [one for one in done if one.nominal.available]
+        judged = [one for one in done if one.nominal.is_available]
         # names decide between equal errors: the order of a set is another in each process
         best = min(
             judged,
@@ -166,9 +166,9 @@ class Evidence:
             reason=reason,
             unknown=tuple(unknown),
             pipelines=len(done),
-            best=best,
-            planned=min(both - self._measured.keys(), default=None),
-            nearest="" if both else near,
+            best_pipeline=best,
+            possible_run=min(both - self._measured.keys(), default=None),
+            nearest_dataset="" if both else near,
         )
 
 

@@ -47,7 +47,7 @@ class ChosenMethod:
     ``stands_for`` is a stated value that nothing runs here, or "None" where the study states none;
     empty where the method is the study's own. ``unsaid`` is a value whose kind the study does not
     state, where one of its kinds is run; ``variant`` the study's way to carry the method out that
-    this is of, ``missed`` one that it is not of.
+    this is of, ``other_variant`` one that it is not of.
     """
 
     name: str
@@ -55,7 +55,7 @@ class ChosenMethod:
     stands_for: str = ""
     unsaid: str = ""
     variant: MethodVariant | None = None
-    missed: MethodVariant | None = None
+    other_variant: MethodVariant | None = None
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class PipelinesOfStudy:
         }
         self._stages = {name: stages(scored) for name, scored in catalogue.models.items()}
 
-    def fitted(
+    def pipelines_by_architecture(
         self, study: Study, architectures: Iterable[Architecture]
     ) -> dict[Architecture, list[FittedPipeline]]:
         """Return the pipelines of a study on each architecture.
@@ -108,7 +108,7 @@ class PipelinesOfStudy:
                 return found
         return {place: [] for place in places}
 
-    def own(self, study: Study, architecture: Architecture) -> int:
+    def count_own_methods(self, study: Study, architecture: Architecture) -> int:
         """Return how many of a study's own methods run on an architecture."""
         pairs = self.plan.get(architecture, {})
         extractors = {self.catalogue.extractors[e].about.taxonomy for e, _ in pairs}
@@ -235,13 +235,15 @@ class PipelinesOfStudy:
                 if own[-1] in of or (len(own) > 1 and own[-1] in behind_stated)
             }
         )
-        found = [self._chosen(study, name, of) for name in whole if not self._repeats(study, name)]
+        found = [
+            self._chosen_method(study, name, of) for name in whole if not self._repeats(study, name)
+        ]
         covered = {stage for own in whole.values() for stage in own}
         behind = {n: own for n, own in usable.items() if own[-1] not in of and len(own) > 1}
         for compensation in (kind for kind in of if kind not in covered):
             ahead = {n: own for n, own in behind.items() if compensation in own[:-1]}
             for name in _with_most_stages(_simplest(ahead)):
-                chosen = self._chosen(study, name, of, NO_IMPLEMENTATION_STATED)
+                chosen = self._chosen_method(study, name, of, NO_IMPLEMENTATION_STATED)
                 if chosen not in found:
                     found.append(chosen)
         if NO_IMPLEMENTATION_STATED in study.of("model") and not found:
@@ -289,7 +291,7 @@ class PipelinesOfStudy:
         )
         return tuple(v for v in dict.fromkeys(order) if v != value)
 
-    def _chosen(
+    def _chosen_method(
         self, study: Study, name: str, of: Mapping[str, str], stands_for: str = ""
     ) -> ChosenMethod:
         run = [of[stage] for stage in self._stages[name] if stage in of]

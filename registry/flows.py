@@ -158,7 +158,7 @@ def flows(
     levels : sequence of str
         Two or more different attributes or pseudo-levels (`registry.taxonomy.LEVELS`).
     where : mapping of level to value or values, optional
-        Keeps studies having one of the values at each level named (a parent such as ECM stands
+        Keeps studies that have one of the values at each level named (a parent such as ECM stands
         for its kinds too), and of those studies only these values.
     counting : {"studies", "fractional"}
         Distinct studies on a link; or each study as weight 1, split evenly over the different
@@ -185,10 +185,10 @@ def allowed_values(where: Where, taxonomy: Taxonomy) -> dict[str, frozenset[str]
         for value in (wanted,) if isinstance(wanted, str) else wanted:
             taxonomy.require(level, value)
             values.update(taxonomy.kinds(level, value) if level == base else (value,))
-        meeting = frozenset(
+        matching = frozenset(
             v for v in taxonomy.values(base) if taxonomy.derived_values(level, v) in values
         )
-        allowed[base] = allowed.get(base, meeting) & meeting
+        allowed[base] = allowed.get(base, matching) & matching
     return allowed
 
 

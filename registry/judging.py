@@ -1,4 +1,4 @@
-"""Which designs meet the requirements, and on what evidence each requirement is judged."""
+"""Select the designs that meet requirements, and the evidence that decides each requirement."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from registry.pipelines import Flags, PipelineErrors
 
 OF_STUDIES = ("task", "error", "accuracy")
-"""What is asked of the studies of an architecture."""
+"""Requirements on the studies of an architecture, not on a design."""
 
 _STATED = {"max_error_deg": "accuracy_deg", "min_fov_deg": "fov_deg"}
-"""Limits that a study's own number is judged by, where nothing is measured."""
+"""Limits that a study's stated number is compared with, where nothing is measured."""
 
 _MEASURED = (
     *("max_error_deg", "min_fov_deg", "survive", "min_availability", "max_latency_us"),
@@ -30,14 +30,14 @@ _MEASURED = (
 
 
 class Question:
-    """Requirements as they are put to a table of designs.
+    """Requirements applied to a table of designs.
 
     Attributes
     ----------
     arrays : the table as arrays
-    studies : studies (bits) with the tasks, errors and accuracies asked for
-    all_stated : those of them whose stated numbers keep all limits, too
-    limits : names of the limits asked for
+    studies : bit set of the studies with the required tasks, errors and accuracies
+    studies_within_limits : bit set of those whose stated numbers are within all limits, too
+    limits : names of the required limits
     """
 
     def __init__(self, table: DesignTable, requirements: Requirements) -> None:
@@ -45,17 +45,17 @@ class Question:
 
         self.table = table
         self.arrays = design_arrays(table)
-        self.asked = requirements
-        self.studies = self._meeting_studies()
+        self.requirements = requirements
+        self.studies = self._find_studies()
         self.limits = tuple(n for n in _MEASURED if getattr(requirements, n))
-        self._stated = {name: self._stated_within(name) for name in self.limits}
-        self.all_stated = self.studies
+        self._studies_within = {name: self._find_studies_within(name) for name in self.limits}
+        self.studies_within_limits = self.studies
         for name in self.limits:
-            self.all_stated &= self._stated[name]
+            self.studies_within_limits &= self._studies_within[name]
 
     @staticmethod
     def limits_of(requirements: Requirements) -> Limits:
-        """Return the limits that decide which pipelines are judged."""
+        """Return the limits by which measured pipelines are selected and judged."""
         return Limits(
             requirements.survive,
             requirements.half_field_deg,
@@ -66,17 +66,17 @@ class Question:
         )
 
     @cached_property
-    def asked_json(self) -> bytes:
+    def requirements_json(self) -> bytes:
         """The requirements as JSON."""
-        return to_json(self.asked.to_dict())
+        return to_json(self.requirements.to_dict())
 
     @cached_property
-    def best(self) -> BestPipelines:
-        """The best pipeline of each design among those that keep the limits."""
-        asked = self.asked
-        # Fields between the same two edges keep the same pipelines.
+    def best_pipelines(self) -> BestPipelines:
+        """The most accurate pipeline within the limits, of each design."""
+        asked = self.requirements
+        # Fields between the same two edges select the same pipelines.
         half = self.arrays.half_field(asked.half_field_deg)
-        return self.arrays.best(
+        return self.arrays.best_pipelines(
             Limits(
                 *(asked.survive, half, asked.min_availability, asked.max_latency_us),
                 *(asked.draws, asked.exclude_needs),
@@ -85,35 +85,37 @@ class Question:
 
     @property
     def errors(self) -> PipelineErrors:
-        """The errors that pipelines are judged by."""
-        return self.best.errors
+        """Errors of all pipelines under the required hazards, field and confidence."""
+        return self.best_pipelines.errors
 
     @cached_property
     def matching_designs(self) -> Flags:
-        """The designs that meet the requirements."""
-        arrays, best, largest = self.arrays, self.best, self.asked.largest_deg
+        """Mask over designs: true for those that meet all requirements."""
+        arrays, best, largest = self.arrays, self.best_pipelines, self.requirements.largest_deg
         found: Flags = best.row >= 0
         if largest is not None:
             found &= best.error <= largest
-        found |= arrays.stated(self.all_stated)
+        found |= arrays.unmeasured_designs_of(self.studies_within_limits)
         for designs in self.designs_with.values():
             found &= designs
         if any(
-            name in side for side in (self.asked.include, self.asked.exclude) for name in OF_STUDIES
+            name in side
+            for side in (self.requirements.include, self.requirements.exclude)
+            for name in OF_STUDIES
         ):
             found &= self._places_asked[arrays.place_of]
         return found
 
     @property
     def _places_asked(self) -> Flags:
-        """The architectures that a study with what is asked has, or advice for it means."""
+        """Mask over architectures: used by a study that meets the requirements, or advised."""
         arrays = self.arrays
         found: Flags = arrays.with_one_of(self.studies)
-        included = [name for name in OF_STUDIES if name in self.asked.include]
+        included = [name for name in OF_STUDIES if name in self.requirements.include]
         if not included:
             found |= arrays.without_studies
             return found
-        advised = [arrays.advised_for(name, self.asked.include[name]) for name in included]
+        advised = [arrays.advised_for(name, self.requirements.include[name]) for name in included]
         for places in advised[1:]:
             advised[0] &= places
         found |= advised[0]
@@ -121,19 +123,19 @@ class Question:
 
     @cached_property
     def designs_with(self) -> Mapping[str, Flags]:
-        """The designs that meet each requirement on detector, mask, extractor and so on."""
+        """Masks over designs, one for each requirement on a design: true for those that meet it."""
         arrays, facts = self.arrays, self.table.facts
         kinds = facts.taxonomy.kinds
         found: dict[str, Flags] = {}
-        for prefix, side in (("", self.asked.include), (EXCLUDE, self.asked.exclude)):
+        for prefix, side in (("", self.requirements.include), (EXCLUDE, self.requirements.exclude)):
             for attribute, values in side.items():
                 if attribute not in OF_STUDIES:
                     has = arrays.designs_with(
                         attribute, [k for v in values for k in kinds(attribute, v)]
                     )
                     found[prefix + attribute] = ~has if prefix else has
-        if self.asked.properties:
-            marks = [facts.properties[name] for name in self.asked.properties]
+        if self.requirements.properties:
+            marks = [facts.properties[name] for name in self.requirements.properties]
             extractors = {design.extractor for design in arrays.designs}
             marked = [e for e in extractors if all(of.get(e, 0) for of in marks)]
             found["properties"] = arrays.designs_with("extractor", marked)
@@ -144,51 +146,58 @@ class Question:
         return len(set(self.arrays.place_of[self.matching_designs].tolist()))
 
     @cached_property
-    def finer(self) -> Mapping[int, int]:
-        """Of each place the finest pipeline that answers too seldom; both by position.
+    def finest_partial_answers(self) -> Mapping[int, int]:
+        """Most accurate pipeline below the availability limit, by architecture (positions).
 
-        They are of the calibrations asked for, whatever is asked of studies and errors.
+        Only calibrations that meet the requirements on model, extractor and properties count.
         """
         allowed = self.arrays.numbers >= 0
         for name in ("model", "exclude_model", "extractor", "exclude_extractor", "properties"):
             if name in self.designs_with:
                 allowed &= self.designs_with[name]
-        return self.errors.finest(self.best.limits, allowed)
+        return self.errors.finest(self.best_pipelines.limits, allowed)
 
     @property
     def advice_key(self) -> tuple[tuple[str, ...] | None, ...]:
-        """The tasks and accuracies asked for."""
-        return tuple(self.asked.include.get(name) for name in ADVISING)
+        """The required values of each attribute that the survey gives advice on."""
+        return tuple(self.requirements.include.get(name) for name in ADVISING)
 
-    def advised(self, place: Place, included: Sequence[str]) -> bool:
-        """Say whether the survey advises an architecture for everything included."""
+    def is_advised(self, place: Place, included: Sequence[str]) -> bool:
+        """Return whether the survey advises an architecture for all of some requirements."""
         return all(
-            any(a.requirement == name and a.value in self.asked.include[name] for a in place.advice)
+            any(
+                a.requirement == name and a.value in self.requirements.include[name]
+                for a in place.advice
+            )
             for name in included
         )
 
-    def stated(self, limit: str) -> int:
-        """Return the studies (bits) whose stated number keeps a limit that is asked."""
-        return self._stated[limit]
+    def studies_within(self, limit: str) -> int:
+        """Return the bit set of the studies whose stated number is within a limit."""
+        return self._studies_within[limit]
 
     @property
-    def judged(self) -> tuple[str, ...]:
-        """The requirements that an answer says the basis of: limits, of studies, properties."""
-        of_studies = [name for name in OF_STUDIES if name in self.asked.include]
-        return (*self.limits, *of_studies, *(["properties"] if self.asked.properties else ()))
+    def judged_requirements(self) -> tuple[str, ...]:
+        """Requirements for which an answer states the evidence."""
+        of_studies = [name for name in OF_STUDIES if name in self.requirements.include]
+        return (
+            *self.limits,
+            *of_studies,
+            *(["properties"] if self.requirements.properties else ()),
+        )
 
-    def _meeting_studies(self) -> int:
-        """Return the studies (bits) with the tasks, errors and accuracies asked for."""
+    def _find_studies(self) -> int:
+        """Return the bit set of the studies with the required tasks, errors and accuracies."""
         table = self.table
         kept = everyone = (1 << len(table.facts.keys)) - 1
-        for attribute, values in self.asked.include.items():
+        for attribute, values in self.requirements.include.items():
             if attribute in OF_STUDIES:
                 kept &= self._designs_with(attribute, values)
-        for attribute, values in self.asked.exclude.items():
+        for attribute, values in self.requirements.exclude.items():
             if attribute == "task":
                 tasks = {v for a, v in table.designs_with if a == "task"}
                 others = tasks - set(values)
-                others &= set(self.asked.include.get("task", others))
+                others &= set(self.requirements.include.get("task", others))
                 without = everyone & ~self._designs_with("task", tasks)
                 kept &= self._designs_with("task", others) | without
             elif attribute in OF_STUDIES:
@@ -201,10 +210,10 @@ class Question:
             found |= self.table.designs_with.get((attribute, value), 0)
         return found
 
-    def _stated_within(self, limit: str) -> int:
+    def _find_studies_within(self, limit: str) -> int:
         if limit not in _STATED:
             return 0
-        bound = self.asked.limit(limit)
+        bound = self.requirements.limit(limit)
         assert bound is not None  # noqa: S101 - only limits asked for are looked at
         numbers, up_to = self.table.ascending[_STATED[limit]]
         if limit == "min_fov_deg":
@@ -215,14 +224,14 @@ class Question:
 def advice_for(
     place: Place, advising: tuple[tuple[str, ...] | None, ...]
 ) -> tuple[tuple[Advice, ...], frozenset[str]]:
-    """Return the advice that means an architecture for what is asked, and its tasks.
+    """Return the survey's advice for an architecture that fits the requirements, and its tasks.
 
     Parameters
     ----------
     place
         The architecture.
     advising
-        The tasks and accuracies asked for (`Question.advice_key`); for any if neither is.
+        The required values (`Question.advice_key`); all advice fits if there are none.
     """
     include = {n: v for n, v in zip(ADVISING, advising, strict=True) if v is not None}
     found = tuple(

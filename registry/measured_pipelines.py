@@ -1,4 +1,4 @@
-"""Measured performance as the registry sees it: pipelines handed in by whoever measured."""
+"""Scores of measured pipelines, as the caller hands them to the registry."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from typing import Generic, TypeVar
 from registry.requirements import UNITS
 
 Draws = tuple[float | None, float]
-"""A bench's fixed error in degrees, None for a data set's own, and a share of units and benches."""
+"""Fixed error of the calibration bench in degrees (None: that of each data set), and the share of
+sensor units and benches that must stay within an error."""
 
 _NUMBERS = (
     *("rms_deg", "bound_deg", "over_bound", "repeatability_deg"),
@@ -19,8 +20,8 @@ _NUMBERS = (
 )
 
 
-#: What answers too seldom to be judged by its error is named beside what is judged where that errs
-#: by more than this many times as much, and where it answers at least this share of the samples.
+#: A pipeline below the availability limit is shown beside a ranked one if the ranked one's error is
+#: more than `FINER` times as large, and if it answers at least this share of the samples.
 FINER = 3.0
 LEAST_ANSWERED = 0.5
 
@@ -28,34 +29,38 @@ Of = TypeVar("Of")
 
 
 @dataclass(frozen=True)
-class Partly(Generic[Of]):
-    """What answers too seldom to be judged by its error: its error where it answers, and how often.
+class PartialAnswer(Generic[Of]):
+    """Error of a pipeline below the availability limit, over the samples it answers.
 
     Attributes
     ----------
-    of
-        Whatever it is said of.
+    error_deg
+        RMS error over the answered samples.
+    availability
+        Share of the samples that are answered.
+    subject
+        The pipeline, or its row in a table.
     """
 
     error_deg: float
     availability: float
-    of: Of
+    subject: Of
 
 
-def finer_for(error_deg: float, partly: Iterable[Partly[Of]]) -> Partly[Of] | None:
-    """Return what errs least of those that answer part of the samples, if far less than an error.
+def finer_for(error_deg: float, partly: Iterable[PartialAnswer[Of]]) -> PartialAnswer[Of] | None:
+    """Return the most accurate partial answer, if it is far more accurate than a given error.
 
     Parameters
     ----------
     error_deg
-        Of what is judged; infinite where nothing is, beside which nothing is named.
+        Error of the ranked pipeline; infinite for none, in which case None is returned.
     partly
-        Those that answer less than `LEAST_ANSWERED` are passed over.
+        Candidates. Those that answer less than `LEAST_ANSWERED` of the samples are ignored.
 
     Returns
     -------
-    Partly or None
-        The first of equals; None unless the error is more than `FINER` times as large.
+    PartialAnswer or None
+        The first of equals; None unless `error_deg` is more than `FINER` times its error.
     """
     often = (one for one in partly if one.availability >= LEAST_ANSWERED)
     finest = min(often, key=lambda one: one.error_deg, default=None)
@@ -66,19 +71,19 @@ def finer_for(error_deg: float, partly: Iterable[Partly[Of]]) -> Partly[Of] | No
 
 @dataclass(frozen=True)
 class Score:
-    """The score of one pipeline under one condition of a data set.
+    """Score of one pipeline under one condition of a data set.
 
-    Numbers are None where not measured; NaN and infinities are taken as None.
+    Numbers are None where not measured; NaN and infinities become None.
 
     Attributes
     ----------
     availability, false_sun
-        Answered shares of the samples whose direction is observable, and of the others.
-    available
-        Whether it answers often enough to be judged by its error over the whole field.
+        Answered share of the samples whose direction is observable, and of the other samples.
+    is_available
+        Whether the availability over the whole field is high enough to rank the pipeline.
     cones
-        Half angle of a cone about the boresight, in degrees and ascending, and the RMS error over
-        it; None where it does not answer often enough in all of the cone.
+        Pairs of a half angle about the boresight, in degrees and ascending, and the RMS error
+        within it; the error is None where the availability in that cone is too low.
     """
 
     condition: str
@@ -88,7 +93,7 @@ class Score:
     repeatability_deg: float | None = None
     availability: float | None = None
     false_sun: float | None = None
-    available: bool = True
+    is_available: bool = True
     cones: tuple[tuple[float, float | None], ...] = ()
 
     def __post_init__(self) -> None:
@@ -104,16 +109,16 @@ class Score:
 
 @dataclass(frozen=True)
 class PipelineJudgement:
-    """What a pipeline is judged by: its largest error over the field and conditions asked for.
+    """Largest error of a pipeline over the required field and conditions.
 
     Attributes
     ----------
     error_deg
-        Infinite where it does not answer often enough, or does not have the field.
+        RMS error; infinite where the availability is too low or the field too narrow.
     condition
-        Where that error was measured.
+        Condition under which that error was measured.
     field_deg
-        Full field that it holds over.
+        Full field of view that the error covers.
     """
 
     error_deg: float
@@ -123,7 +128,7 @@ class PipelineJudgement:
 
 @dataclass(frozen=True)
 class MeasuredPipeline:
-    """One pipeline on one data set, under all of its conditions.
+    """Scores of one pipeline on one data set under all of its conditions.
 
     Attributes
     ----------
@@ -135,16 +140,16 @@ class MeasuredPipeline:
     nominal
         Score under the first condition of the data set.
     hazards
-        What a sensor may have to survive (`registry.requirements.HAZARDS`) -> the scores under
-        the conditions of this data set that try it. One without a condition is absent.
+        Scores by hazard (`registry.requirements.HAZARDS`), under the conditions of this data set
+        that include it. A hazard without a condition is absent.
     unit_own_deg
         Own errors of the units of the sensor, the standard one first, under the first condition.
     unit_ratios
-        Of ten units, over their geometric mean (`registry.draws.unit_ratios`).
+        Errors of ten units over their geometric mean (`registry.draws.unit_ratios`).
     bench_deg
         Fixed error of the data set's standard calibration bench, root mean square.
     needs
-        What the calibration reads beside the sensor (`registry.requirements.NEEDS`).
+        Inputs beside the sensor that the calibration reads (`registry.requirements.NEEDS`).
     """
 
     dataset: str
@@ -171,9 +176,8 @@ class MeasuredPipeline:
     ) -> PipelineJudgement:
         """Return the largest error, nominal and under every hazard, over a field.
 
-        With `draws`, a bench and a share, it is the error that this share of units and benches
-        keeps within; a bench of None is the data set's. A hazard that no condition tries has no
-        error here: ask `tried` first.
+        With `draws`, it is the error that the given share of units and benches stays within. A
+        hazard without a condition adds no error: check `covers` first.
         """
         worst = self.over(self.nominal, half_field_deg)
         for name in hazards:
@@ -192,9 +196,9 @@ class MeasuredPipeline:
     def over(self, score: Score, half_field_deg: float | None = None) -> PipelineJudgement:
         """Return the error under one condition over a field; infinite where there is none.
 
-        The field is the narrowest cone with an error that holds the one asked for, or the whole
-        field of the data set: where no field is asked for, and where no cone has an error, too
-        few samples being in it, but the whole field is wide enough.
+        The error is taken from the narrowest cone that contains the required field and has an
+        error. The whole field of the data set is used if no field is required, or if no such cone
+        has an error and the whole field is wide enough.
         """
         if half_field_deg is not None:
             for half, error in score.cones:
@@ -203,37 +207,37 @@ class MeasuredPipeline:
         whole = self.half_fov_deg
         field_deg = None if whole is None else 2 * whole
         wide = half_field_deg is None or (whole is not None and whole >= half_field_deg)
-        if not wide or not score.available or score.rms_deg is None:
+        if not wide or not score.is_available or score.rms_deg is None:
             return PipelineJudgement(math.inf, score.condition, field_deg)
         return PipelineJudgement(score.rms_deg, score.condition, field_deg)
 
-    def tried(self, hazard: str) -> bool:
-        """Say whether a condition of the data set tries a hazard."""
+    def covers(self, hazard: str) -> bool:
+        """Return whether the data set has a condition with a hazard."""
         return bool(self.hazards.get(hazard))
 
     def availability(self, hazards: Iterable[str] = ()) -> float | None:
-        """Return the least answered share, nominal and under every hazard; None if one is unknown.
+        """Return the lowest availability, nominal and under every hazard; None if one is unknown.
 
-        A refused run answers nothing.
+        A refused run has availability 0.
         """
         scores = [self.nominal, *(s for name in hazards for s in self.hazards.get(name, ()))]
         shares = [0.0 if s.rms_deg is None else s.availability for s in scores]
         known = [share for share in shares if share is not None]
         return min(known) if len(known) == len(shares) else None
 
-    def partly(
+    def partial_answer(
         self, hazards: Iterable[str] = (), half_field_deg: float | None = None
-    ) -> Partly[MeasuredPipeline] | None:
-        """Return the largest error where it answers, if it answers too seldom to be judged.
+    ) -> PartialAnswer[MeasuredPipeline] | None:
+        """Return the largest error over the answered samples, if the availability is too low.
 
-        None where it is judged, and where no error is known: a refused condition, a hazard that
-        nothing tries, a field that the data set does not have.
+        None where the availability is high enough, and where no error is known: a condition was
+        refused, a hazard has no condition, or the data set does not have the field.
         """
         names = tuple(hazards)
         scores = [self.nominal, *(s for name in names for s in self.hazards.get(name, ()))]
         whole = self.half_fov_deg
         wide = half_field_deg is None or (whole is not None and whole >= half_field_deg)
-        if not (wide and all(map(self.tried, names))):
+        if not (wide and all(map(self.covers, names))):
             return None
         errors, judged = [], True
         for score in scores:
@@ -245,7 +249,7 @@ class MeasuredPipeline:
                 error = score.rms_deg
             errors.append(error)
         share = self.availability(names)
-        return None if judged or share is None else Partly(max(errors), share, self)
+        return None if judged or share is None else PartialAnswer(max(errors), share, self)
 
     def to_dict(
         self,
@@ -255,20 +259,20 @@ class MeasuredPipeline:
         half_field_deg: float | None = None,
         *,
         bench_deg: float | None = None,
-        partly: Iterable[Partly[MeasuredPipeline]] = (),
+        partly: Iterable[PartialAnswer[MeasuredPipeline]] = (),
     ) -> dict[str, object]:
-        """Return the pipeline as in the HTTP answer, but for its units that meet a limit.
+        """Return the pipeline as in the HTTP answer, without the count of units within a limit.
 
         Parameters
         ----------
         judged, own
-            The error that it is judged by, and the one with true directions.
+            The error with the calibration bench, and the one with true directions.
         hazards, half_field_deg
-            What both hold under and over.
+            Hazards and half field of view of both errors.
         bench_deg
-            Fixed error of the bench asked for; None for the data set's own.
+            Fixed error of the calibration bench; None for the data set's own.
         partly
-            Pipelines on the same sensor that answer too seldom, of which one may be far finer.
+            Pipelines on the same sensor below the availability limit; one may be far more accurate.
         """
         names, units = tuple(hazards), self.unit_own_deg
         nominal = self.over(self.nominal, half_field_deg) if names else own
@@ -296,7 +300,7 @@ class MeasuredPipeline:
                 "count": len(units),
                 "least_deg": min(units),
                 "largest_deg": max(units),
-                "meeting": None,
+                "within_limit": None,
                 "of": UNITS,
             }
             if units
@@ -305,13 +309,13 @@ class MeasuredPipeline:
         }
 
 
-def _finer(found: Partly[MeasuredPipeline] | None) -> dict[str, object] | None:
+def _finer(found: PartialAnswer[MeasuredPipeline] | None) -> dict[str, object] | None:
     if found is None:
         return None
     return {
-        "dataset": found.of.dataset,
-        "extractor": found.of.extractor,
-        "model": found.of.model,
+        "dataset": found.subject.dataset,
+        "extractor": found.subject.extractor,
+        "model": found.subject.model,
         "error_deg": found.error_deg,
         "availability": found.availability,
     }
@@ -322,12 +326,12 @@ def _finite(number: float) -> float | None:
 
 
 class Measurements:
-    """Pipelines that were measured; build once and hand in many times.
+    """All measured pipelines; make it once and pass it to many calls.
 
     Parameters
     ----------
-    rows : iterable of Measured
-        Those that failed under the first condition are left out.
+    rows : iterable of MeasuredPipeline
+        Pipelines without an error under the first condition are left out.
     """
 
     def __init__(self, rows: Iterable[MeasuredPipeline] = ()) -> None:

@@ -37,7 +37,7 @@ class PathTexts:
     def __init__(
         self, table: PathTable, arrays: DesignArrays, studies_text: Callable[[int], bytes]
     ) -> None:
-        taken = [(bool(d.rows), at, table.of(d)) for at, d in enumerate(arrays.designs) if d.taken]
+        taken = [(bool(d.rows), at, table.of(d)) for at, d in enumerate(arrays.designs) if d.users]
         # Measured designs and others: their positions, and the paths that lead to each.
         self._leading = [
             (
@@ -82,13 +82,13 @@ class PathTexts:
         numbers keep the limits. The name of the first list and the end of the last are left out.
         """
         question = answer.question
-        asked, designs = question.asked, question.matching_designs
+        asked, designs = question.requirements, question.matching_designs
         among = self._from_tasks(asked.include.get("task"), asked.exclude.get("task", ()))
         measured, others = (
             among & reduce(or_, compress(paths, designs[at].tolist()), 0)
             for at, paths in self._leading
         )
-        return self._all(measured, question.studies, others, question.all_stated)
+        return self._all(measured, question.studies, others, question.studies_within_limits)
 
     def _from_tasks(self, include: Iterable[str] | None, exclude: Iterable[str]) -> int:
         """Return the paths from a task that is asked for; None asks for every one."""

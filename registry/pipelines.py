@@ -1,4 +1,4 @@
-"""Measured pipelines as arrays: the errors, shares and times that requirements are held against.
+"""Measured pipelines as arrays: the errors, shares and times that requirements limit.
 
 `registry.measured_pipelines` judges one pipeline by the same rules. Needs NumPy, so that only
 modules that answer questions import it.
@@ -32,7 +32,7 @@ Positions = NDArray[np.int64]
 
 
 NOT_COUNTED = 255
-"""Stands for a number of units where none is asked for."""
+"""Value in place of a number of units where there is no limit on the error."""
 
 #: Fields and sets of hazards whose errors are kept, some 200 kB each.
 MOST_ERRORS = 96
@@ -57,15 +57,14 @@ class PipelineTable:
         self.row_place = places
         self.design_of = design_of
         self.scores = lru_cache(None)(self._scores_under)
-        self.reading = lru_cache(None)(self._reading)
+        self.needs_input = lru_cache(None)(self._needs_input)
         self._errors = lru_cache(MOST_ERRORS)(self._errors_under)
         self._confident = lru_cache(MOST_DRAWS)(_nothing_drawn)
 
     def half_field(self, half_field_deg: float | None) -> float | None:
-        """Return the least half field that tells apart the same pipelines as one asked for does.
+        """Round a half field up to the next edge of a cone or data set.
 
-        A field is only ever held against the edges of cones and data sets: between two of them
-        all questions are the same question.
+        All half fields between two edges select the same pipelines.
         """
         if half_field_deg is None:
             return None
@@ -122,8 +121,8 @@ class PipelineTable:
         """Fixed error of the standard bench of each pipeline's data set."""
         return numbers(row.bench_deg for row in self.rows)
 
-    def _reading(self, need: str) -> Flags:
-        """Return the pipelines that read something beside the sensor."""
+    def _needs_input(self, need: str) -> Flags:
+        """Return the mask of the pipelines that read an input beside the sensor."""
         return np.array([need in row.needs for row in self.rows], bool)
 
     def errors(
@@ -166,9 +165,9 @@ class PipelineTable:
         ]
         return Scores(pairs, self.half_fov_deg)
 
-    def tried(self, hazard: str) -> Flags:
-        """Say of each pipeline whether a condition of its data set tries a hazard."""
-        return self.scores(hazard).tried
+    def covers(self, hazard: str) -> Flags:
+        """Return the mask of the pipelines whose data set has a condition with a hazard."""
+        return self.scores(hazard).has_score
 
 
 class PipelineErrors:
@@ -203,8 +202,8 @@ class PipelineErrors:
         if draws is not None:
             self.error_deg = table.at_confidence(self.own_deg, self.bench_deg, draws)
         self.by_error = np.lexsort((self.error_deg, table.design_of))
-        self.own = lru_cache(None)(self._own)
-        self.of = lru_cache(None)(self._judged)
+        self.own_judgement = lru_cache(None)(self._own_judgement)
+        self.judgement = lru_cache(None)(self._judgement)
 
     @property
     def bench_deg(self) -> Numbers:
@@ -213,13 +212,13 @@ class PipelineErrors:
         own = self.table.bench_deg
         return own if bench is None else np.full(len(own), bench)
 
-    def _own(self, row: int) -> PipelineJudgement:
+    def _own_judgement(self, row: int) -> PipelineJudgement:
         """Return the error of one pipeline with true directions, with its condition and field."""
         return self.table.rows[row].judge(self.hazards, self.half)
 
-    def _judged(self, row: int) -> PipelineJudgement:
+    def _judgement(self, row: int) -> PipelineJudgement:
         """Return the error of one pipeline, with its condition and field."""
-        own = self.own(row)
+        own = self.own_judgement(row)
         if self.draws is None or math.isinf(own.error_deg):
             return own
         return PipelineJudgement(float(self.error_deg[row]), own.condition, own.field_deg)
@@ -245,11 +244,11 @@ class PipelineErrors:
         return found
 
     @cached_property
-    def tried(self) -> Flags:
-        """Whether the data set of a pipeline tries all of the hazards."""
+    def covers_hazards(self) -> Flags:
+        """Mask of the pipelines whose data set has conditions with all hazards."""
         found = np.ones(len(self.table.rows), bool)
         for hazard in self.hazards:
-            found &= self.table.tried(hazard)
+            found &= self.table.covers(hazard)
         return found
 
     @cached_property
@@ -264,12 +263,12 @@ class PipelineErrors:
 
     @cached_property
     def _seldom(self) -> tuple[Positions, Positions]:
-        """Pipelines that answer too seldom to be judged, by place and error, and their places.
+        """Pipelines below the availability limit, by architecture and error, and architectures.
 
-        As `MeasuredPipeline.partly` finds them, of those that answer often enough to be named.
+        As `MeasuredPipeline.partial_answer`, without those that answer less than `LEAST_ANSWERED`.
         """
         table, half = self.table, self.half
-        known, judged = self.tried.copy(), np.ones(len(table.rows), bool)
+        known, judged = self.covers_hazards.copy(), np.ones(len(table.rows), bool)
         if half is not None:
             known &= table.half_fov_deg >= half
         largest = np.zeros(len(table.rows))
@@ -288,12 +287,14 @@ class PipelineErrors:
         return named[order], places[order]
 
     def finest(self, limits: Limits, designs: Flags) -> dict[int, int]:
-        """Return what errs least of what answers too seldom, by place; both by position.
+        """Return the most accurate pipeline below the availability limit, by architecture.
+
+        Both are positions.
 
         Parameters
         ----------
-        limits : of these hazards and this field; those on answers and time are kept
-        designs : those whose pipelines may be named
+        limits : limits with the hazards and field of these errors
+        designs : mask of the designs whose pipelines may be returned
         """
         table, (rows, places) = self.table, self._seldom
         if not len(rows):
@@ -308,37 +309,37 @@ class PipelineErrors:
         return dict(zip(places[first].tolist(), rows[first].tolist(), strict=True))
 
     def document(self, row: int, finer: int) -> dict[str, object]:
-        """Return one pipeline as in the HTTP answer, but for its units that meet a limit.
+        """Return one pipeline as in the HTTP answer, without the count of units within a limit.
 
         Parameters
         ----------
         row : position of the pipeline
-        finer : pipeline on the same sensor that answers too seldom to be judged; -1 for none
+        finer : pipeline on the same sensor below the availability limit; -1 for none
         """
         rows, field = self.table.rows, (self.hazards, self.half)
-        partly = None if finer < 0 else rows[finer].partly(*field)
+        partly = None if finer < 0 else rows[finer].partial_answer(*field)
         return rows[row].to_dict(
-            self.of(row),
-            self.own(row),
+            self.judgement(row),
+            self.own_judgement(row),
             *field,
             bench_deg=None if self.draws is None else self.draws[0],
             partly=() if partly is None else (partly,),
         )
 
-    def keeping(self, limits: Limits, max_error_deg: float | None = None) -> Flags:
-        """Say of each pipeline whether it keeps limits, which are of these hazards and field."""
+    def within_limits(self, limits: Limits, max_error_deg: float | None = None) -> Flags:
+        """Return the mask of the pipelines within limits, which have these hazards and field."""
         found = np.ones(len(self.error_deg), bool)
         if limits.half_field_deg is not None:
             found &= ~np.isinf(self.nominal_deg)
         if self.hazards:
-            found &= self.tried & ~np.isinf(self.error_deg)
+            found &= self.covers_hazards & ~np.isinf(self.error_deg)
         if limits.min_availability is not None:
             found &= self.availability >= limits.min_availability
         if limits.max_latency_us is not None:
             found &= self.table.latency_us <= limits.max_latency_us
         if limits.exclude_needs:
             for need in limits.exclude_needs:
-                found &= ~self.table.reading(need)
+                found &= ~self.table.needs_input(need)
         if max_error_deg is not None:
             found &= self.error_deg <= max_error_deg
         return found
@@ -350,11 +351,11 @@ class Scores:
     def __init__(self, pairs: Sequence[tuple[int, Score]], half_fov_deg: Numbers) -> None:
         self.rows = np.array([at for at, _ in pairs], int)
         scores = [score for _, score in pairs]
-        self.tried = np.zeros(len(half_fov_deg), bool)
-        self.tried[self.rows] = True
-        self.whole = half_fov_deg[self.rows]
+        self.has_score = np.zeros(len(half_fov_deg), bool)
+        self.has_score[self.rows] = True
+        self.half_fov_deg = half_fov_deg[self.rows]
         rms = numbers(score.rms_deg for score in scores)
-        available = np.array([score.available for score in scores], bool)
+        available = np.array([score.is_available for score in scores], bool)
         self.rms = rms
         self.error = np.where(available & ~np.isnan(rms), rms, np.inf)
         self.share = np.where(np.isnan(rms), 0.0, numbers(score.availability for score in scores))
@@ -371,7 +372,7 @@ class Scores:
         """Return the error of each over a field, as `MeasuredPipeline.over` finds it."""
         if half is None:
             return self.error
-        found = np.where(self.whole >= half, self.error, np.inf)
+        found = np.where(self.half_fov_deg >= half, self.error, np.inf)
         for edge, error in reversed(self.cones):
             found = np.where((edge >= half) & ~np.isnan(error), error, found)
         return found
@@ -383,7 +384,7 @@ def _nothing_drawn(_draws: Draws) -> list[tuple[Numbers, Numbers]]:
 
 
 def begins(values: Positions) -> Flags:
-    """Say of ascending values which are the first of equal ones."""
+    """Return the mask of the first of equal values, which are in ascending order."""
     found = np.ones(len(values), bool)
     np.not_equal(values[1:], values[:-1], out=found[1:])
     return found

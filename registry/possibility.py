@@ -67,7 +67,7 @@ class Possibility:
         ours, theirs = self._readings(*row), self._readings(*column)
         if ours is None or theirs is None or ours & theirs:
             return ""
-        return f"{_said(*row, ours)}; {_said(*column, theirs)}"
+        return f"{_in_words(*row, ours)}; {_in_words(*column, theirs)}"
 
     def _readings(self, level: str, value: str) -> frozenset[str] | None:
         """Return the readings that a value goes with; None where it rules nothing out."""
@@ -95,5 +95,5 @@ class Possibility:
 _VERBS = MappingProxyType({"detector": "gives", "mask": "has a direction in", "extractor": "reads"})
 
 
-def _said(level: str, value: str, readings: Iterable[str]) -> str:
+def _in_words(level: str, value: str, readings: Iterable[str]) -> str:
     return f"{value} {_VERBS[attribute_of(level)]} {' or '.join(sorted(readings))}"

@@ -160,14 +160,14 @@ class TaskMeasure:
         Of the taxonomy; of the value.
     value
         None where nothing is measured or published.
-    built
+    sensor_count
         Built sensors that it is the median of; 0 for what is measured here.
     """
 
     task: str
     unit: str
     value: float | None
-    built: int = 0
+    sensor_count: int = 0
 
     @property
     def cost(self) -> float:
@@ -187,7 +187,8 @@ class TaskMeasure:
         said = f"{self.task}: {self.value:.3g} {self.unit}"
         if not of:
             return f"{said}, of the calibration that errs least"
-        return f"{said}, {_WORDS[self.task]} {self.built} built sensor{'s' * (self.built > 1)}"
+        plural = "s" * (self.sensor_count > 1)
+        return f"{said}, {_WORDS[self.task]} {self.sensor_count} built sensor{plural}"
 
     def to_dict(self) -> dict[str, object]:
         """Return the measure as in the HTTP answer."""
@@ -196,7 +197,7 @@ class TaskMeasure:
             "value": self.value,
             "unit": self.unit,
             "basis": "published" if self.task in _PUBLISHED else "measured",
-            "built": self.built,
+            "built": self.sensor_count,
             "words": self.words,
         }
 
@@ -234,7 +235,7 @@ def _measure(
 ) -> TaskMeasure:
     unit = _UNITS[task]
     if task in _PUBLISHED:
-        value, built = _published().get(architecture, {}).get(task, (None, 0))
+        value, built = _published_medians().get(architecture, {}).get(task, (None, 0))
         return TaskMeasure(task, unit, value, built)
     judged = row if math.isfinite(error_deg) else None
     half_fov_deg = None if judged is None else judged.half_fov_deg
@@ -249,7 +250,7 @@ def _measure(
 
 
 @cache
-def _published() -> Mapping[Architecture, Mapping[str, tuple[float, int]]]:
+def _published_medians() -> Mapping[Architecture, Mapping[str, tuple[float, int]]]:
     """Return medians over built sensors by architecture and task, and of how many they are."""
     power: dict[Architecture, list[float]] = {}
     mass: dict[Architecture, list[float]] = {}

@@ -98,7 +98,7 @@ class Recommendation:
         What was asked.
     architectures
         The first of those that meet them, best first.
-    blocked
+    blocking_constraint
         Why nothing meets the requirements; None where something does.
     document
         All of the answer, as over HTTP (`api.schema.recommendations.Recommendations`).
@@ -106,7 +106,7 @@ class Recommendation:
 
     requirements: Requirements
     architectures: tuple[Architecture, ...]
-    blocked: BlockingConstraint | None
+    blocking_constraint: BlockingConstraint | None
     document: Member
 
     @property
@@ -171,9 +171,9 @@ def recommend(
     found = answer(requirements, measured, sort=sort, facts=facts)
     document = json.loads(answer_json(found, limit, calibrations))
     return Recommendation(
-        requirements=found.question.asked,
+        requirements=found.question.requirements,
         architectures=tuple(_architecture(**members) for members in document["architectures"]),
-        blocked=found.blocked,
+        blocking_constraint=found.blocking_constraint,
         document=document,
     )
 

@@ -100,7 +100,7 @@ class BlockingConstraint:
 def explain(table: DesignTable, requirements: Requirements) -> BlockingConstraint:
     """Return what blocks `requirements`, which nothing meets."""
     names = requirements.names
-    broken = _broken(Question(table, requirements), names)
+    broken = _broken_sets(Question(table, requirements), names)
     if not broken:
         return BlockingConstraint((), "no study has an architecture, and nothing is measured", ())
     fewest = min(bits.bit_count() for bits in broken)
@@ -162,7 +162,7 @@ _TOGETHER = ("max_error_deg", "min_fov_deg", "survive", "min_availability")
 """Limits of which one changes how another is judged: an error holds over a field and conditions."""
 
 
-def _broken(question: Question, names: tuple[str, ...]) -> frozenset[int]:
+def _broken_sets(question: Question, names: tuple[str, ...]) -> frozenset[int]:
     """Return, of every way to a design, the requirements it breaks as bits over `names`.
 
     A way is a design, one of its measured pipelines if there are any, and one of the studies of
@@ -173,26 +173,28 @@ def _broken(question: Question, names: tuple[str, ...]) -> frozenset[int]:
     bit = {name: 1 << at for at, name in enumerate(names)}
     arrays = question.arrays
     by_study = _broken_by_studies(question, names, bit)
-    by_design = arrays.broken({bit[name]: has for name, has in question.designs_with.items()})
+    by_design = arrays.broken_requirements(
+        {bit[name]: has for name, has in question.designs_with.items()}
+    )
     by_row = arrays.broken_by_place(by_design, _broken_by_rows(question, bit))
     by_limit = [
-        sum(bit[n] for n in question.limits if not question.stated(n) >> at & 1)
+        sum(bit[n] for n in question.limits if not question.studies_within(n) >> at & 1)
         for at in range(len(by_study))
     ]
-    included = [n for n in OF_STUDIES if n in question.asked.include]
+    included = [n for n in OF_STUDIES if n in question.requirements.include]
     found: set[int] = set()
     for number, place in enumerate(question.table.places):
         ways = {bits for at in positions(place.studies) for bits in by_study[at]}
-        unadvised = [n for n in included if not question.advised(place, [n])]
+        unadvised = [n for n in included if not question.is_advised(place, [n])]
         # Advice speaks for what is asked for; of what is excluded only studies tell.
         if len(unadvised) < len(included):
             ways.add(sum(bit[n] for n in unadvised))
         if not place.studies:
             ways.add(sum(bit[n] for n in included))
         found.update(bits | way for bits in by_row[number] for way in ways)
-    for design_at in arrays.unmeasured.tolist():
+    for design_at in arrays.unmeasured_designs.tolist():
         bits = int(by_design[design_at])
-        for at in positions(arrays.designs[design_at].taken):
+        for at in positions(arrays.designs[design_at].users):
             found.update(bits | by_limit[at] | way for way in by_study[at])
     return frozenset(found)
 
@@ -202,14 +204,14 @@ def _broken_by_rows(question: Question, bit: Mapping[str, int]) -> list[tuple[in
 
     Of each pipeline the smallest sets. What is left is judged without what is given up.
     """
-    asked, arrays = question.asked, question.arrays
+    asked, arrays = question.requirements, question.arrays
     # A class of accuracy is a limit on what is measured, too.
     alone = asked.without(*(n for n in asked.names if n not in (*_TOGETHER, "accuracy")))
     found: list[tuple[int, Flags]] = []
     for size in range(len(alone.names) + 1):
         for dropped in itertools.combinations(alone.names, size):
             given_up = sum(bit[n] for n in dropped)
-            keeping = _keeping(arrays, alone.without(*dropped))
+            keeping = _within_limits(arrays, alone.without(*dropped))
             for less, kept in found:
                 if given_up & less == less:
                     keeping = keeping & ~kept  # less is enough
@@ -225,11 +227,11 @@ def _broken_by_rows(question: Question, bit: Mapping[str, int]) -> list[tuple[in
     return found
 
 
-def _keeping(arrays: DesignArrays, asked: Requirements) -> Flags:
+def _within_limits(arrays: DesignArrays, asked: Requirements) -> Flags:
     """Say of each measured pipeline whether it keeps all limits asked for."""
     limits = Question.limits_of(asked)
     judged = arrays.errors(limits.hazards, limits.half_field_deg, limits.draws)
-    return judged.keeping(limits, asked.largest_deg)
+    return judged.within_limits(limits, asked.largest_deg)
 
 
 def _broken_by_studies(
@@ -246,17 +248,17 @@ def _broken_by_studies(
     alone = [n for n in asked if n not in tasks]
     broken = [0 for _ in everyone]
     for name in alone:
-        meeting = Question(question.table, _only(question.asked, [name])).studies
+        matching = Question(question.table, _only(question.requirements, [name])).studies
         for at in everyone:
-            broken[at] |= 0 if meeting >> at & 1 else bit[name]
+            broken[at] |= 0 if matching >> at & 1 else bit[name]
     found: list[set[int]] = [set() for _ in everyone]
     for size in range(len(tasks) + 1):
         for dropped in itertools.combinations(tasks, size):
             kept = [n for n in tasks if n not in dropped]
-            meeting = Question(question.table, _only(question.asked, kept)).studies
+            matching = Question(question.table, _only(question.requirements, kept)).studies
             given_up = sum(bit[n] for n in dropped)
             for at in everyone:
-                if meeting >> at & 1 and not any(b & given_up == b for b in found[at]):
+                if matching >> at & 1 and not any(b & given_up == b for b in found[at]):
                     found[at].add(given_up)
     return [{bits | broken[at] for bits in found[at]} for at in everyone]
 
@@ -298,7 +300,7 @@ def _nearest_limit(table: DesignTable, requirements: Requirements, limit: str) -
         return _widest(table, requirements)
     question = Question(table, requirements)
     arrays = question.arrays
-    rows = question.matching_designs[arrays.design_of] & _keeping(arrays, requirements)
+    rows = question.matching_designs[arrays.design_of] & _within_limits(arrays, requirements)
     values = {
         "max_error_deg": question.errors.error_deg,
         "min_availability": question.errors.availability,
@@ -306,22 +308,22 @@ def _nearest_limit(table: DesignTable, requirements: Requirements, limit: str) -
     }[limit][rows]
     numbers: list[float] = [n for n in values.tolist() if math.isfinite(n) and n > 0]
     if limit == "max_error_deg":
-        numbers += _stated(question, "accuracy_deg")
+        numbers += _stated_numbers(question, "accuracy_deg")
     if not numbers:
         return None
     return max(numbers) if limit.startswith("min_") else min(numbers)
 
 
-def _stated(question: Question, attribute: str) -> list[float]:
+def _stated_numbers(question: Question, attribute: str) -> list[float]:
     """Return a number stated by the studies behind the designs of an answer not measured."""
     designs = question.arrays.designs
     bits = 0
-    for at in question.arrays.unmeasured.tolist():
+    for at in question.arrays.unmeasured_designs.tolist():
         if not question.matching_designs[at]:
             continue
-        bits |= designs[at].taken
-    bits &= question.all_stated
-    return [number for at, number in question.table.stated[attribute] if bits >> at & 1]
+        bits |= designs[at].users
+    bits &= question.studies_within_limits
+    return [number for at, number in question.table.stated_numbers[attribute] if bits >> at & 1]
 
 
 def _widest(table: DesignTable, requirements: Requirements) -> float | None:
@@ -331,12 +333,12 @@ def _widest(table: DesignTable, requirements: Requirements) -> float | None:
     arrays = rest.arrays
     rows = rest.matching_designs[arrays.design_of]
     widest = 0.0
-    for half, having in arrays.cone_edges:
+    for half, has_error in arrays.cone_edges:
         over = requirements.with_value("min_fov_deg", 2.0 * half)
-        if (rows & having & _keeping(arrays, over)).any():
+        if (rows & has_error & _within_limits(arrays, over)).any():
             widest = 2.0 * half
             break
-    return max(widest, *_stated(Question(table, requirements), "fov_deg"), 0.0) or None
+    return max(widest, *_stated_numbers(Question(table, requirements), "fov_deg"), 0.0) or None
 
 
 def _bench_that_would_do(table: DesignTable, requirements: Requirements) -> float | None:
@@ -348,7 +350,7 @@ def _bench_that_would_do(table: DesignTable, requirements: Requirements) -> floa
 
     question = Question(table, replace(requirements, bench_deg=0.0))
     rows = question.matching_designs[question.arrays.design_of]
-    rows &= _keeping(question.arrays, question.asked)
+    rows &= _within_limits(question.arrays, question.requirements)
     if not rows.any():
         return None
     ratios = question.arrays.unit_ratios[rows]
@@ -363,17 +365,17 @@ def _has_evidence(table: DesignTable, requirements: Requirements, name: str) -> 
     if name == "min_availability":
         return bool(arrays.rows)
     if name == "survive":
-        return all(bool(arrays.tried(hazard).any()) for hazard in requirements.survive)
+        return all(bool(arrays.covers(hazard).any()) for hazard in requirements.survive)
     if name == "max_error_deg":
-        return bool(arrays.rows or table.stated["accuracy_deg"])
+        return bool(arrays.rows or table.stated_numbers["accuracy_deg"])
     if name == "min_fov_deg":
-        return bool(arrays.rows or table.stated["fov_deg"])
+        return bool(arrays.rows or table.stated_numbers["fov_deg"])
     return True
 
 
 def _ask(requirements: Requirements, name: str) -> tuple[str, ...] | float:
     """Return what is asked of one of the requirements' own names."""
-    asked = requirements.asked(name)
+    asked = requirements.value_of(name)
     if asked is None:
         raise KeyError(name)
     return asked

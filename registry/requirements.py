@@ -1,4 +1,4 @@
-"""What is asked of a sun sensor: values to have or to avoid, and limits to keep."""
+"""Requirements on a sun sensor: values to include or exclude, and numeric limits."""
 
 from __future__ import annotations
 
@@ -28,17 +28,18 @@ SETTINGS: Mapping[str, str] = MappingProxyType(
         "confidence": "a share from 0.5 to 0.999",
     }
 )
-"""What an error is judged by, and what it takes: the fixed error of the calibration bench, that of
-each data set's standard bench by default; and the share of units and benches that meet a limit."""
+"""Settings of how errors are judged, and their allowed values: the fixed error of the calibration
+bench (by default that of each data set's standard bench), and the share of units and benches that
+must meet a limit."""
 
 CONFIDENCE = 0.9
-"""The share where none is asked for."""
+"""Default share of units and benches that must meet a limit."""
 
 UNITS = 10
-"""Sensor units that a pipeline is judged on."""
+"""Number of sensor units over which a pipeline is judged."""
 
 CLASSES_DEG: Mapping[str, float] = MappingProxyType({"FSS": 0.5, "VFSS": 1 / 60, "UFSS": 10 / 3600})
-"""Largest errors of the survey's classes of accuracy; the coarsest has none."""
+"""Largest error of each accuracy class of the survey; the coarsest class has no limit."""
 
 HAZARDS: Mapping[str, str] = MappingProxyType(
     {
@@ -53,10 +54,10 @@ HAZARDS: Mapping[str, str] = MappingProxyType(
         "noise": "ten times the noise",
     }
 )
-"""What a sensor may have to survive. Which conditions try it, `benchmark.datasets.hazards` says."""
+"""Hazards that a sensor may have to tolerate (conditions: `benchmark.datasets.hazards`)."""
 
 LISTS = ("survive", "properties")
-"""Requirements that all hold, several at once: hazards; properties of the survey's assessment."""
+"""Requirements of which all values must hold: hazards, and properties of the assessment."""
 
 NEEDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
@@ -70,13 +71,13 @@ NEEDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "albedo-flag": ("albedo",),
     }
 )
-"""What a calibration may read beside the sensor, and the columns of the context that it is."""
+"""Inputs that a calibration may read beside the sensor, and their columns of the context."""
 
 PARAMETERS = (
     *(*ATTRIBUTES, *(EXCLUDE + attribute for attribute in ATTRIBUTES), *LIMITS, *LISTS),
     "exclude_needs",
 )
-"""The names of all requirements, in the order in which they are reported."""
+"""Names of all requirements, in reporting order."""
 
 _KNOWN = frozenset((*PARAMETERS, *SETTINGS))
 
@@ -85,15 +86,15 @@ _KNOWN = frozenset((*PARAMETERS, *SETTINGS))
 class Requirements:
     """Requirements on a sensor, its calibration, and the studies behind both.
 
-    Several values of one attribute are alternatives; different attributes all hold. A parent
-    value (ECM, ICM) stands for its kinds too. Detector, mask, model and extractor are the
-    design's; task, error and accuracy are what its studies are about, address and reach, or what
-    the survey advises it for. An excluded error or accuracy takes out the studies that have it,
-    whatever else they have; an excluded task those that have no other.
+    Several values of one attribute are alternatives; different attributes must all be met. A
+    parent value (ECM, ICM) includes its kinds. Detector, mask, model and extractor are parts of a
+    design; task, error and accuracy are attributes of its studies, or of the survey's advice. An
+    excluded error or accuracy removes every study that has it; an excluded task removes the
+    studies that have no other task.
 
-    A sensor shall survive every hazard of ``survive``: answer often enough under it, within the
-    largest error if one is asked for. An extractor shall have every one of ``properties`` in the
-    survey's assessment, in part at least.
+    Under every hazard of ``survive`` the availability must be high enough, and the error within
+    the largest error if there is one. An extractor must have all ``properties`` in the survey's
+    assessment, at least partly.
     """
 
     include: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -112,16 +113,16 @@ class Requirements:
     def parse(
         cls, parameters: Mapping[str, object], taxonomy: Taxonomy, properties: Collection[str] = ()
     ) -> Self:
-        """Return requirements from named parameters, checked.
+        """Make requirements from named parameters, and check them.
 
         Parameters
         ----------
         parameters : mapping
-            Names of `PARAMETERS`; a value or several for categories, a number for limits. None
-            and empty collections ask nothing.
+            Names of `PARAMETERS`; one or several values for categories, a number for limits. None
+            and empty collections are no requirement.
         taxonomy : Taxonomy
         properties : collection of str
-            Those of the survey's assessment.
+            Names of the properties in the survey's assessment.
 
         Raises
         ------
@@ -178,7 +179,7 @@ class Requirements:
 
     @property
     def largest_deg(self) -> float | None:
-        """The largest error asked for: by number, or by the coarsest of the classes of accuracy."""
+        """Largest allowed error: the number, or that of the coarsest required accuracy class."""
         classes = [CLASSES_DEG.get(value) for value in self.include.get("accuracy", ())]
         known = [limit for limit in classes if limit is not None]
         by_class = max(known) if known and len(known) == len(classes) else None
@@ -186,9 +187,9 @@ class Requirements:
 
     @property
     def draws(self) -> tuple[float | None, float] | None:
-        """Bench and share that errors are judged by; None where own errors are.
+        """Bench error and share of units and benches; None if errors use true directions.
 
-        A bench of None is each data set's standard one.
+        A bench error of None is that of each data set's standard bench.
         """
         if self.largest_deg is None and self.bench_deg is None:
             return None
@@ -196,7 +197,7 @@ class Requirements:
 
     @property
     def half_field_deg(self) -> float | None:
-        """Half the field of view asked for."""
+        """Half of the required field of view."""
         return None if self.min_fov_deg is None else self.min_fov_deg / 2
 
     def limit(self, name: str) -> float | None:
@@ -206,11 +207,11 @@ class Requirements:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The parameters that ask something, in the order of `PARAMETERS`."""
-        return tuple(name for name in PARAMETERS if self.asked(name) is not None)
+        """Names of the parameters that are set, in the order of `PARAMETERS`."""
+        return tuple(name for name in PARAMETERS if self.value_of(name) is not None)
 
-    def asked(self, name: str) -> tuple[str, ...] | float | None:
-        """Return what a parameter of `PARAMETERS` asks; None if nothing."""
+    def value_of(self, name: str) -> tuple[str, ...] | float | None:
+        """Return the value of a parameter of `PARAMETERS`; None if it is not set."""
         if name in LIMITS:
             return self.limit(name)
         if name in LISTS or name == "exclude_needs":
@@ -221,7 +222,7 @@ class Requirements:
         return self.include.get(name) or None
 
     def without(self, *names: str) -> Requirements:
-        """Return these requirements less the parameters named."""
+        """Return these requirements without some parameters."""
         changed = self
         for name in names:
             changed = changed.with_value(name, None)
@@ -242,17 +243,17 @@ class Requirements:
         return replace(self, exclude=kept) if side == "exclude" else replace(self, include=kept)
 
     def to_dict(self) -> dict[str, object]:
-        """Return the parameters that ask something, as they are passed in."""
+        """Return the parameters that are set, as `parse` takes them."""
         asked: dict[str, tuple[str, ...] | float | None] = {
             **self.include,
             **{EXCLUDE + attribute: values for attribute, values in self.exclude.items()},
             **{name: getattr(self, name) for name in (*LIMITS, *LISTS, "exclude_needs")},
         }
-        told = [(name, asked.get(name)) for name in PARAMETERS]
-        told += [(name, getattr(self, name)) for name in SETTINGS]
+        pairs = [(name, asked.get(name)) for name in PARAMETERS]
+        pairs += [(name, getattr(self, name)) for name in SETTINGS]
         return {
             n: list(v) if isinstance(v, tuple) else v
-            for n, v in told
+            for n, v in pairs
             if v or (v == 0 and n in SETTINGS)
         }
 

@@ -52,12 +52,12 @@ class Resolution:
     gaps: tuple[Gap, ...]
 
     @property
-    def best(self) -> RunnablePipeline | None:
+    def best_pipeline(self) -> RunnablePipeline | None:
         """The pipeline that rests on most: the first of those whose weakest part is strongest."""
-        return next(iter(self.nearest), None)
+        return next(iter(self.strongest_pipelines), None)
 
     @property
-    def nearest(self) -> Sequence[RunnablePipeline]:
+    def strongest_pipelines(self) -> Sequence[RunnablePipeline]:
         """The pipelines that rest on most, whose first settings the study is judged by."""
         return strongest(self.pipelines)
 
@@ -87,7 +87,7 @@ def resolve(
     study : Study or str
         A study or its key; InvalidValueError for an unknown key.
     plan : Plan
-        What can be scored, as `benchmark.plan.combinations.scorable` gives it.
+        What can be scored, as `benchmark.plan.combinations.scorable_plan` gives it.
     data_sets : optional
         What the plan's data sets show, as `benchmark.plan.shown.data_sets` gives it; one that is
         missing shows its nominal condition alone.
@@ -137,7 +137,7 @@ def _resolve(
     study: Study, fitting: PipelinesOfStudy, data_sets: Mapping[str, DataSet]
 ) -> Resolution:
     facts = fitting.facts
-    on = sensors(study, facts, fitting.plan, lambda pair: fitting.own(study, pair))
+    on = sensors(study, facts, fitting.plan, lambda pair: fitting.count_own_methods(study, pair))
     wanted = purposes(study, facts)
     own = _resolve_all(study, on, fitting, data_sets, wanted)
     shown = all(departure.part != "condition" for departure in own.fidelity.departures)
@@ -188,7 +188,7 @@ def _resolve_all(
     wanted: Mapping[Purpose, str],
 ) -> Resolution:
     """Resolve a study on given sensors."""
-    fitted = fitting.fitted(study, (sensor.architecture for sensor in on))
+    fitted = fitting.pipelines_by_architecture(study, (sensor.architecture for sensor in on))
     pipelines = tuple(
         _pipeline(
             *(study, sensor, one, fitting.catalogue),
@@ -233,7 +233,7 @@ def _pipeline(
         datasets=one.datasets,
         settings=at,
         basis=MappingProxyType({a: part.basis for a, part in parts.items()}),
-        assumed=MappingProxyType({a: part.rule for a, part in parts.items() if part.rule}),
+        assumptions=MappingProxyType({a: part.rule for a, part in parts.items() if part.rule}),
     )
 
 
@@ -244,8 +244,10 @@ def _method(study: Study, attribute: str, chosen: ChosenMethod) -> Part:
     if chosen.variant:
         said: Basis = "inferred" if chosen.variant.basis == "inferred" else "stated"
         return Part(chosen.name, said, chosen.variant.note if said == "inferred" else "")
-    if chosen.missed:
-        return Part(chosen.name, "defaulted", f"not as the study has it: {chosen.missed.note}")
+    if chosen.other_variant:
+        return Part(
+            chosen.name, "defaulted", f"not as the study has it: {chosen.other_variant.note}"
+        )
     if chosen.unsaid:
         return Part(chosen.name, "defaulted", f"one kind of {chosen.unsaid}, which is not stated")
     parts = [cell(study, attribute, value) for value in chosen.runs]
@@ -268,7 +270,8 @@ def _empty_cells(study: Study, pipelines: Sequence[RunnablePipeline]) -> list[Ga
     for attribute in ESSENTIAL:
         if study.of(attribute):
             continue
-        rules = dict.fromkeys(p.assumed[attribute] for p in pipelines if attribute in p.assumed)
+        known = [p.assumptions for p in pipelines if attribute in p.assumptions]
+        rules = dict.fromkeys(rule[attribute] for rule in known)
         filled = f"; filled: {' and '.join(rules)}" if rules else ""
         gaps.append(Gap(attribute, "", f"the mapping states no value{filled}"))
     return gaps
@@ -325,7 +328,7 @@ def _nearest_gaps(study: Study) -> list[Gap]:
     return [
         Gap(attribute, value, f"the study has {name.name}, to which this is the nearest known here")
         for (attribute, value), name in study.names.items()
-        if name.nearest
+        if name.is_nearest
     ]
 
 

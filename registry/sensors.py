@@ -98,7 +98,7 @@ def _fill(study: Study, attribute: str, defaults: Iterable[Default]) -> dict[str
     if study.of(attribute):
         return {value: cell(study, attribute, value) for value in study.of(attribute)}
     for rule in defaults:
-        if rule.attribute == attribute and all(v in study.of(a) for a, v in rule.given):
+        if rule.attribute == attribute and all(v in study.of(a) for a, v in rule.conditions):
             basis: Basis = "implied" if rule.kind == "implied" else "defaulted"
             return {rule.value: Part(rule.value, basis, f"{rule.id}: {rule.rule}")}
     return {}
@@ -152,11 +152,11 @@ def _beside(
 
 def _share(study: Study, other: Study) -> float:
     """Return the share of methods and errors that two studies have in common."""
-    ours, theirs = _said(study), _said(other)
+    ours, theirs = _methods_and_errors(study), _methods_and_errors(other)
     return len(ours & theirs) / max(1, len(ours | theirs))
 
 
-def _said(study: Study) -> set[tuple[str, str]]:
+def _methods_and_errors(study: Study) -> set[tuple[str, str]]:
     return {
         (attribute, value)
         for attribute in _ALIKE

@@ -76,14 +76,14 @@ class FactsError(ValueError):
 class Default:
     """What stands in an empty cell of a study that meets every condition, and why.
 
-    ``given`` are (attribute, value) that the study must have. ``kind`` is implied where the value
-    follows from the survey's definition of a method that the study uses, chosen where others would
-    fit as well.
+    ``conditions`` are (attribute, value) that the study must have. ``kind`` is implied where the
+    value follows from the survey's definition of a method that the study uses, chosen where others
+    would fit as well.
     """
 
     id: str
     attribute: str
-    given: tuple[tuple[str, str], ...]
+    conditions: tuple[tuple[str, str], ...]
     value: str
     section: str
     rule: str
@@ -101,7 +101,7 @@ class Facts:
     properties: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
     """Property of the survey's assessment -> value of an extractor -> its mark, 0 to 2."""
     purposes: tuple[PurposeRule, ...] = ()
-    compensated: tuple[CompensatedModel, ...] = ()
+    compensated_models: tuple[CompensatedModel, ...] = ()
     variants: tuple[MethodVariant, ...] = ()
 
     def variant(self, study: str, model: str) -> MethodVariant | None:
@@ -118,7 +118,7 @@ class Facts:
 
     def _compensate(self, study: str, compensation: str, relation: str) -> tuple[str, ...]:
         at = (study, compensation, relation)
-        rows = (c for c in self.compensated if (c.study, c.compensation, c.relation) == at)
+        rows = (c for c in self.compensated_models if (c.study, c.compensation, c.relation) == at)
         return tuple(c.model for c in rows)
 
     @cached_property
@@ -273,10 +273,10 @@ def facts_from(tables: Tables) -> Facts:
             ),
             unknown=MappingProxyType(unknown.pop(key, {})),
             roles=MappingProxyType(roles.get(key, {})),
-            combined=combined.get(key, ()),
+            combinations=combined.get(key, ()),
             edition=row.get("edition", SURVEY),
             names=MappingProxyType(names.get(key, {})),
-            verified=tuple(verified.get(key, ())),
+            verifications=tuple(verified.get(key, ())),
             type=row.get("type", "unknown"),
         )
     strangers = sorted({*stated, *unknown})

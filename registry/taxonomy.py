@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import Any
 
 from survey_data import labels
-from survey_data.nearest import nearest
+from survey_data.nearest import nearest_name
 
 Architecture = tuple[str, str]
 """Detector and mask, as values of the taxonomy."""
@@ -189,12 +189,12 @@ class Taxonomy:
         if value not in self._names_of(level):
             raise self._unknown_value(level, value, parameter)
 
-    def nearest(self, level: str, text: str) -> str | None:
+    def nearest_value(self, level: str, text: str) -> str | None:
         """Return the value of `level` most like `text`, by value or name; None if none is."""
         names = self._names_of(level)
         spelled = {name.casefold(): value for value, name in names.items()}
         spelled |= {value.casefold(): value for value in names}
-        found = nearest(text, spelled, cutoff=_ALIKE)
+        found = nearest_name(text, spelled, cutoff=_ALIKE)
         return spelled[found] if found else None
 
     def kinds(self, attribute: str, value: str) -> tuple[str, ...]:
@@ -238,7 +238,7 @@ class Taxonomy:
             parameter or level,
             value,
             f"one of {', '.join(self._names_of(level))}",
-            self.nearest(level, str(value)),
+            self.nearest_value(level, str(value)),
         )
 
     def _level_names(self, level: str) -> dict[str, str]:
@@ -260,5 +260,8 @@ def unknown_name(
     """Return the error for a name that is none of `names`."""
     known = list(names)
     return InvalidValueError(
-        parameter, value, f"one of {', '.join(known)}", nearest(str(value), known, cutoff=_ALIKE)
+        parameter,
+        value,
+        f"one of {', '.join(known)}",
+        nearest_name(str(value), known, cutoff=_ALIKE),
     )

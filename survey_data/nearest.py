@@ -8,7 +8,7 @@ from difflib import SequenceMatcher
 _LONGEST_COMPARED = 64  # similarity is quadratic in length; no known word is longer
 
 
-def nearest(word: str, known: Iterable[str], *, cutoff: float = 0.4) -> str | None:
+def nearest_name(word: str, known: Iterable[str], *, cutoff: float = 0.4) -> str | None:
     """Return the known word most like another, case aside; None where none is like it.
 
     Of words that are equally alike, the first in alphabetical order is taken, so that the answer

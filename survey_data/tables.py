@@ -135,7 +135,7 @@ MAY_BE_EMPTY = frozenset({*RESTING, *EXTENSION_TABLES})
 
 
 def _without_use(table: str, records: Records) -> list[Problem]:
-    """Name a table without rows, and rows whose key stands twice: nothing can be told of them."""
+    """Name a table without rows, and rows with the same key."""
     if not records.rows and table not in MAY_BE_EMPTY:
         return [Problem(file_name(table), 1, None, "the table has a header and no rows")]
     names = primary_key(table)

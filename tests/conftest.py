@@ -127,7 +127,7 @@ def _same_cells_are_read_and_checked_once() -> Iterator[None]:
 def _same_scores_are_read_once() -> Iterator[None]:
     """Every command opens the record anew, as if it were the first: a second for the same bytes.
 
-    What is told of a file goes by its bytes and by what its columns hold; a file that is refused
+    A file is described by its bytes and by what its columns hold; a file that is refused
     is read each time. Who asked gets rows of their own.
     """
     from benchmark.results import store

@@ -38,7 +38,7 @@ for module, component in zip(modules, label.tolist()):
 print(json.dumps([circle for circle in found.values() if len(circle) > 1]))
 """
 
-#: By contract: a file, an import in it that must not be, and who then is told of whom.
+#: By contract: a file, an import in it that must not be, and the importer and the imported.
 OFFENCES = {
     "Floors: imports only point down": [
         ("registry/taxonomy.py", "import benchmark.seeds", "registry", "benchmark"),
@@ -121,9 +121,11 @@ def test_every_contract_is_kept_here_and_fails_when_broken(broken: Path) -> None
     assert there.returncode == 1, there.stdout + there.stderr
     assert set(re.findall(r"^(.+) KEPT$", here.stdout, re.MULTILINE)) == set(OFFENCES)
     assert set(re.findall(r"^(.+) BROKEN$", there.stdout, re.MULTILINE)) == set(OFFENCES)
-    told = " ".join(there.stdout.split())
+    output = " ".join(there.stdout.split())
     for offences in OFFENCES.values():
         for name, statement, importer, imported in offences:
-            assert f"{importer} is not allowed to import {imported}" in told, name
+            assert f"{importer} is not allowed to import {imported}" in output, name
             module = name.removesuffix(".py").replace("/", ".")
-            assert f"{module} -> {statement.removeprefix('import ').partition('.stats')[0]}" in told
+            assert (
+                f"{module} -> {statement.removeprefix('import ').partition('.stats')[0]}" in output
+            )

@@ -42,7 +42,7 @@ def bench(boards: Sequence[Sequence[Row]]) -> str:
 
 
 def groups(boards: Sequence[Sequence[Row]]) -> str:
-    """Count what is not told apart from the leaders of boards."""
+    """Count what is not distinguished from the leaders of boards."""
     first = [sum(row["group"] == 1 for row in rows) for rows in boards]
     return (
         f"paired-judgement: of {len(first)} boards {first.count(1)} have one leader; median "

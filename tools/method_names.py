@@ -58,7 +58,7 @@ def texts(root: Path = ROOT) -> dict[str, str]:
 
 
 def names() -> set[str]:
-    """Return names of extractors; two letters, such as pm, are too short to be told from words."""
+    """Return names of extractors; two letters, such as pm, are too short to differ from words."""
     return {one.name for one in catalogue().implementations("extractor") if len(one.name) > 2}
 
 

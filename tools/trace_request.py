@@ -20,7 +20,7 @@ from types import FrameType
 from starlette.types import ASGIApp, Message
 
 from api.http.service import create_app
-from tools.bench.service import drawn
+from tools.bench.service import random_paths
 
 ROOT = Path(__file__).parents[1]
 WARM, TRACED, SEED = 100, 20, 36
@@ -75,7 +75,7 @@ async def ask(app: ASGIApp, path: str) -> None:
         raise RuntimeError(f"{path}?{query} was answered by {statuses[0]}")
 
 
-async def traced(app: ASGIApp, path: str) -> Trace:
+async def trace(app: ASGIApp, path: str) -> Trace:
     """Return the trace of one question."""
     trace = Trace()
     sys.setprofile(trace)
@@ -89,9 +89,9 @@ async def traced(app: ASGIApp, path: str) -> Trace:
 async def run(paths: Iterator[str]) -> list[tuple[str, Trace]]:
     """Warm the service, then trace questions that it was not asked before."""
     app = create_app()
-    for path in islice(drawn(SEED), WARM):
+    for path in islice(random_paths(SEED), WARM):
         await ask(app, path)
-    return [(path, await traced(app, path)) for path in paths]
+    return [(path, await trace(app, path)) for path in paths]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -100,7 +100,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("query", nargs="*", help="such as task=Accuracy&max_error_deg=0.5")
     queries: list[str] = parser.parse_args(arguments).query
     asked = [f"/v1/recommendations?{query}" for query in queries]
-    found = asyncio.run(run(iter(asked) if asked else islice(drawn(SEED), WARM, WARM + TRACED)))
+    found = asyncio.run(
+        run(iter(asked) if asked else islice(random_paths(SEED), WARM, WARM + TRACED))
+    )
     for path, trace in found:
         print(f"{trace.calls:6d} calls {len(trace.files):3d} files {trace.steps:5d} steps  {path}")
     for name in ("calls", "steps"):

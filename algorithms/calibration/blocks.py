@@ -21,12 +21,12 @@ EQUAL = 1e-6
 
 #: Most blocks of neighbouring poses that are dealt out to the folds.
 _BLOCKS = 500
-#: Poses are told apart to this many digits, far fewer than those that rounding reaches: a digit
+#: Poses are distinguished to this many digits, far fewer than those that rounding reaches: a digit
 #: that it turned would bring neighbours into another order.
 _POSE_DIGITS = 6
 #: Squared distances are equal that differ by less: those of a grid are, up to rounding.
 _ALIKE = 1e-9
-#: Places along an axis are told apart to this many digits of a slice.
+#: Places along an axis are distinguished to this many digits of a slice.
 _DIGITS = 9
 #: Poses around one on a grid.
 _NEIGHBOURS = 8
@@ -104,7 +104,7 @@ def _rim(places: Floats) -> NDArray[np.bool_]:
 def folds_along(values: Floats, count: int = FOLDS) -> NDArray[np.int64]:
     """Fold (n,) of each sample by one coordinate alone; -1 at both ends, which all fits keep.
 
-    What is fitted along one axis is told nothing new by a sample beside another at the same
+    What is fitted along one axis learns nothing new from a sample beside another at the same
     place: poses of a turntable's grid share their columns. So whole slices are left out together,
     and none of those that a curve would have to be continued to.
 
@@ -170,7 +170,7 @@ def splits(fold: NDArray[np.int64]) -> list[tuple[NDArray[np.bool_], NDArray[np.
     return found
 
 
-def best(
+def best_candidate(
     candidates: Sequence[Candidate], error: Callable[[Candidate], float], by: str
 ) -> tuple[Candidate, float]:
     """Return the candidate with the smallest error on what was left out, and that error.
@@ -199,8 +199,8 @@ def best(
     for number, candidate in enumerate(candidates):
         try:
             size = error(candidate)
-        except UnusableDataError as told:
-            refusal = told
+        except UnusableDataError as unusable:
+            refusal = unusable
             continue
         if np.isfinite(size):
             found.append((size, number))

@@ -40,9 +40,9 @@ _LOST_DEG, _FEWEST_LOST = 45.0, 10
 
 @dataclass
 class CalibratedModel(Model):
-    """A model that learns from calibration samples, refuses what does not determine it, and doubts.
+    """A model that learns from calibration samples, refuses too few, and flags answers.
 
-    A subclass is a dataclass that writes `about`, `learn` and `answer`. It is told only rows with
+    A subclass is a dataclass that writes `about`, `learn` and `answer`. It gets only rows with
     features; a refused fit leaves the model as it was. Outside the convex hull of what it was
     calibrated on it answers NaN: of the features where there are two, else of the directions.
 
@@ -135,14 +135,14 @@ class CalibratedModel(Model):
             features, sun, self.columns(), self.about.name, frontal=self.frontal
         )
         require_samples(len(found), self.fewest, self.about.name, "to be calibrated at all")
-        told = as_context(context, self.about.context, len(usable), self.about.name)
-        known = complete(told, len(usable))[usable]
+        columns = as_context(context, self.about.context, len(usable), self.about.name)
+        known = complete(columns, len(usable))[usable]
         found, vectors = found[known], vectors[known]
-        told = {name: column[usable][known] for name, column in told.items()}
+        columns = {name: column[usable][known] for name, column in columns.items()}
         learnt = replace(self)  # a refusal leaves no trace
         learnt.hull_ = self._region(found, vectors)
-        learnt.learn(found, vectors, told)
-        learnt.assess(found, vectors, told)
+        learnt.learn(found, vectors, columns)
+        learnt.assess(found, vectors, columns)
         vars(self).update(vars(learnt))
         return self
 
@@ -185,19 +185,19 @@ class CalibratedModel(Model):
         """Sun unit vectors (N, 3) of features (N, F); NaN rows where undefined."""
         require_fitted(self, "quality_")
         found = as_feature_rows(features, self.columns(), self.about.name)
-        told = as_context(context, self.about.context, len(found), self.about.name)
-        untold = ~complete(told, len(found))
+        columns = as_context(context, self.about.context, len(found), self.about.name)
+        untold = ~complete(columns, len(found))
         answers = np.empty((len(found), 3))
         for start in range(0, len(found), _ROWS):
             rows = slice(start, start + _ROWS)
             chunk = finite_rows(found[rows])
-            part = self.answer(chunk, {name: told[name][rows] for name in told})
+            part = self.answer(chunk, {name: columns[name][rows] for name in columns})
             if self.bounded:
                 held = self.hull_.holds(chunk if chunk.shape[1] == PLANAR else part)
                 if not held.all():
                     part[~held] = np.nan
             answers[rows] = part
-        if told:
+        if columns:
             answers[untold] = np.nan
         return answers
 
@@ -209,9 +209,9 @@ class CalibratedModel(Model):
         """
         directions = self.predict(features, context)
         found = as_features(features, self.columns(), self.about.name)
-        told = as_context(context, self.about.context, len(found), self.about.name)
+        columns = as_context(context, self.about.context, len(found), self.about.name)
         size = self.quality_.validation_rms_deg or self.quality_.residual_rms_deg
-        variance = self.variance(found, told) + np.radians(size) ** 2 / 2.0
+        variance = self.variance(found, columns) + np.radians(size) ** 2 / 2.0
         variance[~np.isfinite(directions[:, 0])] = np.nan
         return np.asarray(np.degrees(np.sqrt(variance)))
 

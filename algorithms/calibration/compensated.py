@@ -21,7 +21,7 @@ class CalibratedCompensation(Compensation):
     """A compensation that checks what it is given and refuses what does not determine it.
 
     A subclass is a dataclass that writes `about`, `apply` and, unless its drawing says all,
-    `learn`. It is told only rows with features; a refused fit leaves it as it was.
+    `learn`. It gets only rows with features; a refused fit leaves it as it was.
 
     Attributes
     ----------
@@ -59,14 +59,14 @@ class CalibratedCompensation(Compensation):
             features, sun, self.columns(), by, frontal=self.frontal
         )
         require_samples(len(found), 1, by, "to be calibrated at all")
-        told = as_context(context, self.about.context, len(usable), by)
-        known = complete(told, len(usable))[usable]
+        columns = as_context(context, self.about.context, len(usable), by)
+        known = complete(columns, len(usable))[usable]
         found, vectors = found[known], vectors[known]
-        told = {name: column[usable][known] for name, column in told.items()}
+        columns = {name: column[usable][known] for name, column in columns.items()}
         learnt = replace(self)  # a refusal leaves no trace
-        learnt.learn(found, vectors, told)
+        learnt.learn(found, vectors, columns)
         learnt.samples_ = len(found)
-        learnt.data_digest_ = data_digest(found, vectors, told)
+        learnt.data_digest_ = data_digest(found, vectors, columns)
         vars(self).update(vars(learnt))
         return self
 
@@ -74,8 +74,8 @@ class CalibratedCompensation(Compensation):
         """(N, F) features of features (N, F), of the same kind; NaN rows where undefined."""
         require_fitted(self, "data_digest_")
         found = as_features(features, self.columns(), self.about.name)
-        told = as_context(context, self.about.context, len(found), self.about.name)
-        found[~complete(told, len(found))] = np.nan
-        given = self.apply(found, told)
+        columns = as_context(context, self.about.context, len(found), self.about.name)
+        found[~complete(columns, len(found))] = np.nan
+        given = self.apply(found, columns)
         given[~np.isfinite(given).all(axis=1)] = np.nan
         return given

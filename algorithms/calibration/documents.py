@@ -37,16 +37,16 @@ def require_whole(document: Mapping[str, Any], known: Collection[str]) -> None:
 
     And where it has a member that is none of the known ones.
     """
-    told = document.get(DIGEST)
-    if not isinstance(told, str):
+    digest = document.get(DIGEST)
+    if not isinstance(digest, str):
         raise DocumentError(f"the member {DIGEST!r} is missing")
     try:
         found = digest_of(document)
     except (TypeError, ValueError, RecursionError) as error:
         raise DocumentError(f"expected what JSON can say ({error})") from error
-    if found != told:
+    if found != digest:
         raise DocumentError(
-            f"the digest of what it holds is {found}, and it says {told[:40]!r}: something in it "
+            f"the digest of what it holds is {found}, and it says {digest[:40]!r}: something in it "
             "was changed after it was saved"
         )
     if unknown := sorted(set(document) - set(known)):

@@ -1,4 +1,4 @@
-"""`ForwardModel`: a sensor told by the features that each direction casts, inverted row by row."""
+"""`ForwardModel`: a sensor model that gives the features of each direction, inverted row by row."""
 
 from __future__ import annotations
 

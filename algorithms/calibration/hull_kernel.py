@@ -25,7 +25,7 @@ def in_region(
         Points; NaN is nowhere.
     slices : tuple
         Lowest and highest y (S,) of each slice of x between which all is inside, the first and
-        the last holding nothing; where the first begins, and slices of a unit of x.
+        the last of which is empty; where the first begins, and slices of a unit of x.
     sides : tuple
         Sides (F, 3) as `Hull` has them, and the margin past them: what no slice holds is asked
         of these.

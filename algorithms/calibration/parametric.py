@@ -118,8 +118,8 @@ class ParametricModel(CalibratedModel):
             if np.isfinite(solution.x).all() and (best is None or solution.cost < best.cost):
                 best = solution
         if best is None or not best.success:
-            told = "no finite solution" if best is None else best.message
-            raise UnusableDataError(f"{by}: the fit did not converge ({told})")
+            reason = "no finite solution" if best is None else best.message
+            raise UnusableDataError(f"{by}: the fit did not converge ({reason})")
 
         jacobian = derivatives(best.x)
         lengths = np.linalg.norm(jacobian, axis=0)

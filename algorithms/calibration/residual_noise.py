@@ -62,8 +62,8 @@ def parameter_covariance(derivatives: Floats, residuals: Floats, moved: Floats) 
         leverage = np.einsum("nip,pq,njq->nij", blocks, inverse, blocks)
         noises, expected = [], []
         for noise in (alike, along):
-            told = np.einsum("nip,nij,njq->pq", blocks, noise, blocks)
-            around = inverse @ told @ inverse
+            information = np.einsum("nip,nij,njq->pq", blocks, noise, blocks)
+            around = inverse @ information @ inverse
             kept = np.einsum("nip,pq,niq->ni", blocks, around, blocks)
             own = np.einsum("nii->ni", noise)
             lost = np.einsum("nij,nji->ni", leverage, noise)

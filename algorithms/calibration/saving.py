@@ -188,7 +188,7 @@ def save(pipeline: Pipeline, path: str | Path, geometry: SensorGeometry | None =
     """
     text = json.dumps(document(pipeline, geometry), indent=1, allow_nan=False) + "\n"
     target = Path(path)
-    _remove_leftovers(target)
+    _remove_stale_files(target)
     scratch = target.with_name(f".{target.name}.{os.getpid()}-{get_ident():x}.saving")
     try:
         scratch.write_text(text, encoding="utf-8")
@@ -201,7 +201,7 @@ def save(pipeline: Pipeline, path: str | Path, geometry: SensorGeometry | None =
         scratch.unlink(missing_ok=True)
 
 
-def _remove_leftovers(target: Path) -> None:
+def _remove_stale_files(target: Path) -> None:
     """Remove what killed processes left half written of a file."""
     named = re.compile(rf"\.{re.escape(target.name)}\.(\d+)-[0-9a-f]+\.saving")
     for path in target.parent.iterdir() if target.parent.is_dir() else ():

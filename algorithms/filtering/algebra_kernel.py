@@ -162,9 +162,9 @@ def innovation_likelihood(spread: Floats, innovation: Floats) -> tuple[Floats, F
     root, white = np.zeros((m, m)), np.empty(m)
     for b in range(count):
         root[:] = spread[b]
-        squares, told = _whiten(root, innovation[b], white)
+        squares, log_likelihood = _whiten(root, innovation[b], white)
         if math.isfinite(squares):
-            squared[b], likelihood[b] = squares, told
+            squared[b], likelihood[b] = squares, log_likelihood
     return squared, likelihood
 
 

@@ -66,9 +66,9 @@ class MultipleModels:
             space, belief, np.repeat(read, number, axis=0), known
         )
         # readings whose errors are correlated tell as much as fewer would
-        told = after.log_likelihood.reshape(-1, number) / space.correlate().mean()
-        best = told.max(axis=1, keepdims=True)
-        likelihood = np.where(np.isfinite(best), np.exp(told - best), 1.0)
+        log_likelihood = after.log_likelihood.reshape(-1, number) / space.correlate().mean()
+        best = log_likelihood.max(axis=1, keepdims=True)
+        likelihood = np.where(np.isfinite(best), np.exp(log_likelihood - best), 1.0)
         weights = after.weights.reshape(-1, number) * likelihood
         weights = np.maximum(weights / weights.sum(axis=1, keepdims=True), self.least)
         weights /= weights.sum(axis=1, keepdims=True)

@@ -103,7 +103,7 @@ def _likeliest(
 
     by = ExtendedKalman(model.considered_errors())
     shares = np.geomspace(_QUIETEST, 1.0, _SHARES)
-    told, followed = [], []
+    mean_likelihoods, followed = [], []
     for share in shares:
         space = model.space(noise=np.maximum(share * model.noise_, least))
         belief: Belief | None = None
@@ -119,9 +119,9 @@ def _likeliest(
             if np.isfinite(belief.log_likelihood[0]):
                 total += float(belief.log_likelihood[0])
                 rows += 1
-        told.append(total / max(rows, 1))
+        mean_likelihoods.append(total / max(rows, 1))
         followed.append(rows)
-    likely = np.where(np.array(followed) >= _FOLLOWED * max(followed), told, -np.inf)
+    likely = np.where(np.array(followed) >= _FOLLOWED * max(followed), mean_likelihoods, -np.inf)
     best = min(max(int(np.argmax(likely)), 1), _SHARES - 2)
     before, here, after = likely[best - 1 : best + 2]
     bend = before - 2.0 * here + after

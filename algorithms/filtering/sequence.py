@@ -75,8 +75,8 @@ class SunFilter(Model):
     bias_walk_deg_h_sqrt_h : float
         Of what its bias moves in an hour, positive.
     reference_deg : float
-        1-sigma, about each axis, of a fixed turn of what told the calibration's directions,
-        positive.
+        1-sigma, about each axis, of a fixed turn of the device that gave the calibration's
+        directions, positive.
     gain_ageing_per_year, shift_ageing_per_year : float
         1-sigma of what a year changes, positive: a face's gain against the others', and a spot's
         offsets over the focal length.
@@ -200,39 +200,39 @@ class SunFilter(Model):
         found, vectors, usable = as_calibration_rows(
             features, sun, self.columns(), by, frontal=not self.face_normals
         )
-        told = as_context(context, self.about.context, len(usable), by)
-        known = complete(told, len(usable))[usable]
-        told = {name: column[usable] for name, column in told.items()}
-        known &= told["eclipse"] == 0
+        columns = as_context(context, self.about.context, len(usable), by)
+        known = complete(columns, len(usable))[usable]
+        columns = {name: column[usable] for name, column in columns.items()}
+        known &= columns["eclipse"] == 0
         require_samples(int(known.sum()), FEWEST, by, "to learn how the sensor reads a Sun")
-        order = np.flatnonzero(known)[np.argsort(told["time_s"][known], kind="stable")]
+        order = np.flatnonzero(known)[np.argsort(columns["time_s"][known], kind="stable")]
         found, vectors = found[order], vectors[order]
-        told = {name: column[order] for name, column in told.items()}
+        columns = {name: column[order] for name, column in columns.items()}
         learnt = replace(self)  # a refusal leaves no trace
-        learnt.learn(found, vectors, told)
-        learnt.assess(found, vectors, told)
+        learnt.learn(found, vectors, columns)
+        learnt.assess(found, vectors, columns)
         vars(self).update(vars(learnt))
         return self
 
-    def learn(self, features: Floats, sun: Floats, told: dict[str, Floats]) -> None:
+    def learn(self, features: Floats, sun: Floats, columns: dict[str, Floats]) -> None:
         """Set readings, their noise, and what series begin from."""
         from algorithms.filtering.readings import (  # noqa: PLC0415 - Numba, at the first fit only
             FaceReadings,
             SpotReadings,
         )
 
-        by, known = self.about.name, _known(told)
+        by, known = self.about.name, _known(columns)
         if self.face_normals:
             normals = np.asarray(self.face_normals, dtype=np.float64)
             self.readings_ = FaceReadings.from_calibration(normals, features, sun, known, by)
         else:
             self.readings_ = SpotReadings.from_calibration(features, sun, known, by)
         residuals = features - self._explain(sun, known)
-        apart = np.diff(told["time_s"])
+        apart = np.diff(columns["time_s"])
         self.step_s_ = float(np.median(apart))
         if not self.step_s_ > 0:
             raise UnusableDataError(f"{by}: the calibration's samples must follow each other")
-        self.calibrated_s_ = float(told["time_s"].mean())
+        self.calibrated_s_ = float(columns["time_s"].mean())
         size = float(np.abs(features).max())
         least = (1e-9 * size) ** 2
         self.noise_ = np.maximum((residuals**2).mean(axis=0), least)
@@ -240,14 +240,14 @@ class SunFilter(Model):
         chosen = np.linspace(0, len(sun) - 1, min(_STARTS, len(sun))).round().astype(int)
         self.starts_ = sun[chosen]
         if (self.steps_ <= _WHITE).all():
-            gaps = np.diff(told["time_s"], prepend=-np.inf)
+            gaps = np.diff(columns["time_s"], prepend=-np.inf)
             apart = np.where((gaps > 0) & (gaps <= _LONGEST * self.step_s_), gaps, np.inf)
             quiet = np.maximum(_QUIET * self.noise_, least)
-            self.noise_ = estimate_noise(self, features, self._known(told), apart, quiet)
+            self.noise_ = estimate_noise(self, features, self._known(columns), apart, quiet)
 
-    def assess(self, features: Floats, sun: Floats, told: dict[str, Floats]) -> None:
+    def assess(self, features: Floats, sun: Floats, columns: dict[str, Floats]) -> None:
         """Set `quality_`: UnusableDataError where the filter does not follow its calibration."""
-        found = self._answers(self.track(features, told))
+        found = self._answers(self.track(features, columns))
         error = separation_deg(found, sun)
         answered = error[np.isfinite(error)]
         residual = float(np.sqrt(np.mean(answered**2))) if len(answered) else np.inf
@@ -261,7 +261,7 @@ class SunFilter(Model):
         self.quality_ = FitQuality(
             samples=len(features),
             residual_rms_deg=residual,
-            data_digest=data_digest(features, sun, told),
+            data_digest=data_digest(features, sun, columns),
             settings=self.readings_.settings(),
         )
 
@@ -281,11 +281,11 @@ class SunFilter(Model):
         """Follow the Sun through rows, those in the dark too, with what the filter thinks of it."""
         require_fitted(self, "starts_")
         found = as_features(features, self.columns(), self.about.name)
-        told = as_context(context, self.about.context, len(found), self.about.name)
-        usable = complete(told, len(found)) & np.isfinite(found).all(axis=1)
-        usable &= told["eclipse"] == 0
+        columns = as_context(context, self.about.context, len(found), self.about.name)
+        usable = complete(columns, len(found)) & np.isfinite(found).all(axis=1)
+        usable &= columns["eclipse"] == 0
         usable &= np.where(usable, self.readings_.is_sunlit(found), 0.0) > 0
-        return self._follow(found, told["time_s"], _known(told), usable)
+        return self._follow(found, columns["time_s"], _known(columns), usable)
 
     def space(self, years: float = 0.0, noise: Floats | None = None) -> SunSpace:
         """State space of the sensor so long after its calibration, of its noise or another."""
@@ -342,7 +342,7 @@ class SunFilter(Model):
         return Track(
             sun=states[:, 6:9],
             deviation_deg=np.degrees(np.sqrt(0.5 * (variance[:, 0] + variance[:, 1]))),
-            read=read,
+            is_read=read,
             squared_innovation=squared,
             series=np.cumsum(~follows) - int(count > 0 and not follows[0]),
             drift=states[:, 12 : 12 + drifts],
@@ -352,17 +352,17 @@ class SunFilter(Model):
 
     def _answers(self, track: Track) -> Floats:
         """Directions of rows that were read, from a series' second reading on."""
-        total = np.cumsum(track.read)
+        total = np.cumsum(track.is_read)
         start = np.zeros(int(track.series.max()) + 1)
         first = np.r_[True, np.diff(track.series) > 0]
-        start[track.series[first]] = (total - track.read)[first]
+        start[track.series[first]] = (total - track.is_read)[first]
         counted = total - start[track.series]
-        held = track.read & (counted >= _FEWEST_READ) & (track.deviation_deg <= self.worst_deg)
+        held = track.is_read & (counted >= _FEWEST_READ) & (track.deviation_deg <= self.worst_deg)
         return np.where(held[:, None], track.sun, np.nan)
 
-    def _known(self, told: dict[str, Floats]) -> Floats:
+    def _known(self, columns: dict[str, Floats]) -> Floats:
         """(N, 7) what states and readings go by, warmth counted from the calibration's middle."""
-        return np.asarray(_known(told) - np.array([0.0] * 6 + [self.readings_.middle_k]))
+        return np.asarray(_known(columns) - np.array([0.0] * 6 + [self.readings_.middle_k]))
 
     def _explain(self, sun: Floats, known: Floats) -> Floats:
         """Give readings (n, m) of known Suns."""
@@ -375,7 +375,7 @@ class SunFilter(Model):
         return np.concatenate(rows)
 
 
-def _known(told: dict[str, Floats]) -> Floats:
+def _known(columns: dict[str, Floats]) -> Floats:
     """(N, 7) what states and readings go by: rate in rad/s, nadir, temperature."""
-    rate, nadir = np.radians(told["rate_deg_s"]), told["nadir"]
-    return np.column_stack([rate, nadir, told["temperature_K"]])
+    rate, nadir = np.radians(columns["rate_deg_s"]), columns["nadir"]
+    return np.column_stack([rate, nadir, columns["temperature_K"]])

@@ -1,4 +1,4 @@
-"""What a filter is told of a system: `StateSpace`; and the plainest one, `LinearStateSpace`."""
+"""What a filter knows of a system: `StateSpace`; and the plainest one, `LinearStateSpace`."""
 
 from __future__ import annotations
 

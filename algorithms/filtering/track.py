@@ -20,7 +20,7 @@ class Track:
         Unit vectors, dead reckoning where nothing is read; NaN before a series' first reading.
     deviation_deg : ndarray, shape (N,)
         1-sigma of a tangent axis.
-    read : ndarray of bool, shape (N,)
+    is_read : ndarray of bool, shape (N,)
         Whether the row's features were used.
     squared_innovation : ndarray, shape (N,)
         In units of its covariance; NaN where nothing was read, and at a series' start.
@@ -36,7 +36,7 @@ class Track:
 
     sun: Floats
     deviation_deg: Floats
-    read: NDArray[np.bool_]
+    is_read: NDArray[np.bool_]
     squared_innovation: Floats
     series: NDArray[np.int64]
     drift: Floats

@@ -59,7 +59,7 @@ def _real_row_maxima(frames: NDArray[Any], out: NDArray[Any]) -> None:
 
 @compiled
 def unusable(frames: NDArray[Any], real: bool, out: NDArray[np.bool_]) -> None:
-    """Mark in `out` (N,) the frames without any contrast, and those holding NaN or infinity."""
+    """Mark in `out` (N,) the frames without any contrast, and those with NaN or infinity."""
     count, height, width = frames.shape
     for k in range(count):
         flat = True

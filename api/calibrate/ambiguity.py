@@ -11,7 +11,7 @@ from api.calibrate.robust import normalised
 
 _NEIGHBOURS = 12
 #: Determinant of readings over directions, as a share of its median near the middle of the field,
-#: below which directions are not told any more; it changes its sign behind a fold.
+#: below which directions are not resolved any more; it changes its sign behind a fold.
 _LEAST_SHARE = 0.1
 #: Samples from which folds are looked for, and the smallest share of samples that is one.
 _FEWEST, _SHARE = 150, 0.01
@@ -51,10 +51,10 @@ def folded(features: Floats, sun: Floats) -> NDArray[np.bool_]:
     slopes = np.concatenate(parts)
     slope = slopes[:, 0, 0] * slopes[:, 1, 1] - slopes[:, 0, 1] * slopes[:, 1, 0]
     middle = separation_deg(sun, np.broadcast_to(_middle(sun), sun.shape))
-    told = np.isfinite(slope)
-    if told.sum() < _FEWEST:
+    known = np.isfinite(slope)
+    if known.sum() < _FEWEST:
         return nothing
-    usual = float(np.median(slope[told & (middle <= np.percentile(middle[told], 25))]))
+    usual = float(np.median(slope[known & (middle <= np.percentile(middle[known], 25))]))
     flat = slope / usual < _LEAST_SHARE  # False where poses along a line tell no slope
     zone = flat[near].mean(axis=1) > 0.5  # one wrong pose among neighbours decides nothing
     if zone.mean() < _SHARE:

@@ -40,7 +40,13 @@ from api.calibrate.uncertainty import (
     refits,
     spread_deg,
 )
-from api.calibrate.verdict import Verdict, judge, next_poses, patterns_in, with_doubt
+from api.calibrate.verdict import (
+    Verdict,
+    judge,
+    next_poses,
+    patterns_in,
+    with_uncertain_conventions,
+)
 from files.reading import read_bytes
 
 #: Samples from which wrong poses are looked for.
@@ -49,7 +55,7 @@ _FEWEST_FOR_WRONG = 40
 _ONE_AXIS = 0.02
 #: RMS over the directions' own spread from which a model explains no more than chance does.
 _CHANCE = 0.5
-#: Share of rows with the light behind the sensor from which the angles' own form is doubted.
+#: Share of rows with the light behind the sensor from which the angles' own form is uncertain.
 _MANY_BEHIND = 0.05
 #: Median error over the smallest up to which models are compared again without wrong poses.
 _CONTENDERS = 1.5
@@ -78,7 +84,7 @@ class Calibration:
     fold_deg : float or None
         Smallest off-axis angle of samples whose reading another direction gives too; left out.
     geometry : SensorGeometry
-        The drawing as the models were told.
+        The drawing as given to the models.
     candidates : tuple of Candidate
         Every model tried, the smallest error first.
     chosen : Candidate
@@ -147,7 +153,7 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     settings : Settings, optional
         What their columns are; guessed from their names otherwise.
     apply : bool
-        Whether conventions that were found beyond doubt are applied.
+        Whether conventions that were found with certainty are applied.
     thorough : bool
         Whether networks are tried too, which takes minutes.
     models : sequence of str, optional
@@ -240,8 +246,8 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, ratio, patterns,
         *next_poses(readings.sun),
     )  # fmt: skip
-    if doubt := next((one for one in found if one.certain and one.change), None):
-        verdict = with_doubt(verdict, doubt.found)
+    if uncertain := next((one for one in found if one.certain and one.change), None):
+        verdict = with_uncertain_conventions(verdict, uncertain.found)
     progress("done", len(wanted) + 3, len(wanted) + 3)
     return Calibration(
         stated, (*applied, *found), tuple(applied), readings, tuple(excluded), tuple(runs), fold,

@@ -72,14 +72,14 @@ class SavedCalibration:
 
     def predict(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
         """Return unit vectors (N, 3) of features (N, F); NaN rows outside the hull."""
-        told = context or {}
+        columns = context or {}
         features = np.asarray(features, dtype=np.float64) - self.offset
         for stage in self.compensations:
-            features = stage.transform(features, told)
-        sun = self.model.predict(features, told) @ self.rotation.T
+            features = stage.transform(features, columns)
+        sun = self.model.predict(features, columns) @ self.rotation.T
         if self.temperature_K is not None:
             low, high = self.temperature_K
-            measured = np.asarray(told["temperature_K"], dtype=np.float64)
+            measured = np.asarray(columns["temperature_K"], dtype=np.float64)
             sun[~((measured >= low) & (measured <= high))] = np.nan
         return np.asarray(sun)
 

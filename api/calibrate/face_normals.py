@@ -1,4 +1,4 @@
-"""Where the channels of a sensor look, told by the light that each takes."""
+"""Where the channels of a sensor look, estimated from the light that each takes."""
 
 from __future__ import annotations
 

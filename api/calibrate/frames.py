@@ -66,20 +66,20 @@ def with_spots(
     names = np.asarray(table.columns[column]).astype(str)
     extractor = _extractor(settings)
     spots = np.full((len(names), 2), np.nan)
-    doubts, colours = Counter[str](), 0
+    flags, colours = Counter[str](), 0
     for at, name in enumerate(names):
         frame, coloured = _frame(directory, name, f"{table.source}, row {at + table.first_row}")
         colours += coloured
         found = extractor.measure(frame)
         spots[at] = found.features[0]
-        doubts.update(
-            str(flag.name).lower().replace("_", " ") for flag in QualityFlag(found.doubts[0])
+        flags.update(
+            str(flag.name).lower().replace("_", " ") for flag in QualityFlag(found.flags[0])
         )
         tick(at + 1, len(names))
     said = [f"{len(names)} frames were read by {settings.readings.extractor}"]
     if colours:
         said.append(f"{colours} frames in colour were read by their luminance")
-    said += [f"{count} frames: {doubt}" for doubt, count in sorted(doubts.items())]
+    said += [f"{count} frames: {name}" for name, count in sorted(flags.items())]
     columns = {**table.columns, **dict(zip(SPOT, spots.T, strict=True))}
     return replace(table, columns=columns), said
 

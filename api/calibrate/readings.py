@@ -116,8 +116,8 @@ def readings_of(table: Table, settings: Settings, *, behind: bool = False) -> Re
         If a column is missing or holds no numbers, or no row is left.
     """
     raw = np.column_stack([table.numbers(name) for name in settings.readings.columns])
-    told = np.column_stack([table.numbers(name) for name in settings.direction.columns])
-    sun, angles = directions(told, settings.direction)
+    stated = np.column_stack([table.numbers(name) for name in settings.direction.columns])
+    sun, angles = directions(stated, settings.direction)
     signals = _signals(raw, settings.readings)
     features = _features(signals, settings.readings)
     for transform in settings.apply:
@@ -130,10 +130,10 @@ def readings_of(table: Table, settings: Settings, *, behind: bool = False) -> Re
     if settings.rows.shift:
         kept, other = _shifted(run, settings.rows.shift)
         features, signals, raw = features[other], signals[other], raw[other]
-        sun, told, rows, run = sun[kept], told[kept], rows[kept], run[kept]
+        sun, stated, rows, run = sun[kept], stated[kept], rows[kept], run[kept]
         angles = None if angles is None else angles[kept]
         context = {name: column[kept] for name, column in context.items()}
-    reasons = _reasons(raw, signals, told, sun, features, settings)
+    reasons = _reasons(raw, signals, stated, sun, features, settings)
     if behind:
         reasons.pop(BEHIND, None)
     for name, column in context.items():
@@ -208,7 +208,7 @@ def quadrant_balances(signals: Floats) -> Floats:
 
 
 def _reasons(  # noqa: PLR0917 - what a row is made of
-    raw: Floats, signals: Floats, told: Floats, sun: Floats, features: Floats, settings: Settings
+    raw: Floats, signals: Floats, stated: Floats, sun: Floats, features: Floats, settings: Settings
 ) -> dict[str, NDArray[np.bool_]]:
     zeros = (raw == 0).all(axis=1)
     faint = np.zeros(len(raw), dtype=np.bool_)
@@ -217,10 +217,10 @@ def _reasons(  # noqa: PLR0917 - what a row is made of
         usual = np.nanpercentile(total, 95) if np.isfinite(total).any() else np.nan
         faint = (usual > 0) & (total > 0) & (total < _FAINT * usual)
     if settings.direction.form == "vector":
-        zeros |= (told == 0).all(axis=1)
+        zeros |= (stated == 0).all(axis=1)
     found = {
         "a cell is empty or not a finite number": ~(
-            np.isfinite(raw).all(axis=1) & np.isfinite(told).all(axis=1)
+            np.isfinite(raw).all(axis=1) & np.isfinite(stated).all(axis=1)
         ),
         "all readings, or the direction, are zero": zeros,
         "the direction is no unit vector, or 90 deg or more off": ~np.isfinite(sun).all(axis=1),

@@ -60,12 +60,12 @@ class Correction:
 
     def sentence(self) -> str:
         """Say what was found."""
-        told = f"the old calibration errs {self.before_deg:.3g} deg on {self.samples} poses"
+        sentence = f"the old calibration errs {self.before_deg:.3g} deg on {self.samples} poses"
         if self.kind == "none":
-            return f"{told}; neither a turn nor an offset explains that better: it stays"
+            return f"{sentence}; neither a turn nor an offset explains that better: it stays"
         what = "a turn by {} deg" if self.kind == "boresight" else "readings moved by {}"
         size = what.format(f"{self.size:.3g} +- {self.uncertainty:.1g}")
-        return f"{told}; {size} leaves {self.after_deg:.3g} deg on poses left out"
+        return f"{sentence}; {size} leaves {self.after_deg:.3g} deg on poses left out"
 
 
 def recalibrate(paths: Sequence[Path], old: Any) -> Correction:

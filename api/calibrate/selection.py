@@ -92,25 +92,27 @@ def geometry_of(readings: Readings, settings: Settings) -> SensorGeometry:
     from the light that each channel takes.
     """
     stated = settings.sensor.geometry()
-    told: dict[str, Any] = {}
+    parameters: dict[str, Any] = {}
     if readings.kind is FeatureKind.SIGNALS:
         if stated.face_normals is None:
             normals, _ = face_normals(readings)
-            told["face_normals"] = tuple(tuple(float(c) for c in one) for one in as_cube(normals))
+            parameters["face_normals"] = tuple(
+                tuple(float(c) for c in one) for one in as_cube(normals)
+            )
     elif (fit := linear_map(readings)) is not None:
         slope, offset = fit
         scale = float(np.sqrt(abs(np.linalg.det(slope)))) or 1.0
         if readings.kind is FeatureKind.SPOT:
             pitch = stated.pixel_pitch_mm or 1.0
-            told |= {"pixel_pitch_mm": pitch, "focal_length_mm": scale * pitch}
-            told["centre_px"] = (float(offset[0]), float(offset[1]))
+            parameters |= {"pixel_pitch_mm": pitch, "focal_length_mm": scale * pitch}
+            parameters["centre_px"] = (float(offset[0]), float(offset[1]))
         else:
             # s = 2 h tan / d: any h will do with the d that goes with it
-            told |= {"focal_length_mm": 1.0}
-            told |= {"aperture_width_mm": 2.0 / scale, "aperture_shape": "square"}
+            parameters |= {"focal_length_mm": 1.0}
+            parameters |= {"aperture_width_mm": 2.0 / scale, "aperture_shape": "square"}
     known = {name for name in vars(stated) if getattr(stated, name) is not None}
     values = {name: getattr(stated, name) for name in known}
-    return SensorGeometry(**{**told, **values})
+    return SensorGeometry(**{**parameters, **values})
 
 
 def as_cube(normals: Floats) -> Floats:

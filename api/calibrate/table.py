@@ -52,9 +52,9 @@ class Table:
     def numbers(self, name: str) -> NDArray[np.float64]:
         """Return a column of numbers; TableError naming row and column otherwise."""
         if name not in self.columns:
-            from survey_data.nearest import nearest  # noqa: PLC0415 - for a message only
+            from survey_data.nearest import nearest_name  # noqa: PLC0415 - for a message only
 
-            near = nearest(name, self.columns)
+            near = nearest_name(name, self.columns)
             hint = f"; did you mean {near!r}?" if near else ""
             raise TableError(
                 f"{self.source}: no column {name!r}{hint} (there are {', '.join(self.columns)})"

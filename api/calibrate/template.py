@@ -20,7 +20,7 @@ _TITLES = {
     "direction": "Where the light was.",
     "rows": "What else is known of each row.",
     "bench": "The bench.",
-    "sensor": "The drawing, as far as it is known; what is missing is told by the readings.",
+    "sensor": "The drawing, as far as it is known; what is missing is estimated from the readings.",
 }
 
 

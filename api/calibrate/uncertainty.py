@@ -14,7 +14,7 @@ from api.calibrate.selection import Candidate, fitted
 
 #: 95 % of a normal variable lie within so many standard deviations.
 NORMAL_95 = 1.959964
-#: Refits with other noise by which a fit's own spread is told.
+#: Refits with other noise by which a fit's own spread is estimated.
 REFITS = 6
 #: Poses around one that tell its noise.
 _AROUND = 16

@@ -59,7 +59,7 @@ def calibrate_uploads(
     config : str
         TOML, as `api.calibrate.settings.read_settings` takes it; columns are guessed where empty.
     apply : bool
-        Whether conventions found beyond doubt are applied.
+        Whether conventions found with certainty are applied.
     longest_s : float
         Seconds after which the process is ended.
 

@@ -14,7 +14,7 @@ from algorithms.contract import Floats, UnusableDataError
 from api.calibrate.readings import Readings
 from api.calibrate.uncertainty import tangent_offsets
 
-Word = Literal["good", "model misfit", "poses missing", "conventions in doubt"]
+Word = Literal["good", "model misfit", "poses missing", "conventions uncertain"]
 #: Ratio of the difference of two halves' fits to what their stated uncertainties add up to.
 RATIO_GOOD, RATIO_MISFIT = (0.7, 1.4), 2.0
 #: Share of the residuals' variance that a pattern explains to be named, and its significance.
@@ -49,7 +49,7 @@ class Verdict:
 
     Attributes
     ----------
-    word : {"good", "model misfit", "poses missing", "conventions in doubt"}
+    word : {"good", "model misfit", "poses missing", "conventions uncertain"}
     reason : str
         In one or two sentences.
     split_ratio : float
@@ -96,9 +96,9 @@ def judge(  # noqa: PLR0917 - the numbers it is made of
     gap : float
         Largest distance of a direction of the field to a pose, in usual steps.
     """
-    told = np.hypot(noise if np.isfinite(noise) else 0.0, floor_deg)
+    floor = np.hypot(noise if np.isfinite(noise) else 0.0, floor_deg)
     smooth = [one for one in patterns if one.share > 0.25]
-    if rms_deg > 1.6 * residual_deg and rms_deg > 1.3 * told:
+    if rms_deg > 1.6 * residual_deg and rms_deg > 1.3 * floor:
         word: Word = "poses missing"
         reason = (
             f"samples left out err {rms_deg:.3g} deg, those fitted {residual_deg:.3g} deg: "
@@ -110,23 +110,23 @@ def judge(  # noqa: PLR0917 - the numbers it is made of
             f"parts of the field are {gap:.0f} steps from any pose: there the model is not tested "
             f"(where it is, samples left out err {rms_deg:.3g} deg)"
         )
-    elif split_ratio > RATIO_MISFIT or (smooth and residual_deg > 1.5 * told):
+    elif split_ratio > RATIO_MISFIT or (smooth and residual_deg > 1.5 * floor):
         word = "model misfit"
         reason = (
             f"fits to two halves differ {split_ratio:.2g} times as much as noise explains"
             if split_ratio > RATIO_MISFIT
-            else f"residuals of {residual_deg:.3g} deg are more than the noise of {told:.3g} deg"
+            else f"residuals of {residual_deg:.3g} deg are more than the noise of {floor:.3g} deg"
         ) + (f", and go with {smooth[0].name}" if smooth else "")
     else:
         word = "good"
         reason = (
             f"samples left out err {rms_deg:.3g} deg, those fitted {residual_deg:.3g} deg, "
-            f"noise is {told:.3g} deg"
+            f"noise is {floor:.3g} deg"
         )
     return Verdict(word, reason, split_ratio, patterns, next_poses)
 
 
-def with_doubt(verdict: Verdict, found: str) -> Verdict:
+def with_uncertain_conventions(verdict: Verdict, found: str) -> Verdict:
     """Return a verdict that is good only if the file's conventions are as stated after all.
 
     Parameters
@@ -137,7 +137,7 @@ def with_doubt(verdict: Verdict, found: str) -> Verdict:
         The convention that the file seems to follow instead, in a sentence.
     """
     reason = f"{found}: apply that or state it; as stated, {verdict.reason}"
-    return replace(verdict, word="conventions in doubt", reason=reason)
+    return replace(verdict, word="conventions uncertain", reason=reason)
 
 
 def patterns_in(offsets: Floats, readings: Readings) -> tuple[Pattern, ...]:

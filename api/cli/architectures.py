@@ -133,8 +133,8 @@ def _measure(best: Mapping[str, Any]) -> str:
         parts.append(f"{times} times the bound {nominal['bound_deg']:.3g} deg")
     if measured["availability"] is not None:
         parts.append(f"availability {100 * measured['availability']:.4g} %")
-    if units is not None and units["meeting"] is not None:
-        parts.append(f"{units['meeting']} of {units['of']} units meet it")
+    if units is not None and units["within_limit"] is not None:
+        parts.append(f"{units['within_limit']} of {units['of']} units meet it")
         parts.append(f"own error {measured['own_deg']:.3g} deg")
     if measured["needs"]:
         parts.append(f"also needs {', '.join(measured['needs'])}")

@@ -86,9 +86,9 @@ def _line_of(cells: Sequence[str]) -> Iterator[str]:
 
 
 def _line(*cells: str) -> str:
-    name, pipeline, error, tie, doubt, ratio, bench = cells
+    name, pipeline, error, tie, answered, ratio, bench = cells
     wide, wider = _ARCHITECTURE
-    numbers = f"{error:>8}{tie:1} {doubt:>4} {ratio:>6} {bench:>7}"
+    numbers = f"{error:>8}{tie:1} {answered:>4} {ratio:>6} {bench:>7}"
     return f"{name:<{wide}}{pipeline:<{wider}}{numbers}".rstrip()
 
 

@@ -100,7 +100,7 @@ class LazyCommands(TyperGroup):
         except typer.Abort as error:
             _stop(error, 1, "aborted")
         except BrokenPipeError:
-            # The reader has gone (`sunatlas studies | head`): nobody is left to be told.
+            # The reader has gone (`sunatlas studies | head`): nobody is left to read.
             _drop_output()
             sys.exit(1)
         except KeyboardInterrupt:
@@ -160,7 +160,7 @@ def _open_streams() -> None:
 
 
 def _flush() -> None:
-    """Write what is still to be written; a failure is told as one of standard output."""
+    """Write what is still to be written; a failure is reported as one of standard output."""
     try:
         sys.stdout.flush()
     except BrokenPipeError:

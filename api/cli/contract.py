@@ -30,7 +30,7 @@ class ContractResult:
     """How many checks ran on an algorithm, and what failed, a line a check."""
 
     ran: int
-    failed: tuple[str, ...]
+    failures: tuple[str, ...]
 
 
 def name_of(given: str) -> str:

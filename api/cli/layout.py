@@ -39,7 +39,7 @@ class Column:
         return max([self.words, *map(len, self.cells)])
 
     @property
-    def least(self) -> int:
+    def min_width(self) -> int:
         """Characters below which the column is hard to read."""
         if self.numeric:
             return self.longest
@@ -126,8 +126,8 @@ def _stack(columns: Sequence[Column], room: int) -> list[tuple[str, Line]]:
     lines: list[list[Column]] = [[]]
     for column in columns:
         before = 0 if len(lines) == 1 else len(INDENT)
-        taken = sum(other.least + GAP for other in lines[-1])
-        if lines[-1] and before + taken + column.least > room:
+        taken = sum(other.min_width + GAP for other in lines[-1])
+        if lines[-1] and before + taken + column.min_width > room:
             lines.append([])
         lines[-1].append(column)
     return [
@@ -141,7 +141,7 @@ def _stack(columns: Sequence[Column], room: int) -> list[tuple[str, Line]]:
 def _widths(columns: Sequence[Column], room: int) -> Line:
     """Share a line: what each column cannot do without, then what it would like to have."""
     free = room - GAP * (len(columns) - 1)
-    widths = [min(column.least, free) for column in columns]
+    widths = [min(column.min_width, free) for column in columns]
     spare = free - sum(widths)
     liked = [column.longest for column in columns]
     whole = [max(column.longest, len(column.heading)) for column in columns]

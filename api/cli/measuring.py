@@ -86,25 +86,25 @@ class ScoredCells:
     ----------
     rows : score rows in the order of the cells, with latency_us and time_ratio where this machine
         has timed the pipeline
-    published, kept, measured : how many were read from the published results, how many from the
-        working store, how many measured now
+    published_count, stored_count, measured_count : numbers of scores read from the published
+        results, read from the working store, and measured now
     directory : the working store
     warnings : of the runner
     """
 
     rows: list[Row]
-    published: int
-    kept: int
-    measured: int
+    published_count: int
+    stored_count: int
+    measured_count: int
     directory: Path
     warnings: tuple[str, ...]
 
     def sources(self) -> dict[str, Any]:
         """Say where the rows came from, for JSON."""
         return {
-            "published": self.published,
-            "kept": self.kept,
-            "measured": self.measured,
+            "published": self.published_count,
+            "kept": self.stored_count,
+            "measured": self.measured_count,
             "directory": str(self.directory),
         }
 
@@ -139,9 +139,9 @@ def score_cells(
         row["time_ratio"] = time.time_ratio if time else None
     return ScoredCells(
         rows=[found[cell] for cell in wanted],
-        published=len(wanted) - len(elsewhere),
-        kept=len(elsewhere) - len(missing),
-        measured=len(missing),
+        published_count=len(wanted) - len(elsewhere),
+        stored_count=len(elsewhere) - len(missing),
+        measured_count=len(missing),
         directory=work.directory,
         warnings=warnings,
     )

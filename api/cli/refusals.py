@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from api.cli.wrong_call import unfit
-from survey_data.nearest import nearest
+from survey_data.nearest import nearest_name
 
 _CHOICES = re.compile(r"is not one of (?P<choices>'.+')\.$")
 _PATH = re.compile(r"^(?:dir(?:ectory)?|file|path) '?(?P<path>.*?)'? is a (?P<kind>file|directory)")
@@ -55,7 +55,7 @@ def _value(flaw: Any, message: str) -> str:
     choices = _CHOICES.search(message)
     if choices:
         words = re.findall(r"'([^']*)'", choices["choices"])
-        near = nearest(str(given), words)
+        near = nearest_name(str(given), words)
         return unfit(given, f"one of {', '.join(words)}", near)
     for limit, expected in _LIMITS.items():
         if limit in flaw.get("ctx", {}):

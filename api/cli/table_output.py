@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 import typer
 
-from api.cells import cell, plain
+from api.cells import cell, plain_value
 from api.cli import spreadsheets
 from api.cli.layout import Column, laid_out, wrap
 from api.schema.table import csv_of
@@ -96,7 +96,7 @@ def table(
 
 def emit_json(document: Any) -> None:
     """Print a document as JSON; NaN and infinities, which JSON lacks, as null."""
-    write(json.dumps(plain(document), indent=2, ensure_ascii=False) + "\n")
+    write(json.dumps(plain_value(document), indent=2, ensure_ascii=False) + "\n")
 
 
 def emit_csv(text: str) -> None:

@@ -167,8 +167,8 @@ def _where(name: str, one: bytes, other: bytes) -> str:
     if name.endswith((".parquet", ".sqlite")):
         return "holds other tables than the CSV of this bundle"
     ours, theirs = other.split(b"\n"), one.split(b"\n")
-    for number, (told, built) in enumerate(zip(theirs, ours, strict=False), start=1):
-        if told != built:
-            said, should = (part.decode("utf-8", "replace")[:80] for part in (told, built))
+    for number, (deposited, built) in enumerate(zip(theirs, ours, strict=False), start=1):
+        if deposited != built:
+            said, should = (part.decode("utf-8", "replace")[:80] for part in (deposited, built))
             return f"row {number} is {said!r}; built of facts and record here it is {should!r}"
     return f"has {len(theirs)} lines; built of facts and record here it has {len(ours)}"

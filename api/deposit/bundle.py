@@ -81,8 +81,8 @@ class Sources:
     """What a bundle is made of: directories of tables and of results, and the measured tables."""
 
     survey: Path
-    published: Path
-    measured: list[MeasuredTable]
+    published_folder: Path
+    measured_tables: list[MeasuredTable]
 
 
 def build(
@@ -172,10 +172,10 @@ def fill(
         target = bundle / "survey" / resource["path"]
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_bytes((sources.survey / resource["path"]).read_bytes())
-    measured = [*sources.measured, *([frames_table(exported)] if exported else [])]
+    measured = [*sources.measured_tables, *([frames_table(exported)] if exported else [])]
     for table in measured:
         _write(bundle / "benchmark" / f"{table.name}.csv", table.text)
-    errors = write_errors(bundle, sources.published)
+    errors = write_errors(bundle, sources.published_folder)
     descriptor = package(bundle, who, described, measured, exported, errors=errors)
     _write_json(bundle / DESCRIPTOR, descriptor)
     other_forms(bundle, descriptor)
@@ -185,7 +185,7 @@ def fill(
     _write(bundle / "LICENSE", who.code_licence)
     for folder in FACTS:
         _write(bundle / folder / "LICENSE", who.data_licence)
-    record, facts = manifest_digest(sources.published), editions(sources.survey)
+    record, facts = manifest_digest(sources.published_folder), editions(sources.survey)
     _write(bundle / "CITATION.cff", of_dataset(who.citation, record, facts))
     _write(bundle / CODEMETA, codemeta_text(who.citation))
     _write(bundle / "README.md", readme(who, descriptor))

@@ -58,7 +58,7 @@ class Author:
         return self.name or " ".join(part for part in (self.given, self.family) if part)
 
     @property
-    def inverted(self) -> str:
+    def sort_name(self) -> str:
         """The name as indices sort it."""
         return self.name or ", ".join(part for part in (self.family, self.given) if part)
 
@@ -166,7 +166,7 @@ def wrong_orcid(orcid: str) -> str | None:
     return f"{orcid} is ORCID's example, nobody's own" if orcid in _EXAMPLES else None
 
 
-def unpublishable(listed: Sequence[Author]) -> list[str]:
+def author_problems(listed: Sequence[Author]) -> list[str]:
     """Say why these authors may not be published; empty where they may.
 
     At least one person, each with family name, given name and a valid ORCID iD, nobody twice, no

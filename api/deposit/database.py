@@ -65,7 +65,7 @@ def _write(tables: Sequence[TypedTable], path: Path) -> None:
         base.execute("PRAGMA foreign_keys = OFF")  # tables come before those that they refer to
         for table in tables:
             base.execute(_create(table))
-            _insert(base, plain(table.name), table.rows)
+            _insert(base, sql_name(table.name), table.rows)
         _describe(base, tables)
         for table in tables:
             for key in table.resource["schema"].get("foreignKeys", ()):
@@ -77,7 +77,7 @@ def _write(tables: Sequence[TypedTable], path: Path) -> None:
         base.execute("VACUUM")
 
 
-def plain(name: str) -> str:
+def sql_name(name: str) -> str:
     """Return the name of a table or column in the database.
 
     Raises
@@ -102,7 +102,7 @@ def _create(table: TypedTable) -> str:
     required = {f["name"] for f in table.fields if f.get("constraints", {}).get("required")}
     required |= set(schema.get("primaryKey", ()))
     parts = [
-        f"{plain(field['name'])} {_TYPES[field['type']]}"
+        f"{sql_name(field['name'])} {_TYPES[field['type']]}"
         + (" NOT NULL" if field["name"] in required else "")
         for field in table.fields
     ]
@@ -112,18 +112,18 @@ def _create(table: TypedTable) -> str:
         to = key["reference"]
         parts.append(
             f"FOREIGN KEY ({_name_of(key['fields'])}) REFERENCES "
-            f"{plain(to['resource'])} ({_name_of(to['fields'])})"
+            f"{sql_name(to['resource'])} ({_name_of(to['fields'])})"
         )
-    return f"CREATE TABLE {plain(table.name)} (\n  " + ",\n  ".join(parts) + "\n)"
+    return f"CREATE TABLE {sql_name(table.name)} (\n  " + ",\n  ".join(parts) + "\n)"
 
 
 def _name_of(names: Iterable[str]) -> str:
-    return ", ".join(plain(name) for name in names)
+    return ", ".join(sql_name(name) for name in names)
 
 
 def _index(base: sqlite3.Connection, table: TypedTable, fields: Sequence[str]) -> None:
-    name = plain(table.name)
-    columns = [plain(field) for field in fields]
+    name = sql_name(table.name)
+    columns = [sql_name(field) for field in fields]
     base.execute(f"CREATE INDEX {name}_by_{'_'.join(columns)} ON {name} ({', '.join(columns)})")
 
 
@@ -142,7 +142,7 @@ def _describe(base: sqlite3.Connection, tables: Sequence[TypedTable]) -> None:
         base,
         COLUMNS,
         [
-            (plain(table.name), plain(f["name"]), f["type"], f.get("description", ""))
+            (sql_name(table.name), sql_name(f["name"]), f["type"], f.get("description", ""))
             for table in tables
             for f in table.fields
         ],
@@ -151,8 +151,8 @@ def _describe(base: sqlite3.Connection, tables: Sequence[TypedTable]) -> None:
 
 def _table_row(resource: Mapping[str, Any]) -> tuple[Value, ...]:
     licence = resource["licenses"][0]["name"]
-    told = (resource["title"], resource["description"], licence, resource["path"])
-    return (plain(resource["name"]), *told)
+    row = (resource["title"], resource["description"], licence, resource["path"])
+    return (sql_name(resource["name"]), *row)
 
 
 def _insert(base: sqlite3.Connection, name: str, rows: Sequence[Sequence[Value]]) -> None:

@@ -114,7 +114,7 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
         _pins(store),
         *([_sweeps(swept)] if swept else []),
         *_curves(curves.published_curves(published), foreign),
-        *_told(foreign),
+        *_measured_tables(foreign),
         *_claims(ledger(published)),
     ]
 
@@ -133,7 +133,7 @@ def frames_table(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
     )
 
 
-def _told(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
+def _measured_tables(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
     """Make the tables that follow from facts and plan, with the numbers of none."""
     return [
         _table(
@@ -150,7 +150,7 @@ def _told(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
             "all_studies",
             IdentifiedStudy,
             "Studies of both editions",
-            "The survey's studies and those after it, told apart by their edition.",
+            "The survey's studies and those after it, distinguished by their edition.",
             derived_tables.all_studies(),
             primary=("study",),
             foreign={"edition": ("editions", "edition")},

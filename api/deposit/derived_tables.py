@@ -1,4 +1,4 @@
-"""Tables of the bundle that are told from facts and plan: resolution, verdicts, publications."""
+"""Tables of the bundle that are derived from facts and plan: resolution, verdicts, publications."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import survey_data
-from benchmark.plan.combinations import scorable
+from benchmark.plan.combinations import scorable_plan
 from benchmark.plan.shown import data_sets
 from registry.fidelity.runnable import ESSENTIAL
 from registry.resolution import resolve_all, resolve_later
@@ -20,7 +20,7 @@ def resolution() -> list[Mapping[str, Any]]:
 
     Of both editions, each study's own beside it.
     """
-    plan, shown, known, every = scorable(), data_sets(), facts(), facts("all")
+    plan, shown, known, every = scorable_plan(), data_sets(), facts(), facts("all")
     resolved = resolve_all(plan, data_sets=shown, facts=known)
     resolved |= resolve_later(plan, known, every, data_sets=shown)
     return [
@@ -33,7 +33,7 @@ def resolution() -> list[Mapping[str, Any]]:
             "dataset": setting.dataset,
             "condition": setting.condition,
             **{f"{name}_basis": pipeline.basis[name] for name in ESSENTIAL},
-            "assumed": [f"{name}: {rule}" for name, rule in pipeline.assumed.items()],
+            "assumed": [f"{name}: {rule}" for name, rule in pipeline.assumptions.items()],
         }
         for key, found in resolved.items()
         for pipeline in found.pipelines

@@ -12,7 +12,7 @@ from benchmark.results.samples import (
     COLUMNS,
     CONDITION,
     DIRECTION_COLUMNS,
-    DOUBTS,
+    OUTCOMES,
     datasets,
     path_of,
 )
@@ -34,7 +34,7 @@ def _fields(columns: Sequence[str], **constraints: Mapping[str, Any]) -> Fields:
 
 #: Columns of the errors and of the directions, in words.
 ERRORS: Fields = _fields(
-    tuple(COLUMNS), error_deg={"minimum": 0, "maximum": 180}, doubt={"enum": list(DOUBTS)}
+    tuple(COLUMNS), error_deg={"minimum": 0, "maximum": 180}, outcome={"enum": list(OUTCOMES)}
 )
 DIRECTIONS: Fields = _fields(tuple(DIRECTION_COLUMNS))
 

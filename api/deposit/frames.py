@@ -48,7 +48,7 @@ def write_frames(
     ----------
     bundle : directory of the bundle
     names : of the data sets
-    pins : hashes of the published data, told in the cards
+    pins : hashes of the published data, stated in the cards
     progress : called as ``progress(done, total, what)`` in data sets
     """
     rows: list[dict[str, Any]] = []

@@ -135,8 +135,8 @@ def _checked_entry(
     crc = _compare(file, found["packed"], found["method"], path, f"{where}, {name}")
     if found["crc"] != crc:
         raise PackingError(f"{where}, {name}: crc is {found['crc']:08x}, expected {crc:08x}")
-    told = (found[field] for field in _FIELDS[:-2])
-    central = (b"PK\1\2", _UNIX | _VERSION, *told, len(encoded), 0, 0, 0, 0, _PLAIN_FILE, offset)
+    values = (found[field] for field in _FIELDS[:-2])
+    central = (b"PK\1\2", _UNIX | _VERSION, *values, len(encoded), 0, 0, 0, 0, _PLAIN_FILE, offset)
     return _CENTRAL.pack(*central) + encoded
 
 

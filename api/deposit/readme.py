@@ -51,9 +51,9 @@ fit = np.linalg.lstsq(terms(*((seen - middle) / scale).T), sun[:, :2] / sun[:, 2
 
 # Test: the angle between what the fit says and where the Sun stood.
 seen, sun = spots("test")
-told = np.column_stack([terms(*((seen - middle) / scale).T) @ fit, np.ones(len(seen))])
-told /= np.linalg.norm(told, axis=1, keepdims=True)
-across, along = np.linalg.norm(np.cross(told, sun), axis=1), (told * sun).sum(axis=1)
+found = np.column_stack([terms(*((seen - middle) / scale).T) @ fit, np.ones(len(seen))])
+found /= np.linalg.norm(found, axis=1, keepdims=True)
+across, along = np.linalg.norm(np.cross(found, sun), axis=1), (found * sun).sum(axis=1)
 error = np.degrees(np.arctan2(across, along))
 print(f"error: {np.sqrt(np.mean(error**2)):.4f} deg over {len(error)} frames")
 

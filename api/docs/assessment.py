@@ -67,7 +67,7 @@ def faults() -> str:
     )
 
 
-def _sweep_tables(wanted: Callable[[sweep_tables.Table], bool]) -> str:
+def _sweep_tables(wanted: Callable[[sweep_tables.SweepTable], bool]) -> str:
     shown = [table for table in sweep_tables.tables(_rows()) if wanted(table)]
     if not shown:
         return "Nothing is published yet."

@@ -66,7 +66,7 @@ def _section(entry: Entry) -> str:
 
 def _rule(one: Judgement) -> str:
     timed = " (run times)" if one.rule.timed else ""
-    return f"- {one.rule.statistic}{timed}: {_numbers(one)}; {one.rule}: **{one.standing}**"
+    return f"- {one.rule.statistic}{timed}: {_numbers(one)}; {one.rule}: **{one.result}**"
 
 
 def _numbers(one: Judgement) -> str:

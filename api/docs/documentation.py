@@ -32,7 +32,7 @@ from api.guide import dictionary, measured_facts, words
 from api.guide.blocks import rerun
 from benchmark.processes import call_to_end
 from benchmark.progress import console_progress
-from benchmark.running.experiment import recorded
+from benchmark.running.experiment import recorded_experiments
 from files.atomic import replace_file
 from files.locks import wait_for_lock
 from files.temporary import temporary_directory
@@ -54,7 +54,7 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
         "parts": boards.parts,
     },
     "limits.md": {
-        "standings": limits.standings,
+        "best pipelines": limits.best_pipelines,
         "contributions": limits.contributions,
         "sentences": limits.sentences,
         "headlines": limits.headline_table,
@@ -89,7 +89,7 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
         "poses": curves.counts,
         "tallies": measured_facts.tallies,
         "refuted": measured_facts.refuted_claims,
-        "useful": measured_facts.useful,
+        "useful": measured_facts.reproduced_claims,
     },
     "guide/glossary.md": {"terms": words.terms, "abbreviations": words.abbreviations},
     "guide/data-dictionary.md": {
@@ -129,7 +129,11 @@ def every_picture() -> Mapping[str, Make]:
         "answer.svg": front.picture,
         f"../{codemeta.NAME}": lambda: codemeta.codemeta_text(identity().citation),
         **model_pages.pictures(),
-        **{name: draw for kind in recorded().values() for name, draw in kind().pictures().items()},
+        **{
+            name: draw
+            for kind in recorded_experiments().values()
+            for name, draw in kind().pictures().items()
+        },
     }
 
 

@@ -98,7 +98,7 @@ def _is_measured(resolution: Resolution) -> bool:
     return any(
         scored.get((at.dataset, at.condition, pipeline.extractor, pipeline.model), {}).get("status")
         == "ok"
-        for pipeline in resolution.nearest
+        for pipeline in resolution.strongest_pipelines
         for at in pipeline.settings[:1]
     )
 
@@ -158,7 +158,7 @@ def _distance() -> str:
     rows = list(ERROR_BUDGET.read().values())
     ratios = [row["rms_deg"] / bound_of(row) for row in rows]
     low, middle, high = statistics.quantiles(ratios, n=4)
-    near = sum(verdict(row).near for row in rows)
+    near = sum(verdict(row).is_near_bound for row in rows)
     return (
         f"**On {near} of {len(rows)} data sets the best pipeline is within {NEAR:g} times the "
         f"physical limit.** Its error is {middle:.1f} times the Cramer-Rao bound "
@@ -199,7 +199,8 @@ def _advice() -> str:
     """Compare, task by task, what has evidence in the literature with the best on the same data."""
     ratios = []
     for task in knowledge().taxonomy.values("task"):
-        first = recommend({"task": [task]}, knowledge().measured, limit=1).architectures[0]
+        found = recommend({"task": [task]}, knowledge().measured_pipelines, limit=1)
+        first = found.architectures[0]
         by_data: dict[object, list[tuple[float, bool]]] = {}
         for one in first.calibrations:
             for measured in filter(None, (one.measured, *one.other_datasets)):

@@ -15,7 +15,7 @@ from benchmark.leaderboard.realism import realism
 from benchmark.results.store import Store
 
 
-def standings() -> str:
+def best_pipelines() -> str:
     """Set every data set's best pipeline beside its bound and the built sensors' accuracy."""
     built, pins = _build(), Store().pins()
     rows = []
@@ -29,7 +29,7 @@ def standings() -> str:
                 _number(row["rms_deg"]),
                 _number(bound),
                 f"{row['rms_deg'] / bound:.3g}",
-                "–" if judged.near else PARTS[judged.leading],
+                "–" if judged.is_near_bound else PARTS[judged.leading_part],
                 _number(pin.bench_deg if pin else None),
                 _sensors(built.get(name)),
             )
@@ -59,7 +59,7 @@ def contributions() -> str:
 def sentences() -> str:
     """Count the best pipelines near their bounds; say what holds each of the others back."""
     judged = [verdict(row) for row in ERROR_BUDGET.read().values()]
-    far = [one for one in judged if not one.near]
+    far = [one for one in judged if not one.is_near_bound]
     counted = (
         f"{len(judged) - len(far)} of {len(judged)} best pipelines are within {NEAR:g} times "
         "their bounds. The others:"

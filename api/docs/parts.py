@@ -189,7 +189,7 @@ def _by_purpose(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
 
 def _by_basis(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
     """Count the studies by what each part of their best pipeline rests on."""
-    best = [found.best for found in resolved.values() if found.best is not None]
+    best = [found.best_pipeline for found in resolved.values() if found.best_pipeline is not None]
     for part in ESSENTIAL:
         counted = Counter(pipeline.basis[part] for pipeline in best)
         yield part, *(str(counted[basis]) for basis in BASES)

@@ -39,7 +39,7 @@ def coordinates_figure(facts: Facts, addresses: Addresses, where: Where) -> Figu
             colour=_COLOURS[row["accuracy"]],
             title=_title(row, facts),
             href=addresses.of([row["study"]], {}, at),
-            dashed=row["accuracy_kind"] == UNSPECIFIED,
+            is_dashed=row["accuracy_kind"] == UNSPECIFIED,
         )
         for at, row in enumerate(rows)
     ]
@@ -185,13 +185,13 @@ def _text(studies: Sequence[Study], rows: Sequence[dict[str, Any]]) -> tuple[str
     accuracies, fields = (len(known[name]) for name in reversed(NUMBERS))
     numbers = f"the accuracy of {accuracies}, the field of view of {fields}, both of {both}"
     said = [f"{sensors}; known as numbers are {numbers} studies."]
-    told = [(study, one) for study in studies if (one := study.report("accuracy")) is not None]
-    stated = [(s, one) for s, one in told if one.statistic.kind != UNSPECIFIED]
+    reports = [(study, one) for study in studies if (one := study.report("accuracy")) is not None]
+    stated = [(s, one) for s, one in reports if one.statistic.kind != UNSPECIFIED]
     if stated:
         study, one = min(stated, key=lambda pair: pair[1].rms_deg)
         said.append(
             f"Finest accuracy whose kind is stated: {one.rms_deg:.3g}° RMS ({one.label} "
-            f"{one.value_deg:g}°), {study.key}; {len(told) - len(stated)} have none stated."
+            f"{one.value_deg:g}°), {study.key}; {len(reports) - len(stated)} have none stated."
         )
     if known["fov_deg"]:
         widest = max(known["fov_deg"], key=lambda study: study.number("fov_deg") or 0.0)

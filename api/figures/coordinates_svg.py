@@ -64,7 +64,7 @@ class Polyline:
     colour: str
     title: str
     href: str
-    dashed: bool = False
+    is_dashed: bool = False
 
 
 def draw_coordinates(
@@ -193,6 +193,6 @@ def _line(line: Polyline, points: Sequence[tuple[float, float]]) -> str:
     return svg.mark(
         line.title,
         line.href,
-        svg.path(d, f"line {line.colour}{' dashed' if line.dashed else ''}"),
+        svg.path(d, f"line {line.colour}{' dashed' if line.is_dashed else ''}"),
         reached=False,
     )

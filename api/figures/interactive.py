@@ -21,11 +21,11 @@ _NOT_KNOWN = "not known"
 
 def specification(figure: Figure) -> str:
     """Return a figure as Plotly's JSON, the same for the same figure."""
-    text = interactive(figure).to_json(pretty=False)
+    text = plotly_figure(figure).to_json(pretty=False)
     return str(text)
 
 
-def interactive(figure: Figure) -> go.Figure:
+def plotly_figure(figure: Figure) -> go.Figure:
     """Return a figure of Plotly's with the numbers of the table: its rows are all that is drawn."""
     import plotly.graph_objects as go  # noqa: PLC0415 - a second to load, for who asks alone
 

@@ -75,9 +75,11 @@ def matrix_figure(
             pair = (rows, row), (columns, column)
             unknown = sorted({*might(pair[0], columns), *might(pair[1], rows)})
             known = evidence.of(*pair, keys, unknown)
-            told = _told(pair, known)
+            cell_evidence = _evidence_members(pair, known)
             given = {rows: row, columns: column}
-            href = addresses.of(keys, given, len(table)) if keys else told["leads_to"] or None
+            href = (
+                addresses.of(keys, given, len(table)) if keys else cell_evidence["leads_to"] or None
+            )
             cells[row, column] = Cell(
                 len(keys), _title(pair, len(keys), known), href, known.state, known.pipelines > 0
             )
@@ -92,7 +94,7 @@ def matrix_figure(
                     "state": known.state,
                     "count": len(keys),
                     "studies": list(keys),
-                    **told,
+                    **cell_evidence,
                 }
             )
     lines = {
@@ -118,9 +120,9 @@ def matrix_figure(
     )
 
 
-def _told(pair: tuple[Value, Value], known: PairEvidence) -> dict[str, Any]:
+def _evidence_members(pair: tuple[Value, Value], known: PairEvidence) -> dict[str, Any]:
     """Return what the table tells of a pair besides its studies."""
-    best = known.best
+    best = known.best_pipeline
     command = leads_to = ""
     if best is not None:
         command = PipelineRun(best.dataset, best.extractor, best.model).command
@@ -130,11 +132,11 @@ def _told(pair: tuple[Value, Value], known: PairEvidence) -> dict[str, Any]:
             leads_to = architecture_page(sensor["detector"], sensor["mask"])
     elif known.state == "impossible":
         pass
-    elif known.planned is not None:
-        command, leads_to = known.planned.command, dataset_page(known.planned.dataset)
-    elif known.nearest:
-        command = f"sunatlas benchmark --dataset {known.nearest}"
-        leads_to = dataset_page(known.nearest)
+    elif known.possible_run is not None:
+        command, leads_to = known.possible_run.command, dataset_page(known.possible_run.dataset)
+    elif known.nearest_dataset:
+        command = f"sunatlas benchmark --dataset {known.nearest_dataset}"
+        leads_to = dataset_page(known.nearest_dataset)
     return {
         "reason": known.reason,
         "unknown": list(known.unknown),
@@ -154,8 +156,8 @@ def _title(pair: tuple[Value, Value], count: int, known: PairEvidence) -> str:
     parts = [wording.studies(count) if count else "no study"]
     if known.pipelines:
         parts.append(f"{wording.plural(known.pipelines, 'pipeline', 'pipelines')} measured here")
-    if known.best is not None:
-        parts.append(f"best own error {known.best.nominal.rms_deg:.3g}° on {known.best.dataset}")
+    if (best := known.best_pipeline) is not None:
+        parts.append(f"best own error {best.nominal.rms_deg:.3g}° on {best.dataset}")
     if known.state == "impossible":
         parts.append(f"impossible ({known.reason})")
     if known.state == "unknown":

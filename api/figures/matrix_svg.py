@@ -30,7 +30,7 @@ class Cell:
     title: str
     href: str | None
     state: str
-    measured: bool
+    is_measured: bool
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ def _cell(cell: Cell, x: float, y: float, frame: _Frame) -> str:
         if cell.state in _SIGNS:
             sign = _SIGNS[cell.state]
             shapes.append(svg.text(*middle, sign, "quiet", size=frame.size, anchor="middle"))
-    if cell.measured:
+    if cell.is_measured:
         at = (
             x + frame.step - GAP / 2 - DOT,
             y + GAP / 2,

@@ -72,17 +72,17 @@ def _band(link: PlacedLink, marks: SankeyMarks) -> str:
         f"M{x0} {ends[0]}C{x} {ends[0]} {x} {ends[1]} {x1} {ends[1]}"
         f"V{ends[2]}C{x} {ends[2]} {x} {ends[3]} {x0} {ends[3]}Z"
     )
-    told = marks.bands[link.source, link.target]
+    label = marks.bands[link.source, link.target]
     shape = svg.path(d, f"band c{marks.colours[link.source]}")
-    return svg.mark(told.title, told.href, shape, reached=False)
+    return svg.mark(label.title, label.href, shape, reached=False)
 
 
 def _node(node: PlacedNode, marks: SankeyMarks) -> str:
-    told = marks.nodes[node.id]
+    label = marks.nodes[node.id]
     shape = svg.rectangle(
         node.x, node.y, NODE_WIDTH, node.height, f"node c{marks.colours[node.id]}"
     )
-    return svg.mark(told.title, told.href, shape)
+    return svg.mark(label.title, label.href, shape)
 
 
 def _label(node: PlacedNode, size: float) -> str:

@@ -31,7 +31,7 @@ class Statement:
     id: str
     text: str
     verdict: str
-    said: str
+    verdict_words: str
     counts: tuple[str, ...]
 
 

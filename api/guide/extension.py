@@ -53,8 +53,8 @@ def within(page: str, text: str) -> str:
         if not path.startswith(".."):
             return match[0]
         name = path.removeprefix("../")
-        told = match["text"].strip("`")
-        return f"`{name}`" if told in name else f"{match['text']} (`{name}`)"
+        word = match["text"].strip("`")
+        return f"`{name}`" if word in name else f"{match['text']} (`{name}`)"
 
     parts = _FENCED.split(text)
     return "".join(part if part.startswith("```") else _LINK.sub(plain, part) for part in parts)

@@ -29,13 +29,13 @@ def tallies() -> str:
 def refuted_claims() -> str:
     """List refuted claims, each with its first criterion that fails."""
     return _criteria(
-        (entry, next(rule for rule in entry.rules if rule.standing == "fails"))
+        (entry, next(rule for rule in entry.rules if rule.result == "fails"))
         for entry in ledger()
         if entry.verdict == "refuted"
     )
 
 
-def useful() -> str:
+def reproduced_claims() -> str:
     """List reproduced claims, each with its first criterion.
 
     Raises
@@ -53,8 +53,8 @@ def useful() -> str:
 def error_budget() -> str:
     """Count the largest error sources of the best pipelines."""
     judged = [verdict(row) for row in ERROR_BUDGET.read().values()]
-    near = sum(one.near for one in judged)
-    counted = Counter(PARTS[one.leading] for one in judged if not one.near)
+    near = sum(one.is_near_bound for one in judged)
+    counted = Counter(PARTS[one.leading_part] for one in judged if not one.is_near_bound)
     rows = [(part, str(number)) for part, number in sorted(counted.items(), key=_most_first)]
     return (
         f"The error of the best pipeline is within {NEAR:g} times the bound on {near} of "

@@ -70,7 +70,7 @@ def missing_builders() -> tuple[str, ...]:
     return tuple(missing)
 
 
-def documented() -> list[str]:
+def documented_modules() -> list[str]:
     """Name the modules whose docstrings are on the page of the Python interface."""
     page = source() / "guide" / "python.md"
     return _DOCUMENTED.findall(page.read_text("utf-8")) if page.is_file() else []
@@ -90,7 +90,7 @@ def digest() -> str:
             if path.is_file() and path.suffix in {".md", ".svg", ".png", ".py", ".css"}:
                 summed.update(f"\0{path.relative_to(root).as_posix()}\0".encode())
                 summed.update(path.read_bytes())
-    for module in documented():
+    for module in documented_modules():
         summed.update(f"\0{module}\0".encode() + _file_of(module).read_bytes())
     for name in (*BUILDERS, "latex2mathml"):
         summed.update(f"{name} {version(name)}\n".encode())
@@ -130,7 +130,7 @@ def build(out: Path, progress: ProgressCallback = silent) -> list[str]:
     out = out.resolve()
     require_replaceable(out)
     _require_ours(out)
-    told = io.StringIO()
+    log = io.StringIO()
     with temporary_directory() as scratch, replace_all(out) as (made,):
         try:
             sphinx = Sphinx(
@@ -141,7 +141,7 @@ def build(out: Path, progress: ProgressCallback = silent) -> list[str]:
                 buildername="html",
                 confoverrides=_settings(),
                 status=None,
-                warning=told,
+                warning=log,
                 freshenv=True,
             )
             _count(sphinx, progress)
@@ -149,7 +149,7 @@ def build(out: Path, progress: ProgressCallback = silent) -> list[str]:
         except SphinxError as error:
             raise GuideError(f"the guide cannot be built: {error}") from error
         (made / ".buildinfo").unlink(missing_ok=True)
-        warnings = [w for w in _COLOUR.sub("", told.getvalue()).splitlines() if w.strip()]
+        warnings = [w for w in _COLOUR.sub("", log.getvalue()).splitlines() if w.strip()]
         # Sphinx warns of a file that it cannot write, and goes on.
         unwritten = [line for line in warnings if _UNWRITTEN.search(line)]
         if unwritten:

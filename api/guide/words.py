@@ -22,13 +22,13 @@ def terms() -> str:
 
 def abbreviations() -> str:
     """List the survey's values by attribute, with their names; meanings where the table has one."""
-    told = {one.term: one.meaning for one in words()}
+    meanings = {one.term: one.meaning for one in words()}
     values: dict[str, list[str]] = {}
     for one in glossary():
         if one.kind == "term" or one.term == "None":
             continue
         name = f" ({one.name})" if one.name != one.term else ""
-        means = f": {one.meaning}" if one.meaning == told.get(one.term) else ""
+        means = f": {one.meaning}" if one.meaning == meanings.get(one.term) else ""
         values.setdefault(one.kind, []).append(f"- **{one.term}**{name}{means}")
     return "\n\n".join(
         f"### {attribute.capitalize()}\n\n" + "\n".join(listed)

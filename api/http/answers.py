@@ -43,9 +43,9 @@ class Answer(JSONResponse):
     status_code : which FastAPI documents by its default
     """
 
-    offered: ClassVar[tuple[str, ...]] = (JSON, CSV)
+    media_types: ClassVar[tuple[str, ...]] = (JSON, CSV)
     digest: str | None = None
-    """Of the JSON, where making it has told."""
+    """Digest of the JSON, if making it gave one."""
 
     def __init__(
         self,
@@ -112,12 +112,12 @@ class CitedAnswer(Answer):
     ----------
     answer : the document and the table
     studies : that are cited
-    name : file name without suffix that a client is told to save references under
+    name : file name without suffix that a client saves references under
     status_code : which FastAPI documents by its default
     narrowed : whether the answer was narrowed to columns, which references cannot be
     """
 
-    offered: ClassVar[tuple[str, ...]] = (JSON, CSV, *CITATIONS.values())
+    media_types: ClassVar[tuple[str, ...]] = (JSON, CSV, *CITATIONS.values())
 
     def __init__(
         self,
@@ -152,7 +152,7 @@ class Picture(Response):
     """A PNG."""
 
     media_type = PNG
-    offered: ClassVar = (PNG,)
+    media_types: ClassVar = (PNG,)
 
     def representation(self, wanted: str) -> Representation:
         """Return the picture."""
@@ -165,13 +165,13 @@ class Columns(Response):
     Parameters
     ----------
     content : the file's bytes
-    name : that a client is told to save it under
+    name : under which a client saves it
     links : values of the Link header
     status_code : which FastAPI documents by its default
     """
 
     media_type = PARQUET
-    offered: ClassVar = (PARQUET,)
+    media_types: ClassVar = (PARQUET,)
 
     def __init__(
         self, content: bytes, name: str, links: Sequence[str] = (), status_code: int = 200
@@ -199,9 +199,9 @@ class LinkDocument(JSONResponse):
 
     def __init_subclass__(cls) -> None:
         """Offer the document by its own media type and as JSON."""
-        cls.offered = (str(cls.media_type), JSON)
+        cls.media_types = (str(cls.media_type), JSON)
 
-    offered: ClassVar[tuple[str, ...]] = (JSON,)
+    media_types: ClassVar[tuple[str, ...]] = (JSON,)
 
     def __init__(
         self, document: Mapping[str, Any], links: Sequence[str] = (), status_code: int = 200
@@ -217,7 +217,7 @@ class LinkDocument(JSONResponse):
 class CacheableResponse(Protocol):
     """A response that `AnswerRoute` can keep, and the media types it can be had in."""
 
-    offered: ClassVar[tuple[str, ...]]
+    media_types: ClassVar[tuple[str, ...]]
 
     def representation(self, wanted: str) -> Representation:
         """Return the response in a media type."""
@@ -278,7 +278,7 @@ class AnswerRoute(StrictRoute):
     def get_route_handler(self) -> Handler:
         """Return what handles a request."""
         compute = super().get_route_handler()
-        offered = cast("type[CacheableResponse]", self.response_class).offered
+        offered = cast("type[CacheableResponse]", self.response_class).media_types
         whole = issubclass(cast("type[CacheableResponse]", self.response_class), LinkDocument)
 
         async def answer(request: Request) -> Response:
@@ -287,8 +287,8 @@ class AnswerRoute(StrictRoute):
             wanted = wanted_type(query, request.headers.get("accept"), offered)
             if request.method != "GET":
                 posted = cast("CacheableResponse", await compute(request))
-                told = as_asked(posted.representation(wanted), wanted, request)
-                return told.respond(request, conditional=False)
+                response = as_asked(posted.representation(wanted), wanted, request)
+                return response.respond(request, conditional=False)
             asked = (request.scope["path"], query, wanted, str(request.base_url) if whole else "")
             found = kept.get(asked)
             if found is None:

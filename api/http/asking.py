@@ -24,7 +24,7 @@ def ask(endpoint: PathFunction, known: Knowledge, **given: Any) -> Answer:
     Parameters
     ----------
     endpoint : the path function
-    known : what is told
+    known : facts and measurements
     given : parts of the path by name; `query` and `body` as mappings
 
     Raises

@@ -13,7 +13,7 @@ from starlette.exceptions import HTTPException
 from api.http.problems import Problem, Violation, respond
 from api.http.refusals import refusal
 from api.pages.serving import TWINS, refusal_page
-from survey_data.nearest import nearest
+from survey_data.nearest import nearest_name
 
 
 def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
@@ -51,7 +51,7 @@ def _of_framework(error: HTTPException, request: Request, routes: Sequence[APIRo
         paths = {route.path for route in routes}
         # Twins are other spellings of a page's address: not what somebody meant who mistyped it.
         twins = {f"{page}{suffix}" for page in (*paths, "/answer") for suffix in TWINS}
-        near = nearest(path, paths - twins, cutoff=0)
+        near = nearest_name(path, paths - twins, cutoff=0)
         violation = Violation("path", path, "a path of /openapi.json", near)
         return Problem(404, "unknown-path", errors=[violation])
     if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:

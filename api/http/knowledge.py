@@ -80,22 +80,22 @@ class Knowledge:
     @cached_property
     def resolutions(self) -> Mapping[str, Resolution]:
         """What is scored of each study, by key."""
-        from benchmark.plan.combinations import scorable  # noqa: PLC0415 - loads the simulator
+        from benchmark.plan.combinations import scorable_plan  # noqa: PLC0415 - loads the simulator
         from benchmark.plan.shown import data_sets  # noqa: PLC0415 - likewise
 
         return resolve_all(
-            scorable(), data_sets=data_sets(), catalogue=self.catalogue, facts=self.facts
+            scorable_plan(), data_sets=data_sets(), catalogue=self.catalogue, facts=self.facts
         )
 
     @cached_property
     def evidence(self) -> Evidence:
         """What is measured of pairs of values, what could be, and what cannot."""
-        from benchmark.plan.combinations import scorable  # noqa: PLC0415 - loads the simulator
+        from benchmark.plan.combinations import scorable_plan  # noqa: PLC0415 - loads the simulator
 
-        return Evidence(self.catalogue, self.measurements.pipelines, scorable())
+        return Evidence(self.catalogue, self.measurements.pipelines, scorable_plan())
 
     @cached_property
-    def measured(self) -> Measured:
+    def measured_pipelines(self) -> Measured:
         """What is measured of every pipeline, as recommendations take it."""
         return Measured(self.measurements.pipelines)
 
@@ -127,12 +127,17 @@ class Knowledge:
             Where a file of facts or of published results cannot be read.
         """
         _ = self.resolutions, self.measurements.scores, self.measurements.times
-        _ = self.evidence, self.measured, self.measurements.leaderboard, self.measurements.cards
+        _ = (
+            self.evidence,
+            self.measured_pipelines,
+            self.measurements.leaderboard,
+            self.measurements.cards,
+        )
         _ = self.measurements.sweeps, self.measurements.curves, self.measurements.assessment
         _ = self.measurements.claims, self.index.find("warm")
         _ = self.facts_digest, self.measurements.digest
         _ = self.of("all").resolutions, self.editions
-        prepare(design_table(self.facts, self.measured))
+        prepare(design_table(self.facts, self.measured_pipelines))
 
 
 class KnowledgeOfAll(Knowledge):
@@ -163,12 +168,12 @@ class KnowledgeOfAll(Knowledge):
     @cached_property
     def resolutions(self) -> Mapping[str, Resolution]:
         """What is scored of each study, by key."""
-        from benchmark.plan.combinations import scorable  # noqa: PLC0415 - loads the simulator
+        from benchmark.plan.combinations import scorable_plan  # noqa: PLC0415 - loads the simulator
         from benchmark.plan.shown import data_sets  # noqa: PLC0415 - likewise
 
         ours, facts = self._survey.resolutions, (self._survey.facts, self.facts)
         shown, catalogue = data_sets(), self.catalogue
-        later = resolve_later(scorable(), *facts, data_sets=shown, catalogue=catalogue)
+        later = resolve_later(scorable_plan(), *facts, data_sets=shown, catalogue=catalogue)
         return {**ours, **later}
 
     @property
@@ -177,9 +182,9 @@ class KnowledgeOfAll(Knowledge):
         return self._survey.evidence
 
     @property
-    def measured(self) -> Measured:
+    def measured_pipelines(self) -> Measured:
         """What is measured of every pipeline, as recommendations take it."""
-        return self._survey.measured
+        return self._survey.measured_pipelines
 
     @property
     def index(self) -> Index:

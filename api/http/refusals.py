@@ -13,7 +13,7 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 from pydantic import BaseModel, TypeAdapter
 
 from api.http.problems import Problem, Violation
-from survey_data.nearest import nearest
+from survey_data.nearest import nearest_name
 
 MOST_LISTED = 20  # words for a part of a path that a refusal lists
 
@@ -40,7 +40,7 @@ def refusal(errors: Sequence[Mapping[str, Any]], endpoint: Callable[..., Any]) -
             schema = declared["path"][name]
             words = schema["enum"]
             expected = "one of those listed" if len(words) > MOST_LISTED else _expected(schema)
-            violation = Violation(name, text, expected, nearest(text, words, cutoff=0))
+            violation = Violation(name, text, expected, nearest_name(text, words, cutoff=0))
             return Problem(404, f"unknown-{name}", errors=[violation])
     unknown = [error["loc"] for error in errors if error["type"] == "extra_forbidden"]
     if unknown:
@@ -48,7 +48,8 @@ def refusal(errors: Sequence[Mapping[str, Any]], endpoint: Callable[..., Any]) -
         expected = f"one of {', '.join(names)}" if names else "no parameters"
         expected = f"a parameter name, {expected}"
         wrong = [
-            Violation(name, None, expected, nearest(name, names, cutoff=0)) for _, name in unknown
+            Violation(name, None, expected, nearest_name(name, names, cutoff=0))
+            for _, name in unknown
         ]
         return Problem(400, "unknown-parameter", errors=wrong)
     wrong = [_violation(error, declared) for error in errors]
@@ -97,7 +98,7 @@ def _violation(error: Mapping[str, Any], declared: Mapping[str, Mapping[str, Sch
     if place == "query" and isinstance(given, list):
         return Violation(name, ", ".join(given), "one value, given once")
     valid = schema.get("items", schema)
-    near = nearest(given, _words(valid), cutoff=0) if isinstance(given, str) else None
+    near = nearest_name(given, _words(valid), cutoff=0) if isinstance(given, str) else None
     return Violation(name, _show(given), _expected(valid), near)
 
 

@@ -37,7 +37,7 @@ class Representation:
     content_type : value of the header
     headers : further headers, such as `Link`
     compressible : whether gzip is worth trying
-    digest : what tells the body from all others, where making it has told; found when it is needed
+    digest : digest that identifies the body, if making it gave one; computed when it is needed
         otherwise
     """
 
@@ -67,7 +67,7 @@ class Representation:
         return digest_of(self.body)
 
     @cached_property
-    def compressed(self) -> bytes:
+    def gzip_body(self) -> bytes:
         """The body in gzip, without a time stamp: same body, same bytes."""
         return gzip.compress(self.body, compresslevel=6, mtime=0)
 
@@ -114,7 +114,7 @@ class Representation:
                 if name not in {"Content-Type", "Content-Encoding"}
             }
             return Response(status_code=304, headers=kept)
-        return Response(self.compressed if zipped else self.body, headers=headers)
+        return Response(self.gzip_body if zipped else self.body, headers=headers)
 
     def __len__(self) -> int:
         return len(self.body)

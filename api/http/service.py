@@ -46,7 +46,7 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
 
     Parameters
     ----------
-    knowledge : what is told; the survey and the published measurements by default
+    knowledge : facts and measurements; the survey and the published measurements by default
     """
     app = FastAPI(
         title="Sun Sensor Atlas",

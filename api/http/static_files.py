@@ -8,7 +8,7 @@ from pathlib import Path
 
 from api.http.problems import Problem, Violation
 from api.http.representations import Representation
-from survey_data.nearest import nearest
+from survey_data.nearest import nearest_name
 
 CONTENT_TYPES = {
     ".css": "text/css; charset=utf-8",
@@ -47,7 +47,7 @@ def page_file(name: str) -> Representation:
     """
     served = page_files()
     if name not in served:
-        error = Violation("file", name, "a file of the page", nearest(name, served, cutoff=0))
+        error = Violation("file", name, "a file of the page", nearest_name(name, served, cutoff=0))
         raise Problem(404, "unknown-file", errors=[error])
     path = served[name]
     return Representation(

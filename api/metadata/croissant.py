@@ -238,7 +238,7 @@ def creator(author: Author) -> dict[str, Any]:
 def cite_as(what: DatasetDescription, who: Identity) -> str:
     """Return a BibTeX entry of a data set of a version of the Atlas."""
     key = "".join(c if c.isalnum() else "-" for c in what.name).strip("-").lower()
-    names = " and ".join(f"{{{a.name}}}" if a.name else a.inverted for a in who.authors)
+    names = " and ".join(f"{{{a.name}}}" if a.name else a.sort_name for a in who.authors)
     return (
         f"@misc{{{key}, title = {{{{{what.name}}}}}, author = {{{names}}}, "
         f"year = {{{who.released.year}}}, version = {{{what.version}}}, "

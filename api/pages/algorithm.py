@@ -111,14 +111,14 @@ def _sweep(known: Knowledge, name: str) -> list[tuple[str, LineChart, str]]:
             chart = LineChart(
                 [
                     Line("error", [(row["value"], row["rms"] or None) for row in rows]),
-                    Line("bound", [(r["value"], r["bound"] or None) for r in rows], bound=True),
+                    Line("bound", [(r["value"], r["bound"] or None) for r in rows], is_bound=True),
                 ],
                 across,
                 f"RMS error, {unit}",
                 f"Error of {name} against {across} on {series}, with its bound",
                 log_across=sweep != "phase",
             )
-            if chart.drawn:
+            if chart.has_points:
                 charts.append((f"Against {across.split(',')[0]}: {series}", chart, series))
     return charts
 

@@ -74,13 +74,13 @@ async def answer(known: Known, request: Request) -> View:
         view.status_code = problem.status_code
         return view
     parts = _parts(known.of(asked.edition))
-    told = await service.recommendations(known, asked)
-    document = told.document
+    answer = await service.recommendations(known, asked)
+    document = answer.document
     best = _best_measured(document)
     landing = landing_of_atlas(identity())
     return View(
         "answer.html",
-        told,
+        answer,
         landing=landing,
         entity=schema_org.atlas(identity(), known.measurements.presets),
         problem=None,
@@ -104,14 +104,14 @@ async def scatter(known: Known, request: Request) -> View:
     """Render the scatter plot alone, for the page's script."""
     fields = request.query_params.multi_items()
     across = dict(fields).get("across", "field")
-    told = await service.recommendations(known, _ask(fields))
-    drawn = _scatter(known, told.document, across)
+    answer = await service.recommendations(known, _ask(fields))
+    drawn = _scatter(known, answer.document, across)
     return View(
         "scatter_alone.html",
-        told,
+        answer,
         scatter=drawn,
         across=across,
-        best=_best_measured(told.document),
+        best=_best_measured(answer.document),
         sorts=SORTS,
     )
 

@@ -18,8 +18,8 @@ router = APIRouter(route_class=StrictRoute, include_in_schema=False)
 async def form(request: Request) -> Response:
     """Give the form."""
     context = {"path": "/calibrate", "query": "", "megabytes": LARGEST // 1_000_000}
-    told = render("calibrate/form.html", {**context, "rows": MOST_ROWS, "seconds": int(LONGEST_S)})
-    return page_bytes(told).respond(request)
+    page = render("calibrate/form.html", {**context, "rows": MOST_ROWS, "seconds": int(LONGEST_S)})
+    return page_bytes(page).respond(request)
 
 
 @router.post("/calibrate")

@@ -25,7 +25,7 @@ VERDICTS = {
     "not testable here": "Not testable on simulated sensors.",
     "not measured": "Not measured yet.",
 }
-STANDINGS = {
+RESULTS = {
     "holds": "holds",
     "fails": "fails",
     "open": "undecided: the interval includes the threshold",
@@ -54,7 +54,7 @@ async def claim(known: Known, id: Annotated[ClaimId, Path()]) -> View:  # noqa: 
         answer,
         chart=_chart(answer.document),
         verdicts=VERDICTS,
-        standings=STANDINGS,
+        results=RESULTS,
         studies=[key for key in known.facts.studies if key in said],
         datasets=[name for name in known.measurements.presets if _names(text, name)],
         algorithms=[i.name for i in known.catalogue.implementations(None) if _names(text, i.name)],
@@ -80,7 +80,7 @@ def _chart(document: Mapping[str, Any]) -> LineChart:
         for name, line in document["lines"].items()
     ]
     across = document["across"] or ""
-    # What stands across may be words, such as conditions: those are told as a table.
+    # What stands across may be words, such as conditions: those are shown as a table.
     drawn = [
         line
         for line in lines

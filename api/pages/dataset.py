@@ -30,7 +30,7 @@ from benchmark.error_budget.record import RECORD as ERROR_BUDGET
 from benchmark.leaderboard.architectures import architectures as best_of_each
 from benchmark.metrics.score import AVAILABLE
 from benchmark.results import samples
-from survey_data.nearest import nearest
+from survey_data.nearest import nearest_name
 
 router = PageRouter()
 
@@ -81,7 +81,7 @@ async def dataset(
     card = known.measurements.card(name)
     condition = query.condition or card["conditions"][0]
     if condition not in card["conditions"]:
-        near = nearest(condition, card["conditions"])
+        near = nearest_name(condition, card["conditions"])
         expected = f"one of {', '.join(card['conditions'])}"
         error = Violation("condition", condition, expected, near)
         raise Problem(422, "invalid-value", errors=[error])

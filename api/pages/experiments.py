@@ -16,21 +16,21 @@ from api.http.problems import Problem
 from api.http.representations import Representation
 from api.pages.serving import PageRouter, View
 from api.schema.parameters import OneOf
-from benchmark.running.experiment import Recorded, recorded
+from benchmark.running.experiment import RecordedExperiment, recorded_experiments
 
 router = PageRouter()
 #: Rows that a page shows; its CSV has all.
 SHOWN = 100
 SVG = "image/svg+xml"
 
-Name = Annotated[str, OneOf(lambda: tuple(recorded())), Path()]
+Name = Annotated[str, OneOf(lambda: tuple(recorded_experiments())), Path()]
 
 
 class Drawing(Response):
     """An SVG."""
 
     media_type = SVG
-    offered: ClassVar = (SVG,)
+    media_types: ClassVar = (SVG,)
 
     def representation(self, wanted: str) -> Representation:
         """Return the drawing."""
@@ -43,7 +43,7 @@ pictures = APIRouter(route_class=AnswerRoute, include_in_schema=False)
 @router.page("/experiments")
 async def experiments(known: Known) -> View:
     """List the experiments with the number of their rows."""
-    every = [_about(_experiment(name, known)) for name in recorded()]
+    every = [_about(_experiment(name, known)) for name in recorded_experiments()]
     columns = ("name", "title", "description", "rows")
     return View("experiments/list.html", Answer({"items": every}, columns, lambda: every))
 
@@ -69,16 +69,16 @@ def picture(known: Known, name: Name, file: str) -> Drawing:
     return Drawing(draw())
 
 
-def _experiment(name: str, known: Knowledge) -> Recorded[Any]:
-    return recorded()[name](known.measurements.directory)
+def _experiment(name: str, known: Knowledge) -> RecordedExperiment[Any]:
+    return recorded_experiments()[name](known.measurements.directory)
 
 
-def _about(one: Recorded[Any]) -> dict[str, Any]:
+def _about(one: RecordedExperiment[Any]) -> dict[str, Any]:
     said = (getdoc(type(one)) or "").partition("\n\n")[0].replace("\n", " ")
     return {"name": one.name, "title": one.title, "description": said, "rows": len(one.rows())}
 
 
-def _drawn(one: Recorded[Any]) -> Mapping[str, Callable[[], str]]:
+def _drawn(one: RecordedExperiment[Any]) -> Mapping[str, Callable[[], str]]:
     return {PurePosixPath(path).name: draw for path, draw in one.pictures().items()}
 
 

@@ -19,7 +19,7 @@ from api.http.dependencies import NO_PARAMETERS, Known
 from api.http.knowledge import Knowledge
 from api.http.negotiation import media_type
 from api.http.representations import Representation, RepresentationCache
-from api.http.routers import figures as told
+from api.http.routers import figures as service
 from api.pages.editions import edition_shown
 from api.pages.numbers import degrees, kind_said, wide
 from api.pages.serving import PageRouter, View
@@ -75,7 +75,7 @@ specifications = APIRouter(route_class=SpecificationRoute, include_in_schema=Fal
 @router.page("/figures")
 async def figures(known: Known, _asked: Annotated[None, NO_PARAMETERS] = None) -> View:
     """List the figures."""
-    answer = await told.figures(known)
+    answer = await service.figures(known)
     return View(
         "figures.html",
         answer,
@@ -180,7 +180,7 @@ def _view(
     whole = not query.by_attribute() and query.edition == "survey"
     return View(
         "figure.html",
-        told.answer_of(found),
+        service.answer_of(found),
         figure=found,
         abbreviations=_abbreviations(known, found),
         rows=rows,

@@ -53,10 +53,10 @@ class DocstringParts:
 def docstring_parts(implementation: Any) -> tuple[DocstringParts, ...]:
     """Return what a class, or each stage of a chain, says of itself."""
     stages = getattr(implementation, "stages", (implementation,))
-    return tuple(_told(stage) for stage in stages)
+    return tuple(_docstring_parts(stage) for stage in stages)
 
 
-def _told(cls: Any) -> DocstringParts:
+def _docstring_parts(cls: Any) -> DocstringParts:
     lead, sections = _sections(inspect.getdoc(cls) or "")
     notes = _paragraphs(sections.get("Notes", ""))
     at = next((k for k, text in enumerate(notes) if text.startswith("Implements")), None)

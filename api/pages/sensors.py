@@ -37,7 +37,7 @@ def best_built(known: Knowledge) -> list[dict[str, Any]]:
     return architectures(known.measurements.leaderboard)
 
 
-def _told(known: Knowledge, attribute: str, value: str) -> dict[str, Any]:
+def _document(known: Knowledge, attribute: str, value: str) -> dict[str, Any]:
     """Return a detector or a mask with its studies, its partners and the best of each."""
     entry = next(e for e in known.taxonomy.to_dict()[attribute] if e["value"] == value)
     studies = [s for s in known.facts.studies.values() if value in s.of(attribute)]
@@ -77,11 +77,11 @@ def _pairs(
 def _every(known: Knowledge, query: OfEdition, request: Request, attribute: str) -> View:
     shown, known = edition_shown(known, query.edition, request), known.of(query.edition)
     values = known.taxonomy.values(attribute)
-    told = [_told(known, attribute, value) for value in values]
+    items = [_document(known, attribute, value) for value in values]
     answer = Answer(
-        {"attribute": attribute, "items": told},
+        {"attribute": attribute, "items": items},
         COLUMNS,
-        lambda: [{name: row[name] for name in COLUMNS} for row in told],
+        lambda: [{name: row[name] for name in COLUMNS} for row in items],
     )
     return View("values.html", answer, editions=shown)
 
@@ -90,7 +90,7 @@ def _one(
     known: Knowledge, query: OfEdition, request: Request, *, attribute: str, value: str
 ) -> View:
     shown, known = edition_shown(known, query.edition, request), known.of(query.edition)
-    document = {"attribute": attribute, **_told(known, attribute, value)}
+    document = {"attribute": attribute, **_document(known, attribute, value)}
     rows = [
         {
             **{name: pair[name] for name in ("detector", "mask", "studies")},

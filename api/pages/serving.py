@@ -27,24 +27,24 @@ Endpoint = Callable[..., Any]
 
 
 class View(Response):
-    """A page: what it tells, as a template shows it; as JSON and CSV what it tells.
+    """A page from a template, with its document as JSON and CSV at the same address.
 
     Parameters
     ----------
     template : file name in `templates/`
-    told : the document, of which the twins are made; `told` in the template
-    landing : where the page leads machines; None where it describes nothing of its own
-    entity : what the page is about, in the words of schema.org; goes with `landing`
-    context : what the template is given besides
+    answer : the document, `document` in the template; JSON and CSV are made of it
+    landing : links for machines; None for a page without metadata of its own
+    entity : description of the page's subject in schema.org's terms, with `landing`
+    context : further variables of the template
     """
 
     media_type = HTML
-    offered: ClassVar = OFFERED
+    media_types: ClassVar = OFFERED
 
     def __init__(
         self,
         template: str,
-        told: Answer,
+        answer: Answer,
         /,
         *,
         landing: LandingPage | None = None,
@@ -53,7 +53,7 @@ class View(Response):
     ) -> None:
         super().__init__()
         self.template = template
-        self.told = told
+        self.answer = answer
         self.landing = landing
         self.context = {"entity": entity, **context}
 
@@ -61,8 +61,8 @@ class View(Response):
         """Return the page in a media type; `path` and `query` are what was asked for."""
         if wanted != HTML:
             links = self.landing.links_of_metadata() if self.landing else ()
-            return self.told.representation(wanted).link(*headers(links))
-        context = {"told": self.told.document, "path": path, "query": query, **self.context}
+            return self.answer.representation(wanted).link(*headers(links))
+        context = {"document": self.answer.document, "path": path, "query": query, **self.context}
         links = self.landing.links() if self.landing else ()
         return page_bytes(render(self.template, context)).link(*headers(links))
 
@@ -76,8 +76,8 @@ def refusal_page(request: Request, problem: Problem) -> Response:
     """Return the page that tells a person of a refusal."""
     path: str = request.scope["path"]
     context = {"path": path, "query": "", "problem": problem.document(path)}
-    told = page_bytes(render("problem.html", context))
-    shown = told.respond(request, conditional=False)
+    answer = page_bytes(render("problem.html", context))
+    shown = answer.respond(request, conditional=False)
     shown.status_code = problem.status_code
     shown.headers["Cache-Control"] = "no-store"
     return shown

@@ -8,7 +8,7 @@ from fastapi import Path, Query, Request
 from pydantic import Field
 
 from api.http.dependencies import Known
-from api.http.routers import studies as told
+from api.http.routers import studies as service
 from api.metadata import schema_org
 from api.metadata.signposting import landing_of_study
 from api.pages.editions import edition_shown
@@ -76,7 +76,7 @@ async def studies(known: Known, query: Annotated[StudiesPage, Query()], request:
     every = StudiesQuery.model_validate(
         {**query.model_dump(exclude={"rows"}, exclude_defaults=True), "limit": EVERY}
     )
-    answer = await told.studies(known, every)
+    answer = await service.studies(known, every)
     return View(
         "studies.html",
         answer,
@@ -96,7 +96,7 @@ async def studies(known: Known, query: Annotated[StudiesPage, Query()], request:
 @router.page("/studies/{key}")
 async def study(known: Known, key: Annotated[StudyKey, Path()]) -> View:
     """Show a study: attributes with basis, implementation, reported and measured accuracy."""
-    answer = await told.study(known, key)
+    answer = await service.study(known, key)
     claims = [e.claim for e in known.measurements.claims.values() if key in e.claim.study]
     landing = landing_of_study(key, answer.document["doi"])
     return View(

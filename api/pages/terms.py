@@ -135,7 +135,7 @@ def local_term_name(value: str, attribute: str) -> str:
 
 
 def value(text: str, attribute: str) -> Markup:
-    """Return a value of an attribute with its name as a tip, and a link to where it is told of."""
+    """Return a value of an attribute with its name as a tip, and a link to its description."""
     if attribute in KIND_OF.values():
         return Markup.escape(statistics()[text].name)
     if attribute not in ATTRIBUTES:

@@ -14,7 +14,7 @@ from api.schema.parameters import (
 )
 from api.schema.words import ClaimVerdict
 
-Standing = Literal["holds", "fails", "open"]
+RuleResult = Literal["holds", "fails", "open"]
 
 
 class ClaimRule(Shape):
@@ -23,7 +23,7 @@ class ClaimRule(Shape):
     rule: str
     statistic: str = Field(description="Statistic computed in every trial.")
     decides: str = Field(description="Threshold of the statistic.")
-    standing: Standing = Field(
+    result: RuleResult = Field(
         description=(
             "holds or fails: the 95 % interval is on one side of the threshold; open: it "
             "includes the threshold."
@@ -41,7 +41,7 @@ class ClaimRule(Shape):
 class CheckedRule(ClaimRule):
     """A criterion with what the second method says of it: a row of the table."""
 
-    second_standing: Standing | None = Field(description="The standing by the second method.")
+    second_result: RuleResult | None = Field(description="The result by the second method.")
 
 
 class ClaimRow(Shape):

@@ -34,7 +34,7 @@ class Units(Shape):
     count: int
     least_deg: float = Field(description="Smallest error of a unit, degrees.")
     largest_deg: float = Field(description="Largest error of a unit, degrees.")
-    meeting: int | None = Field(
+    within_limit: int | None = Field(
         description="Number of ten units that meet the maximum error; null without one."
     )
     of: int = Field(description="Ten; extrapolated if fewer than five units were measured.")

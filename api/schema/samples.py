@@ -19,7 +19,7 @@ from api.schema.parameters import (
 )
 from api.schema.table import columns_of
 from api.schema.words import ExtractorName, ModelName
-from benchmark.results.samples import DOUBTS
+from benchmark.results.samples import OUTCOMES
 
 
 class SampleErrorsQuery(TableQuestion):
@@ -58,8 +58,8 @@ class SampleError(Shape):
     error_deg: float | None = Field(
         description="Separation angle, stored to one part in 2,000; null without an answer."
     )
-    doubt: int = Field(
-        description="; ".join(f"{code}: {meaning}" for code, meaning in DOUBTS.items()) + "."
+    outcome: int = Field(
+        description="; ".join(f"{code}: {meaning}" for code, meaning in OUTCOMES.items()) + "."
     )
 
 

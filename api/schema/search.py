@@ -1,4 +1,4 @@
-"""Search over all that is told."""
+"""Search over all pages."""
 
 from __future__ import annotations
 

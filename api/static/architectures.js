@@ -4,7 +4,7 @@ import { openedRow, method } from "./calibrations.js";
 import { byId, h, segmented } from "./dom.js";
 import { sensor } from "./drawings.js";
 import { advisedContent, below, evidenceCell, finerContent, KINDS, measuredContent, notProposed, proposedContent } from "./evidence.js";
-import { show, standing, state } from "./state.js";
+import { show, sideOf, state } from "./state.js";
 import { plural, SORTS, studiesCount } from "./wording.js";
 
 const FIRST = matchMedia("(max-width: 700px)").matches ? 4 : 10;
@@ -18,7 +18,7 @@ export function showSort() {
 }
 
 function tag({ task, studies, advised }) {
-  const asked = standing("task", task) === "include";
+  const asked = sideOf("task", task) === "include";
   const spoken = `${task}: ${studiesCount(studies)}${advised ? ", advised by the survey" : ""}`;
   return h("li", { class: `tag${advised ? " advised" : ""}${asked ? " asked" : ""}`, title: spoken },
     advised && h("span", { class: "mark", "aria-hidden": true }, "✓"), task,
@@ -26,7 +26,7 @@ function tag({ task, studies, advised }) {
     h("span", { class: "visually-hidden" }, spoken.slice(task.length)));
 }
 
-const value = (attribute, name) => h("a", { class: `value${standing(attribute, name) === "include" ? " asked" : ""}`, href: `/${attribute}s/${encodeURIComponent(name)}` }, name);
+const value = (attribute, name) => h("a", { class: `value${sideOf(attribute, name) === "include" ? " asked" : ""}`, href: `/${attribute}s/${encodeURIComponent(name)}` }, name);
 
 function row(architecture, known) {
   const { rank, detector, mask, tasks, advice, studies, best, measures } = architecture;

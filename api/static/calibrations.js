@@ -3,7 +3,7 @@
 import { byId, copyable, h, problemNotice } from "./dom.js";
 import { advisedContent, below, evidenceCell, KINDS, measuredContent, proposedContent, boardAddress } from "./evidence.js";
 import { address, getJson } from "./service.js";
-import { question, show, standing } from "./state.js";
+import { question, show, sideOf } from "./state.js";
 import { studyEntry } from "./studies.js";
 import { ATTRIBUTE_NAMES, degrees, JUDGED_ON, LIMIT_NAMES, LIST_NAMES, plural, quoted, sentence, studiesCount, wide, worded } from "./wording.js";
 
@@ -12,7 +12,7 @@ const NAMED = 4; // studies that a row names
 /** Name of the method that was measured, and the survey's labels of its parts. */
 export function method({ extractor, compensations, model, measured }) {
   const link = (name) => h("a", { href: `/algorithms/${encodeURIComponent(name)}` }, name);
-  const asked = (attribute, name) => standing(attribute, name) === "include" && "asked";
+  const asked = (attribute, name) => sideOf(attribute, name) === "include" && "asked";
   return [measured && h("div", { class: "method" }, link(measured.extractor), " + ", link(measured.model)),
     h("div", { class: measured ? "below" : "" }, "survey: ", h("ol", { class: "labels" },
       h("li", { class: asked("extractor", extractor) }, worded("extractor", extractor)),

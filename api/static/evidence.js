@@ -80,7 +80,7 @@ export function measuredContent(m) {
     below(narrowed && (m.error_deg === null ? `nominal ${degrees(nominal.rms_deg)} at that availability, ` : `nominal ${degrees(nominal.rms_deg)}, `),
       h("span", { title: `Nominal error over the whole field, divided by the Cramér–Rao bound of ${degrees(nominal.bound_deg)}` }, `${times(nominal.over_bound)} the bound`)),
     below(`availability ${percent(m.availability)}`, units && units.count > 1 && `; ${units.count} units ${number(units.least_deg)}–${degrees(units.largest_deg)}`),
-    units && units.meeting !== null && below(`${units.meeting} of ${units.of} units meet it with a calibration bench of ${degrees(m.bench_deg)}; own error ${degrees(m.own_deg)}`),
+    units && units.within_limit !== null && below(`${units.within_limit} of ${units.of} units meet it with a calibration bench of ${degrees(m.bench_deg)}; own error ${degrees(m.own_deg)}`),
     m.needs.length > 0 && below(`also needs ${m.needs.join(", ")}`),
   ];
 }

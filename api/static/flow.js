@@ -4,7 +4,7 @@ import { byId, choice, h, problemNotice, segmented } from "./dom.js";
 import { attributeOf, fractional, grouped, rings, withAmounts } from "./flow_data.js";
 import { drawSankey, drawSunburst, labelRoom } from "./flow_diagram.js";
 import { address, getJson } from "./service.js";
-import { ATTRIBUTES, LIMITS, LISTS, set, show, standing, state } from "./state.js";
+import { ATTRIBUTES, LIMITS, LISTS, set, show, sideOf, state } from "./state.js";
 import { amount, ATTRIBUTE_NAMES, plural, worded } from "./wording.js";
 
 export const CROSS = ["task", "detector", "mask", "model", "extractor"];
@@ -75,7 +75,7 @@ function toggle(node, vocabulary) {
 
 function isRequired(node, vocabulary) {
   const target = valuesOf(node, vocabulary);
-  return Boolean(target) && target.values.every((v) => standing(target.attribute, v) === "include");
+  return Boolean(target) && target.values.every((v) => sideOf(target.attribute, v) === "include");
 }
 
 /** Values by level, longest first: buttons that require a value. */

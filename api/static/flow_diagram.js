@@ -8,7 +8,7 @@ const THICKNESS = 12;
 const LETTER = 7.4; // mean width of a letter of a label
 const label = (node) => `${worded(node.level, node.value)}  ${amount(node.amount)}`;
 const listed = (studies) => `${studies.slice(0, 6).join(", ")}${studies.length > 6 ? `, and ${studies.length - 6} more` : ""}`;
-const told = (studies) => `${plural(studies.length, "study", "studies")}: ${listed(studies)}`;
+const listing = (studies) => `${plural(studies.length, "study", "studies")}: ${listed(studies)}`;
 
 /** Pixels that the labels of the last level need beside it. */
 export function labelRoom(flow) {
@@ -33,7 +33,7 @@ export function drawSankey(container, flow, required, choose) {
       }, svg("title", {}, `${known.get(link.source).value} to ${known.get(link.target).value}: ${amount(link.value)}, ${listed(link.studies)}`))),
       places.nodes.map(({ node, x, y, height: tall }) => svg("g", {
         class: required(node) ? "sankey-node required" : "sankey-node", onclick: () => choose(node),
-      }, svg("title", {}, `${node.name}: ${told(node.studies)}`),
+      }, svg("title", {}, `${node.name}: ${listing(node.studies)}`),
       svg("rect", { class: "node-bar", x, y, width: THICKNESS, height: tall }),
       svg("text", { class: "node-label", x: x + THICKNESS + 4, y: y + tall / 2 + 4.5 }, label(node)),
       // A thin node is still something to press.
@@ -86,7 +86,7 @@ export function drawSunburst(container, parts) {
   place("", 0, TURN, 0);
   container.replaceChildren(svg("svg", { viewBox: `${-size / 2} ${-size / 2} ${size} ${size}`, width: size, height: size, class: "sunburst" },
     drawn.map((part) => svg("g", { class: `slice ring${part.ring}` },
-      svg("title", {}, `${part.label}: ${told([...part.studies])}`),
+      svg("title", {}, `${part.label}: ${listing([...part.studies])}`),
       svg("path", { d: sector(part.from, part.to, edges[part.ring], edges[part.ring + 1]) }),
       radial(part, edges[part.ring], edges[part.ring + 1])))));
 }

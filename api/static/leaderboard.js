@@ -68,8 +68,8 @@ function bar(row, scale) {
   const error = scale.at(value);
   const [limit = null, low = null, high = null] = limits(row).map((x) => (x > 0 ? scale.at(x) : null));
   const from = limit ?? error;
-  const told = row.field_deg ? "" : ` against a bound of ${degrees(row.bound_deg)}`;
-  return h("div", { class: "scale", role: "img", "aria-label": `${degrees(value)}${told}` },
+  const bound = row.field_deg ? "" : ` against a bound of ${degrees(row.bound_deg)}`;
+  return h("div", { class: "scale", role: "img", "aria-label": `${degrees(value)}${bound}` },
     scale.ticks.map((t) => h("i", { class: "tick", css: { "--at": scale.at(t) } })),
     h("i", { class: "span", css: { "--from": Math.min(from, error), "--to": Math.max(from, error) } }),
     low !== null && high !== null && h("i", { class: "units", css: { "--from": low, "--to": high } }),

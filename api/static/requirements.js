@@ -2,7 +2,7 @@
    and properties all that are chosen must hold. */
 
 import { byId, h } from "./dom.js";
-import { ATTRIBUTES, LIMITS, required, reset, set, setLimit, setListed, standing, state } from "./state.js";
+import { ATTRIBUTES, LIMITS, required, reset, set, setLimit, setListed, sideOf, state } from "./state.js";
 import { ATTRIBUTE_NAMES, HAZARDS, inUnit, LIMIT_NAMES, LIST_NAMES, ofUnit, PROPERTIES, worded, NEEDS } from "./wording.js";
 
 const OPEN_AT_FIRST = new Set(["task", "detector"]);
@@ -14,16 +14,16 @@ function facet(attribute, entry, count) {
   const include = h("button", {
     type: "button", class: "facet-include", "aria-label": `${spoken}: require. ${count} studies`,
     "data-attribute": attribute, "data-value": value, title: name,
-    onclick: () => set(attribute, value, standing(attribute, value) === "include" ? null : "include"),
+    onclick: () => set(attribute, value, sideOf(attribute, value) === "include" ? null : "include"),
   }, h("b", {}, worded(attribute, value)), name !== value && h("span", { class: "name" }, name), h("span", { class: "count" }, String(count)));
   const exclude = h("button", {
     type: "button", class: "facet-exclude", "aria-label": `${spoken}: exclude`, title: `Exclude ${value}`,
-    onclick: () => set(attribute, value, standing(attribute, value) === "exclude" ? null : "exclude"),
+    onclick: () => set(attribute, value, sideOf(attribute, value) === "exclude" ? null : "exclude"),
   }, "⊘");
   const item = h("li", { class: "facet" }, include, exclude);
   updates.push((present) => {
-    const now = standing(attribute, value);
-    item.dataset.standing = now ?? "none";
+    const now = sideOf(attribute, value);
+    item.dataset.side = now ?? "none";
     include.setAttribute("aria-pressed", String(now === "include"));
     exclude.setAttribute("aria-pressed", String(now === "exclude"));
     // Beside a required value the others are alternatives, whatever the answer holds now.

@@ -68,11 +68,11 @@ export function show(settings) {
 }
 
 /** "include", "exclude" or null for one value; several values at once for a family. */
-export function set(attribute, values, standing) {
+export function set(attribute, values, side) {
   const list = [values].flat();
   for (const where of ["include", "exclude"]) {
     const others = state[where][attribute].filter((v) => !list.includes(v));
-    state[where][attribute] = standing === where ? [...others, ...list] : others;
+    state[where][attribute] = side === where ? [...others, ...list] : others;
   }
   tell(["requirements"]);
 }
@@ -84,7 +84,7 @@ export function setListed(list, value, wanted) {
   tell(["requirements"]);
 }
 
-export function standing(attribute, value) {
+export function sideOf(attribute, value) {
   if (state.include[attribute].includes(value)) return "include";
   return state.exclude[attribute].includes(value) ? "exclude" : null;
 }

@@ -224,7 +224,7 @@ def _best(
     definition: Definition, names: Sequence[str], evidence: _Evidence
 ) -> tuple[Quantity | None, str, str]:
     """Return the best quantity and whose it is, or None and why there is none."""
-    if not definition.measured or not names:
+    if not definition.has_experiment or not names:
         return None, "", "not implemented"
     found: list[tuple[Quantity, str]] = []
     reasons = []

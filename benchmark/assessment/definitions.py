@@ -70,7 +70,7 @@ class Definition:
     larger_is_better: bool = False
 
     @property
-    def measured(self) -> bool:
+    def has_experiment(self) -> bool:
         """Whether there is an experiment."""
         return bool(self.source)
 
@@ -91,7 +91,7 @@ class Definition:
         measured
             2, 1 or 0; None where nothing is measured.
         """
-        if not self.measured:
+        if not self.has_experiment:
             return self.measure
         beyond = (self.judged == "claimed" and survey == NOT) or (
             self.judged == "failed" and measured == FULL
@@ -100,7 +100,7 @@ class Definition:
 
     def limits(self) -> str:
         """Say the limits in words, and where they are no judgement."""
-        if not self.measured:
+        if not self.has_experiment:
             return ""
         how = "at least" if self.larger_is_better else "at most"
         unit = f" {self.unit}" if self.unit else ""
@@ -138,7 +138,7 @@ _APPLIES = (
 )
 _RECORDED = (
     "the table marks the {part} its case study used. Its 0 says that the study used another, which "
-    "no measurement contradicts: what the method reaches with this {part} is told, not judged"
+    "no measurement contradicts: what the method reaches with this {part} is stated, not judged"
 )
 
 
@@ -204,7 +204,7 @@ _ALL = (
     Definition(
         "Feature pattern agnostic",
         "",
-        "what a method must be told of the mask's pattern is part of how it is defined; an "
+        "what a method must know of the mask's pattern is part of how it is defined; an "
         "experiment over patterns would measure the choice of patterns",
         "never",
     ),

@@ -156,7 +156,7 @@ def _features(rows: Sequence[Row]) -> Values:
         ideal = math.sqrt(most["value"] / one["value"])
         found.append(Quantity(one["rms"] / most["rms"] / ideal, series))
     if not found:
-        raise NotMeasuredError("does not read a single feature, so that no gain can be told")
+        raise NotMeasuredError("does not read a single feature, so that no gain can be determined")
     return found
 
 

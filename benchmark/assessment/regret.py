@@ -53,11 +53,11 @@ SAME = 1e-12
 
 @dataclass(frozen=True)
 class DrawnRequirement:
-    """An answer to drawn requirements, beside the best of the stored pipelines that meet them.
+    """An answer to drawn requirements, compared with the best stored pipeline that meets them.
 
     Attributes
     ----------
-    asked
+    requirements
         The requirements.
     best_deg
         Least error by brute force; infinite where no measured pipeline meets them.
@@ -66,28 +66,28 @@ class DrawnRequirement:
     own_ratio
         Cost of that architecture by the tasks asked for (its error where none are), over the least
         cost of those that the survey advises or studies used; NaN where all of those are unknown.
-    first_deg, told
-        By order of the answer: what the first calibration named errs (infinite where it is not
-        measured or answers too seldom), and the ratio of the two that the answer tells.
+    first_deg, stated_ratio
+        By order of the answer: error of the first calibration (infinite where it is not measured
+        or its availability is too low), and the ratio to the best that the answer states.
     """
 
-    asked: Asked
+    requirements: Asked
     best_deg: float
     best_there_deg: float
     own_ratio: float
     first_deg: Mapping[Sort, float]
-    told: Mapping[Sort, float | None]
+    stated_ratio: Mapping[Sort, float | None]
 
     @property
-    def kept(self) -> bool:
-        """Whether the best is named first by measurement, and the usual answer tells its regret."""
+    def is_consistent(self) -> bool:
+        """Whether the best is first by measurement, and the usual answer states its regret."""
         if not math.isclose(self.first_deg["measured"], self.best_deg, rel_tol=SAME):
             return False
-        told = self.told["advice"]
+        stated = self.stated_ratio["advice"]
         if math.isinf(self.first_deg["advice"]):
-            return told is None
+            return stated is None
         ratio = self.first_deg["advice"] / self.best_deg
-        return told is not None and math.isclose(told, ratio, rel_tol=SAME)
+        return stated is not None and math.isclose(stated, ratio, rel_tol=SAME)
 
 
 def drawn_requirements(number: int, seed: int, known: Facts) -> Iterator[Asked]:

@@ -102,14 +102,14 @@ def choices(datasets: Sequence[str] | None = None) -> Iterator[Choice]:
             place = dataset, cell.extractor
             if place not in seen:
                 seen[place] = selection_data(preset, parts.extractor(cell.extractor))
-            told = seen[place]
-            if told is None:
+            calibration = seen[place]
+            if calibration is None:
                 continue
             extractor = parts.extractor(cell.extractor)
             made = parts.model(model).for_sensor(preset.geometry, extractor.about.kind)
             if not isinstance(made, CalibratedModel):
                 continue
-            found = chosen_and_best(made, SETTINGS[model], told)
+            found = chosen_and_best(made, SETTINGS[model], calibration)
             if found is not None:
                 yield Choice(dataset, cell.extractor, model, *found)
                 break
@@ -120,36 +120,36 @@ def selection_data(preset: Preset, extractor: type[Extractor]) -> SelectionData 
     made = extractor.for_sensor(preset.geometry)
     splits = [preset.generate(NOMINAL, split) for split in ("calibration", "test")]
     by = correction(preset, NOMINAL)
-    told, asked = (features_of(made, split, by) for split in splits)
-    if np.isfinite(told).all(axis=1).mean() < _FOUND:
+    calibration, asked = (features_of(made, split, by) for split in splits)
+    if np.isfinite(calibration).all(axis=1).mean() < _FOUND:
         return None
-    return SelectionData(told, splits[0].truth, asked, splits[1].truth)
+    return SelectionData(calibration, splits[0].truth, asked, splits[1].truth)
 
 
 def chosen_and_best(
-    model: CalibratedModel, settings: Sequence[Mapping[str, float]], told: SelectionData
+    model: CalibratedModel, settings: Sequence[Mapping[str, float]], calibration: SelectionData
 ) -> tuple[Mapping[str, Setting], Mapping[str, float], float, float] | None:
     """Chosen settings, the best of `settings`, and their errors; None where the choice is refused.
 
     Fixed settings that the samples do not settle are left out.
     """
     try:
-        fitted = model.fit(told.features, told.sun)
+        fitted = model.fit(calibration.features, calibration.sun)
     except UnusableDataError:
         return None
     chosen = dict(fitted.quality_.settings)
-    tried, answers = [], [fitted.predict(told.asked)]
+    tried, answers = [], [fitted.predict(calibration.asked)]
     for fixed in settings:
         try:
             given: dict[str, Any] = dict(fixed)
-            other = replace(model, **given).fit(told.features, told.sun)
+            other = replace(model, **given).fit(calibration.features, calibration.sun)
         except UnusableDataError:
             continue
         tried.append(fixed)
-        answers.append(other.predict(told.asked))
+        answers.append(other.predict(calibration.asked))
     if not tried:
         return None
-    errors = np.stack([separation_deg(answer, told.true) for answer in answers])
+    errors = np.stack([separation_deg(answer, calibration.true) for answer in answers])
     both = np.isfinite(errors).all(axis=0)
     sizes = np.sqrt(np.mean(errors[:, both] ** 2, axis=1))
     best = int(np.argmin(sizes[1:]))

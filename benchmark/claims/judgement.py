@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmark.claims.rules import FEWEST_TRIALS, Rule, Verdict
 
-Standing = Literal["holds", "fails", "open"]
+RuleResult = Literal["holds", "fails", "open"]
 
 #: Of the interval.
 CONFIDENCE = 0.95
@@ -35,7 +35,7 @@ class Judgement:
         fewer than `FEWEST_TRIALS` trials gave a number.
     trials
         Those that gave one.
-    standing
+    result
         Whether the rule holds.
     """
 
@@ -44,7 +44,7 @@ class Judgement:
     low: float
     high: float
     trials: int
-    standing: Standing
+    result: RuleResult
 
 
 def judge(rule: Rule, values: Sequence[float]) -> Judgement:
@@ -67,19 +67,19 @@ def judge(rule: Rule, values: Sequence[float]) -> Judgement:
         )
     else:
         estimate, low, high = _of_logarithms(given)
-    return Judgement(rule, estimate, low, high, len(given), _standing(rule, low, high))
+    return Judgement(rule, estimate, low, high, len(given), _result(rule, low, high))
 
 
 def verdict(rules: Iterable[Judgement]) -> Verdict:
     """Return what the rules of a claim say together; ValueError for none."""
-    standings = [rule.standing for rule in rules]
-    if not standings:
+    results = [rule.result for rule in rules]
+    if not results:
         raise ValueError("a verdict needs at least one judged rule; got none")
-    if all(standing == "holds" for standing in standings):
+    if all(result == "holds" for result in results):
         return "reproduced"
-    if "holds" in standings:
+    if "holds" in results:
         return "partly"
-    return "refuted" if "fails" in standings else "not testable here"
+    return "refuted" if "fails" in results else "not testable here"
 
 
 def _interval(values: np.ndarray[tuple[int], np.dtype[np.float64]]) -> tuple[float, float, float]:
@@ -103,7 +103,7 @@ def _of_logarithms(
     return math.exp(mean), math.exp(low), math.exp(high)
 
 
-def _standing(rule: Rule, low: float, high: float) -> Standing:
+def _result(rule: Rule, low: float, high: float) -> RuleResult:
     if rule.relation == "within":
         if rule.limit <= low and high <= rule.upper:
             return "holds"

@@ -51,10 +51,10 @@ class Entry:
     @property
     def agrees(self) -> bool | None:
         """Whether the second method says of every rule what the first says; None without one."""
-        first = {rule.rule.name: rule.standing for rule in self.rules}
+        first = {rule.rule.name: rule.result for rule in self.rules}
         if not self.second:
             return None
-        return all(first[rule.rule.name] == rule.standing for rule in self.second)
+        return all(first[rule.rule.name] == rule.result for rule in self.second)
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain JSON values; NaN is None."""
@@ -149,7 +149,7 @@ def _rule(one: Judgement) -> dict[str, Any]:
         "rule": one.rule.name,
         "statistic": one.rule.statistic,
         "decides": str(one.rule),
-        "standing": one.standing,
+        "result": one.result,
         "estimate": _number(one.estimate),
         "low": _number(one.low),
         "high": _number(one.high),

@@ -1,4 +1,4 @@
-"""Data sets whose calibration is told the true directions: what is left is the method's own error.
+"""Data sets whose calibration is given the true directions: what is left is the method's own error.
 
 Readings are the same to the last bit. Where a bench is wrong by more than what a claim is about,
 its error hides the effect.

@@ -15,7 +15,7 @@ from benchmark.datasets.calibration import SHOWN_IDEAL
 from benchmark.datasets.card import parameters_of
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.datasets.samples import Samples, samples_hash
-from survey_data.nearest import nearest
+from survey_data.nearest import nearest_name
 
 __all__ = [
     "Condition",
@@ -34,7 +34,7 @@ class UnknownDatasetError(LookupError, ValueError):
 
     def __init__(self, name: str, known: tuple[str, ...]) -> None:
         self.name = name
-        self.nearest = nearest(name, known)
+        self.nearest = nearest_name(name, known)
         hint = f"; did you mean {self.nearest!r}?" if self.nearest else ""
         super().__init__(f"no dataset {name!r}{hint}; there are {', '.join(known)}")
 

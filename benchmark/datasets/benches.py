@@ -52,8 +52,8 @@ def aligned_bench_deg(preset: Preset, condition: str, sun: Floats) -> float:
     sizes = {f.name: 0.0 for f in dataclasses.fields(bench) if f.name.endswith("_random_deg")}
     fixed = dataclasses.replace(bench, **sizes)
     seen = sun[:: max(1, len(sun) // _DIRECTIONS)]
-    told = (fixed.report(seen, "bench", "aligned", draw) for draw in range(_DRAWN))
-    left = [aligned_error_deg(one, seen) for one in told]
+    reports = (fixed.report(seen, "bench", "aligned", draw) for draw in range(_DRAWN))
+    left = [aligned_error_deg(one, seen) for one in reports]
     return math.sqrt(float(np.mean(np.square(left))))
 
 

@@ -104,7 +104,7 @@ class Bench:
         `names` are those of dataset and unit; poses in another number have other random errors,
         the same in their order.
         """
-        built = self.drawn(*names)
+        built = self.draw_errors(*names)
         random = math.radians(self.axis_random_deg)
         stops = random * generator(*names, "axes").standard_normal((len(sun), 2))
         turn = rotation(*(math.radians(angle) for angle in built.mounting_deg))
@@ -125,7 +125,7 @@ class Bench:
 
     def light(self, sun: Floats, *names: Name) -> Floats:
         """(N,) intensity of the lamp in units of mean sunlight, pose after pose; never below 0."""
-        built = self.drawn(*names)
+        built = self.draw_errors(*names)
         flicker = generator(*names, "flicker").standard_normal(len(sun))
         hours = self.pose_s / 3600.0 * np.arange(len(sun), dtype=np.float64)
         x, y, z = built.uneven
@@ -147,7 +147,7 @@ class Bench:
             + self.eccentricity_deg**2 * (2.0 - sine)
         )
 
-    def drawn(self, *names: Name) -> BenchErrors:
+    def draw_errors(self, *names: Name) -> BenchErrors:
         """Return the fixed errors while the unit of this name is on it."""
         normal = generator(*names, "errors").standard_normal(13).tolist()
         mounted, size, uneven = self.mounting_deg, self.eccentricity_deg, self.lamp_uneven

@@ -53,7 +53,7 @@ def without_repeats(
     parameters
         Of every condition by name; the first one's are what they share.
     geometry
-        The dataset's, which is told of a condition only where its own is another.
+        The dataset's, which a condition has only where its own is another.
 
     Returns
     -------

@@ -135,8 +135,8 @@ def coverage(
             for pair in ((detector, mask) for detector in detectors for mask in masks)
             if pair in using or pair in simulating
         ),
-        {value: _having(value, 0, architectures) for value in detectors},
-        {value: _having(value, 1, architectures) for value in masks},
+        {value: _studies_with(value, 0, architectures) for value in detectors},
+        {value: _studies_with(value, 1, architectures) for value in masks},
     )
 
 
@@ -144,7 +144,7 @@ def _check(
     using: AbstractSet[Pair], simulating: AbstractSet[Pair], reasons: Mapping[Pair, str]
 ) -> None:
     wrong = [
-        (using - simulating - reasons.keys(), "has neither a dataset nor a reason for having none"),
+        (using - simulating - reasons.keys(), "has neither a dataset nor a reason why it has none"),
         (reasons.keys() & simulating, "is simulated and has a reason why it is not"),
         (reasons.keys() - using, "has a reason why it is not simulated and is used by no study"),
     ]
@@ -155,7 +155,7 @@ def _check(
         raise CoverageError("; ".join(found))
 
 
-def _having(value: str, place: int, architectures: Mapping[str, Pair]) -> tuple[str, ...]:
+def _studies_with(value: str, place: int, architectures: Mapping[str, Pair]) -> tuple[str, ...]:
     return tuple(name for name, pair in sorted(architectures.items()) if pair[place] == value)
 
 

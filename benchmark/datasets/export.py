@@ -116,7 +116,7 @@ def export(
     progress
         Called as ``progress(done, total, what)`` in splits.
     pins
-        Of the published data: their hashes are told in the card beside those of what is written.
+        Of the published data: their hashes are stated in the card beside those of what is written.
 
     Raises
     ------
@@ -262,8 +262,8 @@ def _references_meant(preset: Preset) -> dict[str, str]:
     offered = preset.offered
     light = f"uniform light at {offered.level:g} of the scale"
     return {
-        f"{kind}_{unit}": f"mean of {count} readings {what}, of every element of this unit; {told}"
-        for unit, told in (
+        f"{kind}_{unit}": f"mean of {count} readings {what}, of every element of this unit; {text}"
+        for unit, text in (
             ("dn", "digital numbers, (rows, columns) or (columns,)"),
             ("ua", "microamperes, (K,)"),
             ("hz", "hertz, (K,)"),

@@ -23,7 +23,7 @@ from benchmark.datasets import Preset, Samples, UnknownDatasetError
 from benchmark.datasets.checksums import CHECKSUMS, differences, read_checksums, sha256
 from benchmark.datasets.export import CARD, ExportError, card_of, export, read_card
 from benchmark.datasets.export_arrays import read_archive, table_text
-from benchmark.datasets.pins import BOUND_TOLERANCE, Pin, Place, alike
+from benchmark.datasets.pins import BOUND_TOLERANCE, Pin, Place, bounds_agree
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.metrics.score import store
 from benchmark.progress import ProgressCallback, silent
@@ -157,10 +157,12 @@ def _read(path: Path, described: Mapping[str, Any]) -> dict[str, NDArray[Any]] |
     try:
         with zipfile.ZipFile(path) as archive:
             for member in archive.infolist():
-                told = described.get(member.filename.removesuffix(".npy"))
-                if told is None:
+                stated = described.get(member.filename.removesuffix(".npy"))
+                if stated is None:
                     return f"{member.filename} is no array of the card"
-                most = np.dtype(told["dtype"]).itemsize * math.prod(told["shape"]) + _HEADER_BYTES
+                most = (
+                    np.dtype(stated["dtype"]).itemsize * math.prod(stated["shape"]) + _HEADER_BYTES
+                )
                 if member.file_size > most:
                     return f"{member.filename} unpacks to more than the card says"
         return read_archive(path)
@@ -195,7 +197,7 @@ def _unpinned(
     if entry["samples"] == pin.n:
         if entry["data_hash"] != pin.data_hash:
             yield f"hash of the data is {entry['data_hash']}, of the published {pin.data_hash}"
-        elif pin.split == "test" and not alike(pin.bound_deg, _rms(arrays)):
+        elif pin.split == "test" and not bounds_agree(pin.bound_deg, _rms(arrays)):
             yield f"bound_rms_deg is {_rms(arrays)}, of the published {pin.bound_deg}"
     elif entry["samples"] >= HEAD and (head := head_hash(_samples(arrays))) != pin.head_hash:
         yield f"hash of the first {HEAD} samples is {head}, of the published {pin.head_hash}"
@@ -218,8 +220,8 @@ def _against_another(
         )
         said = f"the data set {card['name']} says"
         found = [
-            (CARD, f"{place} is {_short(told)}, {said} {_short(should)}")
-            for place, told, should in _unlike(card, made.card)
+            (CARD, f"{place} is {_short(stated)}, {said} {_short(should)}")
+            for place, stated, should in _unlike(card, made.card)
         ]
         if found:
             return found
@@ -295,7 +297,7 @@ def _is_number(value: Any) -> bool:
 
 def _alike(one: Any, other: Any) -> bool:
     known = (one is None or _is_number(one)) and (other is None or _is_number(other))
-    return known and alike(one, other)
+    return known and bounds_agree(one, other)
 
 
 def _rms(arrays: Mapping[str, NDArray[Any]]) -> float | None:

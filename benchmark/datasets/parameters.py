@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from algorithms.contract import SensorGeometry
-from benchmark.canonical import plain
+from benchmark.canonical import to_plain
 
 #: Fields of the geometry that are written even where they are None; later ones are not.
 _FIRST_GEOMETRY = frozenset(
@@ -36,7 +36,7 @@ def describe(value: object) -> Any:
     ValueError
         For a number that is not finite, which JSON has none of.
     """
-    return plain(value, _exact, _members)
+    return to_plain(value, _exact, _members)
 
 
 def _exact(value: float) -> float:

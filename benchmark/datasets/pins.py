@@ -68,12 +68,12 @@ class Pin:
                 return f"{name} {getattr(other, name)}, pinned {getattr(self, name)}"
         for name in ("bound_deg", "head_bound_deg", *BOARD_FACTS):
             pinned, found = getattr(self, name), getattr(other, name)
-            if not alike(pinned, found):
+            if not bounds_agree(pinned, found):
                 return f"{name} {found}, pinned {pinned}"
         return ""
 
 
-def alike(one: float | None, other: float | None) -> bool:
+def bounds_agree(one: float | None, other: float | None) -> bool:
     """Say whether two bounds are the same but for rounding; none is like none."""
     if one is None or other is None:
         return one is other

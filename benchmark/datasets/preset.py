@@ -194,7 +194,7 @@ class Preset:
 
     def with_ideal_calibration(self) -> Self:
         """Return the dataset with one condition more: the first one, perfectly calibrated."""
-        said = "As nominal, calibrated perfectly: the Sun's direction and light are told rightly."
+        said = "As nominal, calibrated perfectly: true direction and light of the Sun."
         shown = dataclasses.replace(next(iter(self.setups.values())), description=said, bench=None)
         return dataclasses.replace(self, setups={**self.setups, IDEAL: shown})
 
@@ -280,7 +280,7 @@ class Preset:
         pattern = self.fixed_pattern(condition)
         streams = NoiseStreams.named(*self._of_unit(*self.streams, condition, split))
         # passes over the same poses share their light where light is remembered
-        poses = len(self.repeats.chosen(self._tested))
+        poses = len(self.repeats.pose_indices(self._tested))
         size = poses if split == REPEAT else self.batch or BATCH
         batch = sensor.observe(scene.part(0, size), pattern, streams)
         # filled batch by batch: joining a list of batches would hold everything twice

@@ -73,18 +73,18 @@ def figures(sensor: Hardware) -> dict[str, Any]:
 
 def hardware_match(dataset: str) -> HardwareMatch:
     """Return what a data set stands for; one that the table does not have is an idealisation."""
-    return standings().get(dataset, HardwareMatch(dataset, (), UNNAMED, ""))
+    return hardware_matches().get(dataset, HardwareMatch(dataset, (), UNNAMED, ""))
 
 
 @cache
-def standings(path: Path = FILE) -> Mapping[str, HardwareMatch]:
+def hardware_matches(path: Path = FILE) -> Mapping[str, HardwareMatch]:
     """Return what each data set of the table stands for, by name.
 
     Raises
     ------
     RealismError
         For a broken line, a data set that stands twice, an unknown sensor, and a line that has
-        both sensors and a reason for having none, or neither.
+        both sensors and a reason why it has none, or neither.
     """
     records = read_records(path, list(COLUMNS))
     if records.problems:
@@ -98,7 +98,7 @@ def standings(path: Path = FILE) -> Mapping[str, HardwareMatch]:
             raise RealismError(f"{path.name}, line {line}: {dataset} stands there already")
         if bool(ids) == bool(idealisation):
             raise RealismError(
-                f"{path.name}, line {line}: {dataset} needs built sensors or a reason for having "
+                f"{path.name}, line {line}: {dataset} needs built sensors or a reason why it has "
                 "none, and not both"
             )
         sensors = tuple(hardware()[name] for name in ids.split())

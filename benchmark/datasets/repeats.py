@@ -34,20 +34,20 @@ class Repeats:
                 f"repeats need at least 1 pose and 2 passes; got {self.poses} and {self.passes}"
             )
 
-    def chosen(self, test_samples: int) -> NDArray[np.int64]:
+    def pose_indices(self, test_samples: int) -> NDArray[np.int64]:
         """Places (P,) of the poses in the test split, evenly spread over it."""
         poses = min(self.poses, test_samples)
         return (np.arange(poses) * test_samples + test_samples // 2) // poses
 
     def scene(self, test: Callable[[Rows], Scene], test_samples: int, n: int | None) -> Scene:
         """Return the first n of the poses' scenes, pass after pass; `test` makes rows of it."""
-        poses = self.chosen(test_samples)
+        poses = self.pose_indices(test_samples)
         again = np.tile(np.arange(len(poses)), self.passes)[:n]
         return test(poses).rows(again)
 
     def card(self, test_samples: int) -> dict[str, Any]:
         """Size and directions, as cards say it of a split."""
-        poses = len(self.chosen(test_samples))
+        poses = len(self.pose_indices(test_samples))
         return {
             "samples": poses * self.passes,
             "directions": f"{poses} samples of the test split, evenly spread over it, in "

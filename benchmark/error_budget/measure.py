@@ -25,7 +25,7 @@ from benchmark.running.task import BENCHES
 from benchmark.running.threads import one_thread
 from benchmark.simulator.light.memory import memory
 
-#: What a calibration is told: features, Suns, context.
+#: Input of a calibration: features, Suns, context.
 _CalibrationData = tuple[Floats, Floats, Mapping[str, NDArray[Any]] | None]
 
 
@@ -105,8 +105,8 @@ def directions(
 ) -> tuple[Floats, dict[str, Floats]]:
     """Return true directions (N, 3) of a test split, and a pipeline's ``as_is`` and ``perfect``.
 
-    Parameters as `held`; answers as its variants of these names, NaN rows where there is none. A
-    variant is left out where the model refuses its calibration.
+    Parameters as `score_variants`; answers as its variants of these names, NaN rows where there is
+    none. A variant is left out where the model refuses its calibration.
     """
     with one_thread():
         memory.cache_for((preset.name, 0), preset.name)
@@ -178,12 +178,12 @@ class _Chain:
         if self._by is not None:
             known = perfected.known_unit(preset, condition)
             for name, by in (("references", known), ("uncorrected", None)):
-                told, asked = self._seen(self.calibration, by), self._seen(self.test, by)
-                answers[name] = self._answers([told], asked)
+                calibration, asked = self._seen(self.calibration, by), self._seen(self.test, by)
+                answers[name] = self._answers([calibration], asked)
         lit = perfected.without_lamp_errors(preset, condition)
         if lit is not None:
-            told = self._seen(lit.generate(condition, "calibration"), self._by)
-            answers["lamp"] = self._answers([told], self._asked)
+            calibration = self._seen(lit.generate(condition, "calibration"), self._by)
+            answers["lamp"] = self._answers([calibration], self._asked)
         return answers
 
     def _units(self) -> dict[str, Floats | None]:
@@ -196,26 +196,26 @@ class _Chain:
         for name, other in others.items():
             if other is not None:
                 by = correction(other, condition)
-                told, asked = (self._seen(other.generate(condition, s), by) for s in _SPLITS)
-                answers[name] = self._answers([told], asked)
+                calibration, asked = (self._seen(other.generate(condition, s), by) for s in _SPLITS)
+                answers[name] = self._answers([calibration], asked)
         return answers
 
     def perfect(self) -> dict[str, Floats | None]:
         """Answers of the chain of which only extractor and model are what they are."""
         preset, kind = perfected.perfect(self._preset, self._condition), self._extractor.about.kind
         by = perfected.known_unit(preset, self._condition)
-        told, asked = (
+        calibration, asked = (
             self._seen(self._still(preset, samples, split), by)
             for samples, split in zip((self.calibration, self.test), _SPLITS, strict=True)
         )
         more = self._seen(self._still(preset, self.test, "test", before_lamp=True), by)
         answers = {
-            "perfect": self._answers([told], asked),
-            "perfect_dense": self._answers([told, more], asked),
+            "perfect": self._answers([calibration], asked),
+            "perfect_dense": self._answers([calibration, more], asked),
         }
         known = [
             (perfected.true_features(preset, self._condition, kind, sun, found), sun, context)
-            for found, sun, context in (told, asked)
+            for found, sun, context in (calibration, asked)
         ]
         true = [(places, sun, context) for places, sun, context in known if places is not None]
         if len(true) == len(known):

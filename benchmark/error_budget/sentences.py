@@ -30,7 +30,7 @@ PARTS: Mapping[str, str] = {
     "poses": "the number of calibration poses",
     "extractor": "the extractor's bias",
     "model": "the model's form",
-    "method": "the method itself (extractor and model are not told apart)",
+    "method": "the method itself (extractor and model are not distinguished)",
 }
 _WITHOUT: Mapping[str, str] = {
     "lamp": "with an even, steady lamp",
@@ -48,19 +48,19 @@ class Verdict:
 
     Attributes
     ----------
-    near
+    is_near_bound
         Whether it is within `NEAR` of its bound.
     parts_deg
         What each part contributes, root mean square; parts that were not measured are left out.
-    leading
+    leading_part
         The part that contributes most.
     sentence
         In words, with the numbers.
     """
 
-    near: bool
+    is_near_bound: bool
     parts_deg: Mapping[str, float]
-    leading: str
+    leading_part: str
     sentence: str
 
 

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 from benchmark.contract import UnknownNameError
 from benchmark.processes import call_to_end
 from benchmark.results.store import PUBLISHED
-from benchmark.results.unchanged import Unchanged
+from benchmark.results.unchanged import KeptAnswer
 
 if TYPE_CHECKING:
-    from benchmark.running.experiment import Recorded, Report
+    from benchmark.running.experiment import RecordedExperiment, Report
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -26,10 +26,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     asked = list(sys.argv[1:] if arguments is None else arguments)
     unchanged = None
     if "--check" in asked and "--directory" not in " ".join(asked):
-        unchanged = Unchanged(f"experiments {' '.join(asked)}", [PUBLISHED])
-        if unchanged.known() is not None:
+        unchanged = KeptAnswer(f"experiments {' '.join(asked)}", [PUBLISHED])
+        if unchanged.recall() is not None:
             return 0
-    from benchmark.running.experiment import Recorded, experiments  # noqa: PLC0415 - slow
+    from benchmark.running.experiment import RecordedExperiment, experiments  # noqa: PLC0415 - slow
 
     known = experiments()
     parser = argparse.ArgumentParser(
@@ -53,7 +53,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for kind in chosen.values():
         experiment = kind(options.directory)
         try:
-            if isinstance(experiment, Recorded):
+            if isinstance(experiment, RecordedExperiment):
                 status |= _recorded(experiment, options)
             elif options.name is not None and not options.check:
                 status |= _reported(experiment, options)
@@ -64,22 +64,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return status
 
 
-def _recorded(experiment: Recorded[Any], options: argparse.Namespace) -> int:
-    from benchmark.running.experiment import due, repeated, update  # noqa: PLC0415 - slow
+def _recorded(experiment: RecordedExperiment[Any], options: argparse.Namespace) -> int:
+    from benchmark.running.experiment import list_due, repeat_at_random, update  # noqa: PLC0415 - slow
 
     if options.check:
-        waiting = due(experiment)
+        waiting = list_due(experiment)
         for cell, reason in waiting:
             sys.stdout.write(f"{experiment.name} {cell}: {reason}\n")
         return int(bool(waiting))
     if options.again is not None:
         seed = secrets.randbelow(10**6) if options.seed is None else options.seed
         sys.stderr.write(f"{options.again} cells of {experiment.name}, drawn by --seed {seed}\n")
-        found = list(repeated(experiment, options.again, seed, options.workers))
+        found = list(repeat_at_random(experiment, options.again, seed, options.workers))
         for cell, text in found:
             sys.stdout.write(f"{experiment.record.name}: {cell}: {text}\n")
         return int(bool(found))
-    only = experiment.named(options.cells) if options.cells else None
+    only = experiment.cells_named(options.cells) if options.cells else None
     done = update(experiment, options.workers, only=experiment.cells() if options.all else only)
     sys.stderr.write(
         f"{experiment.name}: {done.computed} of {done.planned} cells measured in "
@@ -89,14 +89,16 @@ def _recorded(experiment: Recorded[Any], options: argparse.Namespace) -> int:
 
 
 def _reported(experiment: Report[Any], options: argparse.Namespace) -> int:
-    from benchmark.running.experiment import measured  # noqa: PLC0415 - slow
+    from benchmark.running.experiment import measure_tasks  # noqa: PLC0415 - slow
 
-    cells = experiment.named(options.cells) if options.cells else experiment.cells()
-    found = dict(pair for rows in measured(experiment, cells, options.workers) for pair in rows)
+    cells = experiment.cells_named(options.cells) if options.cells else experiment.cells()
+    found = dict(
+        pair for rows in measure_tasks(experiment, cells, options.workers) for pair in rows
+    )
     rows = {cell: found[cell] for cell in cells if cell in found}
     for line in experiment.lines(rows):
         sys.stdout.write(f"{line}\n")
-    return int(not experiment.passed(rows))
+    return int(not experiment.passes(rows))
 
 
 if __name__ == "__main__":

@@ -12,11 +12,11 @@ from benchmark.claims.rules import FIRST_TRIAL, claims
 from benchmark.claims.verification import contradictions
 from benchmark.results.closure import closure_digest
 from benchmark.results.row_file import Row
-from benchmark.running.experiment import Recorded
+from benchmark.running.experiment import RecordedExperiment
 from benchmark.running.threads import one_thread
 
 
-class Claims(Recorded[str]):
+class Claims(RecordedExperiment[str]):
     """A row of each claim that has a module of `benchmark.claims.experiments`, by its id.
 
     A row holds what was measured, never the verdict: that is computed at reading, by the rules as
@@ -34,7 +34,7 @@ class Claims(Recorded[str]):
             for name, one in find_experiments().items()
         }
 
-    def outdated(self, row: Row, key: str) -> str:
+    def why_outdated(self, row: Row, key: str) -> str:
         """Say whether plan or code has changed, or the numbers cannot be of the plan."""
         plan, _, code = key.partition(" ")
         outcome = outcome_of_row(row)
@@ -68,7 +68,7 @@ class Claims(Recorded[str]):
             trials = [find_experiments()[task].trial(number) for number in range(FIRST_TRIAL, last)]
         return [(task, row_of(outcome_of(claims()[task], trials)))]
 
-    def comparable(self, row: Row) -> Row:
+    def comparable_members(self, row: Row) -> Row:
         """Leave out ratios of run times, and the lines of claims that have any."""
         timed = {rule.name for rule in claims()[row["claim"]].rules if rule.timed}
         kept = {

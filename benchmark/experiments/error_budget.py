@@ -21,10 +21,10 @@ from benchmark.results.components import current
 from benchmark.results.digests import short_digest
 from benchmark.results.row_file import Row
 from benchmark.results.store import Store
-from benchmark.running.experiment import Recorded
+from benchmark.running.experiment import RecordedExperiment
 
 #: What measures the variants of a chain, with the data and methods that it is handed.
-_CODE = "benchmark.error_budget.measure:held"
+_CODE = "benchmark.error_budget.measure:score_variants"
 #: Less is none: another machine's rounding, and where iterations stop.
 _NOTHING_DEG = 1e-6
 #: Data set, extractor, model.
@@ -41,7 +41,7 @@ class Task:
     model: Scored
 
 
-class ErrorBudget(Recorded[str]):
+class ErrorBudget(RecordedExperiment[str]):
     """A row of each data set, by its name: of the score, on the standard unit, that leads it."""
 
     name = "error_budget"
@@ -49,7 +49,7 @@ class ErrorBudget(Recorded[str]):
     record = RECORD
 
     @cached_property
-    def leading(self) -> dict[str, Row]:
+    def leader_rows(self) -> dict[str, Row]:
         """Scores by data set."""
         first = {name: preset.conditions[0] for name, preset in self.parts.presets.items()}
         return leaders(Store(self.directory).rows(unit=None), first)
@@ -58,14 +58,14 @@ class ErrorBudget(Recorded[str]):
         """Digest the code, the score, and the data set, extractor and model of each."""
         cells = [
             Cell(name, row["condition"], row["extractor"], row["model"])
-            for name, row in self.leading.items()
+            for name, row in self.leader_rows.items()
         ]
         components, code = current(self.parts.only(cells)), closure_digest(_CODE)
         return {
             cell.dataset: short_digest(
                 [
                     code,
-                    *(self.leading[cell.dataset][column] for column in SCORE),
+                    *(self.leader_rows[cell.dataset][column] for column in SCORE),
                     components.digest("datasets", cell.dataset),
                     components.digest("extractors", cell.extractor),
                     components.digest("models", cell.model),
@@ -77,7 +77,7 @@ class ErrorBudget(Recorded[str]):
     def tasks(self, cells: Sequence[str]) -> Iterator[Task]:
         """Make a task of each data set."""
         for name in cells:
-            score = self.leading[name]
+            score = self.leader_rows[name]
             yield Task(
                 score,
                 cast("Preset", self.parts.preset(name)),

@@ -17,7 +17,7 @@ from benchmark.results.components import current
 from benchmark.results.digests import short_digest
 from benchmark.results.row_file import Row
 from benchmark.results.store import Store
-from benchmark.running.experiment import Recorded
+from benchmark.running.experiment import RecordedExperiment
 
 #: What measures the curves of a data set, with the data and methods that it is handed.
 _CODE = (
@@ -26,7 +26,7 @@ _CODE = (
 )
 
 
-class LearningCurves(Recorded[Leader]):
+class LearningCurves(RecordedExperiment[Leader]):
     """A curve for the leaders of every data set, by the scores of the record."""
 
     name = "learning_curves"

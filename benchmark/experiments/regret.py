@@ -26,7 +26,7 @@ class Regret(Report[int]):
         """List the one seed that is drawn by unasked."""
         return [SEED]
 
-    def named(self, names: Collection[str]) -> list[int]:
+    def cells_named(self, names: Collection[str]) -> list[int]:
         """Return seeds; UnknownNameError for what is no whole number."""
         for name in names:
             if not name.isdecimal():
@@ -48,7 +48,7 @@ class Regret(Report[int]):
         for seed, row in rows.items():
             yield from _lines(seed, row["drawn"])
 
-    def passed(self, rows: Mapping[int, Row]) -> bool:
+    def passes(self, rows: Mapping[int, Row]) -> bool:
         """Say whether every answer tells the regret that brute force finds."""
         return all(one.kept for row in rows.values() for one in row["drawn"])
 
@@ -56,16 +56,16 @@ class Regret(Report[int]):
 def _lines(seed: int, found: Sequence[DrawnRequirement]) -> Iterator[str]:
     met = [one for one in found if math.isfinite(one.best_deg)]
     first = sum(math.isclose(one.first_deg["measured"], one.best_deg, rel_tol=SAME) for one in met)
-    known = [one.told["advice"] for one in met if one.told["advice"] is not None]
-    broken = [one for one in found if not one.kept]
+    known = [one.stated_ratio["advice"] for one in met if one.stated_ratio["advice"] is not None]
+    broken = [one for one in found if not one.is_consistent]
     owned = [one for one in met if not math.isnan(one.own_ratio)]
     there = sum(one.first_deg["advice"] <= 1.2 * one.best_there_deg for one in met)
-    told = _spread([ratio for ratio in known if ratio > 1.0])
+    spread = _spread([ratio for ratio in known if ratio > 1.0])
     yield f"{len(found)} requirement sets (seed {seed}): {len(met)} are met by a measured pipeline"
     yield f"sort=measured: the first calibration named is the best one in {first} of {len(met)}"
     yield (
         f"sort=advice: the first calibration named is the best one in {known.count(1.0)}, is not "
-        f"measured or answers too seldom in {len(met) - len(known)}; the others err {told}"
+        f"measured or answers too seldom in {len(met) - len(known)}; the others err {spread}"
     )
     yield (
         f"sort=advice: it errs at most 1.2 times the best one of its architecture in {there} "
@@ -75,7 +75,8 @@ def _lines(seed: int, found: Sequence[DrawnRequirement]) -> Iterator[str]:
     )
     yield f"the answer tells another regret than brute force finds in {len(broken)} of {len(found)}"
     for one in broken:
-        yield f"  {dict(one.asked)}: {one.first_deg}, best {one.best_deg}, told {one.told}"
+        numbers = f"{one.first_deg}, best {one.best_deg}, stated {one.stated_ratio}"
+        yield f"  {dict(one.requirements)}: {numbers}"
 
 
 def _spread(ratios: Sequence[float]) -> str:

@@ -37,7 +37,7 @@ class Selection(Report[str]):
                 f"{one.chosen_deg:.4g} {dict(one.best)} {one.best_deg:.4g}"
             )
 
-    def passed(self, rows: Mapping[str, Row]) -> bool:
+    def passes(self, rows: Mapping[str, Row]) -> bool:
         """Say whether no choice is worse than `WORST`."""
         return all(choice.ratio <= WORST for choice in _choices(rows))
 

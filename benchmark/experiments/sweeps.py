@@ -10,7 +10,7 @@ from benchmark.results.closure import closure_digest
 from benchmark.results.components import current
 from benchmark.results.digests import series_digest, short_digest
 from benchmark.results.row_file import Row
-from benchmark.running.experiment import Recorded
+from benchmark.running.experiment import RecordedExperiment
 from benchmark.sweeps import plots
 from benchmark.sweeps.measure import Task, measure
 from benchmark.sweeps.plan import SERIES, SweepPlan, plan_points
@@ -26,7 +26,7 @@ def series_digests() -> dict[str, str]:
     return {name: series_digest(series) for name, series in SERIES.items()}
 
 
-class Sweeps(Recorded[Point]):
+class Sweeps(RecordedExperiment[Point]):
     """A row of every extractor at each point of the series that it fits, and why not elsewhere."""
 
     name = "sweeps"
@@ -53,14 +53,14 @@ class Sweeps(Recorded[Point]):
             for point in sorted({*self.plan.settings, *self.plan.refused})
         }
 
-    def outdated(self, row: Row, key: str) -> str:
+    def why_outdated(self, row: Row, key: str) -> str:
         """Say also that a row failed, or that the plan refuses it no more or otherwise."""
         if row["status"] == "failed":
             return "failed"
         reason = self.plan.refused.get(point_of(row))
         if (row["reason"] != reason) if reason else (not row["n"]):
             return "refused otherwise"
-        return super().outdated(row, key)
+        return super().why_outdated(row, key)
 
     def pictures(self) -> Mapping[str, Callable[[], str]]:
         """Draw error against noise, size and phase."""

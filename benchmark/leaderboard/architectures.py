@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from benchmark.metrics.ranking import Spread
+from benchmark.metrics.ranking import UnitErrors
 from benchmark.metrics.score import is_available
-from registry.measured_pipelines import Partly, finer_for
+from registry.measured_pipelines import PartialAnswer, finer_for
 
 Board = Mapping[str, Any]
 Row = Mapping[str, Any]
@@ -106,7 +106,10 @@ def _quote(ranked: Sequence[Sequence[Row]]) -> float | None:
         for row in rows
         if row["group"] is not None and is_available(row)
         for even, odd in [
-            (Spread(tuple(row["unit_rms_deg"][::2])), Spread(tuple(row["unit_rms_deg"][1::2])))
+            (
+                UnitErrors(tuple(row["unit_rms_deg"][::2])),
+                UnitErrors(tuple(row["unit_rms_deg"][1::2])),
+            )
         ]
         if even.own_deg is not None and odd.own_deg is not None
     ]
@@ -116,13 +119,13 @@ def _quote(ranked: Sequence[Sequence[Row]]) -> float | None:
 def _finer(best: Row, ranked: Sequence[Sequence[Row]]) -> Row:
     """Return what errs far less than the best, answering seldom; nothing where nothing does."""
     seldom = (
-        Partly(row["charged_deg"], row["availability"] or 0.0, row)
+        PartialAnswer(row["charged_deg"], row["availability"] or 0.0, row)
         for rows in ranked
         for row in rows
         if not is_available(row)
     )
     found = finer_for(best["own_deg"], seldom)
-    return {} if found is None else found.of
+    return {} if found is None else found.subject
 
 
 def _order(row: Row) -> tuple[bool, bool, float, str, str]:
@@ -131,7 +134,7 @@ def _order(row: Row) -> tuple[bool, bool, float, str, str]:
 
 
 def _tie(best: Row, runner_up: Row) -> dict[str, Any]:
-    """Say whether the runner-up is told apart from the best, and on how many units it errs more."""
+    """Whether the runner-up is distinguished from the best, and on how many units it errs more."""
     pairs = [
         (one, other)
         for one, other in zip(

@@ -66,15 +66,17 @@ def twins_of(rows: Iterable[Row]) -> dict[tuple[str, str, str], str]:
         numbers under every condition and on every unit that both have been scored on, as
         ``extractor + model``. Pipelines without an error have no twin.
     """
-    told: dict[tuple[str, str], dict[tuple[str, str], dict[tuple[str, int], tuple[Any, ...]]]] = {}
+    scores: dict[
+        tuple[str, str], dict[tuple[str, str], dict[tuple[str, int], tuple[Any, ...]]]
+    ] = {}
     for row in rows:
         place = row["dataset"], row["extractor"]
         numbers = tuple(row[name] for name in METRICS)
         if row["charged_deg"] is not None:
-            of_model = told.setdefault(place, {}).setdefault((row["extractor"], row["model"]), {})
+            of_model = scores.setdefault(place, {}).setdefault((row["extractor"], row["model"]), {})
             of_model[row["condition"], row["unit"]] = numbers
     found = {}
-    for (dataset, _), models in told.items():
+    for (dataset, _), models in scores.items():
         first: list[tuple[str, str]] = []
         for pipeline in sorted(models):
             mine = models[pipeline]

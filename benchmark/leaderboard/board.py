@@ -17,7 +17,7 @@ from benchmark.datasets.pins import Pin, Place
 from benchmark.datasets.realism import hardware_match
 from benchmark.leaderboard.beside import expected_on_bench, on_bench, twins_of
 from benchmark.leaderboard.scope import BEHIND, UNITS, Studied, studies_of_pipelines
-from benchmark.metrics.ranking import Judged, judged, order, spreads
+from benchmark.metrics.ranking import RankedBoard, order, rank_board, spreads
 from benchmark.metrics.rings import EDGES_DEG, field_error, widest_field
 from benchmark.metrics.score import METRIC_VERSION, is_available
 from benchmark.results.components import SCHEMA_VERSION
@@ -68,7 +68,7 @@ def build(
         choose it, ``references`` used, ``bench_deg`` and ``bench_aligned_deg`` that a calibration
         bench adds, ``controls``, ``folded``: how many rows are far behind) and ``rows``. A row is
         the score row of the standard unit with ``rank`` (null where there is no error), ``group``
-        (1 for what is not told apart from the leader), ``tied`` (whether others share the rank),
+        (1 for what is not distinguished from the leader), ``tied`` (whether others share the rank),
         ``best_of_extractor`` (whether no other pipeline of its extractor ranks before it there),
         ``own_deg`` (geometric mean over units of the error over all answers), ``own_se`` (its
         relative standard error), the errors of all units ``unit_rms_deg`` and their range
@@ -90,7 +90,7 @@ def build(
         for condition, group in groupby(of_dataset, key=lambda row: row["condition"]):
             board = list(group)
             known = [spread[_cell(row)] for row in board]
-            found = judged(board, known)
+            found = rank_board(board, known)
             pin = (pins or {}).get((name, condition, "test"))
             bench_deg = None if pin is None or conditions else pin.bench_deg
             ranked = [
@@ -139,7 +139,7 @@ def build(
     }
 
 
-def _facts(name: str, found: Judged, pin: Pin | None, rows: Sequence[Row]) -> dict[str, Any]:
+def _facts(name: str, found: RankedBoard, pin: Pin | None, rows: Sequence[Row]) -> dict[str, Any]:
     """Return what the board of a data set's first condition states once."""
     from benchmark.datasets.corrected import references_used  # noqa: PLC0415 - loads Numba
 

@@ -15,7 +15,7 @@ from benchmark.contract import ON_BENCH, Cell, UnknownNameError
 from benchmark.leaderboard import scope
 from benchmark.leaderboard.board import Row, build
 from benchmark.metrics.ranking import order
-from benchmark.plan.combinations import cells, incompatible
+from benchmark.plan.combinations import cells, list_exclusions
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback
 from benchmark.results.store import Store
@@ -139,10 +139,10 @@ def _own_cells(name: str, dataset: str, condition: str, parts: Parts) -> list[Ce
     models = [model for model in parts.models if name in model.split(" + ")]
     if name in parts.extractors:
         found = cells(dataset, condition, name, None, parts=parts)
-        refused = incompatible(dataset, name, None, parts=parts)
+        refused = list_exclusions(dataset, name, None, parts=parts)
     elif models:
         found = cells(dataset, condition, None, models, parts=parts)
-        refused = incompatible(dataset, None, models, parts=parts)
+        refused = list_exclusions(dataset, None, models, parts=parts)
     else:
         stages = {stage for model in parts.models for stage in model.split(" + ")}
         raise UnknownNameError("algorithm", name, {*parts.extractors, *stages})

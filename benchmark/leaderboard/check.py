@@ -30,7 +30,7 @@ from benchmark.results.components import current
 from benchmark.results.csv_tables import Row
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import pinning
-from benchmark.running.experiment import Recorded, due, experiments
+from benchmark.running.experiment import RecordedExperiment, experiments, list_due
 from benchmark.running.kernels import update_with_older_kernels
 from benchmark.running.runner import RunInterruptedError
 from benchmark.sweeps.differences import differences
@@ -118,7 +118,7 @@ def check(
     known = parts or installed_parts()
     found = [
         *_by_hand(store),
-        *(Difference(*told) for told in contradictions(store, known)),
+        *(Difference(*pair) for pair in contradictions(store, known)),
         *_outdated(store, known),
         *_derive(store),
     ]
@@ -181,8 +181,8 @@ def compare_scores(
         count = samples.get((cell.dataset, cell.condition), 1)
         for column, value in row.items():
             if not _close(column, known.get(column), value, row, count):
-                told = str(known.get(column)), str(value)
-                found.append(Difference(file, f"{cell}/{column}", *told, kernels))
+                pair = str(known.get(column)), str(value)
+                found.append(Difference(file, f"{cell}/{column}", *pair, kernels))
     return found
 
 
@@ -244,11 +244,11 @@ def _moved_data(committed: Store, measured: Store, kernels: str) -> Iterator[Dif
             states = ("absent", "pinned") if one is None else ("present", "no such data")
             yield Difference(file, cell, *states, kernels)
         elif one.version != other.version:
-            told = f"version {one.version}", f"version {other.version}"
-            yield Difference(file, cell, *told, kernels)
+            pair = f"version {one.version}", f"version {other.version}"
+            yield Difference(file, cell, *pair, kernels)
         elif said := one.difference(other):
-            told = f"version {one.version}", f"{said}: the data changed and the version did not"
-            yield Difference(file, cell, *told, kernels)
+            pair = f"version {one.version}", f"{said}: the data changed and the version did not"
+            yield Difference(file, cell, *pair, kernels)
 
 
 def _outdated(store: Store, parts: Parts) -> Iterator[Difference]:
@@ -270,13 +270,13 @@ def _outdated(store: Store, parts: Parts) -> Iterator[Difference]:
     there = {"/".join(place) for place in pinning.places(parts)}
     yield from _unlike(store.pins_path.name, pinned, there, "pinned")
     for name, kind in experiments().items():
-        if issubclass(kind, Recorded) and _is_of(kind, store):
+        if issubclass(kind, RecordedExperiment) and _is_of(kind, store):
             should = f"renewed by `python -m benchmark.experiments {name}`"
-            for cell, why in due(kind(store.directory, parts)):
+            for cell, why in list_due(kind(store.directory, parts)):
                 yield Difference(kind.record.name, str(cell), why, should)
 
 
-def _is_of(kind: type[Recorded[Any]], store: Store) -> bool:
+def _is_of(kind: type[RecordedExperiment[Any]], store: Store) -> bool:
     """Say whether a record has an experiment; others than the published one need only sweeps."""
     wanted = store.directory == PUBLISHED or kind is Sweeps
     return wanted or (store.directory / kind.record.name).is_file()
@@ -292,8 +292,8 @@ def _unlike(
 ) -> Iterator[Difference]:
     here, there = set(stored), set(wanted)
     for name in sorted(here ^ there):
-        told = ("absent", word) if name in there else ("present", f"not {word}")
-        yield Difference(file, f"{name}/row", *told)
+        pair = ("absent", word) if name in there else ("present", f"not {word}")
+        yield Difference(file, f"{name}/row", *pair)
 
 
 def _derive(store: Store) -> Iterator[Difference]:

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from benchmark.contract import Cell, Preset
-from benchmark.datasets.pins import Pin, Place, alike
+from benchmark.datasets.pins import Pin, Place, bounds_agree
 from benchmark.plan.parts import Parts
 from benchmark.results.csv_tables import Row
 from benchmark.results.store import Store
@@ -54,7 +54,7 @@ def _of_pins(file: str, pins: Mapping[Place, Pin], parts: Parts) -> Iterator[Tol
             yield file, f"{cell}/n", str(pin.n), str(size)
         tests = pins.get((pin.dataset, pin.condition, "test"))
         if size is None and pin.split == "repeat" and tests is not None:
-            repeated = len(preset.repeats.chosen(tests.n)) * preset.repeats.passes
+            repeated = len(preset.repeats.pose_indices(tests.n)) * preset.repeats.passes
             if pin.n != repeated:
                 yield file, f"{cell}/n", str(pin.n), f"{repeated}, as of {tests.n} test samples"
 
@@ -65,7 +65,10 @@ def _sizes(preset: Preset) -> dict[str, int]:
     if directions is None:
         return {}
     sizes = {split: int(about["samples"]) for split, about in directions.card().items()}
-    return {**sizes, "repeat": len(preset.repeats.chosen(sizes["test"])) * preset.repeats.passes}
+    return {
+        **sizes,
+        "repeat": len(preset.repeats.pose_indices(sizes["test"])) * preset.repeats.passes,
+    }
 
 
 def _of_bounds(file: str, pins: Mapping[Place, Pin], scores: Mapping[Cell, Row]) -> Iterator[Told]:
@@ -78,10 +81,12 @@ def _of_bounds(file: str, pins: Mapping[Place, Pin], scores: Mapping[Cell, Row])
             over_all.setdefault(place, {})[cell] = row["bound_deg"]
     for place, bounds in over_all.items():
         pinned = pins[place].bound_deg
-        unlike = {cell: bound for cell, bound in bounds.items() if not alike(pinned, bound)}
+        unlike = {cell: bound for cell, bound in bounds.items() if not bounds_agree(pinned, bound)}
         stands = "absent" if pinned is None else f"{pinned:g}"
         first = next(iter(bounds.values()))
-        if len(unlike) == len(bounds) and all(alike(first, bound) for bound in bounds.values()):
+        if len(unlike) == len(bounds) and all(
+            bounds_agree(first, bound) for bound in bounds.values()
+        ):
             yield file, f"{'/'.join(place)}/bound_deg", stands, f"{first:g}, as the scores have it"
             continue
         for cell, bound in unlike.items():
@@ -92,6 +97,6 @@ def _of_bounds(file: str, pins: Mapping[Place, Pin], scores: Mapping[Cell, Row])
 def _of_ratios(row: Row) -> Iterator[tuple[str, str, str]]:
     for ratio, bound in (("over_bound", "bound_deg"), ("over_bound_unit", "bound_unit_deg")):
         over, of, by = row[ratio], row["rms_deg"], row[bound]
-        told = over is not None and of is not None and by
-        if told and not math.isclose(over, of / by, rel_tol=_ROUNDED):
+        complete = over is not None and of is not None and by
+        if complete and not math.isclose(over, of / by, rel_tol=_ROUNDED):
             yield ratio, f"{over:g}", f"{of / by:.5g}, the ratio of rms_deg and {bound}"

@@ -1,6 +1,6 @@
 """`python -m benchmark.leaderboard.fresh_units`: leaders of boards on units nobody has seen.
 
-The first group of every board, its leader and what is not told apart from it, is scored on five
+The first group of every board, its leader and what is not distinguished from it, is scored on five
 more units, and so are the next five pipelines behind it. Printed is for each board whether its
 leader is in the first group of these there, too, and how much more it errs than the first.
 """
@@ -70,7 +70,7 @@ def first_groups(
     for dataset, group in groupby(ranked, key=lambda cell: cell.dataset):
         board = list(group)
         logs = _logs(board, scores, range(scope.UNITS))
-        leader = paired.best(logs)
+        leader = paired.best_method(logs)
         groups, means = paired.groups(logs, leader), np.nanmean(logs, axis=1)
         order = sorted(range(len(board)), key=lambda at: float(means[at]))
         first = [board[at] for at in order if groups[at] == 1 and at != leader]
@@ -95,7 +95,7 @@ def score_fresh_units(
     found = []
     for dataset, cells in boards.items():
         logs = _logs(cells, measured, FRESH)
-        best = paired.best(logs)
+        best = paired.best_method(logs)
         holds = not paired.separate(logs, best)[0]
         over = float(paired.over(logs, best)[0])
         pipelines = sum(cell.dataset == dataset for cell in scope.first(known))
@@ -133,13 +133,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
             f"{one.leader.extractor} + {one.leader.model} "
             f"{'holds' if one.holds else 'is behind'} on fresh units, {one.over:.3f} of the first\n"
         )
-    holding = sum(one.holds for one in found)
+    holds = sum(one.holds for one in found)
     small = sum(one.first < 0.1 * one.pipelines for one in found)
     sys.stdout.write(
-        f"{holding} of {len(found)} leaders are in the first group on units {FRESH[0]} to "
+        f"{holds} of {len(found)} leaders are in the first group on units {FRESH[0]} to "
         f"{FRESH[-1]}; on {small} boards the first group has fewer than 10 % of the pipelines\n"
     )
-    return 0 if holding >= 0.95 * len(found) else 1
+    return 0 if holds >= 0.95 * len(found) else 1
 
 
 if __name__ == "__main__":

@@ -83,7 +83,7 @@ STATISTICS: Mapping[tuple[str, str], tuple[str, Callable[[Row], float | None]]] 
 
 
 @cache
-def table(path: Path = FILE) -> tuple[Headline, ...]:
+def read_headlines(path: Path = FILE) -> tuple[Headline, ...]:
     """Return the headlines in the order of the table.
 
     Raises
@@ -141,7 +141,7 @@ def headlines(
     }
     return [
         _beside(one, scores.get((one.dataset, one.extractor, one.model)))
-        for one in (table() if known is None else known)
+        for one in (read_headlines() if known is None else known)
     ]
 
 

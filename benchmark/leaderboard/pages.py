@@ -62,7 +62,7 @@ LEGEND = (
     "Own error is the angle between the predicted and the true direction of the Sun, root mean "
     "square, of a pipeline calibrated with true directions: what sensor and method are good for. "
     "It is the geometric mean over units of the sensor and includes answers to samples whose "
-    "direction cannot be told (false Suns cost what they err). Readings are corrected by the "
+    "direction cannot be determined (false Suns cost what they err). Readings are corrected by the "
     "unit's dark and flat readings. On a bench is the error expected when calibrated on the "
     "standard bench: the root of the squares of own error and bench. Bound is the Cramer-Rao lower "
     "bound over the same samples, ± the standard error of the ratio to it, with the unit known; "

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from benchmark.datasets import get, names
-from benchmark.datasets.realism import HardwareMatch, figures, standings
+from benchmark.datasets.realism import HardwareMatch, figures, hardware_matches
 from benchmark.metrics.ranking import order
 from benchmark.metrics.rings import EDGES_DEG, field_error
 from survey_data.hardware import Hardware
@@ -59,7 +59,7 @@ def realism(
         compared = row["condition"] == nominal.get(name) and row["unit"] == 0
         if compared and row["rms_deg"] is not None and _before(row, best.get(name)):
             best[name] = row
-    every = standings() if known is None else known
+    every = hardware_matches() if known is None else known
     return [_beside(every[name], best.get(name)) for name in sorted(every)]
 
 
@@ -82,8 +82,8 @@ def _before(row: Row, other: Row | None) -> bool:
     return other is None or order(row, place) < order(other, (other["extractor"], other["model"]))
 
 
-def _beside(standing: HardwareMatch, row: Row | None) -> dict[str, Any]:
-    sensors = [_compare(sensor, row) for sensor in standing.sensors]
+def _beside(match: HardwareMatch, row: Row | None) -> dict[str, Any]:
+    sensors = [_compare(sensor, row) for sensor in match.sensors]
     accuracy = nearest_ratio(sensor["accuracy_ratio"] for sensor in sensors)
     precision = nearest_ratio(sensor["precision_ratio"] for sensor in sensors)
     ours = {name: None if row is None else row[name] for name in _OURS}
@@ -91,13 +91,13 @@ def _beside(standing: HardwareMatch, row: Row | None) -> dict[str, Any]:
         ratio is not None and not 1.0 / FACTOR <= ratio <= FACTOR for ratio in (accuracy, precision)
     )
     return {
-        "dataset": standing.dataset,
-        "idealisation": standing.idealisation or None,
+        "dataset": match.dataset,
+        "idealisation": match.idealisation or None,
         **ours,
         "accuracy_ratio": accuracy,
         "precision_ratio": precision,
-        "sentence": standing.sentence or None,
-        "unexplained": differs and not standing.sentence,
+        "sentence": match.sentence or None,
+        "unexplained": differs and not match.sentence,
         "sensors": sensors,
     }
 

@@ -28,7 +28,7 @@ from typing import Any
 from benchmark.contract import ON_BENCH, Cell
 from benchmark.metrics.ranking import order
 from benchmark.metrics.score import is_available
-from benchmark.plan.combinations import cells, scorable
+from benchmark.plan.combinations import cells, scorable_plan
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.plan.shown import data_sets
 from registry.resolution import resolve_all
@@ -176,7 +176,7 @@ def studies_of_pipelines() -> Studied:
 
 def _studies_of(parts: Parts) -> dict[tuple[str, str, str, str], tuple[str, ...]]:
     found: dict[tuple[str, str, str, str], set[str]] = {}
-    resolved = resolve_all(scorable(parts=parts), data_sets=data_sets(parts=parts))
+    resolved = resolve_all(scorable_plan(parts=parts), data_sets=data_sets(parts=parts))
     for key, resolution in resolved.items():
         for pipeline in resolution.pipelines:
             used = (pipeline.detector, pipeline.mask, pipeline.extractor, pipeline.model)

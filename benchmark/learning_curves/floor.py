@@ -44,7 +44,7 @@ class Floor:
         that the spread between draws is in it, and the spread between units is not.
     exponent, misfit
         Of the law: b, and how far it misses the errors, relative; None where none was fitted.
-    fitted
+    is_fitted
         Whether it is the law's. Otherwise it is the error with all poses, without a range.
     """
 
@@ -53,7 +53,7 @@ class Floor:
     high_deg: tuple[float, ...]
     exponent: float | None
     misfit: float | None
-    fitted: bool
+    is_fitted: bool
 
 
 def floor_of(
@@ -103,7 +103,7 @@ def floor_of(
     if not usable[:, :, -1].all():
         return None
     whole = tuple(errors[:, 0, -1].tolist())
-    plain = Floor(whole, whole, whole, None, None, fitted=False)
+    plain = Floor(whole, whole, whole, None, None, is_fitted=False)
     if (
         not lawful
         or min(np.isfinite(_level(e, u)).sum() for e, u in zip(errors, usable, strict=True))
@@ -124,7 +124,7 @@ def floor_of(
         tuple(np.maximum(high, floors).tolist()),
         exponent,
         misfit,
-        fitted=True,
+        is_fitted=True,
     )
 
 

@@ -64,7 +64,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Learnt:
+class CurveErrors:
     """Errors of one pipeline by unit, draw and size.
 
     Attributes
@@ -98,7 +98,7 @@ class _Part:
     context: Context | None
 
 
-def measure(task: Task) -> list[Learnt]:
+def measure(task: Task) -> list[CurveErrors]:
     """Calibrate every leader of a data set on every subset of poses, and score it.
 
     Raises
@@ -189,13 +189,13 @@ class _Trial:
         geometry = self.task.preset.geometry_for(self.task.leaders[0].condition)
         model = self.model.for_sensor(geometry, self.extractor.about.kind)
         pipeline = Pipeline(self.extractor, model)
-        told: Mapping[str, NDArray[Any]] | None = None
+        context: Mapping[str, NDArray[Any]] | None = None
         if self.known.context is not None:
-            told = {
+            context = {
                 column: np.asarray(values)[rows] for column, values in self.known.context.items()
             }
         try:
-            pipeline.fit_features(self.known.features[name][rows], self.known.sun[rows], told)
+            pipeline.fit_features(self.known.features[name][rows], self.known.sun[rows], context)
         except UnusableDataError as error:
             return _Point(refusal=reason_of(error))
         predicted = pipeline.predict_features(self.asked.features[name], self.asked.context)
@@ -210,11 +210,11 @@ def _learnt(
     units: Sequence[Sequence[Sequence[_Point]]],
     *,
     in_order: bool,
-) -> Learnt:
+) -> CurveErrors:
     def table(name: str, kind: Any) -> NDArray[Any]:
         return np.array([[[getattr(p, name) for p in d] for d in u] for u in units], dtype=kind)
 
-    return Learnt(
+    return CurveErrors(
         leader,
         steps,
         in_order,

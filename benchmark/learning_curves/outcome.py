@@ -10,7 +10,7 @@ import numpy as np
 from algorithms.contract import Floats
 from benchmark import seeds
 from benchmark.learning_curves.floor import NEAR, Flags, Floor, floor_of, reached_from
-from benchmark.learning_curves.measure import Learnt
+from benchmark.learning_curves.measure import CurveErrors
 from benchmark.learning_curves.reading import Row
 from benchmark.metrics.score import AVAILABLE, store
 
@@ -18,7 +18,7 @@ from benchmark.metrics.score import AVAILABLE, store
 _CURVE_DIGITS, _SHARE_DIGITS = 4, 3
 
 
-def row_of(learnt: Learnt, bound_deg: float, bench_deg: float | None) -> Row:
+def row_of(learnt: CurveErrors, bound_deg: float, bench_deg: float | None) -> Row:
     """Say what is kept of one pipeline's errors.
 
     A draw is near the floor where its error is at most `NEAR` floors of its unit and it answers as
@@ -88,10 +88,10 @@ def _said(floor: Floor | None) -> Row:
         nothing = ("floor_error_deg", "floor_low_deg", "floor_high_deg", "exponent", "misfit")
         return {"floor": "none", **dict.fromkeys(nothing)}
     return {
-        "floor": "fitted" if floor.fitted else "all",
+        "floor": "fitted" if floor.is_fitted else "all",
         "floor_error_deg": _pool(floor.error_deg),
-        "floor_low_deg": _pool(floor.low_deg) if floor.fitted else None,
-        "floor_high_deg": _pool(floor.high_deg) if floor.fitted else None,
+        "floor_low_deg": _pool(floor.low_deg) if floor.is_fitted else None,
+        "floor_high_deg": _pool(floor.high_deg) if floor.is_fitted else None,
         "exponent": floor.exponent,
         "misfit": None if floor.misfit is None else store(floor.misfit, 2),
     }
@@ -105,7 +105,7 @@ def _from(steps: tuple[int, ...], near: Flags) -> list[int | None]:
     return [reached_from(steps, draw) for unit in near for draw in unit]
 
 
-def _point(learnt: Learnt, place: int) -> list[float | int | None]:
+def _point(learnt: CurveErrors, place: int) -> list[float | int | None]:
     errors, shares = learnt.rms_deg[:, :, place].ravel(), learnt.availability[:, :, place].ravel()
     known = errors[np.isfinite(errors)]
     answered = shares[np.isfinite(shares)]

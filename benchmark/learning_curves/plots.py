@@ -16,7 +16,7 @@ from benchmark.panels import (
     VERMILION,
     Layout,
     annotate,
-    dashed,
+    bound_style,
     dots,
     panel_figure,
     rule,
@@ -115,7 +115,7 @@ def _fill(axes: Axes, leaders: Sequence[Row]) -> None:
 def _bound(axes: Axes, row: Row, low: float) -> None:
     if row["bound_deg"] >= low:
         ends = axes.get_xlim()
-        axes.plot(ends, [row["bound_deg"]] * 2, zorder=1, **dashed(INK, 1.1))
+        axes.plot(ends, [row["bound_deg"]] * 2, zorder=1, **bound_style(INK, 1.1))
         return
     axes.annotate(
         f"bound {row['bound_deg']:.2g} deg, below",
@@ -198,6 +198,6 @@ def _legend() -> list[Line2D]:
         ),
         Line2D([], [], label="less than 95 % answered", **rare),
         Line2D([], [], label="poses needed to be within 10 % of the floor", **dots(FAINT, _DOT)),
-        Line2D([], [], label="Cramer-Rao bound", **dashed(INK, 1.1)),
+        Line2D([], [], label="Cramer-Rao bound", **bound_style(INK, 1.1)),
         Line2D([], [], color=PURPLE, lw=1.1, ls=_BENCH_DASHES, label="error a bench adds"),
     ]

@@ -1,4 +1,4 @@
-"""Which methods of a board are told apart: a paired test over units, and what it can tell.
+"""Which methods of a board are distinguished: a paired test over units, and what it can tell.
 
 Units are paired: every method is scored on the same ones, so that a unit that is hard for all of
 them says nothing against any. What is tested is the logarithm of the ratio of two errors.
@@ -36,7 +36,7 @@ from algorithms.contract import Floats
 EQUIVALENT = 1.03
 #: Share of boards of equal methods on which any is separated, at most.
 LEVEL = 0.05
-#: Share of cases in which the smallest ratio that a board can tell apart is told apart.
+#: Share of cases in which the smallest ratio that a board can tell apart is distinguished.
 POWER = 0.9
 #: Units in common that a comparison needs.
 FEWEST_UNITS = 5
@@ -62,7 +62,7 @@ def logarithms(errors_deg: Sequence[Sequence[float | None]]) -> Floats:
     return found
 
 
-def best(logs: Floats) -> int:
+def best_method(logs: Floats) -> int:
     """Return the place of the method with the least mean log error, of those with the most units.
 
     Parameters
@@ -85,11 +85,11 @@ def over(logs: Floats, leader: int) -> Floats:
 
 
 def groups(logs: Floats, leader: int) -> list[int | None]:
-    """Return the group of each method: 1 is not told apart from the leader.
+    """Return the group of each method: 1 is not distinguished from the leader.
 
-    Group 2 is what is not told apart from the best of the others, and so on. None for methods with
-    fewer than `FEWEST_UNITS` units in common with the leader: by what rule they are behind, the
-    caller says.
+    Group 2 is what is not distinguished from the best of the others, and so on. None for methods
+    with fewer than `FEWEST_UNITS` units in common with the leader: by what rule they are behind,
+    the caller says.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def groups(logs: Floats, leader: int) -> list[int | None]:
     while len(left):
         group += 1
         some = logs[left]
-        first = int(np.flatnonzero(left == leader)[0]) if group == 1 else best(some)
+        first = int(np.flatnonzero(left == leader)[0]) if group == 1 else best_method(some)
         apart = separate(some, first)
         for place in left[~apart]:
             found[place] = group
@@ -114,7 +114,7 @@ def groups(logs: Floats, leader: int) -> list[int | None]:
 
 
 def separate(logs: Floats, leader: int) -> NDArray[np.bool_]:
-    """Say which methods (M,) are told apart from the leader.
+    """Say which methods (M,) are distinguished from the leader.
 
     Those with fewer than `FEWEST_UNITS` units in common with it are not.
 
@@ -142,7 +142,7 @@ def separate(logs: Floats, leader: int) -> NDArray[np.bool_]:
 
 
 def smallest_ratio(logs: Floats, leader: int) -> float | None:
-    """Return the smallest ratio to the leader that is told apart in `POWER` of cases.
+    """Return the smallest ratio to the leader that is distinguished in `POWER` of cases.
 
     It is that of a method whose log ratio to the leader spreads between units as the median one of
     the board does, scored on all units of the leader, and tested last: beside the first group.
@@ -191,7 +191,8 @@ def _moderated(spread: Floats, freedom: NDArray[np.int64]) -> tuple[Floats, Floa
     """Draw standard deviations (M,) towards their common one; returns them and their freedom.
 
     Smyth, Stat. Appl. Genet. Mol. Biol. 3 (2004) 3, section 6.2: the variances are taken as draws
-    about a common one, scattered as by `prior` degrees of freedom, both told by their logarithms.
+    about a common one, scattered as by `prior` degrees of freedom, both estimated from their
+    logarithms.
     """
     variance = np.maximum(spread, _LEAST_SPREAD) ** 2
     half = freedom / 2.0

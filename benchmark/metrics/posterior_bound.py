@@ -146,14 +146,14 @@ def recursive_bound(sun: Floats, information: Floats, motion: Motion) -> Floats:
     covariance[3:, 3:] = (math.radians(gyro.bias_deg_h) / _HOUR_S) ** 2 * one
     attitude = np.empty((len(sun), 3, 3))
     forward = np.eye(6)
-    for n, told in enumerate(rows):
+    for n, reading in enumerate(rows):
         if n:
             covariance[3:, 3:] += walk[n - 1] * one
             forward[:3, 3:] = drive[n - 1]
             covariance = forward @ covariance @ forward.T
             covariance[:3, :3] += white[n - 1] * drive[n - 1] @ drive[n - 1].T
         if values[n, 2] > 0:
-            covariance = _update(covariance, told)
+            covariance = _update(covariance, reading)
         attitude[n] = covariance[:3, :3]
     return _angles_deg(_levers(sun) @ motion.turn, attitude)
 

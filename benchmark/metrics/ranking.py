@@ -24,7 +24,7 @@ _LEAST_DEG = 1e-12
 
 
 @dataclass(frozen=True)
-class Spread:
+class UnitErrors:
     """Errors of one pipeline on the units of a sensor.
 
     Attributes
@@ -78,9 +78,9 @@ class Place:
     rank
         Of the first of its group; None without an error.
     group
-        1 for what is not told apart from the leader, 2 for what is not told apart from the best of
-        the others, and so on; None where it was scored on too few units, or on other units than
-        the board's first condition has.
+        1 for what is not distinguished from the leader, 2 for what is not distinguished from the
+        best of the others, and so on; None where it was scored on too few units, or on other units
+        than the board's first condition has.
     tied
         Whether others share its rank.
     """
@@ -91,7 +91,7 @@ class Place:
 
 
 @dataclass(frozen=True)
-class Judged:
+class RankedBoard:
     """A board in order.
 
     Attributes
@@ -123,21 +123,21 @@ def order(numbers: Row, identity: object) -> tuple[Any, ...]:
     return (error is None, not is_available(numbers), error or 0.0, identity)
 
 
-def spreads(rows: Iterable[Row]) -> dict[Cell, Spread]:
+def spreads(rows: Iterable[Row]) -> dict[Cell, UnitErrors]:
     """Return the errors of every pipeline of the standard unit, by unit; rows are of all units."""
     errors: dict[Cell, dict[int, float | None]] = {}
     for row in rows:
         cell = Cell(row["dataset"], row["condition"], row["extractor"], row["model"])
         errors.setdefault(cell, {})[row["unit"]] = row["charged_deg"]
     return {
-        cell: Spread(tuple(by_unit[unit] for unit in sorted(by_unit)))
+        cell: UnitErrors(tuple(by_unit[unit] for unit in sorted(by_unit)))
         for cell, by_unit in errors.items()
         if 0 in by_unit
     }
 
 
-def judged(rows: Sequence[Row], spread: Sequence[Spread]) -> Judged:
-    """Order the rows of a board, and group what is not told apart.
+def rank_board(rows: Sequence[Row], spread: Sequence[UnitErrors]) -> RankedBoard:
+    """Order the rows of a board, and group what is not distinguished.
 
     Parameters
     ----------
@@ -155,11 +155,11 @@ def judged(rows: Sequence[Row], spread: Sequence[Spread]) -> Judged:
     smallest = quoted = None
     if tested:
         logs = paired.logarithms([spread[at].errors_deg for at in tested])
-        leader = paired.best(logs)
+        leader = paired.best_method(logs)
         found = paired.groups(logs, leader)
         groups = {at: group for at, group in zip(tested, found, strict=True) if group is not None}
         smallest = paired.smallest_ratio(logs, leader)
-        chosen = paired.best(logs[:, ::2])
+        chosen = paired.best_method(logs[:, ::2])
         odd = logs[chosen, 1::2]
         quoted = math.exp(float(np.nanmean(odd))) if np.isfinite(odd).any() else None
     behind = 1 + max(groups.values(), default=0)
@@ -178,7 +178,7 @@ def judged(rows: Sequence[Row], spread: Sequence[Spread]) -> Judged:
         rank = number if group is None else first_of.setdefault(group, number)
         places[at] = Place(None if rows[at]["rms_deg"] is None else rank, group, tied=False)
     shared = {group for group in groups.values() if list(groups.values()).count(group) > 1}
-    return Judged(
+    return RankedBoard(
         tuple(ordered),
         tuple(
             Place(places[at].rank, places[at].group, tied=places[at].group in shared)

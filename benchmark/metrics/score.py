@@ -1,9 +1,9 @@
-"""How good predictions are: errors where a direction can be told, and whether any is given.
+"""How good predictions are: errors where a direction can be determined, and whether any is given.
 
-A sample is *observable* where its direction can be told at all (`benchmark.metrics.bounds`). Errors
-are those of the answers to observable samples; that an observable sample has no answer lowers the
-availability, and that an unobservable one has is a false Sun. What false Suns cost is charged: the
-rank is by the error over all answers, whether the sample was observable or not.
+A sample is *observable* where its direction can be determined at all (`benchmark.metrics.bounds`).
+Errors are those of the answers to observable samples; that an observable sample has no answer
+lowers the availability, and that an unobservable one has is a false Sun. What false Suns cost is
+charged: the rank is by the error over all answers, whether the sample was observable or not.
 """
 
 from __future__ import annotations
@@ -210,7 +210,7 @@ def aligned_error_deg(predicted: ArrayLike, sun: ArrayLike) -> Floats:
     """Errors (N,) in degrees that the best rotation leaves, as an alignment in flight does.
 
     The rotation is the one that least squares give (Wahba's problem, by singular values); of fewer
-    than three directions it is not told, and errors stay what they are.
+    than three directions it is unknown, and errors stay what they are.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ Names = str | Iterable[str] | None
 
 
 @dataclass(frozen=True, order=True)
-class Incompatible:
+class Exclusion:
     """A combination that is not measured, with the reason.
 
     `model` is empty where the extractor alone does not fit the dataset.
@@ -68,29 +68,29 @@ def _compatible(preset: Preset, chosen: _Choice) -> Iterator[tuple[type[Extracto
         yield from ((extractor, model) for model in fitting[extractor.about.kind])
 
 
-def incompatible(
+def list_exclusions(
     datasets: Names = None,
     extractors: Names = None,
     models: Names = None,
     *,
     parts: Parts | None = None,
-) -> list[Incompatible]:
+) -> list[Exclusion]:
     """List the combinations `cells` leaves out, each with its reason, in sorted order."""
     chosen = _Choice.of(parts or installed_parts(), datasets, None, extractors, models)
     found = []
     for preset, extractor in product(chosen.presets, chosen.extractors):
         if reason := _why_not_extractor(preset, extractor):
-            found.append(Incompatible(preset.name, extractor.about.name, "", reason))
+            found.append(Exclusion(preset.name, extractor.about.name, "", reason))
             continue
         found.extend(
-            Incompatible(preset.name, extractor.about.name, model.about.name, reason)
+            Exclusion(preset.name, extractor.about.name, model.about.name, reason)
             for model in chosen.models
             if (reason := _why_not_model(preset, extractor, model))
         )
     return sorted(found)
 
 
-def scorable(*, parts: Parts | None = None) -> Plan:
+def scorable_plan(*, parts: Parts | None = None) -> Plan:
     """Return what can be scored on each architecture: what a study's resolution is made from.
 
     Returns

@@ -1,4 +1,4 @@
-"""What data sets show, as the registry is told it."""
+"""What data sets show, as the registry needs it."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from benchmark.results.definitions import VERSION, Definitions, analyse, restored
+from benchmark.results.definitions import VERSION, Definitions, analyse, from_json
 from files.checked import read_checked, write_checked
 from files.user_cache import user_cache
 
@@ -35,7 +35,7 @@ class Analyses:
 
     @staticmethod
     @cache
-    def shared() -> Analyses:
+    def of_user() -> Analyses:
         """Return those of the user's cache directory."""
         return Analyses(user_cache() / "definitions")
 
@@ -72,7 +72,7 @@ class Analyses:
         if self._held is None:
             self._held = _read(self._file)
         size, time, *known = self._held.get(name, (None, None))
-        return restored(known) if (size, time) == stamp else None
+        return from_json(known) if (size, time) == stamp else None
 
 
 def _read(file: Path | None) -> dict[str, Any]:

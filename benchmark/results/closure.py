@@ -36,7 +36,7 @@ _RUN, _RUN_ALONE = "", "^"
 _Node = tuple[str, str]
 
 
-def reached(*entries: str) -> tuple[str, ...]:
+def reachable_definitions(*entries: str) -> tuple[str, ...]:
     """Return every definition that entries reach, as ``module:name``, sorted.
 
     Parameters and errors as `Sources.digest`.
@@ -60,7 +60,7 @@ class Sources:
     """
 
     def __init__(self, analyses: Analyses | None = None) -> None:
-        self._analyses = analyses or Analyses.shared()
+        self._analyses = analyses or Analyses.of_user()
         self._roots = set(FIRST_PARTY)
         self._paths: dict[str, Path | None] = {}
         self._definitions: dict[str, Definitions] = {}

@@ -89,7 +89,7 @@ class Components:
         """Everything that data under a condition depend on, in one word."""
         return self.stage_key("data", Cell(dataset, condition, "", ""))
 
-    def changed(self, key: str, cell: Cell) -> tuple[str, ...]:
+    def changed_parts(self, key: str, cell: Cell) -> tuple[str, ...]:
         """Return which of `KEYED` are not as in a key that the cell had (`cell_key`)."""
         before, now = (one.split("-") for one in (key, self.cell_key(cell)))
         if len(before) != len(KEYED):  # of no layout that is known
@@ -238,7 +238,7 @@ def current(parts: Parts) -> Components:
         extractors={name: _of_method(one, sources) for name, one in parts.extractors.items()},
         models={name: _of_method(one, sources) for name, one in parts.models.items()},
     )
-    Analyses.shared().keep()
+    Analyses.of_user().keep()
     return found
 
 

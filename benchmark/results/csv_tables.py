@@ -44,14 +44,14 @@ def share(text: str) -> float | None:
     return _within(number(text), 0.0, 1.0)
 
 
-def whole(text: str) -> int | None:
+def parse_whole(text: str) -> int | None:
     """Read a whole number, None from an empty cell; ValueError for anything else."""
     return parse_integer(text) if text else None
 
 
 def count(text: str) -> int | None:
     """Read a whole number that is not negative, None from an empty cell; ValueError for others."""
-    return _within(whole(text), 0)
+    return _within(parse_whole(text), 0)
 
 
 def one_of(*words: str) -> Reader:

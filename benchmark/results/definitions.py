@@ -16,7 +16,7 @@ from benchmark.results.syntax import (
     bound_names,
     last_name,
     outside_functions,
-    spelling,
+    spell,
     targets,
     uses,
 )
@@ -143,7 +143,7 @@ class _Module:
             if isinstance(inner, Import):
                 self._bind(inner, executed=not _is_for_type_checkers(node))
         number = len(self.statements)
-        digest = hashlib.sha256(spelling(node).encode()).hexdigest()[:32]
+        digest = hashlib.sha256(spell(node).encode()).hexdigest()[:32]
         self.statements.append(Statement(digest, uses(node)))
         for name in dict.fromkeys(bound_names(node)):
             self.names.setdefault(name, []).append(number)
@@ -204,7 +204,7 @@ def _are_names(target: ast.expr) -> bool:
     return isinstance(target, ast.Name)
 
 
-def restored(held: Iterable[Any]) -> Definitions:
+def from_json(held: Iterable[Any]) -> Definitions:
     """Return definitions as they were before JSON made lists of their tuples."""
     statements, names, effects, bound, stars, imports = held
     return Definitions(

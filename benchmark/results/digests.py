@@ -16,13 +16,13 @@ from benchmark.results.closure import FIRST_PARTY, Sources
 _COMPONENT_DIGITS = 16
 #: What makes each stage of the data, extractors and models that it is handed, in order.
 STAGES: Mapping[str, tuple[str, ...]] = {
-    "data": ("benchmark.running.condition_data:rendered",),
+    "data": ("benchmark.running.condition_data:render",),
     "features": (
-        "benchmark.running.condition_data:ready",
+        "benchmark.running.condition_data:correct_readings",
         "benchmark.running.condition_data:found_features",
     ),
-    "predictions": ("benchmark.running.task:predicted",),
-    "scores": ("benchmark.running.task:scored",),
+    "predictions": ("benchmark.running.task:fit_and_predict",),
+    "scores": ("benchmark.running.task:score_answers",),
 }
 
 

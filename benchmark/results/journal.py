@@ -2,7 +2,7 @@
 
 Each line ends with a digest of itself and of the digest before it, so that one that was changed,
 taken out, doubled or moved is named by its number. A line torn by a kill, at the end, is dropped;
-whole lines lost there cannot be told from a run that ended sooner, and are measured again.
+whole lines lost there cannot be distinguished from a run that ended sooner, and are measured again.
 """
 
 from __future__ import annotations

@@ -60,12 +60,12 @@ def _contradiction(pin: Pin) -> str:
     if pin.split not in SPLITS:
         return f"expected a split of {', '.join(SPLITS)}, got {pin.split!r}"
     if pin.split != "test":
-        told = [
+        given = [
             name
             for name in ("observable", "bound_deg", "head_bound_deg", *BOARD_FACTS)
             if getattr(pin, name) is not None
         ]
-        return f"{told[0]} belongs to the split test alone" if told else ""
+        return f"{given[0]} belongs to the split test alone" if given else ""
     if pin.observable is None or pin.observable > pin.n:
         return f"expected at most {pin.n} observable samples, got {pin.observable}"
     if pin.bound_deg is not None and pin.observable == 0:

@@ -20,7 +20,7 @@ from registry.measured_pipelines import MeasuredPipeline, Score
 from registry.requirements import NEEDS
 
 _PLAIN = tuple(
-    f.name for f in dataclasses.fields(Score) if f.name not in {"rms_deg", "available", "cones"}
+    f.name for f in dataclasses.fields(Score) if f.name not in {"rms_deg", "is_available", "cones"}
 )
 #: Half field of view of a sensor that is made for all directions.
 ALL_DIRECTIONS_DEG = 180.0
@@ -158,4 +158,4 @@ def _score(row: Row, share: float) -> Score:
             break
     plain: dict[str, Any] = {name: row[name] for name in _PLAIN}
     own = None if error is None else share * error
-    return Score(**plain, rms_deg=own, available=is_available(row), cones=tuple(cones))
+    return Score(**plain, rms_deg=own, is_available=is_available(row), cones=tuple(cones))

@@ -74,7 +74,7 @@ class Record:
             and self.scores[cell]["status"] != "failed"
         )
 
-    def outdated(self, cell: Cell, components: Components) -> tuple[str, ...]:
+    def why_outdated(self, cell: Cell, components: Components) -> tuple[str, ...]:
         """Say why a cell's score is not of these components; empty where it is.
 
         Returns
@@ -85,7 +85,7 @@ class Record:
         """
         if cell not in self._score_keys:
             return ("new",)
-        changed = components.changed(self._score_keys[cell], cell)
+        changed = components.changed_parts(self._score_keys[cell], cell)
         if not changed and self.scores[cell]["status"] == "failed":
             return ("failed",)
         return changed

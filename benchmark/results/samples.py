@@ -6,7 +6,7 @@ says what the samples are: the direction of the Sun, whether it is observable, a
 (`DIRECTION_COLUMNS`). All units of a data set see the same directions; the bound is unit 0's.
 
 An error is kept to a part in 2,000, less than the noise of one answer needs, and NaN says that
-there is no answer; `DOUBTS` says why. The bytes depend on the numbers and the version of pyarrow.
+there is no answer; `OUTCOMES` says why. The bytes depend on the numbers and the version of pyarrow.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ Kind = TypeVar("Kind", bound=np.generic)
 CONDITION = "nominal"
 FOLDER = "samples"
 
-#: Codes of the column `doubt`.
-DOUBTS: Mapping[int, str] = {
+#: Codes of the column `outcome`.
+OUTCOMES: Mapping[int, str] = {
     0: "answered",
     1: "no answer: the extractor found no features",
     2: "no answer: the model refused the features, as outside of what it was calibrated for",
 }
-ANSWERED, NOT_FOUND, REFUSED = DOUBTS
+ANSWERED, NOT_FOUND, REFUSED = OUTCOMES
 
 #: Columns of the errors and of the directions, with the type of each as Arrow spells it.
 COLUMNS: Mapping[str, str] = {
@@ -50,7 +50,7 @@ COLUMNS: Mapping[str, str] = {
     "unit": "int8",
     "sample": "int16",
     "error_deg": "float",
-    "doubt": "int8",
+    "outcome": "int8",
 }
 DIRECTION_COLUMNS: Mapping[str, str] = {
     "sample": "int16",
@@ -72,12 +72,12 @@ class CellErrors:
     ----------
     error_deg
         (N,) float32 in degrees, rounded to a part in 2,000; NaN where there is no answer.
-    doubt
-        (N,) int8, codes of `DOUBTS`.
+    outcome
+        (N,) int8, codes of `OUTCOMES`.
     """
 
     error_deg: NDArray[np.float32]
-    doubt: NDArray[np.int8]
+    outcome: NDArray[np.int8]
 
     @classmethod
     def of(cls, error_deg: ArrayLike, found: ArrayLike) -> CellErrors:
@@ -104,17 +104,17 @@ class CellErrors:
         missing = np.isnan(error)
         if not ((error >= 0.0) & (error <= 180.0) | missing).all():
             raise ValueError("error_deg must be from 0 to 180 degrees, or NaN for no answer")
-        doubt = np.where(missing, np.where(seen, REFUSED, NOT_FOUND), ANSWERED)
-        return cls(_round_to(error), doubt.astype(np.int8))
+        outcome = np.where(missing, np.where(seen, REFUSED, NOT_FOUND), ANSWERED)
+        return cls(_round_to(error), outcome.astype(np.int8))
 
     def to_texts(self) -> dict[str, str]:
         """Spell the arrays for a journal, each in base 64."""
-        return {"error_deg": _format_value(self.error_deg), "doubt": _format_value(self.doubt)}
+        return {"error_deg": _format_value(self.error_deg), "outcome": _format_value(self.outcome)}
 
     @classmethod
     def read(cls, fields: Mapping[str, str]) -> CellErrors:
         """Read what `parquet_bytes` wrote; ValueError or KeyError for anything else."""
-        return cls(_unspelt(fields["error_deg"], np.float32), _unspelt(fields["doubt"], np.int8))
+        return cls(_unspelt(fields["error_deg"], np.float32), _unspelt(fields["outcome"], np.int8))
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ class Directions:
     sun
         (N, 3) true unit vectors to the Sun.
     observable
-        (N,) of bool: whether the direction can be told at all.
+        (N,) of bool: whether the direction can be determined at all.
     bound_deg
         (N,) Cramer-Rao standard deviation of the angle in degrees; not finite where there is none.
     """
@@ -222,7 +222,7 @@ class SampleErrors:
             if name in self.directions:
                 known = _of_directions(self.directions[name])
             first = next(iter(wanted.values()))
-            _require_samples(wanted, len(first.doubt) if known is None else len(known["sample"]))
+            _require_samples(wanted, len(first.outcome) if known is None else len(known["sample"]))
             contents |= _change(directory / errors, errors, _of_cells(wanted), COLUMNS)
             if known is not None:
                 contents |= _change(directory / directions, directions, known, DIRECTION_COLUMNS)
@@ -261,10 +261,10 @@ def read_samples(dataset: str, directory: Path = PUBLISHED) -> pd.DataFrame:
     """
     path = directory / path_of(dataset)
     table = parquet_tables.read_parquet(path, COLUMNS, names=_NAMES)
-    error, doubt = table["error_deg"].to_numpy(), table["doubt"].to_numpy()
+    error, outcome = table["error_deg"].to_numpy(), table["outcome"].to_numpy()
     _require(path, bool((np.isnan(error) | ((error >= 0) & (error <= 180))).all()), "error_deg")
-    _require(path, bool(((doubt == ANSWERED) == ~np.isnan(error)).all()), "doubt")
-    _require(path, bool(np.isin(doubt, list(DOUBTS)).all()), "doubt")
+    _require(path, bool(((outcome == ANSWERED) == ~np.isnan(error)).all()), "outcome")
+    _require(path, bool(np.isin(outcome, list(OUTCOMES)).all()), "outcome")
     order = [table[name].cat.codes.to_numpy().astype(np.int64) for name in _NAMES]
     order += [table[name].to_numpy().astype(np.int64) for name in ("unit", "sample")]
     _require(path, all(bool((column >= 0).all()) for column in order), "unit and sample")
@@ -322,11 +322,11 @@ def _cells_on_disk(directory: Path, dataset: str) -> dict[Cell, CellErrors]:
     except FileNotFoundError:
         return {}
     names = [table[name].astype(str).to_numpy() for name in _NAMES]
-    unit, error, doubt = (table[name].to_numpy() for name in ("unit", "error_deg", "doubt"))
+    unit, error, outcome = (table[name].to_numpy() for name in ("unit", "error_deg", "outcome"))
     starts = [*np.flatnonzero(table["sample"].to_numpy() == 0).tolist(), len(table)]
     return {
         Cell(dataset, CONDITION, str(names[0][a]), str(names[1][a]), int(unit[a])): CellErrors(
-            error[a:b], doubt[a:b]
+            error[a:b], outcome[a:b]
         )
         for a, b in pairwise(starts)
     }
@@ -359,7 +359,7 @@ def _of_cells(cells: Mapping[Cell, CellErrors]) -> dict[str, Any]:
         "unit": np.repeat(np.array([cell.unit for cell in ordered], dtype=np.int8), sizes),
         "sample": np.concatenate([np.arange(size, dtype=np.int16) for size in sizes]),
         "error_deg": np.concatenate([cells[cell].error_deg for cell in ordered]),
-        "doubt": np.concatenate([cells[cell].doubt for cell in ordered]),
+        "outcome": np.concatenate([cells[cell].outcome for cell in ordered]),
     }
 
 

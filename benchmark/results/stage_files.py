@@ -47,15 +47,15 @@ def limit_bytes() -> int:
     ValueError
         For a variable that is no number from 0 on.
     """
-    told = os.environ.get(LIMIT_GB)
-    if not told:
+    text = os.environ.get(LIMIT_GB)
+    if not text:
         return LIMIT_BYTES
     try:
-        size = float(told)
+        size = float(text)
     except ValueError:
         size = -1.0
     if not 0.0 <= size < float("inf"):
-        raise ValueError(f"{LIMIT_GB} must be a number of gigabytes from 0 on; got {told!r}")
+        raise ValueError(f"{LIMIT_GB} must be a number of gigabytes from 0 on; got {text!r}")
     return int(size * 2**30)
 
 

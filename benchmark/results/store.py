@@ -42,7 +42,7 @@ from benchmark.results.csv_tables import (
 )
 from benchmark.results.pins import pins_text, read_pins
 from files.reading import path_exists
-from survey_data.nearest import nearest
+from survey_data.nearest import nearest_name
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -172,7 +172,7 @@ class Store:
         wanted = {}
         for field, values in where.items():
             if field not in known:
-                close = nearest(field, known)
+                close = nearest_name(field, known)
                 hint = f"did you mean {close!r}?" if close else f"known: {sorted(known)}"
                 raise UnknownFieldError(f"results have no field {field!r}; {hint}")
             if values is not None:

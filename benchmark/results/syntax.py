@@ -180,7 +180,7 @@ class _Uses:
                 self.found.add(f"{IMPORTED}{first.value}")
 
 
-def spelling(tree: ast.AST) -> str:
+def spell(tree: ast.AST) -> str:
     """Spell a syntax tree, the same under every Python version and without docstrings."""
     pieces: list[str] = []
     _spell(tree, pieces)

@@ -28,7 +28,7 @@ _INSTALLED = ("numpy", "scipy", "numba", "pandas")
 _PASSED_OVER = frozenset({"__pycache__", "stages", "unchanged"})
 
 
-class Unchanged:
+class KeptAnswer:
     """One answer: known as long as nothing it depends on has changed.
 
     Parameters
@@ -45,7 +45,7 @@ class Unchanged:
         self._file = user_cache() / "unchanged" / name
         self._fingerprint = fingerprint(directories)
 
-    def known(self) -> Any:
+    def recall(self) -> Any:
         """Return the answer; None where it is not known."""
         content = read_checked(self._file)
         held = {} if content is None else json.loads(bytes(content))

@@ -15,7 +15,7 @@ from benchmark.running.durations import Durations, Took
 from benchmark.running.planned import FollowUp
 from benchmark.running.schedule import (
     Bundle,
-    Waiting,
+    WaitingBundles,
     bundles,
     cut,
     longest_of,
@@ -62,9 +62,9 @@ class Work:
     def __call__(self) -> Done:
         """Measure it all."""
         left: list[tuple[Task, ...]] = []
-        return Done(list(self.measured(left)), left)
+        return Done(list(self.measure(left)), left)
 
-    def measured(self, left: list[tuple[Task, ...]]) -> Iterator[_Timed]:
+    def measure(self, left: list[tuple[Task, ...]]) -> Iterator[_Timed]:
         """Measure task by task; what is to be left to other workers is put into `left`."""
         results, places = [], set()
 
@@ -94,10 +94,10 @@ class Work:
 class Hands(Protocol):
     """Workers that take bundles and give back what came of them."""
 
-    def free(self) -> bool:
+    def is_free(self) -> bool:
         """Say whether another bundle can be taken on."""
 
-    def busy(self) -> bool:
+    def is_busy(self) -> bool:
         """Say whether something is still to come back."""
 
     def give(self, work: Work) -> None:
@@ -154,7 +154,7 @@ def _timed(
             yield from shared_out(tasks, cluster, cluster.workers(), follow_ups, durations)
     elif workers == 1 or len(tasks) == 1:
         for bundle in bundles(tasks, durations, math.inf, follow_ups):
-            yield from Work(bundle, durations, math.inf).measured([])
+            yield from Work(bundle, durations, math.inf).measure([])
     else:
         with hands_of(workers) as hands:
             yield from shared_out(tasks, hands, workers, follow_ups, durations)
@@ -168,17 +168,17 @@ def shared_out(
     durations: Durations,
 ) -> Iterator[_Timed]:
     """Hand bundles out, longest first, and what is left of them as it becomes known."""
-    known = Durations(dict(durations.known))  # who is told of results adds to the other
+    known = Durations(dict(durations.known))  # who gets results adds to the other
     most = longest_of(total_seconds(tasks, known, follow_ups), workers)
-    waiting = Waiting(bundles(tasks, known, most, follow_ups))
+    waiting = WaitingBundles(bundles(tasks, known, most, follow_ups))
 
     def hand_out() -> None:
-        while len(waiting) and hands.free():
+        while len(waiting) and hands.is_free():
             bundle = waiting.take()
             hands.give(Work(bundle, known.of(bundle.tasks[0].preset.name), most))
 
     hand_out()
-    while hands.busy():
+    while hands.is_busy():
         done = hands.take()
         for left in done.left:
             waiting.add(Bundle(left, known.seconds(left)))

@@ -75,11 +75,11 @@ class Cluster:
         """Count the worker processes there are now."""
         return len(self.client.ncores())
 
-    def free(self) -> bool:
+    def is_free(self) -> bool:
         """Say whether there are more workers than things to do; one more each is sent ahead."""
         return self._given < 2 * self.workers()
 
-    def busy(self) -> bool:
+    def is_busy(self) -> bool:
         """Say whether something is still to come back."""
         return self._given > 0
 

@@ -82,7 +82,7 @@ _observable: dict[_Place, NDArray[np.bool_]] = {}
 
 
 @dataclass(frozen=True)
-class Rendered:
+class RenderedData:
     """Data as the sensor reads them, and how they are to be corrected."""
 
     data: ConditionData
@@ -117,7 +117,7 @@ def generate(
     if place not in _kept:
         _make_room()
         made = _rendered_or_kept(preset, condition, unit, all_observable, kept)
-        _kept[place] = ready(made, preset)
+        _kept[place] = correct_readings(made, preset)
     _kept.move_to_end(place)
     return _kept[place]
 
@@ -138,7 +138,7 @@ def truth(
     return generate(preset, condition, unit, all_observable=all_observable, kept=kept)
 
 
-def rendered(preset: Preset, condition: str, unit: int, *, all_observable: bool) -> Rendered:
+def render(preset: Preset, condition: str, unit: int, *, all_observable: bool) -> RenderedData:
     """Generate data from nothing. Parameters as `generate`."""
     # the conditions of a dataset see the same Suns, its units look up the same tables
     memory.cache_for((preset.name, unit), preset.name)
@@ -149,10 +149,10 @@ def rendered(preset: Preset, condition: str, unit: int, *, all_observable: bool)
         data = _of_another_unit(preset, condition, splits, all_observable)
     else:  # its bound, which scores need, tells what is observable
         data = _of_unit_zero(preset, condition, splits)
-    return Rendered(data, correction(seen_by, condition))
+    return RenderedData(data, correction(seen_by, condition))
 
 
-def ready(made: Rendered, preset: Preset) -> ConditionData:
+def correct_readings(made: RenderedData, preset: Preset) -> ConditionData:
     """Return data as extractors get them."""
     splits = dict(made.data.splits)
     left = _corrected_once(splits, made.correction)
@@ -161,11 +161,11 @@ def ready(made: Rendered, preset: Preset) -> ConditionData:
 
 def _rendered_or_kept(
     preset: Preset, condition: str, unit: int, all_observable: bool, kept: KeptStages | None
-) -> Rendered:
+) -> RenderedData:
     if kept is None:
-        return rendered(preset, condition, unit, all_observable=all_observable)
+        return render(preset, condition, unit, all_observable=all_observable)
     cell = _cell(preset, condition, unit)
-    found: Rendered | None = kept.get(DATA, cell)
+    found: RenderedData | None = kept.get(DATA, cell)
     if found is not None:
         return found
     if (
@@ -177,7 +177,7 @@ def _rendered_or_kept(
         if standard is not None:
             _observable[place] = standard.observable
     started = time.process_time()
-    made = rendered(preset, condition, unit, all_observable=all_observable)
+    made = render(preset, condition, unit, all_observable=all_observable)
     seconds = time.process_time() - started
     # a preset is the caller's own: it is not kept, but taken from who asks
     bare = replace(made.data, preset=cast("Preset", None))
@@ -286,9 +286,9 @@ def _of_another_unit(
 
 
 def _pin(preset: Preset, condition: str, split: str, samples: Samples, bound: Bound) -> Pin:
-    told: dict[str, Any] = {}
+    pins: dict[str, Any] = {}
     if split == "test":
-        told = {
+        pins = {
             "observable": int(np.asarray(bound.observable, dtype=np.bool_).sum()),
             "bound_deg": rms_bound(bound),
             "head_bound_deg": rms_bound(bound, HEAD),
@@ -302,7 +302,7 @@ def _pin(preset: Preset, condition: str, split: str, samples: Samples, bound: Bo
         len(samples.sun),
         samples_hash(samples),
         head_hash(samples),
-        **told,
+        **pins,
     )
 
 

@@ -13,7 +13,7 @@ from statistics import fmean, median
 from typing import NamedTuple, Self
 
 from benchmark.contract import Cell
-from benchmark.results.csv_tables import number, read_csv, text_of, whole, word
+from benchmark.results.csv_tables import number, parse_whole, read_csv, text_of, word
 from benchmark.results.store import Store
 from benchmark.running.task import Task
 from files.atomic import replace_file
@@ -24,10 +24,10 @@ DURATIONS = "durations.csv"
 _COLUMNS = {
     "dataset": word,
     "condition": word,
-    "unit": whole,
+    "unit": parse_whole,
     "extractor": word,
-    "models": whole,
-    "made_data": whole,
+    "models": parse_whole,
+    "made_data": parse_whole,
     "seconds": number,
 }
 
@@ -125,7 +125,7 @@ class Durations:
         known = [took for task, took in self.known.items() if task.extractor == wanted.extractor]
         return fmean(took.seconds for took in known or self.known.values() or [Took(0, 0, 1.0)])
 
-    def following(self, tasks: Sequence[Task]) -> float:
+    def seconds_of_rest(self, tasks: Sequence[Task]) -> float:
         """Say how long what else is known of the data set of these tasks takes."""
         known = self.of(tasks[0].preset.name).known
         given = {_name_of(task) for task in tasks}
@@ -136,7 +136,7 @@ class Durations:
         rows = [{**task._asdict(), **asdict(took)} for task, took in sorted(self.known.items())]
         replace_file(store.work_directory / DURATIONS, text_of(list(_COLUMNS), rows))
 
-    def expected(self, cells: Iterable[Cell]) -> dict[ExtractionTask, float]:
+    def seconds_by_task(self, cells: Iterable[Cell]) -> dict[ExtractionTask, float]:
         """Return the seconds of each task of cells, of an unknown one those usual on its data set.
 
         Where nothing on the data set is known, those usual on all; nothing where none is known.

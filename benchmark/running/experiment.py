@@ -77,7 +77,7 @@ class Experiment(ABC, Generic[C]):
         """Return the word by which a caller asks for a cell; several cells may share it."""
         return str(cell)
 
-    def named(self, names: Collection[str]) -> list[C]:
+    def cells_named(self, names: Collection[str]) -> list[C]:
         """Return the cells of these names.
 
         Raises
@@ -94,7 +94,7 @@ class Experiment(ABC, Generic[C]):
         return [cell for name in known if name in names for cell in known[name]]
 
 
-class Recorded(Experiment[C]):
+class RecordedExperiment(Experiment[C]):
     """An experiment whose rows are kept in the record.
 
     Attributes
@@ -116,7 +116,7 @@ class Recorded(Experiment[C]):
         """List what is to be measured, in order."""
         return list(self.keys())
 
-    def outdated(self, row: Row, key: str) -> str:
+    def why_outdated(self, row: Row, key: str) -> str:
         """Say why a row is not of this key; empty where it is."""
         return "" if row["key"] == key else "of other code or data"
 
@@ -131,7 +131,7 @@ class Recorded(Experiment[C]):
             for row in self.record.read(self.directory).values()
         ]
 
-    def comparable(self, row: Row) -> Row:
+    def comparable_members(self, row: Row) -> Row:
         """Return those members of a row that another run repeats."""
         return {name: value for name, value in row.items() if name != "key"}
 
@@ -143,7 +143,7 @@ class Report(Experiment[C]):
     def lines(self, rows: Mapping[C, Row]) -> Iterator[str]:
         """Yield what is printed."""
 
-    def passed(self, rows: Mapping[C, Row]) -> bool:  # noqa: ARG002 - subclasses read it
+    def passes(self, rows: Mapping[C, Row]) -> bool:  # noqa: ARG002 - subclasses read it
         """Say whether the rows are as they should be."""
         return True
 
@@ -157,7 +157,7 @@ class Summary:
     seconds: float
 
 
-def experiments() -> dict[str, type[Recorded[Any] | Report[Any]]]:
+def experiments() -> dict[str, type[RecordedExperiment[Any] | Report[Any]]]:
     """Return every experiment by name.
 
     Raises
@@ -166,7 +166,7 @@ def experiments() -> dict[str, type[Recorded[Any] | Report[Any]]]:
         For a module of `benchmark.experiments` that defines no experiment, or several.
     """
     package = importlib.import_module("benchmark.experiments")
-    found: dict[str, type[Recorded[Any] | Report[Any]]] = {}
+    found: dict[str, type[RecordedExperiment[Any] | Report[Any]]] = {}
     for info in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
         if info.name.endswith("__main__"):
             continue
@@ -175,7 +175,7 @@ def experiments() -> dict[str, type[Recorded[Any] | Report[Any]]]:
             value
             for value in vars(module).values()
             if isinstance(value, type)
-            and issubclass(value, Recorded | Report)
+            and issubclass(value, RecordedExperiment | Report)
             and value.__module__ == module.__name__
         ]
         if len(defined) != 1:
@@ -184,30 +184,32 @@ def experiments() -> dict[str, type[Recorded[Any] | Report[Any]]]:
     return found
 
 
-def recorded() -> dict[str, type[Recorded[Any]]]:
+def recorded_experiments() -> dict[str, type[RecordedExperiment[Any]]]:
     """Return by name every experiment whose rows are kept."""
-    return {name: kind for name, kind in experiments().items() if issubclass(kind, Recorded)}
+    return {
+        name: kind for name, kind in experiments().items() if issubclass(kind, RecordedExperiment)
+    }
 
 
-def due(experiment: Recorded[C]) -> list[tuple[C, str]]:
+def list_due(experiment: RecordedExperiment[C]) -> list[tuple[C, str]]:
     """List the cells whose row is missing, out of date or no longer wanted, sorted, and why."""
     return list(_due(experiment, experiment.record.read(experiment.directory), experiment.keys()))
 
 
 def _due(
-    experiment: Recorded[C], stored: Mapping[C, Row], keys: Mapping[C, str]
+    experiment: RecordedExperiment[C], stored: Mapping[C, Row], keys: Mapping[C, str]
 ) -> Iterator[tuple[C, str]]:
     for cell in sorted(stored.keys() | keys.keys()):  # type: ignore[type-var]
         if cell not in keys:
             yield cell, "no longer wanted"
         elif cell not in stored:
             yield cell, "absent"
-        elif reason := experiment.outdated(stored[cell], keys[cell]):
+        elif reason := experiment.why_outdated(stored[cell], keys[cell]):
             yield cell, reason
 
 
 def update(
-    experiment: Recorded[C],
+    experiment: RecordedExperiment[C],
     workers: int = 1,
     progress: ProgressCallback | None = None,
     *,
@@ -248,7 +250,7 @@ def update(
         rows = {cell: row for cell, row in stored.items() if cell in keys}
         if only is None:
             rows = {cell: row for cell, row in rows.items() if cell not in old}
-        for found in measured(experiment, missing, workers, progress):
+        for found in measure_tasks(experiment, missing, workers, progress):
             for cell, row in found:
                 rows.pop(cell, None)  # what is new stands last
                 rows[cell] = {**row, "key": keys[cell]}
@@ -258,7 +260,7 @@ def update(
     return Summary(len(keys), len(missing), time.perf_counter() - started)
 
 
-def measured(
+def measure_tasks(
     experiment: Experiment[C],
     cells: Sequence[C],
     workers: int = 1,
@@ -284,8 +286,8 @@ def measured(
                 report(done, len(cells), experiment.name_of(found[0][0]) if found else "")
 
 
-def repeated(
-    experiment: Recorded[C], sample: int, seed: int, workers: int = 1
+def repeat_at_random(
+    experiment: RecordedExperiment[C], sample: int, seed: int, workers: int = 1
 ) -> Iterator[tuple[C, str]]:
     """Measure cells drawn at random again, and yield what is not as the record has it.
 
@@ -299,9 +301,12 @@ def repeated(
     known = set(experiment.cells())
     drawn = sorted((cell for cell in stored if cell in known), key=lot)[:sample]
     drawn.sort()
-    for found in measured(experiment, drawn, workers):
+    for found in measure_tasks(experiment, drawn, workers):
         for cell, row in found:
-            one, other = experiment.comparable(stored[cell]), experiment.comparable(row)
+            one, other = (
+                experiment.comparable_members(stored[cell]),
+                experiment.comparable_members(row),
+            )
             for place, text in differences(one, other):
                 yield cell, f"{place}{text}"
 

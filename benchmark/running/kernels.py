@@ -99,8 +99,8 @@ def _beyond_avx2() -> list[str]:
 
 def _beyond_avx2_in_opencv() -> list[str]:
     """Names of what OpenCV found here and that came after AVX2; it complains of any other name."""
-    told = os.environ.get("OPENCV_CPU_DISABLE", "")  # switched off already, hence not found
-    return sorted({name for name in told.split(",") if name} | set(_found_by_opencv()))
+    disabled = os.environ.get("OPENCV_CPU_DISABLE", "")  # switched off already, hence not found
+    return sorted({name for name in disabled.split(",") if name} | set(_found_by_opencv()))
 
 
 def _found_by_opencv() -> list[str]:

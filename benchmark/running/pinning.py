@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from benchmark.contract import SPLITS, Preset, UnknownNameError
-from benchmark.datasets.pins import Pin, Place, alike
+from benchmark.datasets.pins import Pin, Place, bounds_agree
 from benchmark.datasets.samples import HEAD, head_hash
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback, terminal_progress
@@ -136,7 +136,7 @@ def _changed_head(pin: Pin, preset: Preset) -> str:
     if pin.split != "test":
         return ""
     bound = rms_bound(preset.bound(pin.condition, pin.split, HEAD))
-    if alike(pin.head_bound_deg, bound):
+    if bounds_agree(pin.head_bound_deg, bound):
         return ""
     return f"head_bound_deg {bound}, pinned {pin.head_bound_deg}"
 
@@ -315,5 +315,5 @@ def _generate(wanted: tuple[Preset, str]) -> tuple[Preset, str, tuple[Pin, ...],
     with one_thread():
         try:
             return preset, condition, generated_pins(preset, condition), ""
-        except Exception as error:  # noqa: BLE001 - any error of a dataset is told with its name
+        except Exception as error:  # noqa: BLE001 - any error of a dataset is reported with its name
             return preset, condition, (), reason_of(error)

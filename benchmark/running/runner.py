@@ -155,7 +155,7 @@ def measure_missing(
     done = 0
     if missing:
         with terminal_progress() if progress is None else nullcontext(progress) as report:
-            expected = Durations.read([record.store]).expected(missing)
+            expected = Durations.read([record.store]).seconds_by_task(missing)
             counted = _Count(report, len(missing), sum(expected.values()))
             for stage in filter(None, stages):
                 tasks = tasks_of(stage, parts, record.pins, kept)
@@ -214,7 +214,7 @@ def known_cells(cells: Iterable[Cell], parts: Parts) -> list[Cell]:
 
 @dataclass
 class _Count:
-    """How far measuring has come, for who is told."""
+    """How far measuring has come, for the progress display."""
 
     report: ProgressCallback
     total: int

@@ -1,6 +1,6 @@
 """Which tasks go to a worker together, and in which order: longest first, data made once.
 
-Tasks that share data (one data set, condition and unit) are never told apart, as making the data
+Tasks that share data (one data set, condition and unit) are never distinguished, as making the data
 often costs more than all else. Conditions of a unit see the same light and units look it up in
 the same tables: these stay together, too, unless they would keep a worker for longer than the
 others.
@@ -44,7 +44,7 @@ class Bundle:
     follow_up: FollowUp | None = None
 
 
-class Waiting:
+class WaitingBundles:
     """Bundles that no worker has yet; the longest is taken first, of equal ones the earliest."""
 
     def __init__(self, bundles: Sequence[Bundle]) -> None:
@@ -118,7 +118,7 @@ def bundles(
         follow_up = follow_ups.get(bundle[0].preset.name)
         takes = durations.seconds(bundle)
         if follow_up is not None:
-            takes += durations.following(bundle)
+            takes += durations.seconds_of_rest(bundle)
         found.append(Bundle(bundle, takes, follow_up))
     return found
 

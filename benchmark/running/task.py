@@ -126,7 +126,7 @@ def measure(task: Task) -> TaskResult:
             data = _data(task, truth)
         except Exception as error:  # noqa: BLE001 - any error of a dataset is a row with its reason
             return _failed(task, error, "generating data")
-        answers = [_kept_answers(task, model) for model in task.models]
+        answers = [_stored_answers(task, model) for model in task.models]
         if None in answers:
             try:
                 extractor, features = _extractor(task), _features(task)
@@ -159,7 +159,7 @@ def measured_on(
     """Calibrate and score one pipeline on the features (N, F) its extractor found, by split."""
     started = time.process_time()
     try:
-        answers = predicted(task, extractor, model, features, data)
+        answers = fit_and_predict(task, extractor, model, features, data)
     except Exception as error:  # noqa: BLE001 - any error of a model is a row with its reason
         return Outcome(model.about.name, reason_of(error))
     if task.kept is not None:
@@ -170,7 +170,7 @@ def measured_on(
 
 def _judged(task: Task, model: Scored, answers: Answers, data: ConditionData) -> Outcome:
     try:
-        return scored(task, model, answers, data)
+        return score_answers(task, model, answers, data)
     except Exception as error:  # noqa: BLE001 - likewise of what it answers
         return Outcome(model.about.name, reason_of(error))
 
@@ -202,7 +202,7 @@ def _features(task: Task) -> dict[str, Floats]:
     return found
 
 
-def _kept_answers(task: Task, model: Scored) -> Answers | None:
+def _stored_answers(task: Task, model: Scored) -> Answers | None:
     found: Answers | None = None
     if task.kept is not None:
         found = task.kept.get(PREDICTIONS, _cell(task, model))
@@ -214,7 +214,7 @@ def _cell(task: Task, model: Scored | None = None) -> Cell:
     return Cell(task.preset.name, task.condition, task.extractor.about.name, name, task.unit)
 
 
-def predicted(
+def fit_and_predict(
     task: Task,
     extractor: Extractor,
     model: Scored,
@@ -236,7 +236,7 @@ def _own(
     features: dict[str, Floats],
     data: ConditionData,
 ) -> Answers:
-    """Let a pipeline answer that was told the true directions of its calibration."""
+    """Let a pipeline answer that was given the true directions of its calibration."""
     pipeline = _pipeline(task, extractor, model)
     _fit(pipeline, features, data, data.splits["calibration"].truth)
     repeated = None
@@ -259,14 +259,14 @@ def _on_benches(
     known, test = data.splits["calibration"].truth, data.splits["test"]
     answers = []
     for draw in range(BENCHES):
-        told = report(on_bench, task.preset.conditions[0], np.asarray(known), draw)
+        reported = report(on_bench, task.preset.conditions[0], np.asarray(known), draw)
         pipeline = _pipeline(task, extractor, model)
-        _fit(pipeline, features, data, told)
+        _fit(pipeline, features, data, reported)
         answers.append(pipeline.predict_features(features["test"], test.context))
     return Answers(tuple(answers))
 
 
-def scored(task: Task, model: Scored, answers: Answers, data: ConditionData) -> Outcome:
+def score_answers(task: Task, model: Scored, answers: Answers, data: ConditionData) -> Outcome:
     """Judge what a pipeline answered."""
     name = model.about.name
     if answers.refused:
@@ -326,7 +326,7 @@ def _fit(pipeline: Pipeline, features: dict[str, Floats], data: ConditionData, s
 
 def _repeat(predicted: Floats, data: ConditionData) -> Floats:
     """Answers (R, P, 3) to the observable poses of the split ``repeat``."""
-    chosen = data.preset.repeats.chosen(len(data.observable))
+    chosen = data.preset.repeats.pose_indices(len(data.observable))
     passes = np.asarray(predicted).reshape(data.preset.repeats.passes, len(chosen), 3)
     return np.asarray(passes[:, data.observable[chosen]])
 

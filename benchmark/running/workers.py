@@ -62,11 +62,11 @@ class LocalHands:
         self._given = 0
         self._done: SimpleQueue[Future[Any]] = SimpleQueue()
 
-    def free(self) -> bool:
+    def is_free(self) -> bool:
         """Say whether a worker has nothing to do."""
         return self._given < self._workers
 
-    def busy(self) -> bool:
+    def is_busy(self) -> bool:
         """Say whether something is still to come back."""
         return self._given > 0
 
@@ -110,7 +110,7 @@ def hands_of(workers: int) -> Iterator[LocalHands]:
     finally:
         if hands is None:
             _kill()
-        elif hands.busy():
+        elif hands.is_busy():
             _kill()
             executor.shutdown()
 
@@ -144,7 +144,7 @@ def as_completed(
     with hands_of(workers) as hands:
         for item in islice(waiting, 2 * workers):
             hands.give(partial(work, item))
-        while hands.busy():
+        while hands.is_busy():
             result = hands.take()
             for item in islice(waiting, 1):
                 hands.give(partial(work, item))

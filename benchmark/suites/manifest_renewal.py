@@ -14,7 +14,7 @@ from pathlib import Path
 from benchmark.processes import call_to_end
 from benchmark.results import record_manifest, samples
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running.experiment import Recorded, experiments
+from benchmark.running.experiment import RecordedExperiment, experiments
 from files import manifest
 from survey_data import facts_manifest
 from survey_data.problems import SurveyDataError
@@ -58,7 +58,7 @@ def renew(directory: Path) -> list[str]:
         samples.read_samples(name, directory)
         samples.read_directions(name, directory)
     for kind in experiments().values():
-        if issubclass(kind, Recorded):
+        if issubclass(kind, RecordedExperiment):
             kind.record.read(directory)
     return manifest.rewrite_manifest(directory, record_manifest.names(directory))
 

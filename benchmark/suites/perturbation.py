@@ -41,7 +41,7 @@ SIZE = 1e-13
 
 
 @dataclass(frozen=True)
-class Sensitive:
+class SensitiveCell:
     """A cell whose numbers another rounding changes.
 
     Attributes
@@ -61,7 +61,7 @@ class Sensitive:
     columns: dict[str, tuple[Any, Any]]
 
     @property
-    def moved(self) -> bool:
+    def is_moved(self) -> bool:
         """Whether a column differs by more than one unit of its last digit."""
         return not all(_neighbours(*both) for both in self.columns.values())
 
@@ -88,18 +88,18 @@ class PerturbationResult:
     """What a search looked at, and what it found: what differs, and what of it moved."""
 
     cells: int
-    sensitive: tuple[Sensitive, ...]
+    sensitive_cells: tuple[SensitiveCell, ...]
 
     @property
-    def moved(self) -> tuple[Sensitive, ...]:
+    def moved_cells(self) -> tuple[SensitiveCell, ...]:
         """Those that differ by more than a last digit's unit."""
-        return tuple(one for one in self.sensitive if one.moved)
+        return tuple(one for one in self.sensitive_cells if one.is_moved)
 
 
 def search(
     cells: Iterable[Cell],
     parts: Parts,
-    told: Callable[[Sensitive], object] = lambda _: None,
+    report: Callable[[SensitiveCell], object] = lambda _: None,
     progress: ProgressCallback = silent,
     *,
     observations: bool = True,
@@ -113,7 +113,7 @@ def search(
         Which; of one data set, condition, unit and extractor those share the extraction.
     parts
         Data sets and implementations.
-    told
+    report
         Called with each finding at once.
     progress
         Called with cells done and in all.
@@ -130,7 +130,7 @@ def search(
             progress(count, len(order), board[0].dataset)
             count += len(board)
             for finding in _of_one_extraction(board, parts, observations, draw):
-                told(finding)
+                report(finding)
                 found.append(finding)
     return PerturbationResult(count, tuple(found))
 
@@ -189,7 +189,7 @@ def _extraction(cell: Cell) -> tuple[str, str, int, str]:
 
 def _of_one_extraction(
     board: Sequence[Cell], parts: Parts, observations: bool, draw: int
-) -> Iterator[Sensitive]:
+) -> Iterator[SensitiveCell]:
     cell = board[0]
     preset, made = parts.preset(cell.dataset), parts.extractor(cell.extractor)
     models = tuple(parts.model(one.model) for one in board)
@@ -216,7 +216,7 @@ def _of_one_extraction(
                 if before.get(name) != after.get(name)
             }
             if differ:
-                yield Sensitive(one, inputs, differ)
+                yield SensitiveCell(one, inputs, differ)
 
 
 def _moved_features(
@@ -226,13 +226,13 @@ def _moved_features(
     known = cast("Any", data.splits["calibration"])
     truth = perturb(known.truth, *names, "directions")
     truth /= np.linalg.norm(truth, axis=1, keepdims=True)
-    told = cast("Samples", _Told(known, truth))
+    report = cast("Samples", _Reported(known, truth))
     moved = {split: perturb(found, *names) for split, found in features.items()}
-    return replace(data, splits={**data.splits, "calibration": told}), moved
+    return replace(data, splits={**data.splits, "calibration": report}), moved
 
 
 @dataclass(frozen=True)
-class _Told:
+class _Reported:
     """Calibration samples with other directions: what fits read of them."""
 
     samples: Samples
@@ -273,9 +273,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         done = search(
             wanted, parts, lambda one: sys.stdout.write(f"{one}\n"), report, draw=asked.draw
         )
-    turned = len(done.sensitive) - len(done.moved)
-    sys.stdout.write(f"{done.cells} cells: {len(done.moved)} move, {turned} turn a last digit\n")
-    return 1 if done.moved else 0
+    turned = len(done.sensitive_cells) - len(done.moved_cells)
+    sys.stdout.write(
+        f"{done.cells} cells: {len(done.moved_cells)} move, {turned} turn a last digit\n"
+    )
+    return 1 if done.moved_cells else 0
 
 
 if __name__ == "__main__":

@@ -68,7 +68,7 @@ def plan(cells: Iterable[Cell], stores: Sequence[Store], *, parts: Parts | None 
     records = [Record(store) for store in stores]
     missing = {}
     for cell in wanted:
-        reasons = [record.outdated(cell, components) for record in records]
+        reasons = [record.why_outdated(cell, components) for record in records]
         if all(reasons):
             missing[cell] = next((r for r in reasons if r != (NEW,)), (NEW,))
     durations = Durations.read(stores)

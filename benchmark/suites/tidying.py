@@ -62,7 +62,7 @@ def tidy(store: Store, *, parts: Parts | None = None) -> TidyResult:
             read = data_condition(known.preset(cell.dataset), cell.condition)
             if replace(cell, unit=0, condition=read) not in planned:
                 return False
-            return record.outdated(cell, components) in ((), ("failed",))
+            return record.why_outdated(cell, components) in ((), ("failed",))
 
         def is_pinned(place: Place) -> bool:
             return place in places and record.is_pinned(place, components)

@@ -1,4 +1,4 @@
-"""How often the part of a coded mask is told rightly, in one frame, of units never calibrated."""
+"""How often one frame of an uncalibrated unit identifies the part of a coded mask."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Acquisition:
     Attributes
     ----------
     right, wrong
-        Places told that are, and that are not, the true one.
+        Identified places that are, and that are not, the true one.
     ambiguous, unread
         Without an answer: several places explain the spots, or none does.
     """

@@ -70,7 +70,7 @@ def _measure(
         estimates = series.estimates(features)
     except UnusableDataError as error:
         return row | {"status": "refused", "reason": _reason(error)}
-    except Exception as error:  # noqa: BLE001 - any other error is told with its name
+    except Exception as error:  # noqa: BLE001 - any other error is reported with its name
         return row | {"status": "failed", "reason": _reason(error)}
     return row | {"status": "ok"} | _numbers(estimates, drawn, series.unit)
 

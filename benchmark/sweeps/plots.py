@@ -14,7 +14,7 @@ from benchmark.panels import (
     VERMILION,
     Layout,
     annotate,
-    dashed,
+    bound_style,
     dots,
     panel_figure,
     rule,
@@ -140,7 +140,7 @@ def _fill(axes: Axes, panel: _Panel, sweep: str, decades: tuple[int, int]) -> No
     places = _ticks(panel.places, sweep)
     axes.set_xticks(places, [f"{place:g}" for place in places])
     rule(axes, [10.0**e for e in range(low, high + 1)])
-    _curve(axes, panel.places, panel.bounds, **dashed(_BOUND, _WIDTH))
+    _curve(axes, panel.places, panel.bounds, **bound_style(_BOUND, _WIDTH))
     if not any(panel.errors):
         axes.text(
             0.5,
@@ -180,7 +180,7 @@ def _legend() -> list[Line2D]:
     return [
         Line2D([], [], label="rms error of one coordinate", **error),
         Line2D([], [], label="less than 90 % found", **_dots(whole=False)),
-        Line2D([], [], label="Cramer-Rao bound", **dashed(_BOUND, _WIDTH)),
+        Line2D([], [], label="Cramer-Rao bound", **bound_style(_BOUND, _WIDTH)),
     ]
 
 

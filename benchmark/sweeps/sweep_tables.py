@@ -39,7 +39,7 @@ _BOUND = "bound"
 
 
 @dataclass(frozen=True)
-class Table:
+class SweepTable:
     """One sweep of one series.
 
     Attributes
@@ -62,9 +62,9 @@ class Table:
     rows: tuple[tuple[str, tuple[tuple[str, str, str], ...]], ...]
 
 
-def tables(rows: Sequence[Row]) -> list[Table]:
+def tables(rows: Sequence[Row]) -> list[SweepTable]:
     """Arrange stored rows, in their order, as tables."""
-    found: list[Table] = []
+    found: list[SweepTable] = []
     measured = [row for row in rows if row["sweep"]]
     for (series, sweep), group in groupby(measured, key=lambda row: (row["series"], row["sweep"])):
         if sweep == "reference":
@@ -115,10 +115,10 @@ def to_markdown(rows: Sequence[Row]) -> list[str]:
     return lines
 
 
-def _references(series: str, rows: list[Row]) -> Iterator[Table]:
+def _references(series: str, rows: list[Row]) -> Iterator[SweepTable]:
     for point, group in groupby(sorted(rows, key=_by_point), key=_by_point):
         listed = sorted(group, key=lambda r: (r["rms"] is None, r["rms"] or 0.0, r["extractor"]))
-        yield Table(
+        yield SweepTable(
             series,
             f"reference: {point}",
             _describe(series),
@@ -134,7 +134,7 @@ def _references(series: str, rows: list[Row]) -> Iterator[Table]:
         )
 
 
-def _sweep(series: str, sweep: str, rows: list[Row]) -> Table:
+def _sweep(series: str, sweep: str, rows: list[Row]) -> SweepTable:
     points = list(dict.fromkeys(row["point"] for row in rows))
     by_place = {(row["point"], row["extractor"]): row for row in rows}
     bounds = {row["point"]: row["bound"] for row in rows if row["bound"] is not None}
@@ -151,7 +151,7 @@ def _sweep(series: str, sweep: str, rows: list[Row]) -> Table:
         )
         body.append((extractor, shown))
     heading = SWEEPS.get(sweep, sweep)
-    return Table(
+    return SweepTable(
         series, f"{sweep}: {heading}", _describe(series), "Extractor", tuple(points), tuple(body)
     )
 

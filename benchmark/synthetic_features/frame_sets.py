@@ -72,7 +72,7 @@ def _within(rng: np.random.Generator, count: int, chosen: FrameSet) -> Floats:
     return rng.uniform(margin, last - margin, (count, 2))
 
 
-def alone(rng: np.random.Generator, count: int, chosen: FrameSet) -> tuple[Floats, Floats]:
+def single_spot(rng: np.random.Generator, count: int, chosen: FrameSet) -> tuple[Floats, Floats]:
     """One spot anywhere, and no other light."""
     return _within(rng, count, chosen), np.zeros(1)
 
@@ -110,7 +110,7 @@ class FrameSet:
     peak_e: float = 2000.0
     bits: int = 12
     turned: bool = False
-    scenery: Scenery = alone
+    scenery: Scenery = single_spot
     breaks: Breaks | None = None
     sun: bool = True
 

@@ -289,8 +289,8 @@ def main() -> None:
                 begin = time.process_time()
                 call()
                 best[side] = min(best[side], 1e3 * (time.process_time() - begin))
-        told = compare(*results)
-        cells = [name, size, *(f"{ms:.2f}" for ms in (*best, best[1] / best[0])), told]
+        agreement = compare(*results)
+        cells = [name, size, *(f"{ms:.2f}" for ms in (*best, best[1] / best[0])), agreement]
         print("|", " | ".join(cells), "|")
 
 

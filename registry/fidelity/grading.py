@@ -148,7 +148,7 @@ def _sensor(study: Study, pipelines: Sequence[RunnablePipeline]) -> list[Departu
         basis = max((best.basis[a] for a in weak), key=BASES.index)
         said = "recalled" if basis == "recalled" else "chosen"
         what = " and ".join(f"{a} ({getattr(best, a)})" for a in weak)
-        reasons = "; ".join(dict.fromkeys(best.assumed[a] for a in weak))
+        reasons = "; ".join(dict.fromkeys(best.assumptions[a] for a in weak))
         return [
             Departure(
                 "sensor",
@@ -209,9 +209,9 @@ def _methods(study: Study, facts: Facts, ran: Sequence[FittedPipeline]) -> list[
                 found += _not_stated(study, attribute, chosen)
             elif study.has_nearest(attribute, value):
                 name = study.names[attribute, value].name
-                found.append(_nearest(attribute, value, name, chosen))
+                found.append(_nearest_departure(attribute, value, name, chosen))
             else:
-                found += _stated(facts, attribute, value, chosen)
+                found += _stated_departures(facts, attribute, value, chosen)
     bare = [d for d in found if d.value == _BEHIND]
     return [d for d in found if d.value != _BEHIND] + bare[:1]
 
@@ -231,7 +231,9 @@ def _not_stated(
         yield Departure(part, "None", text, f"the study itself, if it has any {attribute}")
 
 
-def _nearest(attribute: str, value: str, name: str, chosen: Sequence[ChosenMethod]) -> Departure:
+def _nearest_departure(
+    attribute: str, value: str, name: str, chosen: Sequence[ChosenMethod]
+) -> Departure:
     """Return the departure of a method that the taxonomy has only the nearest value for."""
     running = _names([one for one in chosen if value in one.runs])
     text = f"{name} is not built here" + (f", {running} in its place" if running else "")
@@ -239,7 +241,7 @@ def _nearest(attribute: str, value: str, name: str, chosen: Sequence[ChosenMetho
     return Departure(part, value, text, f"an implementation of {name}")
 
 
-def _stated(
+def _stated_departures(
     facts: Facts, attribute: str, value: str, chosen: Sequence[ChosenMethod]
 ) -> Iterable[Departure]:
     """Give the departure of a method that a study states."""
@@ -249,7 +251,8 @@ def _stated(
     if attribute == "extractor":
         part = "extractor"
     running = [one for one in chosen if value in one.runs]
-    missed = [one.missed for one in running if one.missed and one.missed.model == value]
+    variants = [one.other_variant for one in running if one.other_variant]
+    missed = [variant for variant in variants if variant.model == value]
     if not running:
         instead = _names([one for one in chosen if one.stands_for == value])
         text = f"its {name} is missing" + (f", {instead} in its place" if instead else "")

@@ -17,10 +17,10 @@ class RunnablePipeline:
     """An extractor and a model, by name, on a sensor of the study, with what each rests on.
 
     ``stages`` are the model's by their taxonomy values: compensations, and the model itself last.
-    ``basis`` says of detector, mask, extractor and model what they rest on, ``assumed`` of those
-    that are not stated by what rule they stand there. ``datasets`` are all that it can be scored
-    on; ``settings`` those of them that stand for the study, each under a condition, the one that
-    tells most first.
+    ``basis`` says of detector, mask, extractor and model what they rest on, ``assumptions`` of
+    those that are not stated by what rule they stand there. ``datasets`` are all that it can be
+    scored on; ``settings`` those of them that stand for the study, each under a condition, the one
+    that tells most first.
     """
 
     detector: str
@@ -33,7 +33,7 @@ class RunnablePipeline:
     datasets: tuple[str, ...]
     settings: tuple[DatasetCondition, ...]
     basis: Mapping[str, Basis] = field(hash=False)
-    assumed: Mapping[str, str] = field(hash=False)
+    assumptions: Mapping[str, str] = field(hash=False)
 
     @property
     def strength(self) -> list[int]:
@@ -51,7 +51,7 @@ class RunnablePipeline:
             "model_taxonomy": self.model_taxonomy,
             "stages": list(self.stages),
             "basis": dict(self.basis),
-            "assumed": dict(self.assumed),
+            "assumed": dict(self.assumptions),
             "datasets": list(self.datasets),
             "settings": [setting.to_dict() for setting in self.settings],
         }

@@ -40,12 +40,12 @@ class MethodRole:
 class NameInStudy:
     """What a study itself calls one of its values.
 
-    ``nearest`` says that the taxonomy has no such value and that the one given is only the nearest
-    to it: what runs that value is not the study's own.
+    ``is_nearest`` says that the taxonomy has no such value and that the one given is only the
+    nearest to it: what runs that value is not the study's own.
     """
 
     name: str
-    nearest: bool
+    is_nearest: bool
 
 
 @dataclass(frozen=True)
@@ -68,9 +68,9 @@ class Study:
 
     ``values`` holds the stated values only; an attribute whose cell is empty is absent from it
     and stands in ``unknown`` with the note beside the empty cell. ``roles`` are those of
-    (attribute, value), where one is known; ``combined`` says which detector goes with which mask
-    where not every one goes with every other. ``names`` are what a study after the survey calls its
-    values of (attribute, value); ``verified`` who confirmed what is said here.
+    (attribute, value), where one is known; ``combinations`` says which detector goes with which
+    mask where not every one goes with every other. ``names`` are what a study after the survey
+    calls its values of (attribute, value); ``verifications`` who confirmed what is said here.
     """
 
     key: str
@@ -85,10 +85,10 @@ class Study:
     values: Mapping[str, tuple[AttributeValue, ...]]
     unknown: Mapping[str, str]
     roles: Mapping[tuple[str, str], MethodRole] = field(default_factory=dict, hash=False)
-    combined: tuple[tuple[str, str], ...] = ()
+    combinations: tuple[tuple[str, str], ...] = ()
     edition: str = SURVEY
     names: Mapping[tuple[str, str], NameInStudy] = field(default_factory=dict, hash=False)
-    verified: tuple[Verification, ...] = ()
+    verifications: tuple[Verification, ...] = ()
     type: str = "unknown"  # journal, conference, preprint, thesis, ...
 
     def role(self, attribute: str, value: str) -> str:
@@ -103,25 +103,25 @@ class Study:
     def has_nearest(self, attribute: str, value: str) -> bool:
         """Say whether a value is only the nearest in the taxonomy to what the study has."""
         name = self.names.get((attribute, value))
-        return name is not None and name.nearest
+        return name is not None and name.is_nearest
 
     @cached_property
     def architectures(self) -> tuple[tuple[str, str], ...]:
         """Detector and mask of each sensor that the study can have had; empty if one is unknown."""
         every = itertools.product(self.of("detector"), self.of("mask"))
-        return self.combined or tuple(every)
+        return self.combinations or tuple(every)
 
     def has_sensor(self, values: Mapping[str, str | None]) -> bool:
         """Say whether a sensor of the study can have these values of detector and mask."""
         pair = (values.get("detector"), values.get("mask"))
-        return not self.combined or None in pair or pair in self.combined
+        return not self.combinations or None in pair or pair in self.combinations
 
     def of(self, attribute: str) -> tuple[str, ...]:
         """Return the stated values of an attribute, without repetition; empty if unknown."""
-        return self._stated.get(attribute, ())
+        return self._stated_values.get(attribute, ())
 
     @cached_property
-    def _stated(self) -> Mapping[str, tuple[str, ...]]:
+    def _stated_values(self) -> Mapping[str, tuple[str, ...]]:
         return {a: tuple(dict.fromkeys(v.value for v in cells)) for a, cells in self.values.items()}
 
     def number(self, attribute: str) -> float | None:
@@ -154,7 +154,7 @@ class Study:
             "url": self.url,
             "identity": self.identity,
             "edition": self.edition,
-            "verified": [each.to_dict() for each in self.verified],
+            "verified": [each.to_dict() for each in self.verifications],
             "values": {attribute: list(self.of(attribute)) for attribute in self.values},
         }
 
@@ -194,5 +194,5 @@ class Study:
         found = self.names.get((attribute, value))
         return {
             "name_in_study": "" if found is None else found.name,
-            "nearest": found is not None and found.nearest,
+            "nearest": found is not None and found.is_nearest,
         }

@@ -165,7 +165,7 @@ def _check_study(reader: _Reader, found: Mapping[str, str]) -> None:
     if wrong := source_fault(found["url"], known.hosts):
         reader.fault(f"url: {wrong}", "url")
     for column in ("key", "doi"):
-        if taken := known.taken.get(found[column].casefold()):
+        if taken := known.used_names.get(found[column].casefold()):
             reader.fault(f"{column} {found[column]}: {taken}", column)
     _year(reader, found)
 
@@ -218,7 +218,7 @@ def _check_value(reader: _Reader, definition: Definition, cells: Row, at: int) -
         if value not in definition.words:
             near = reader.vocabulary.spellings.get(name, ())
             message = f"{name} {value!r}: {one_of(value, definition.words, near)}"
-    elif wrong := number_fault(value, definition.least, definition.most):
+    elif wrong := number_fault(value, definition.minimum, definition.maximum):
         message = f"{name}: {wrong}"
     if message:
         reader.fault(message, name, at, "value")
@@ -231,9 +231,9 @@ def _check_evidence(reader: _Reader, name: str, cells: Row, at: int) -> None:
         reader.fault(f"{name}: expected a basis, got none", name, at, "basis")
         return
     reader.word(basis, bases, name, at, "basis")
-    told = TOLD.get(basis, "")
-    if told and not cells[told]:
-        reader.fault(f"{name}: the basis {basis} needs a {told}", name, at, "basis")
+    column = TOLD.get(basis, "")
+    if column and not cells[column]:
+        reader.fault(f"{name}: the basis {basis} needs a {column}", name, at, "basis")
     if wrong := source_fault(cells["source"], reader.vocabulary.hosts):
         reader.fault(f"source: {wrong}", name, at, "source")
 
@@ -252,7 +252,7 @@ def _name_of(
         reader.fault(message, attribute, at, _FLAG)
     if not name:
         return
-    if not row["value"] or not reader.vocabulary.definitions[attribute].named:
+    if not row["value"] or not reader.vocabulary.definitions[attribute].has_names:
         reader.fault("name: only of a value of the taxonomy", attribute, at, "name")
     of = {column: row[column] for column in ("study", "attribute", "value")}
     yield "names", {**of, "name": name, _FLAG: "true" if flag is True else "false"}

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from files.reading import LARGEST, FileRefusedError, read_bytes
-from survey_data.nearest import nearest
+from survey_data.nearest import nearest_name
 from survey_data.problems import SurveyImportError
 
 _MOST_LISTED = 12
@@ -60,7 +60,7 @@ def one_of(value: object, words: Iterable[str], near: Iterable[str] = ()) -> str
     """
     allowed = list(words)
     spelt = dict(each.rsplit("=", 1) for each in near)
-    meant = nearest(str(value), [*allowed, *spelt], cutoff=0.5)
+    meant = nearest_name(str(value), [*allowed, *spelt], cutoff=0.5)
     hint = f", did you mean {spelt.get(meant, meant)}?" if meant else ""
     listed = ", ".join(allowed[:_MOST_LISTED]) + (", ..." if len(allowed) > _MOST_LISTED else "")
     return f"expected one of {listed}{hint}"

@@ -68,8 +68,8 @@ def empty_template(vocabulary: Vocabulary, publication: Row | None = None) -> st
             f"{column} = {_format_value(column, known.get(column, ''))}",
         ]
     bases = "; ".join(f"{name} ({_first(said)})" for name, said in vocabulary.bases.items())
-    told = {"bases": "\n#             ".join(_wrap(bases)), "roles": ", ".join(vocabulary.roles)}
-    lines += ["", _EVIDENCE.format(**told)]
+    values = {"bases": "\n#             ".join(_wrap(bases)), "roles": ", ".join(vocabulary.roles)}
+    lines += ["", _EVIDENCE.format(**values)]
     for definition in vocabulary.definitions.values():
         lines += [*_of_attribute(definition), ""]
     return "\n".join([*lines, _SENSORS])
@@ -115,7 +115,7 @@ def _of_attribute(definition: Definition) -> Iterator[str]:
         for value, name in definition.words.items():
             yield f"#   {value}" + ("" if name == value else f": {name}")
     else:
-        yield f"#   a number from {definition.least:g} to {definition.most:g}"
+        yield f"#   a number from {definition.minimum:g} to {definition.maximum:g}"
     yield f"# [[{definition.attribute}]]"
     yield '# value = ""' if definition.words else "# value ="
     yield from ('# basis = ""', '# source = ""', '# note = ""')

@@ -22,7 +22,8 @@ _TABLES = (
 class Definition:
     """An attribute: its words with their names, or the limits of its number.
 
-    ``named`` says whether a study may have a name of its own for a value: the taxonomy's values.
+    ``has_names`` says whether a study may have a name of its own for a value: the taxonomy's
+    values.
     """
 
     attribute: str
@@ -31,9 +32,9 @@ class Definition:
     words: Mapping[str, str]
     multiple: bool
     complete: bool
-    least: float
-    most: float
-    named: bool
+    minimum: float
+    maximum: float
+    has_names: bool
 
 
 @dataclass(frozen=True)
@@ -41,8 +42,8 @@ class Vocabulary:
     """What is allowed in a template.
 
     ``bases`` and ``words`` (by column of the study) are closed lists, ``patterns`` what a text has
-    to match, ``forms`` the same for people, ``taken`` keys and DOIs in lower case with whose they
-    are, ``hosts`` who publishes where (`survey_data.sources`), ``spellings`` other names of an
+    to match, ``forms`` the same for people, ``used_names`` keys and DOIs in lower case with whose
+    they are, ``hosts`` who publishes where (`survey_data.sources`), ``spellings`` other names of an
     attribute's values, written ``spelling=value``.
     """
 
@@ -52,7 +53,7 @@ class Vocabulary:
     patterns: Mapping[str, str]
     years: tuple[int, int]
     roles: Sequence[str]
-    taken: Mapping[str, str]
+    used_names: Mapping[str, str]
     hosts: Mapping[str, Host]
     spellings: Mapping[str, Sequence[str]]
     forms: Mapping[str, str] = field(
@@ -104,7 +105,7 @@ def vocabulary(directory: Path = DATA_DIRECTORY) -> Vocabulary:
         patterns={name: found["pattern"] for name, found in studies.items() if "pattern" in found},
         years=(int(studies["year"]["minimum"]), int(studies["year"]["maximum"])),
         roles=constraints["extension_roles"]["role"]["enum"],
-        taken=taken,
+        used_names=taken,
         hosts={row["host"]: Host(**row) for row in tables.sources},
         spellings=spellings,
     )
@@ -132,7 +133,7 @@ def _definition(row: Mapping[str, str], tables: Any) -> Definition:
         words=_words(row, tables),
         multiple=row["multiple"] != "false",
         complete=row["complete"] == "true",
-        least=float(row["min"] or "-inf"),
-        most=float(row["max"] or "inf"),
-        named=row["kind"] == "categorical",
+        minimum=float(row["min"] or "-inf"),
+        maximum=float(row["max"] or "inf"),
+        has_names=row["kind"] == "categorical",
     )

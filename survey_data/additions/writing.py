@@ -64,8 +64,8 @@ def read_study(
     document = TomlDocument(path.name, {}, {})
     if attributes is not None or beside.is_file():
         document = read_toml(beside)
-    told = document.values.get("key")
-    wanted = key or (told if isinstance(told, str) else None)
+    stated_key = document.values.get("key")
+    wanted = key or (stated_key if isinstance(stated_key, str) else None)
     publication = choose(read_publications(path), wanted, path.name)
     stated = {"identity": "confirmed", "type": "unknown"}
     publication = {**stated, **{name: value for name, value in publication.items() if value}}

@@ -128,7 +128,7 @@ class FindingVerdict:
         }
 
 
-def whole(clauses: Iterable[Verdict]) -> Verdict:
+def finding_verdict(clauses: Iterable[Verdict]) -> Verdict:
     """Return the verdict of a finding from those of its clauses."""
     found = set(clauses)
     if found == {"reproduced"}:
@@ -167,7 +167,7 @@ class Vocabulary:
         )
         return None if value in known else f"unknown value {value!r} of {ranked}"
 
-    def rankable(self) -> set[str]:
+    def rankable_attributes(self) -> set[str]:
         """Return everything `expects` may rank."""
         return {*self.values, *_CATEGORY_OF, _PAIR, "year"}
 
@@ -185,10 +185,10 @@ def parse_clause(row: Mapping[str, Any], vocabulary: Vocabulary) -> Clause:
         raise FindingSyntaxError("kind", f"unknown kind {kind!r}; expected one of {KINDS}")
     given = tuple(_parse_given(row["given"], vocabulary))
     ranked, colon, listed = str(row["expects"]).partition(": ")
-    if not colon or ranked not in vocabulary.rankable():
+    if not colon or ranked not in vocabulary.rankable_attributes():
         raise FindingSyntaxError(
             "expects",
-            f"expected 'attribute: values' with one of {sorted(vocabulary.rankable())}, "
+            f"expected 'attribute: values' with one of {sorted(vocabulary.rankable_attributes())}, "
             f"got {row['expects']!r}",
         )
     values = tuple(listed.split(">" if kind == "order" else "|"))
@@ -326,10 +326,10 @@ def _counts(
 
 def _judge(tally: Tally) -> Verdict:
     """Judge the counts that the clause hangs on."""
-    if not tally.decided:
+    if not tally.is_decided:
         return "undecidable"
     if tally.kind == NO_MAJORITY:
-        return "reproduced" if 2 * tally.most <= tally.counted else "contradicted"
+        return "reproduced" if 2 * tally.largest_count <= tally.counted else "contradicted"
     if tally.absent:
         return "contradicted"
     if tally.kind in OCCURRING or tally.closest is None:

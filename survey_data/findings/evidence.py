@@ -31,12 +31,12 @@ class Tally:
     matching: int
 
     @property
-    def decided(self) -> bool:
+    def is_decided(self) -> bool:
         """Whether enough studies have a known value."""
         return self.counted >= LEAST_COUNTED
 
     @property
-    def most(self) -> int:
+    def largest_count(self) -> int:
         """Studies of the most frequent value that is named."""
         return max(self.named.values(), default=0)
 
@@ -70,7 +70,7 @@ class Tally:
 def settled_by(tally: Tally) -> str:
     """Say on which counts the verdict rests, and which evidence would turn or decide it."""
     unknown = tally.matching - tally.counted
-    if not tally.decided:
+    if not tally.is_decided:
         wanted = LEAST_COUNTED - tally.counted
         known = f"with a known {_in_words(tally.ranked)}"
         if unknown >= wanted:

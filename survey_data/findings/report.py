@@ -20,8 +20,8 @@ from survey_data.findings.checks import (
     FindingVerdict,
     Vocabulary,
     evaluate,
+    finding_verdict,
     study_values,
-    whole,
 )
 from survey_data.tables import SurveyTables
 from survey_data.validation.rules import count_rows
@@ -160,7 +160,7 @@ def _finding(
     tested = tuple(clauses[str(row["id"])])
     return FindingVerdict(
         id=str(row["id"]),
-        verdict=whole(clause.verdict for clause in tested),
+        verdict=finding_verdict(clause.verdict for clause in tested),
         survey_section=str(row["survey_section"]),
         statement=str(row["statement"]),
         not_tested="" if pd.isna(row["not_tested"]) else str(row["not_tested"]),

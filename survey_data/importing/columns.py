@@ -11,7 +11,7 @@ import pandas as pd
 
 from survey_data.importing.text_similarity import normalise, similarity
 from survey_data.importing.values import UnreadableValueError, ValueReader, column_unit
-from survey_data.nearest import nearest
+from survey_data.nearest import nearest_name
 from survey_data.problems import SurveyImportError
 from survey_data.tables import SurveyTables
 
@@ -186,7 +186,7 @@ def _check_overrides(
 
 
 def _nearest(text: str, names: list[str]) -> str:
-    near = nearest(text, names, cutoff=0.5)
+    near = nearest_name(text, names, cutoff=0.5)
     return f" (did you mean {near!r}?)" if near else ""
 
 

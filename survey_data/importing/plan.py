@@ -300,7 +300,10 @@ def _compare(
         cell = ours.get((study, attribute), _Cell((), "unknown"))
         theirs = tuple(values)
         # The survey may print a parent whose kind rests on less: theirs has to be one of its kinds.
-        against = any(not told & set(theirs) for told in printed.get((study, attribute), ()))
+        against = any(
+            not printed_values & set(theirs)
+            for printed_values in printed.get((study, attribute), ())
+        )
         outranked = against or rank[cell.basis] < rank[AUTHORS_BASIS]
         if _same_values(cell.values, theirs):
             if rank[cell.basis] <= rank[AUTHORS_BASIS]:
@@ -343,8 +346,8 @@ def _print_text(tables: SurveyTables) -> dict[tuple[str, str], list[set[str]]]:
     found: dict[tuple[str, str], list[set[str]]] = {}
     for cell in tables.study_tables.to_dict("records"):
         study, attribute, label = str(cell["study"]), str(cell["attribute"]), str(cell["value"])
-        told = {label} | meant.get((attribute, label), set())
-        found.setdefault((study, attribute), []).append(told)
+        values = {label} | meant.get((attribute, label), set())
+        found.setdefault((study, attribute), []).append(values)
     return found
 
 

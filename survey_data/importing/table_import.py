@@ -169,7 +169,7 @@ def _edit(folder: Path, plan: ImportPlan, doi: str) -> str:
     rows = [cells for _, cells in read_records(folder / file_name(_TABLE), header).rows]
     waiting = {(edit.study, edit.attribute): edit for edit in plan.edits}
     last = {cells[0]: index for index, cells in enumerate(rows)}
-    standing = {(cells[0], cells[1]) for cells in rows}
+    present = {(cells[0], cells[1]) for cells in rows}
     written: set[tuple[str, str]] = set()
     edited: list[list[str]] = []
     for index, cells in enumerate(rows):
@@ -184,7 +184,7 @@ def _edit(folder: Path, plan: ImportPlan, doi: str) -> str:
             edited += [
                 row
                 for (study, attribute), edit in waiting.items()
-                if study == cells[0] and (study, attribute) not in standing
+                if study == cells[0] and (study, attribute) not in present
                 for row in _rows_of(edit, [], doi)
             ]
     return csv_text(header, edited)

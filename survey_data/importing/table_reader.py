@@ -32,7 +32,7 @@ def read_table(path: str | Path, sheet: str | None = None) -> pd.DataFrame:
     Parameters
     ----------
     path : str or Path
-        The file. XLSX is told by its content and its suffix, which must agree.
+        The file. XLSX is recognised by its content and its suffix, which must agree.
     sheet : str, optional
         Sheet of the workbook; by default the first that is not empty.
 

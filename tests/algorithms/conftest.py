@@ -325,14 +325,14 @@ def coverage_of() -> Callable[..., float]:
         first, second = tangent_axes(sun)
         held = []
         for seed in range(200):
-            rng, read, told = np.random.default_rng(seed), features, sun
+            rng, read, stated = np.random.default_rng(seed), features, sun
             if of_features:
                 read = features + rng.normal(0.0, of_features, features.shape)
             else:
                 off = rng.normal(0.0, 2e-4, (2, len(sun), 1))
-                told = sun + off[0] * first + off[1] * second
-                told = told / np.linalg.norm(told, axis=1, keepdims=True)
-            model.learn(read, told, {})
+                stated = sun + off[0] * first + off[1] * second
+                stated = stated / np.linalg.norm(stated, axis=1, keepdims=True)
+            model.learn(read, stated, {})
             for parameter, value in zip(model.fitted_parameters(), truth, strict=True):
                 low, high = parameter.interval()
                 held.append(low <= value <= high)

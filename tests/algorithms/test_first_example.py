@@ -37,10 +37,10 @@ def test_an_image_of_ones_own_takes_four_lines(
     found = names["found"]
     assert found.features == pytest.approx(np.array([[41.3, 25.8]]), abs=0.1)  # type: ignore[attr-defined]
     assert (found.deviations < 0.05).all()  # type: ignore[attr-defined]
-    assert QualityFlag(found.doubts[0]) == QualityFlag(0)  # type: ignore[attr-defined]
+    assert QualityFlag(found.flags[0]) == QualityFlag(0)  # type: ignore[attr-defined]
     assert cv2.imwrite("sun.png", np.full((60, 80), 20, dtype=dtype))
     exec("\n".join(lines), names)
-    assert QualityFlag(names["found"].doubts[0]) == QualityFlag.NO_SPOT  # type: ignore[attr-defined]
+    assert QualityFlag(names["found"].flags[0]) == QualityFlag.NO_SPOT  # type: ignore[attr-defined]
 
 
 def test_a_picture_in_colour_is_read_by_its_luminance_or_refused(

@@ -19,7 +19,7 @@ def case(request, design_for, observations_for):
     return cls.for_sensor(design_for(cls)), observations_for(cls)
 
 
-def test_features_are_those_of_extract_and_doubts_say_what_is_missing(case):
+def test_features_are_those_of_extract_and_flags_say_what_is_missing(case):
     extractor, observations = case
     observations = observations.copy()
     observations[1] = 0
@@ -29,10 +29,10 @@ def test_features_are_those_of_extract_and_doubts_say_what_is_missing(case):
     n, f = expected.shape
     assert found.covariance.shape == (n, f, f)
     assert found.covariance.dtype == np.float64
-    assert found.doubts.shape == (n,)
+    assert found.flags.shape == (n,)
     missing = np.isnan(expected).any(axis=1)
     assert missing[1]
-    assert (found.doubts[missing] != 0).all()
+    assert (found.flags[missing] != 0).all()
     assert np.isnan(found.covariance[missing]).all()
     stated = ~np.isnan(found.covariance).any(axis=(1, 2))
     assert (np.linalg.eigvalsh(found.covariance[stated]) > 0).all()
@@ -43,7 +43,7 @@ def test_a_single_sample_is_a_batch_of_one(case):
     one, batch = extractor.measure(observations[0]), extractor.measure(observations[:1])
     np.testing.assert_array_equal(one.features, batch.features)
     np.testing.assert_array_equal(one.covariance, batch.covariance)
-    np.testing.assert_array_equal(one.doubts, batch.doubts)
+    np.testing.assert_array_equal(one.flags, batch.flags)
 
 
 def test_bad_pixels_do_not_count_or_the_mask_is_refused(case):
@@ -107,7 +107,7 @@ def test_missing_pixels_are_bad_pixels(case, masked):
     found = extractor.measure(broken)
     expected = extractor.measure(without_bad(whole, bad, "any"))
     np.testing.assert_array_equal(found.features, expected.features)
-    np.testing.assert_array_equal(found.doubts, expected.doubts)
+    np.testing.assert_array_equal(found.flags, expected.flags)
 
 
 def test_a_frame_without_a_pixel_has_no_spot():
@@ -118,7 +118,7 @@ def test_a_frame_without_a_pixel_has_no_spot():
         BasicCentroid().measure(frame, np.isnan(frame)).features, [[3.0, 2.0]]
     )
     found = BasicCentroid().measure(np.full((5, 5), np.nan))
-    assert QualityFlag(found.doubts[0]) == QualityFlag.NO_SPOT
+    assert QualityFlag(found.flags[0]) == QualityFlag.NO_SPOT
 
 
 def test_shapes_that_do_not_agree_are_refused():

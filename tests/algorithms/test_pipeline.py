@@ -28,7 +28,7 @@ DESIGN = SensorGeometry(focal_length_mm=0.3, pixel_pitch_mm=0.01, centre_px=(20.
 
 @dataclass(frozen=True)
 class Given(Extractor):
-    """Gives what it is told to."""
+    """Gives what it was given."""
 
     about: ClassVar = AboutExtractor(
         name="given", taxonomy="BCM", observation=Observation.FRAMES, kind=FeatureKind.SPOT

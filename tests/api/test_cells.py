@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from api.cells import cell, plain
+from api.cells import cell, plain_value
 
 
 @pytest.mark.parametrize(
@@ -32,4 +32,4 @@ def test_a_cell_is_spelled_one_way(value, text):
 
 def test_what_no_document_holds_is_refused():
     with pytest.raises(TypeError, match="expected text, numbers, lists and mappings; got complex"):
-        plain([1j])
+        plain_value([1j])

@@ -75,7 +75,7 @@ def test_what_errs_far_less_under_a_condition_is_named_with_its_share(atlas, kno
     names = ["CMOS:Encoded", "CMOS:Single-Ap.", "CMOS:Multi-Ap.", "QPD:Single-Ap."]
     named = 0
     for item in compare_architectures(known, names)["items"]:
-        for condition, told in item["conditions"].items():
+        for condition, scored in item["conditions"].items():
             asked = f"/v1/leaderboard/{item['dataset']}?condition={condition}&limit=500"
             rows = [
                 row
@@ -83,12 +83,12 @@ def test_what_errs_far_less_under_a_condition_is_named_with_its_share(atlas, kno
                 if row["rms_deg"] is not None and row["availability"] >= 0.5
             ]
             least = min(rows, key=lambda row: row["rms_deg"])
-            if told["rms_deg"] is None or told["rms_deg"] <= 3 * least["rms_deg"]:
-                assert told["finer"] is None
+            if scored["rms_deg"] is None or scored["rms_deg"] <= 3 * least["rms_deg"]:
+                assert scored["finer"] is None
                 continue
             named += 1
-            assert told["finer"]["rms_deg"] == least["rms_deg"]
-            for member, value in told["finer"].items():
+            assert scored["finer"]["rms_deg"] == least["rms_deg"]
+            for member, value in scored["finer"].items():
                 assert value == least[member]
     assert named >= 0
     found = compare_pipelines(known, DATASET, ["bctm:spm", "mirror:homography"])
@@ -104,8 +104,8 @@ def test_what_is_far_finer_on_a_part_of_the_samples_stands_beside_the_best(known
     one, other = compare_architectures(known, ["CMOS:Multi-Ap.", "CMOS:Single-Ap."])["items"]
     assert one["finer"] == {name.removeprefix("finer_"): value for name, value in FINER.items()}
     assert other["finer"] is None
-    told, nothing = csv.DictReader(io.StringIO(csv_of(columns_of(ComparedRow), [one, other])))
-    assert {name: told[name] for name in FINER} == {n: cell(v) for n, v in FINER.items()}
+    scored, nothing = csv.DictReader(io.StringIO(csv_of(columns_of(ComparedRow), [one, other])))
+    assert {name: scored[name] for name in FINER} == {n: cell(v) for n, v in FINER.items()}
     assert {nothing[name] for name in FINER} == {""}
 
 

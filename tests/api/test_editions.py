@@ -85,8 +85,8 @@ def test_flows_and_the_evidence_map_count_later_studies_only_where_asked(
 
 def test_a_recommendation_names_later_studies_only_where_asked(atlas: Client) -> None:
     def keys(edition: str) -> set[str]:
-        told = atlas.get(f"/v1/recommendations?limit=500&edition={edition}").json()
-        return {key for one in told["architectures"] for key in one["studies"]}
+        document = atlas.get(f"/v1/recommendations?limit=500&edition={edition}").json()
+        return {key for one in document["architectures"] for key in one["studies"]}
 
     assert not keys("survey") & set(later())
     assert keys("all") >= keys("survey")
@@ -118,13 +118,13 @@ def test_search_finds_a_later_study_by_what_it_calls_itself(atlas: Client) -> No
 
 
 def test_what_is_only_the_nearest_is_neither_stated_nor_complete(atlas: Client) -> None:
-    told = atlas.get(f"/v1/studies/{LATER}").json()
-    cell = next(each for each in told["attributes"] if each["attribute"] == "model")
+    document = atlas.get(f"/v1/studies/{LATER}").json()
+    cell = next(each for each in document["attributes"] if each["attribute"] == "model")
     assert cell["nearest"]
     assert "sparse" in cell["name_in_study"]
-    assert told["state"] != "complete"
-    assert "model" in {gap["attribute"] for gap in told["gaps"]}
-    assert {pipeline["basis"]["model"] for pipeline in told["pipelines"]} == {"defaulted"}
+    assert document["state"] != "complete"
+    assert "model" in {gap["attribute"] for gap in document["gaps"]}
+    assert {pipeline["basis"]["model"] for pipeline in document["pipelines"]} == {"defaulted"}
 
 
 def test_editions_are_cited_by_version(atlas: Client) -> None:
@@ -167,9 +167,9 @@ def test_a_later_study_is_run_from_what_is_published() -> None:
         app, ["run", "Sharifi2026", "--condition", "nominal", "--format", "json"]
     )
     assert shown.exit_code == 0, shown.stderr
-    told = json.loads(shown.stdout)
-    assert told["scores"]
-    assert told["sources"]["measured"] == 0
+    document = json.loads(shown.stdout)
+    assert document["scores"]
+    assert document["sources"]["measured"] == 0
 
 
 def test_one_command_adds_a_study_another_removes_it_and_git_sees_nothing(tmp_path: Path) -> None:

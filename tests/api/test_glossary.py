@@ -10,13 +10,13 @@ from registry.studies import facts
 
 
 def test_every_value_of_the_taxonomy_has_its_name_in_full():
-    told = {(one.kind, one.term): one for one in glossary()}
+    terms = {(one.kind, one.term): one for one in glossary()}
     taxonomy = facts().taxonomy
     for attribute in ("detector", "mask", "extractor", "model", "task", "error", "accuracy"):
         for value in taxonomy.values(attribute):
-            assert told[attribute, value].name == taxonomy.name(attribute, value)
-            assert told[attribute, value].meaning.endswith(".")
-    assert told["detector", "CMOS"].name == "Complementary metal-oxide semiconductor imager"
+            assert terms[attribute, value].name == taxonomy.name(attribute, value)
+            assert terms[attribute, value].meaning.endswith(".")
+    assert terms["detector", "CMOS"].name == "Complementary metal-oxide semiconductor imager"
 
 
 def test_none_is_never_bare():
@@ -49,8 +49,8 @@ def test_a_table_that_is_not_sound_is_refused_with_its_line(tmp_path, monkeypatc
 
 
 def test_a_value_means_what_the_table_says_unless_two_attributes_have_it():
-    told = {(one.kind, one.term): one.meaning for one in glossary()}
+    terms = {(one.kind, one.term): one.meaning for one in glossary()}
     table = {one.term: one.meaning for one in module.words()}
-    assert told["detector", "CMOS"] == table["CMOS"]
+    assert terms["detector", "CMOS"] == table["CMOS"]
     assert "Slit" in table
-    assert told["mask", "Slit"] != told["model", "Slit"]
+    assert terms["mask", "Slit"] != terms["model", "Slit"]

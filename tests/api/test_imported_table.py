@@ -76,7 +76,7 @@ import survey_data
 from api.deposit import against_record, bundle
 from api.deposit.verification import verify
 from api.guide import site
-from benchmark.plan.combinations import scorable
+from benchmark.plan.combinations import scorable_plan
 from registry.resolution import resolve_all
 from registry.studies import facts
 
@@ -87,7 +87,8 @@ wrong += against_record.differences(made.directory, frames=("pd-slit",), anew=Fa
 warnings = site.build(out / "guide") if not site.missing_builders() else []
 json.dump({"survey": survey_data.__file__, "files": made.files, "wrong": wrong,
            "warnings": warnings, "pages": len(list((out / "guide").rglob("*.html"))),
-           "resolved": len(resolve_all(scorable())), "studies": len(facts().studies)}, sys.stdout)
+           "resolved": len(resolve_all(scorable_plan())),
+           "studies": len(facts().studies)}, sys.stdout)
 """
 
 
@@ -127,21 +128,21 @@ def run(code: str, directory: Path, *arguments: str) -> Any:
 
 @pytest.mark.slow
 def test_after_an_import_of_every_column_everything_is_served(imported: Path) -> None:
-    told = run(ASK, imported)
-    assert told["from_table"] > 128
-    assert told["asked"] > 400
-    assert told["failed"] == {}
+    output = run(ASK, imported)
+    assert output["from_table"] > 128
+    assert output["asked"] > 400
+    assert output["failed"] == {}
 
 
 @pytest.mark.slow
 def test_after_an_import_of_every_column_deposit_and_guide_are_built(
     imported: Path, tmp_path: Path
 ) -> None:
-    told = run(BUILD, imported, str(tmp_path))
-    assert told["survey"] == str(imported / "survey_data" / "__init__.py")
-    assert (told["wrong"], told["warnings"]) == ([], [])
-    assert told["pages"] > 20
-    assert told["resolved"] == told["studies"]
+    output = run(BUILD, imported, str(tmp_path))
+    assert output["survey"] == str(imported / "survey_data" / "__init__.py")
+    assert (output["wrong"], output["warnings"]) == ([], [])
+    assert output["pages"] > 20
+    assert output["resolved"] == output["studies"]
     attributes = (tmp_path / "deposit" / "survey" / "attributes.csv").read_bytes()
     assert attributes == (imported / "survey_data" / "attributes.csv").read_bytes()
     assert attributes.count(b",authors-table,") > 128

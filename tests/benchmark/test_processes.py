@@ -1,4 +1,4 @@
-"""Processes end with those they work for, and tidily when they are told to."""
+"""Processes end with those they work for, and tidily on a signal."""
 
 from __future__ import annotations
 

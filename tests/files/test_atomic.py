@@ -332,6 +332,6 @@ def test_an_error_of_a_file_being_made_names_its_place(tmp_path: Path) -> None:
             made.mkdir()
             (made / "sub" / "file").write_text("")
 
-    with pytest.raises(FileNotFoundError) as told:
+    with pytest.raises(FileNotFoundError) as raised:
         write()
-    assert told.value.filename == str(tmp_path / "out" / "sub" / "file")
+    assert raised.value.filename == str(tmp_path / "out" / "sub" / "file")

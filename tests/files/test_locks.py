@@ -13,7 +13,7 @@ import survey_data
 from files.locks import LockedError, lock_or_refuse, lock_path, wait_for_lock
 
 ROOT = Path(survey_data.__file__).parent.parent
-HOLDING = """
+LOCK_AND_WAIT = """
 import sys
 from pathlib import Path
 from files.locks import lock_or_refuse
@@ -31,7 +31,7 @@ def place(tmp_path: Path) -> Path:
 @pytest.fixture
 def holder(place: Path):
     """A process that holds the place until its standard input ends."""
-    command = [sys.executable, "-c", HOLDING, str(place)]
+    command = [sys.executable, "-c", LOCK_AND_WAIT, str(place)]
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=ROOT, text=True
     ) as process:

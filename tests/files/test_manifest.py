@@ -22,12 +22,12 @@ def folder(tmp_path):
     return tmp_path
 
 
-def told(folder, **options):
+def problems_of(folder, **options):
     return [str(problem) for problem in differences(folder, NAMES, **options)]
 
 
 def test_what_a_command_wrote_passes_and_nothing_else_is_left(folder):
-    assert told(folder) == []
+    assert problems_of(folder) == []
     assert sorted(p.name for p in folder.iterdir()) == ["inner", FILE, "table.csv"]
     assert not write_recorded(folder, {"table.csv": TABLE}), "unchanged"
 
@@ -55,12 +55,12 @@ def test_a_change_by_hand_is_named_by_its_cell(folder, old, new, said):
     path = folder / "table.csv"
     assert old in TABLE
     path.write_bytes(TABLE.replace(old, new).encode("latin-1" if "\xff" in new else "utf-8"))
-    assert said in told(folder)[0]
+    assert said in problems_of(folder)[0]
 
 
 def test_other_files_are_named_by_line_and_what_is_missing_or_extra_by_file(folder):
     (folder / "inner/said.json").write_text('{\n"a": 2\n}\n')
-    assert told(folder) == ["inner/said.json, row 2: not as its command wrote it"]
+    assert problems_of(folder) == ["inner/said.json, row 2: not as its command wrote it"]
     (folder / "inner/said.json").unlink()
     (folder / "new.csv").write_text("a\n")
     found = [str(p) for p in differences(folder, (*NAMES, "new.csv"))]
@@ -73,21 +73,23 @@ def test_other_files_are_named_by_line_and_what_is_missing_or_extra_by_file(fold
 def test_a_command_takes_over_only_what_it_writes_itself(folder):
     (folder / "table.csv").write_text(TABLE.replace("red", "rot"))
     write_recorded(folder, {"inner/said.json": "{}\n"})
-    assert [said.partition(":")[0] for said in told(folder)] == ["table.csv, row 2, column colour"]
+    assert [said.partition(":")[0] for said in problems_of(folder)] == [
+        "table.csv, row 2, column colour"
+    ]
 
 
 def test_a_missing_or_damaged_manifest_is_named(folder, tmp_path):
     for text in ("", "[]", '{"schema": 1}', '{"schema": 2, "files": {}}', '{"schema": NaN}'):
         (folder / FILE).write_text(text)
-        (said,) = told(folder)
+        (said,) = problems_of(folder)
         assert said.startswith(FILE)
         with pytest.raises(ValueError, match=FILE):
             write_recorded(folder, {"table.csv": TABLE})
     (folder / FILE).unlink()
-    assert told(folder) == []
-    assert told(folder, required=True) == [f"{FILE}: the file is missing"]
+    assert problems_of(folder) == []
+    assert problems_of(folder, required=True) == [f"{FILE}: the file is missing"]
     (folder / FILE).mkdir()
-    assert told(folder) == [f"{FILE}: expected a file, got a directory"]
+    assert problems_of(folder) == [f"{FILE}: expected a file, got a directory"]
 
 
 @pytest.mark.parametrize("killed_after", [0, 1, 2])
@@ -111,10 +113,10 @@ def test_what_a_kill_leaves_is_no_change_by_hand_and_the_next_run_ends_it(
     with pytest.raises(KeyboardInterrupt):
         write_recorded(folder, wanted)
     assert (folder / NEXT).exists()
-    assert told(folder) == []
+    assert problems_of(folder) == []
     monkeypatch.undo()
     write_recorded(folder, wanted)
-    assert told(folder) == []
+    assert problems_of(folder) == []
     assert not (folder / NEXT).exists()
     assert (folder / "inner/said.json").read_text() == "{}\n"
 

@@ -51,7 +51,7 @@ def maker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         process.kill()
 
 
-def test_leftovers_of_a_dead_process_are_removed_and_a_living_one_keeps_its_own(
+def test_stale_files_of_a_dead_process_are_removed_and_a_living_one_keeps_its_own(
     tmp_path: Path, maker: subprocess.Popen[str]
 ) -> None:
     made = [name for name in names(tmp_path) if name != "temporary"]
@@ -72,7 +72,7 @@ def test_leftovers_of_a_dead_process_are_removed_and_a_living_one_keeps_its_own(
     assert names(tmp_path / "temporary") == []
 
 
-def test_a_write_of_what_is_there_already_removes_leftovers_too(
+def test_a_write_of_what_is_there_already_removes_stale_files_too(
     tmp_path: Path, maker: subprocess.Popen[str]
 ) -> None:
     (tmp_path / "table.csv").write_text("whole")

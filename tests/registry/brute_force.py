@@ -51,7 +51,7 @@ def scores(condition: str) -> st.SearchStrategy[Score]:
         condition=st.just(condition),
         rms_deg=st.none() | numbers,
         availability=st.sampled_from([0.4, 0.5, 0.97, 1.0]),
-        available=st.booleans(),
+        is_available=st.booleans(),
         cones=cones,
     )
 
@@ -155,7 +155,7 @@ def error_over(row: MeasuredPipeline, score: Score, full_field: float | None) ->
                 return error
         if row.half_fov_deg is None or 2 * row.half_fov_deg < full_field:
             return math.inf
-    return math.inf if score.rms_deg is None or not score.available else score.rms_deg
+    return math.inf if score.rms_deg is None or not score.is_available else score.rms_deg
 
 
 def error_of(row: MeasuredPipeline, ask: Ask) -> float | None:
@@ -283,8 +283,8 @@ def brute_force(facts: Facts, ask: Ask, table: list[MeasuredPipeline]) -> Expect
     for pair in itertools.product(VALUES["detector"], VALUES["mask"]):
         there = {k: s for k, s in facts.studies.items() if pair in s.architectures}
         measured = on(pair, table)
-        meeting = {k for k, s in there.items() if has_what_is_asked(s, ask)}
-        if of_studies and not meeting and (included or there):
+        matching = {k for k, s in there.items() if has_what_is_asked(s, ask)}
+        if of_studies and not matching and (included or there):
             continue
         if refused(ask, "detector", {pair[0]}) or refused(ask, "mask", {pair[1]}):
             continue
@@ -293,13 +293,13 @@ def brute_force(facts: Facts, ask: Ask, table: list[MeasuredPipeline]) -> Expect
                 continue
             rows_of = measured.get((extractor, stages), [])
             errors = [e for row in rows_of if (e := error_of(row, ask)) is not None]
-            backing = {k for k in meeting if rows_of or states(there[k], ask)}
+            backing = {k for k in matching if rows_of or states(there[k], ask)}
             model = {k for k in backing if stands_for(there[k], stages)}
             taken = {k for k in model if extractor in there[k].of("extractor")}
             if errors if rows_of else taken:
                 error = min(errors) if errors else None
                 expected.designs[pair][extractor, stages] = Found(error, taken, model)
-                expected.studies[pair] = meeting
+                expected.studies[pair] = matching
     return expected
 
 

@@ -102,12 +102,12 @@ def test_an_error_is_judged_on_the_bench_asked_for_and_one_that_would_do_is_name
         answer = recommend({"max_error_deg": 0.01, "mask": "Single-Ap.", **asked}, [row])
         return [a.best.measured for a in answer.architectures if a.best.measured]
 
-    assert [one["units"]["meeting"] for one in measured(bench_deg=0.0)] == [10]
-    assert [one["units"]["meeting"] for one in measured(bench_deg=0.002)] == [10]
+    assert [one["units"]["within_limit"] for one in measured(bench_deg=0.0)] == [10]
+    assert [one["units"]["within_limit"] for one in measured(bench_deg=0.002)] == [10]
     assert measured() == []
     only = {"max_error_deg": 0.0042, "detector": "CMOS", "mask": "Single-Ap.", "survive": []}
     assert row.judge(draws=(None, 0.9)).error_deg > 0.0158
-    blocked = recommend({**only, "min_availability": 0.5}, [row]).blocked
+    blocked = recommend({**only, "min_availability": 0.5}, [row]).blocking_constraint
     assert blocked is not None
     assert "bench good to" in blocked.detail
 

@@ -21,7 +21,7 @@ from stand_ins import (
     stand_ins,
 )
 
-from benchmark.plan.combinations import scorable
+from benchmark.plan.combinations import scorable_plan
 from benchmark.plan.parts import installed_parts
 from benchmark.plan.shown import data_sets
 from registry.fidelity.grading import GRADES, Grade, tally, tally_text
@@ -132,7 +132,7 @@ def test_a_kind_that_is_not_stated_is_chosen_unless_a_model_is_known_to_do_it(
     on = (("PD", "Slit"),)
     assert parts(resolved(facts, on=on)) == ["compensation"]
     known = CompensatedModel("S0", "ECM", "Basic", "within", *OPENED[1:])
-    found = resolved(dataclasses.replace(facts, compensated=(known,)), on=on)
+    found = resolved(dataclasses.replace(facts, compensated_models=(known,)), on=on)
     assert (found.fidelity.grade, [p.model for p in found.pipelines]) == ("faithful", ["basic"])
 
 
@@ -142,7 +142,7 @@ def test_a_compensation_runs_ahead_of_the_model_of_its_equation(facts_of: Build)
     bare = resolved(facts, models=models)
     assert ([p.model for p in bare.pipelines], parts(bare)) == (["glass + spm"], ["model"])
     known = CompensatedModel("S0", "OCM", "LUT", "ahead", *OPENED[1:])
-    found = resolved(dataclasses.replace(facts, compensated=(known,)), models=models)
+    found = resolved(dataclasses.replace(facts, compensated_models=(known,)), models=models)
     assert [p.model for p in found.pipelines] == ["glass + lut"]
     assert found.fidelity.grade == "faithful"
 
@@ -159,8 +159,8 @@ def test_another_variant_than_the_studys_departs(facts_of: Build) -> None:
     assert "so it says" in without.fidelity.sentence
     found = resolved(facts, on=on, models=[balanced, raw])
     assert found.fidelity.grade == "faithful"
-    assert found.best is not None
-    assert (found.best.extractor, found.best.model) == (DIRECT.about.name, "raw")
+    assert found.best_pipeline is not None
+    assert (found.best_pipeline.extractor, found.best_pipeline.model) == (DIRECT.about.name, "raw")
 
 
 def test_a_study_stands_where_its_purpose_is_shown(facts_of: Build) -> None:
@@ -198,7 +198,7 @@ def test_where_its_own_sensor_does_not_fly_the_nearest_that_does_stands_in(facts
 
 def test_nothing_runs_of_a_study_without_a_simulated_sensor(facts_of: Build) -> None:
     found = resolved(facts_of([row()]), on=())
-    assert (found.fidelity.grade, found.state, found.best) == ("none", "none", None)
+    assert (found.fidelity.grade, found.state, found.best_pipeline) == ("none", "none", None)
 
 
 def test_grades_are_counted_nearest_first() -> None:
@@ -209,7 +209,7 @@ def test_grades_are_counted_nearest_first() -> None:
 
 @pytest.fixture(scope="module")
 def everything() -> dict[str, Resolution]:
-    return resolve_all(scorable(), data_sets=data_sets())
+    return resolve_all(scorable_plan(), data_sets=data_sets())
 
 
 def test_grades_of_the_survey_follow_from_their_departures(
@@ -222,9 +222,9 @@ def test_grades_of_the_survey_follow_from_their_departures(
             assert found.fidelity.grade == ("faithful", "close", "stand-in")[min(number, 2)], key
         study = survey.studies[key]
         if found.fidelity.grade == "faithful":
-            assert found.best is not None
+            assert found.best_pipeline is not None
             assert "None" not in (*study.of("model"), *study.of("extractor"))
-            assert not {"recalled", "defaulted"} & set(found.best.basis.values()), key
+            assert not {"recalled", "defaulted"} & set(found.best_pipeline.basis.values()), key
             assert set(study.of("extractor")) <= {p.extractor_taxonomy for p in found.pipelines}
             ran = {stage for p in found.pipelines for stage in p.stages}
             for value in study.of("model"):
@@ -252,7 +252,7 @@ def test_settings_of_the_survey_are_conditions_that_data_sets_have(
         ("Frezza2022", "pd-orbit", "nominal"),
         ("Nurgizat2021", "pva-maskless-panels", "albedo"),
         ("Hermoso2022b", "pva-maskless-panels", "hot"),  # the temperature of its panels
-        ("Zhang2022b", "pva-orbit", "nominal"),  # albedo and its cells' temperature, both told
+        ("Zhang2022b", "pva-orbit", "nominal"),  # albedo and its cells' temperature, both given
         ("Pita2014", "pva-maskless-pyramid", "nominal"),
         ("Chang2008", "cmos-single-aperture", "nominal"),  # a bench, the data set made after it
     ],
@@ -260,7 +260,7 @@ def test_settings_of_the_survey_are_conditions_that_data_sets_have(
 def test_studies_stand_where_what_they_are_about_is_shown(
     everything: dict[str, Resolution], key: str, dataset: str, condition: str
 ) -> None:
-    best = everything[key].best
+    best = everything[key].best_pipeline
     assert best is not None
     assert (best.settings[0].dataset, best.settings[0].condition) == (dataset, condition)
 
@@ -293,7 +293,7 @@ def test_ninety_studies_are_faithful(everything: dict[str, Resolution]) -> None:
 def test_assembly_that_drifts_is_compensated_on_a_flight(
     everything: dict[str, Resolution], key: str
 ) -> None:
-    best = everything[key].best
+    best = everything[key].best_pipeline
     assert best is not None
     assert data_sets()[best.settings[0].dataset].flies
     assert best.settings[0].purposes == ("flight",)
@@ -304,7 +304,7 @@ def test_a_network_against_albedo_reads_voltages_as_the_survey_describes_it(
     everything: dict[str, Resolution],
 ) -> None:
     for key in ("Soken2023", "Sozen2021"):
-        best = everything[key].best
+        best = everything[key].best_pipeline
         assert best is not None
         assert (best.extractor, best.model) == ("direct", "dnn")
         assert everything[key].fidelity.grade == "close"  # its mask is not known

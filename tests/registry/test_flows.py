@@ -49,8 +49,8 @@ def recount(facts: Facts, levels: Sequence[str]) -> pd.DataFrame:
         frame = frame.merge(long, how="left", on="study")
     if {"of detector", "of mask"} <= set(frame.columns):
         crossed = [
-            bool(facts.studies[study].combined)
-            and (detector, mask) not in facts.studies[study].combined
+            bool(facts.studies[study].combinations)
+            and (detector, mask) not in facts.studies[study].combinations
             for study, detector, mask in zip(
                 frame["study"], frame["of detector"], frame["of mask"], strict=True
             )

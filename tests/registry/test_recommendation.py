@@ -36,7 +36,7 @@ def test_designs_errors_and_studies_are_those_brute_force_finds(
     assert set(found) == set(expected.designs)
     assert answer.count == len(answer.architectures)
     assert answer.designs == sum(map(len, expected.designs.values()))
-    assert (answer.blocked is None) == bool(found)
+    assert (answer.blocking_constraint is None) == bool(found)
     for pair, architecture in found.items():
         designs = expected.designs[pair]
         assert set(architecture.studies) == expected.studies[pair]
@@ -147,9 +147,9 @@ def test_relaxations_give_what_they_promise_and_nothing_smaller_does(
 ) -> None:
     facts = facts_of(table)
     answer = recommend(ask, measured, facts=facts)
-    if answer.blocked is None:
+    if answer.blocking_constraint is None:
         return
-    blocked = answer.blocked
+    blocked = answer.blocking_constraint
     for relaxation in blocked.relaxations:
         relaxed = recommend(relaxation.apply(answer.requirements), measured, facts=facts)
         assert relaxed.count == relaxation.architectures > 0
@@ -184,7 +184,11 @@ def test_the_changed_limit_is_the_strictest_that_something_keeps(
 ) -> None:
     facts = facts_of(table)
     answer = recommend(dict([limit]), measured, facts=facts)
-    changes = [r for r in answer.blocked.relaxations if r.change] if answer.blocked else []
+    changes = (
+        [r for r in answer.blocking_constraint.relaxations if r.change]
+        if answer.blocking_constraint
+        else []
+    )
     for relaxation in changes:
         ((name, bound),) = relaxation.change.items()
         assert isinstance(bound, float)

@@ -113,9 +113,9 @@ def test_a_pipeline_is_judged_by_its_worst_condition_of_those_asked_for(
         )  # fmt: skip
     ask = {"survive": "albedo", "max_error_deg": 0.5}
     answer = recommend(ask, [row], facts=facts)
-    assert answer.blocked is not None
-    assert answer.blocked.constraints == ("max_error_deg",)
-    assert {tuple(r.drop) for r in answer.blocked.relaxations if r.drop} == {
+    assert answer.blocking_constraint is not None
+    assert answer.blocking_constraint.constraints == ("max_error_deg",)
+    assert {tuple(r.drop) for r in answer.blocking_constraint.relaxations if r.drop} == {
         ("max_error_deg",), ("survive",),
     }  # fmt: skip
 
@@ -130,7 +130,7 @@ def test_what_no_condition_tries_does_not_survive_it_and_the_answer_says_so(
     assert answer.document["untried"] == {"albedo": [{"detector": "CMOS", "mask": "Lens"}]}
 
 
-@pytest.mark.parametrize("broken", [worse(None), worse(0.2, available=False)])
+@pytest.mark.parametrize("broken", [worse(None), worse(0.2, is_available=False)])
 def test_a_refused_or_seldom_answered_condition_is_not_survived(
     facts_of: Callable[[Rows], Facts], broken: tuple[Score, ...]
 ) -> None:
@@ -182,7 +182,7 @@ def test_what_seldom_answers_keeps_no_limit_of_error_and_is_last_by_what_is_meas
     facts_of: Callable[[Rows], Facts],
 ) -> None:
     facts = by_mask(facts_of, "Slit", "Lens")
-    silent = pipeline(rms_deg=0.001, available=False, availability=0.7)
+    silent = pipeline(rms_deg=0.001, is_available=False, availability=0.7)
     rows = [silent, pipeline(dataset="e", mask="Lens", rms_deg=5.0)]
     assert masks_of(recommend({}, rows, sort="measured", facts=facts)) == ["Lens", "Slit"]
     assert masks_of(recommend({"max_error_deg": 6.0}, rows, facts=facts)) == ["Lens"]
@@ -208,7 +208,7 @@ def test_a_coarse_best_names_what_is_far_finer_where_it_answers(
     ):
         seldom = pipeline(
             extractor="grid", model="lut", stages=("LUT",), rms_deg=rms_deg,
-            available=False, availability=share,
+            is_available=False, availability=share,
         )  # fmt: skip
         best = only(recommend({}, [coarse, seldom], facts=facts)).best.measured
         assert best is not None
@@ -234,7 +234,7 @@ def test_what_is_finer_keeps_all_else_that_is_asked(
 ) -> None:
     seldom = pipeline(
         extractor="grid", extractor_taxonomy="MCAM", model="lut", stages=("LUT",), rms_deg=0.01,
-        available=False, availability=0.7, latency_us=9.0, half_fov_deg=45.0,
+        is_available=False, availability=0.7, latency_us=9.0, half_fov_deg=45.0,
     )  # fmt: skip
     coarse = pipeline(rms_deg=3.0, latency_us=1.0, hazards={"spin": worse(3.0, availability=1.0)})
     facts = one_study(facts_of)
@@ -355,7 +355,7 @@ def test_a_score_says_its_bound_its_answers_and_its_spread_over_units() -> None:
     (place,) = recommend({}, [row], sort="measured", limit=1).architectures
     assert place.best.measured is not None
     assert place.best.measured["units"] == {
-        "count": 3, "least_deg": 0.05, "largest_deg": 0.3, "meeting": None, "of": 10,
+        "count": 3, "least_deg": 0.05, "largest_deg": 0.3, "within_limit": None, "of": 10,
     }  # fmt: skip
     assert place.best.measured["latency_us"] == 3.0
     nominal = place.best.measured["nominal"]

@@ -197,15 +197,15 @@ def test_the_worst_question_is_explained_by_a_few_answers(
     count = Question.count
 
     def counted(question: Question) -> object:
-        answers.append(question.asked)
+        answers.append(question.requirements)
         return count(question)
 
     monkeypatch.setattr(Question, "count", counted)
     ask = worst_question(survey)
     assert set(Requirements.parse(ask, survey.taxonomy, survey.properties).names) == set(ask)
     answer = recommend(ask, facts=survey)
-    assert answer.blocked is not None
-    assert len(answer.blocked.constraints) > 1
+    assert answer.blocking_constraint is not None
+    assert len(answer.blocking_constraint.constraints) > 1
     assert 1 < len(answers) < 300
 
 

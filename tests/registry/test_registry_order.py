@@ -11,8 +11,8 @@ from registry.taxonomy import (
     Taxonomy,
     TaxonomyEntry,
     attribute_of,
-    nearest,
 )
+from survey_data.nearest import nearest_name
 
 Rows = list[Mapping[str, list[str]]]
 Build = Callable[[Rows], Facts]
@@ -135,7 +135,7 @@ def test_attributes_are_read_from_what_implies_them() -> None:
     [("ABCD", "abcd"), ("abxy", "abcd"), ("axyz", None), ("", None), ("slt", "Slit")],
 )
 def test_half_alike_is_near(text: str, found: str | None) -> None:
-    assert nearest(text, ["abcd", "Slit"]) == found
+    assert nearest_name(text, ["abcd", "Slit"]) == found
 
 
 def study(**values: list[str]) -> Study:

@@ -43,7 +43,7 @@ def test_none_is_a_value_and_not_a_missing_cell(survey: Facts) -> None:
 def test_nearest_finds_values_by_spelling_and_by_name(
     survey: Facts, level: str, text: str, meant: str | None
 ) -> None:
-    assert survey.taxonomy.nearest(level, text) == meant
+    assert survey.taxonomy.nearest_value(level, text) == meant
 
 
 def test_an_unknown_value_names_parameter_choices_and_nearest(survey: Facts) -> None:

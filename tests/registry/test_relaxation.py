@@ -22,9 +22,9 @@ STUDY = {
 
 def test_a_limit_nothing_tells_of_says_so(survey: Facts) -> None:
     answer = recommend({"task": "Accuracy", "max_latency_us": 5}, facts=survey)
-    assert answer.blocked is not None
-    assert answer.blocked.constraint == "max_latency_us"
-    assert answer.blocked.detail.endswith(
+    assert answer.blocking_constraint is not None
+    assert answer.blocking_constraint.constraint == "max_latency_us"
+    assert answer.blocking_constraint.detail.endswith(
         "Nothing measured or stated tells of at most 5 us a sample"
     )
 
@@ -52,9 +52,9 @@ def test_an_impossible_question_names_the_constraint_and_ways_out(survey: Facts)
 
 def test_no_studies_is_no_one_constraints_fault(facts_of: Callable[[Rows], Facts]) -> None:
     answer = recommend({"task": "Cost"}, facts=facts_of([]))
-    assert answer.blocked is not None
-    assert answer.blocked.constraints == ()
-    assert answer.blocked.relaxations == ()
+    assert answer.blocking_constraint is not None
+    assert answer.blocking_constraint.constraints == ()
+    assert answer.blocking_constraint.relaxations == ()
 
 
 #: An error, a field and a time that the questions below are beyond.
@@ -62,9 +62,9 @@ MEASURED: Mapping[str, object] = {"rms_deg": 0.2, "half_fov_deg": 30.0, "latency
 
 
 def blocked_of(answer: Recommendation) -> BlockingConstraint:
-    assert answer.blocked is not None
+    assert answer.blocking_constraint is not None
     assert answer.count == 0
-    return answer.blocked
+    return answer.blocking_constraint
 
 
 def changes(blocked: BlockingConstraint) -> list[tuple[dict[str, object], int]]:
@@ -96,8 +96,8 @@ def changes(blocked: BlockingConstraint) -> list[tuple[dict[str, object], int]]:
             None,
         ),
         # a pipeline that seldom answers has no error that could be asked for
-        ({"max_error_deg": 0.1}, {}, [{"available": False}, {"rms_deg": 0.9}], 0.9),
-        ({"max_error_deg": 0.1}, {}, [{"available": False}], None),
+        ({"max_error_deg": 0.1}, {}, [{"is_available": False}, {"rms_deg": 0.9}], 0.9),
+        ({"max_error_deg": 0.1}, {}, [{"is_available": False}], None),
         ({"max_latency_us": 5.0}, {}, [{"latency_us": None}], None),
     ],
 )
@@ -299,4 +299,4 @@ def test_a_class_of_accuracy_is_named_where_what_is_measured_is_coarser(
     assert blocked.constraint == "accuracy"
     assert blocked.detail == "nothing meets accuracy UFSS; without it 1 architecture would"
     finer = recommend({"accuracy": "UFSS"}, [pipeline(rms_deg=0.0027)], facts=facts)
-    assert finer.blocked is None
+    assert finer.blocking_constraint is None

@@ -73,7 +73,7 @@ def test_a_study_whose_parts_are_all_planned_is_complete(facts_of: Build) -> Non
         ("CMOS", mask, "bctm", model) for mask in ("Slit", "Lens") for model in ("spm", "lut")
     ]
     for pipeline in found.pipelines:
-        assert not pipeline.assumed
+        assert not pipeline.assumptions
         assert set(pipeline.basis.values()) == {"stated"}
         assert pipeline.datasets == (f"CMOS-{pipeline.mask}",)
 
@@ -98,7 +98,7 @@ def test_the_nearest_stands_in_where_nothing_of_a_study_runs(facts_of: Build) ->
     found = resolved(facts_of, study(model=["LSQ"]))
     (pipeline,) = found.pipelines
     assert (pipeline.model, pipeline.basis["model"]) == ("spm", "defaulted")
-    assert pipeline.assumed == {
+    assert pipeline.assumptions == {
         "model": "in place of LSQ, which does not run here: the nearest that fits"
     }
     assert [gap.reason for gap in found.gaps] == ["no model implements LSQ; spm in its place"]
@@ -169,7 +169,7 @@ def test_no_method_runs_with_the_simplest_that_fits_and_says_so(facts_of: Build)
     found = resolved(facts_of, study(model=["None"]))
     (pipeline,) = found.pipelines
     assert (pipeline.model, found.state) == ("spm", "complete")
-    assert pipeline.assumed == {"model": "the survey maps no model: the simplest that fits"}
+    assert pipeline.assumptions == {"model": "the survey maps no model: the simplest that fits"}
     found = resolved(facts_of, study(detector=["PD"], extractor=["Direct"], model=["None"]))
     assert models_of(found) == ["basic"]
     found = resolved(facts_of, study(extractor=["None"], model=["SPM", "LUT"]))
@@ -196,7 +196,7 @@ def test_a_compensation_alone_runs_ahead_of_the_simplest_model(facts_of: Build) 
     found = resolved(facts_of, study(model=["OCM"]), models=GLASSED)
     (pipeline,) = found.pipelines
     assert (pipeline.model, found.state) == ("glass + spm", "complete")
-    assert pipeline.assumed == {"model": "OCM ahead of the simplest model that fits"}
+    assert pipeline.assumptions == {"model": "OCM ahead of the simplest model that fits"}
 
 
 def test_where_a_compensation_is_not_planned_its_model_runs_bare(facts_of: Build) -> None:
@@ -255,7 +255,7 @@ def test_nothing_of_a_study_is_passed_over_in_silence(
         assert p.detector in row["detector"]
         assert p.mask in row["mask"]
         assert p.datasets == plan[p.detector, p.mask][p.extractor, p.model]
-        assert set(p.assumed) == {a for a, basis in p.basis.items() if basis != "stated"}
+        assert set(p.assumptions) == {a for a, basis in p.basis.items() if basis != "stated"}
         run["extractor"].add(p.extractor_taxonomy)
         run["model"].update(p.stages)
     for attribute, values in row.items():

@@ -7,7 +7,7 @@ from types import MappingProxyType
 import pytest
 from stand_ins import EXTRACTORS, MODELS, planned, stand_ins
 
-from benchmark.plan.combinations import cells, scorable
+from benchmark.plan.combinations import cells, scorable_plan
 from benchmark.plan.parts import installed_parts
 from benchmark.plan.shown import data_sets
 from registry.catalogue import catalogue
@@ -54,7 +54,7 @@ def test_a_cell_of_the_mapping_carries_its_basis(
     facts = Facts({"S0": dataclasses.replace(study, values=values)}, facts.taxonomy)
     (pipeline,) = resolved(facts).pipelines
     assert pipeline.basis["mask"] == expected
-    assert pipeline.assumed.get("mask") == rule
+    assert pipeline.assumptions.get("mask") == rule
 
 
 def test_a_rule_fills_an_empty_cell_of_a_study_that_meets_it(facts_of: Build) -> None:
@@ -68,7 +68,7 @@ def test_a_rule_fills_an_empty_cell_of_a_study_that_meets_it(facts_of: Build) ->
         *("CMOS", "Lens"),
         "implied",
     )
-    assert pipeline.assumed == {"mask": "D01: one spot, one lens"}
+    assert pipeline.assumptions == {"mask": "D01: one spot, one lens"}
     assert found.state == "partial"
     assert found.gaps[0].to_dict() == {
         "attribute": "mask",
@@ -79,7 +79,7 @@ def test_a_rule_fills_an_empty_cell_of_a_study_that_meets_it(facts_of: Build) ->
 
 def test_the_first_rule_whose_every_condition_is_met_is_taken(facts_of: Build) -> None:
     narrow = dataclasses.replace(
-        RULE, id="D00", given=(("extractor", "BCTM"), ("model", "LUT")), value="Slit"
+        RULE, id="D00", conditions=(("extractor", "BCTM"), ("model", "LUT")), value="Slit"
     )
     facts = dataclasses.replace(facts_of([row(mask=[])]), defaults=(narrow, RULE))
     assert {p.mask for p in resolved(facts).pipelines} == {"Lens"}
@@ -102,7 +102,7 @@ def test_without_a_rule_a_study_runs_where_its_nearest_relatives_do(facts_of: Bu
     (pipeline,) = resolved(facts).pipelines
     assert (pipeline.detector, pipeline.mask) == ("CCD", "Slit")
     assert {pipeline.basis[a] for a in ("detector", "mask")} == {"defaulted"}
-    assert "nearest relative S2 " in pipeline.assumed["mask"]
+    assert "nearest relative S2 " in pipeline.assumptions["mask"]
 
 
 def test_relatives_lend_only_what_is_empty_and_what_runs(facts_of: Build) -> None:
@@ -127,7 +127,9 @@ def test_a_stranger_without_relatives_runs_nowhere(facts_of: Build) -> None:
 def test_detectors_and_masks_go_together_only_as_the_study_combined_them(facts_of: Build) -> None:
     facts = facts_of([row(detector=["CMOS", "CCD"], mask=["Lens", "Slit"])])
     assert len(facts.studies["S0"].architectures) == 4
-    study = dataclasses.replace(facts.studies["S0"], combined=(("CMOS", "Lens"), ("CCD", "Slit")))
+    study = dataclasses.replace(
+        facts.studies["S0"], combinations=(("CMOS", "Lens"), ("CCD", "Slit"))
+    )
     found = resolved(Facts({"S0": study}, facts.taxonomy))
     assert [(p.detector, p.mask) for p in found.pipelines] == list(study.architectures)
     assert found.state == "complete"
@@ -135,14 +137,14 @@ def test_detectors_and_masks_go_together_only_as_the_study_combined_them(facts_o
 
 @pytest.fixture(scope="module")
 def everything() -> dict[str, Resolution]:
-    return resolve_all(scorable(), data_sets=data_sets())
+    return resolve_all(scorable_plan(), data_sets=data_sets())
 
 
 def test_the_plan_by_architecture_is_the_plan() -> None:
     presets = installed_parts().presets
     announced = {
         (dataset, *pair, *architecture)
-        for architecture, pairs in scorable().items()
+        for architecture, pairs in scorable_plan().items()
         for pair, datasets in pairs.items()
         for dataset in datasets
     }
@@ -158,7 +160,7 @@ def test_all_129_studies_resolve_each_with_a_cell(
 ) -> None:
     assert list(everything) == list(survey.studies)
     assert len(everything) == 129
-    plan = scorable()
+    plan = scorable_plan()
     for key, resolution in everything.items():
         study = survey.studies[key]
         assert resolution.pipelines, key
@@ -166,8 +168,8 @@ def test_all_129_studies_resolve_each_with_a_cell(
             assert p.datasets == plan[p.detector, p.mask][p.extractor, p.model]
             assert set(p.basis) == set(ESSENTIAL)
             assert set(p.basis.values()) <= set(BASES)
-            assert set(p.assumed) == {a for a, basis in p.basis.items() if basis != "stated"}
-            assert all(p.assumed.values())
+            assert set(p.assumptions) == {a for a, basis in p.basis.items() if basis != "stated"}
+            assert all(p.assumptions.values())
             for attribute in ("detector", "mask"):
                 stated = study.of(attribute)
                 rests_on_it = p.basis[attribute] not in ("implied", "defaulted")
@@ -178,10 +180,10 @@ def test_all_129_studies_resolve_each_with_a_cell(
 def test_what_nothing_implements_is_told(survey: Facts, everything: dict[str, Resolution]) -> None:
     lacking = set(catalogue().gaps())
     for key, resolution in everything.items():
-        told = {(gap.attribute, gap.value) for gap in resolution.gaps}
+        gaps = {(gap.attribute, gap.value) for gap in resolution.gaps}
         for attribute in ("extractor", "model"):
             for value in survey.studies[key].of(attribute):
-                assert (attribute, value) not in lacking or (attribute, value) in told
+                assert (attribute, value) not in lacking or (attribute, value) in gaps
 
 
 @pytest.mark.parametrize(
@@ -202,7 +204,7 @@ def test_empty_cells_are_filled_by_the_rules_of_the_data(
     assert {(p.detector, p.mask) for p in found.pipelines} == {(detector, mask)}
     (empty,) = {gap.attribute for gap in found.gaps if not gap.value}
     assert {p.basis[empty] for p in found.pipelines} <= {"implied", "defaulted"}
-    assert {p.assumed[empty][:2] for p in found.pipelines} == {"D0"}
+    assert {p.assumptions[empty][:2] for p in found.pipelines} == {"D0"}
 
 
 @pytest.mark.parametrize(("key", "relative"), [("Duan2006", "Radan2019")])
@@ -214,5 +216,5 @@ def test_a_study_runs_where_a_relative_with_the_same_compensation_does(
     assert "ACM" in near.of("model")
     assert {(p.detector, p.mask) for p in found.pipelines} <= set(near.architectures)
     for p in found.pipelines:
-        assert relative in p.assumed["detector"]
-        assert relative in p.assumed["mask"]
+        assert relative in p.assumptions["detector"]
+        assert relative in p.assumptions["mask"]

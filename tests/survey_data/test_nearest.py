@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from survey_data.nearest import nearest
+from survey_data.nearest import nearest_name
 
 
 @pytest.mark.parametrize(
@@ -20,18 +20,18 @@ from survey_data.nearest import nearest
     ],
 )
 def test_the_known_word_most_like_it_is_found_as_it_is_spelled(word, expected):
-    assert nearest(word, ["APS", "CMOS", "Encoded", "Slit"]) == expected
+    assert nearest_name(word, ["APS", "CMOS", "Encoded", "Slit"]) == expected
 
 
 def test_the_likeness_asked_for_decides():
     # 3 letters of 5 and 4 in common: 2 * 3 / 9 = 0.67
-    assert nearest("slots", iter(["Slit"]), cutoff=0.66) == "Slit"
-    assert nearest("slots", iter(["Slit"]), cutoff=0.67) is None
+    assert nearest_name("slots", iter(["Slit"]), cutoff=0.66) == "Slit"
+    assert nearest_name("slots", iter(["Slit"]), cutoff=0.67) is None
 
 
 def test_of_nothing_nothing_is_like_it():
-    assert nearest("word", []) is None
+    assert nearest_name("word", []) is None
 
 
 def test_of_words_equally_alike_the_first_by_alphabet_is_taken():
-    assert nearest("Slat", ["Slot", "Slit", "Slut"]) == "Slit"
+    assert nearest_name("Slat", ["Slot", "Slit", "Slut"]) == "Slit"

@@ -50,9 +50,11 @@ def test_a_one_sigma_precision_is_no_accuracy() -> None:
 def test_every_number_of_the_mapping_has_a_kind() -> None:
     attributes = survey_data.load().attributes
     for number, kind in KIND_OF.items():
-        having = {a: set(attributes.loc[attributes["attribute"] == a, "study"]) for a in KIND_OF}
+        with_number = {
+            a: set(attributes.loc[attributes["attribute"] == a, "study"]) for a in KIND_OF
+        }
         kinds = attributes.loc[attributes["attribute"] == kind]
-        assert set(kinds["study"]) == having[number]
+        assert set(kinds["study"]) == with_number[number]
         assert set(kinds["value"]) <= set(statistics())
 
 

@@ -16,8 +16,8 @@ from survey_data.findings.checks import (
     FindingSyntaxError,
     Vocabulary,
     evaluate,
+    finding_verdict,
     study_values,
-    whole,
 )
 
 
@@ -26,42 +26,44 @@ def rows_of(table: str) -> list[dict[str, str]]:
         return list(csv.DictReader(stream))
 
 
-def studies_having() -> dict[tuple[str, str], set[str]]:
+def studies_with_values() -> dict[tuple[str, str], set[str]]:
     """(attribute, value) -> studies, straight from the files."""
     category = {(r["attribute"], r["value"]): r["category"] for r in rows_of("taxonomy")}
     derived = {"model": "model_category", "extractor": "extractor_family"}
-    having: dict[tuple[str, str], set[str]] = defaultdict(set)
+    with_value: dict[tuple[str, str], set[str]] = defaultdict(set)
     for r in rows_of("attributes"):
         if r["value"]:
-            having[r["attribute"], r["value"]].add(r["study"])
+            with_value[r["attribute"], r["value"]].add(r["study"])
         if r["attribute"] in derived:
             family = category[r["attribute"], r["value"]]
-            having[derived[r["attribute"]], family].add(r["study"])
+            with_value[derived[r["attribute"]], family].add(r["study"])
     for r in rows_of("studies"):
-        having["year", r["year"]].add(r["key"])
+        with_value["year", r["year"]].add(r["key"])
     listed = {r["study"] for r in rows_of("architectures")}
     for r in rows_of("architectures"):
-        having["detector+mask", f"{r['detector']}+{r['mask']}"].add(r["study"])
-    for (a, detector), left in list(having.items()):
-        for (b, mask), right in list(having.items()):
+        with_value["detector+mask", f"{r['detector']}+{r['mask']}"].add(r["study"])
+    for (a, detector), left in list(with_value.items()):
+        for (b, mask), right in list(with_value.items()):
             if (a, b) == ("detector", "mask") and left & right - listed:
-                having["detector+mask", f"{detector}+{mask}"] |= left & right - listed
-    return having
+                with_value["detector+mask", f"{detector}+{mask}"] |= left & right - listed
+    return with_value
 
 
 def judge_by_brute_force(row: dict[str, str]) -> tuple[str, dict[str, int]]:
     """Verdict and counts by sets of studies, one per value."""
-    having = studies_having()
+    with_value = studies_with_values()
     chosen = {r["key"] for r in rows_of("studies")}
     for condition in filter(None, row["given"].split("&")):
         attribute, listed = condition.split("=")
         values = listed.split(" or ")
         if attribute == "detector" and "PD" in values:
             values.append("QPD")
-        chosen &= set().union(*(having[attribute, value] for value in values))
+        chosen &= set().union(*(with_value[attribute, value] for value in values))
     ranked, listed = row["expects"].split(": ")
     named = listed.replace(">", "|").split("|")
-    sets = {value: studies & chosen for (name, value), studies in having.items() if name == ranked}
+    sets = {
+        value: studies & chosen for (name, value), studies in with_value.items() if name == ranked
+    }
     counted = len(set().union(*sets.values()))
     for value in named:
         if " or " in value:
@@ -183,7 +185,7 @@ def test_a_method_or_a_sensor_part_that_a_finding_names_is_in_a_clause_of_it() -
     ],
 )
 def test_a_finding_is_reproduced_only_where_all_of_it_is(clauses: Any, verdict: str) -> None:
-    assert whole(clauses) == verdict
+    assert finding_verdict(clauses) == verdict
 
 
 # Made-up studies: errors A > B > C = D, four masks, two extractors.

@@ -102,8 +102,8 @@ def test_facts_of_the_same_evidence_are_coded_alike(tables: survey_data.SurveyTa
         if cells & {("model", "Slit"), ("model", "V-Slit")}:
             assert {("error", "Alignment"), ("error", "Manufacturing")} <= cells, key
     # Of the voltage balance alone, nothing else known of the detector: four elements.
-    told = known["note"].fillna("")
-    ruled = told.str.startswith("rule:") & told.str.contains("voltage balance")
+    notes = known["note"].fillna("")
+    ruled = notes.str.startswith("rule:") & notes.str.contains("voltage balance")
     rule = known[(known["attribute"] == "detector") & ruled]
     assert len(rule) > 5
     for row in rule.itertuples():

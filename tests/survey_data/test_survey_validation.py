@@ -361,7 +361,7 @@ def test_columns_in_another_order_are_reported(copy: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "expected"),
     [
         (b"", "not JSON"),
         (b"{", "not JSON"),
@@ -370,10 +370,10 @@ def test_columns_in_another_order_are_reported(copy: Any) -> None:
         (b"[" * 100_000, "not JSON"),
     ],
 )
-def test_a_broken_descriptor_is_reported(content: bytes, told: str, tmp_path: Path) -> None:
+def test_a_broken_descriptor_is_reported(content: bytes, expected: str, tmp_path: Path) -> None:
     (tmp_path / "datapackage.json").write_bytes(content)
     problems = survey_data.validate(tmp_path)
-    assert any(p.file == "datapackage.json" and told in p.message for p in problems)
+    assert any(p.file == "datapackage.json" and expected in p.message for p in problems)
     assert len(problems) == 1 + len(table_names())  # there are no tables beside it
 
 

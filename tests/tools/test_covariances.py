@@ -10,9 +10,16 @@ import pytest
 
 from algorithms.measurement import Measurement
 from tools.bench import covariances
-from tools.bench.covariances import Calibrated, extractors, measure, print_table, sets, verdicts
+from tools.bench.covariances import (
+    CovarianceResult,
+    extractors,
+    measure,
+    print_table,
+    sets,
+    verdicts,
+)
 
-ROW = Calibrated("shapes", "disc", "mirror", 1.04, 2000, 2000)
+ROW = CovarianceResult("shapes", "disc", "mirror", 1.04, 2000, 2000)
 
 
 def test_what_is_judged_is_the_distance_from_one_where_enough_answers_tell():
@@ -56,11 +63,11 @@ def test_methods_that_state_a_covariance_are_measured_on_spots_and_grids(capsys)
         if chosen.name in {"gaussian", "2x2 clean"}
         for row in measure(chosen, 5, 20)
     ]
-    told = {row.method for row in rows if row.stated}
-    assert {"mirror", "gaussian-fit", "weighted-spots"} <= told
+    methods = {row.method for row in rows if row.stated}
+    assert {"mirror", "gaussian-fit", "weighted-spots"} <= methods
     print_table([*rows, replace(ROW, method="mute", squares=math.nan, stated=0)])
     printed = capsys.readouterr().out
-    assert all(method in printed for method in told)
+    assert all(method in printed for method in methods)
     assert "states no covariance: " in printed
     assert "mute" in printed.rsplit("states no covariance: ", maxsplit=1)[1]
 

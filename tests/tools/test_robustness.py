@@ -23,8 +23,8 @@ from benchmark.synthetic_features.shapes import (
 from tools.bench import robustness
 from tools.bench.extractor_peers import scipy_ellipse
 from tools.bench.robustness_grids import GRID_SETS, GridSet
-from tools.bench.robustness_limits import Measured, verdicts
-from tools.bench.verdicts import broken
+from tools.bench.robustness_limits import RobustnessResult, verdicts
+from tools.bench.verdicts import any_broken
 
 SETS = {chosen.name: chosen for chosen in FRAME_SETS}
 SMALL = [chosen for chosen in FRAME_SETS if chosen.size_px == 64]
@@ -146,14 +146,14 @@ def test_answers_are_judged_by_how_far_off_they_are():
     centres = np.array([[10.0, 10.0]] * 4)
     scenes = Scenes(np.zeros((4, 2, 2)), centres, 0.1)
     found = centres + np.array([[0.3, 0.4], [0.9, 0.9], [np.nan, np.nan], [0.0, 0.0]])
-    error, wrong, missing = robustness.judged(found, scenes)
+    error, wrong, missing = robustness.error_and_shares(found, scenes)
     assert error == pytest.approx(math.sqrt((0.09 + 0.16 + 0.81 + 0.81) / 6))
     assert (wrong, missing) == (0.25, 0.25)
     nothing = replace(scenes, centres=np.full((4, 2), np.nan))
-    error, wrong, missing = robustness.judged(found, nothing)
+    error, wrong, missing = robustness.error_and_shares(found, nothing)
     assert math.isnan(error)
     assert (wrong, missing) == (0.75, 0.25), "an answer where there is nothing is wrong"
-    error, wrong, missing = robustness.judged(np.full((4, 2), np.nan), scenes)
+    error, wrong, missing = robustness.error_and_shares(np.full((4, 2), np.nan), scenes)
     assert math.isnan(error)
     assert (wrong, missing) == (0.0, 1.0)
 
@@ -171,7 +171,7 @@ def row(**given):
         "over_opencv": 0.5,
         "frames": 300,
     }
-    return Measured(**{**plain, **given})
+    return RobustnessResult(**{**plain, **given})
 
 
 @pytest.mark.parametrize(
@@ -185,8 +185,8 @@ def row(**given):
     ],
 )
 def test_the_estimator_is_held_to_its_limits(good, bad):
-    assert not broken(verdicts([row(**good)], {"mirror"}))
-    assert broken(verdicts([row(**bad)], {"mirror"}))
+    assert not any_broken(verdicts([row(**good)], {"mirror"}))
+    assert any_broken(verdicts([row(**bad)], {"mirror"}))
     assert verdicts([row(**good)], {"mirror"})
 
 

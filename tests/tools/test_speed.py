@@ -104,8 +104,11 @@ def test_the_exponent_of_growth_is_the_slope_of_cost_over_work():
 
 
 def test_made_up_parts_are_as_many_cells_as_asked_for():
-    assert growth.running(methods=2, datasets=3, units=2)[0] == 2 * growth.running(2, 3)[0]
-    assert growth.running(methods=4)[0] == 2 * growth.running(methods=2)[0]
-    cells, run = growth.running(methods=2)
+    assert (
+        growth.prepare_running(methods=2, datasets=3, units=2)[0]
+        == 2 * growth.prepare_running(2, 3)[0]
+    )
+    assert growth.prepare_running(methods=4)[0] == 2 * growth.prepare_running(methods=2)[0]
+    cells, run = growth.prepare_running(methods=2)
     run()
     assert cells > 0

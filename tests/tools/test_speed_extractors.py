@@ -18,7 +18,7 @@ from tools.bench.extractor_limits import (
     over_noise,
     verdicts,
 )
-from tools.bench.verdicts import Verdict, broken
+from tools.bench.verdicts import Verdict, any_broken
 
 
 def test_every_limit_is_on_a_method_and_a_set_that_are_measured():
@@ -35,20 +35,20 @@ def test_a_limit_is_broken_where_no_reason_excuses_it():
     loop = figures(error_px=0.02)
     kept = verdicts({("disc", "bctm"): figures(), ("disc", OPENCV): loop})
     assert [verdict.most for verdict in kept] == [0.15, 1.0]
-    assert not broken(kept)
-    assert broken(verdicts({("disc", "bctm"): figures(over_opencv=0.16)}))
+    assert not any_broken(kept)
+    assert any_broken(verdicts({("disc", "bctm"): figures(over_opencv=0.16)}))
     worse = {("disc", "bctm"): figures(error_px=0.03), ("disc", OPENCV): loop}
-    assert broken(verdicts(worse))
+    assert any_broken(verdicts(worse))
     [known] = verdicts({("disc", "tm"): figures(over_bound=10.6)})
     assert not known.holds
     assert "two levels" in known.cannot
-    assert not broken([known])
-    assert broken(verdicts({("disc", "tm binarise=no"): figures(over_bound=float("nan"))}))
+    assert not any_broken([known])
+    assert any_broken(verdicts({("disc", "tm binarise=no"): figures(over_bound=float("nan"))}))
 
 
 def test_an_error_of_few_frames_is_not_judged():
     assert not verdicts({("disc", "tm binarise=no"): figures(over_bound=1.4, frames=999)})
-    assert broken(verdicts({("disc", "tm binarise=no"): figures(over_bound=1.4, frames=1000)}))
+    assert any_broken(verdicts({("disc", "tm binarise=no"): figures(over_bound=1.4, frames=1000)}))
 
 
 def test_the_range_of_noise_is_the_ratio_of_its_ends():

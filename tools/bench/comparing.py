@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 
 from benchmark.running.threads import one_thread
-from tools.bench.verdicts import Verdict, broken
+from tools.bench.verdicts import Verdict, any_broken
 
 
 @dataclass(frozen=True)
@@ -142,11 +142,11 @@ def main(
     if given.repeats < 1:
         parser.error(f"--repeats must be at least 1; got {given.repeats}")
     if given.format == "table":
-        return 1 if broken(run(subjects(), given.repeats)) else 0
+        return 1 if any_broken(run(subjects(), given.repeats)) else 0
     compared = [compare(subject, given.repeats) for subject in subjects()]
     rows = [{**asdict(c), "agrees": c.agrees, "passes": c.passes} for c in compared]
     print(json.dumps({"comparisons": rows}, indent=2))
-    return 1 if broken(verdicts(compared)) else 0
+    return 1 if any_broken(verdicts(compared)) else 0
 
 
 def _print(c: Comparison) -> None:

@@ -24,7 +24,7 @@ from benchmark.synthetic_features.frame_sets import FRAME_SETS, FrameSet
 from tools.bench.extractors import single_spot
 from tools.bench.robustness import frames_of, grid_extractors
 from tools.bench.robustness_grids import GRID_SETS, GridSet
-from tools.bench.verdicts import Verdict, broken
+from tools.bench.verdicts import Verdict, any_broken
 
 #: How far the mean square may be from one, and how many answers tell it well enough to be judged:
 #: it scatters by one over the root of their number.
@@ -34,7 +34,7 @@ _FRAMES = 2000
 
 
 @dataclass(frozen=True)
-class Calibrated:
+class CovarianceResult:
     """One method's covariances on one set.
 
     Attributes
@@ -68,7 +68,7 @@ def extractors(chosen: FrameSet | GridSet) -> dict[str, Extractor]:
     return {name: one for name, one in made.items() if one.about.origin == "ours"}
 
 
-def measure(chosen: FrameSet | GridSet, seed: int, asked: int) -> list[Calibrated]:
+def measure(chosen: FrameSet | GridSet, seed: int, asked: int) -> list[CovarianceResult]:
     """Return how right every method's covariances are on frames of a set under a seed."""
     scenes = chosen.draw(seed, frames_of(chosen, asked))
     rows = []
@@ -84,7 +84,7 @@ def measure(chosen: FrameSet | GridSet, seed: int, asked: int) -> list[Calibrate
                 own = errors[stated]
                 squares = float(np.einsum("ni,nij,nj->n", own, inverse, own).mean()) / 2.0
             rows.append(
-                Calibrated(
+                CovarianceResult(
                     group=chosen.group,
                     set_name=chosen.name,
                     method=name,
@@ -96,7 +96,7 @@ def measure(chosen: FrameSet | GridSet, seed: int, asked: int) -> list[Calibrate
     return rows
 
 
-def verdicts(rows: Sequence[Calibrated]) -> list[Verdict]:
+def verdicts(rows: Sequence[CovarianceResult]) -> list[Verdict]:
     """Return a verdict on each covariance that enough answers tell of."""
     return [
         Verdict(
@@ -117,16 +117,16 @@ def sets() -> list[FrameSet | GridSet]:
     return [*(chosen for chosen in FRAME_SETS if chosen.sun), *grids]
 
 
-def print_table(rows: Sequence[Calibrated]) -> None:
+def print_table(rows: Sequence[CovarianceResult]) -> None:
     """Print the mean squares of every method that states a covariance somewhere."""
-    told = {row.method for row in rows if row.stated}
-    silent = sorted({row.method for row in rows} - told)
+    methods = {row.method for row in rows if row.stated}
+    silent = sorted({row.method for row in rows} - methods)
     print(
         "mean squares of errors over the stated covariance, an axis, +- what chance leaves open;\n"
         "of how many answers, and the share of answers with a covariance\n"
     )
     for row in rows:
-        if row.method not in told or not row.answered:
+        if row.method not in methods or not row.answered:
             continue
         where = f"{row.group:<26} {row.set_name:<16} {row.method:<16}"
         share = row.stated / row.answered
@@ -161,7 +161,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if given.frames < 1:
         parser.error(f"--frames must be at least 1; got {given.frames}")
     seed = secrets.randbelow(10**6) if given.seed is None else given.seed
-    return 1 if broken(run(seed, given.frames)) else 0
+    return 1 if any_broken(run(seed, given.frames)) else 0
 
 
 if __name__ == "__main__":

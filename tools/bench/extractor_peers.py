@@ -157,7 +157,7 @@ def scipy_gaussian(frames: NDArray[Any], reach: int = REACH) -> Floats:
         start = (peak - dark, float(x), float(y), 4.0, 4.0, dark)
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # of covariances that cannot be told
+                warnings.simplefilter("ignore")  # of covariances that cannot be determined
                 fitted, _ = curve_fit(model, columns, part.ravel().astype(np.float64), start)
         except RuntimeError:  # SciPy: no convergence
             found[k] = np.nan
@@ -201,7 +201,7 @@ def scipy_ellipse(frames: NDArray[Any], reach: int = REACH) -> Floats:
         )
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # of covariances that cannot be told
+                warnings.simplefilter("ignore")  # of covariances that cannot be determined
                 fitted, _ = curve_fit(
                     model, columns, part.ravel().astype(np.float64), start, maxfev=_EVALUATIONS
                 )

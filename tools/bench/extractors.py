@@ -34,7 +34,7 @@ from tools.bench.extractor_limits import (
     verdicts,
 )
 from tools.bench.extractor_peers import Method, opencv_loop, peers
-from tools.bench.verdicts import Verdict, broken
+from tools.bench.verdicts import Verdict, any_broken
 
 #: Frames of many spots, which have no bound of their own here, and the methods for them.
 MANY = "cmos-multi-aperture"
@@ -53,7 +53,7 @@ _SHORT_S = 0.1
 
 
 @dataclass(frozen=True)
-class Measured:
+class ExtractorResult:
     """One method on one reference set.
 
     Attributes
@@ -126,7 +126,7 @@ def single_spot(half_px: float, size_px: int) -> dict[str, Extractor]:
 
 def measure(
     chosen: SyntheticSet, count: int, repeats: int, only: Sequence[str] | None = None
-) -> list[Measured]:
+) -> list[ExtractorResult]:
     """Measure every method and peer (or those named) on the first `count` frames of a set.
 
     ValueError for a name that is not measured.
@@ -160,7 +160,7 @@ def measure(
             squares = (found[~missing] - centres[:number][~missing]) ** 2
             error = float(np.sqrt(squares.mean())) if squares.size else float("nan")
             rows.append(
-                Measured(
+                ExtractorResult(
                     set_name=chosen.name,
                     method=name,
                     error_px=error,
@@ -174,7 +174,7 @@ def measure(
     return rows
 
 
-def measure_many_spots(count: int, repeats: int) -> list[Measured]:
+def measure_many_spots(count: int, repeats: int) -> list[ExtractorResult]:
     """Measure the time of the methods for many spots, on frames of `cmos-multi-aperture`.
 
     100 spots on 1024 x 1024 px. Of the errors the leaderboard tells; they are NaN here.
@@ -194,7 +194,7 @@ def measure_many_spots(count: int, repeats: int) -> list[Measured]:
                 seconds, found = _timed(method, frames)
                 best = min(best, seconds)
             rows.append(
-                Measured(
+                ExtractorResult(
                     set_name=MANY,
                     method=name,
                     error_px=float("nan"),
@@ -226,7 +226,7 @@ def _timed(method: Method, frames: NDArray[Any]) -> tuple[float, Floats]:
     return time.perf_counter() - started, found
 
 
-def judged(rows: Sequence[Measured]) -> list[Verdict]:
+def verdicts_of(rows: Sequence[ExtractorResult]) -> list[Verdict]:
     """Return the verdicts on what was measured, and on the templates' range of noise."""
     figures = {
         (row.set_name, row.method): Figures(
@@ -249,7 +249,7 @@ def run() -> list[Verdict]:
     """Measure and print everything; return the verdicts."""
     rows = [row for chosen in REFERENCE_SETS.values() for row in measure(chosen, _FRAMES, _REPEATS)]
     rows += measure_many_spots(_MANY_FRAMES, _REPEATS)
-    found = judged(rows)
+    found = verdicts_of(rows)
     _print_table(rows, found, peers()[1])
     return found
 
@@ -279,18 +279,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
             parser.error(str(error))
     if given.methods is None:
         rows += measure_many_spots(min(given.frames, _MANY_FRAMES), given.repeats)
-    found, missing = judged(rows), peers()[1]
+    found, missing = verdicts_of(rows), peers()[1]
     if given.format == "json":
         limits = [{**asdict(verdict), "holds": verdict.holds} for verdict in found]
         measured = [asdict(row) for row in rows]
         print(json.dumps({"measured": measured, "limits": limits, "not_installed": missing}))
     else:
         _print_table(rows, found, missing)
-    return 1 if broken(found) else 0
+    return 1 if any_broken(found) else 0
 
 
 def _print_table(
-    rows: Sequence[Measured], found: Sequence[Verdict], missing: Sequence[str]
+    rows: Sequence[ExtractorResult], found: Sequence[Verdict], missing: Sequence[str]
 ) -> None:
     heads = ("error px", "x bound", "missing", "us", "x OpenCV", "frames")
     print(f"{'set':<20}{'method':<30}" + "".join(f"{head:>11}" for head in heads))

@@ -32,7 +32,7 @@ from registry.judging import Question
 from registry.measured_pipelines import Measurements
 from registry.requirements import Requirements
 from registry.studies import facts
-from tools.bench.verdicts import Verdict, broken
+from tools.bench.verdicts import Verdict, any_broken
 
 FAKES = str(Path(__file__).parents[2] / "tests" / "benchmark" / "fakes")
 if FAKES not in sys.path:
@@ -75,7 +75,7 @@ class Growth:
 Prepared = Callable[[int], tuple[int, Callable[[], object]]]
 
 
-def measured(step: str, of: str, sizes: Sequence[int], prepare: Prepared) -> Growth:
+def measure(step: str, of: str, sizes: Sequence[int], prepare: Prepared) -> Growth:
     """Time a step at each size, the best of `_TIMES`; once before, for what is kept."""
     prepare(sizes[0])[1]()
     work, seconds = [], []
@@ -104,7 +104,7 @@ def made_up(methods: int = 1, datasets: int = 1) -> Parts:
     return fake_plan.parts(*models, presets=presets)
 
 
-def running(methods: int = 1, datasets: int = 1, units: int = 1) -> tuple[int, Any]:
+def prepare_running(methods: int = 1, datasets: int = 1, units: int = 1) -> tuple[int, Any]:
     """Prepare planning, measuring and recording of made-up parts."""
     parts = made_up(methods, datasets)
     standard = combinations.cells(parts=parts)
@@ -119,13 +119,13 @@ def running(methods: int = 1, datasets: int = 1, units: int = 1) -> tuple[int, A
     return len(cells), run
 
 
-def planning(size: int) -> tuple[int, Any]:
+def prepare_planning(size: int) -> tuple[int, Any]:
     """Prepare a plan of so many methods on ten data sets."""
     parts = made_up(size, 10)
     return len(combinations.cells(parts=parts)), lambda: combinations.cells(parts=parts)
 
 
-def ranking(methods: int = 1, units: int = 1) -> tuple[int, Any]:
+def prepare_ranking(methods: int = 1, units: int = 1) -> tuple[int, Any]:
     """Prepare the board of one data set with the published rows so many times, on made-up units."""
     known = [r for r in Store(PUBLISHED).rows(unit=0) if r["dataset"] == "cmos-single-aperture"]
     rng = np.random.default_rng(36)
@@ -142,7 +142,7 @@ def ranking(methods: int = 1, units: int = 1) -> tuple[int, Any]:
     return len(rows), lambda: board.build(rows)
 
 
-def answering(studies: int, methods: int, known: Knowledge) -> tuple[int, Any]:
+def prepare_answering(studies: int, methods: int, known: Knowledge) -> tuple[int, Any]:
     """Prepare a table of designs, and an answer, for so many studies and times the methods."""
     of_survey = facts()
     every = list(of_survey.studies.values())
@@ -155,7 +155,7 @@ def answering(studies: int, methods: int, known: Knowledge) -> tuple[int, Any]:
     grown = replace(of_survey, studies={study.key: study for study in made[:studies]})
     rows = [
         replace(row, model=f"{row.model}-{copy}")
-        for row in known.measured.rows
+        for row in known.measured_pipelines.rows
         for copy in range(methods)
     ]
     pipelines = Measurements(rows)
@@ -170,16 +170,22 @@ def answering(studies: int, methods: int, known: Knowledge) -> tuple[int, Any]:
 def growths() -> Iterator[Growth]:
     """Measure every step."""
     tens, hundred = (8, 16, 40, 80), (12, 25, 50, 100)
-    yield measured("plan", "methods", (10, 25, 50, 100), planning)
-    yield measured("plan, run, record", "methods", tens, lambda size: running(methods=size))
-    yield measured("plan, run, record", "data sets", tens, lambda size: running(datasets=size))
-    yield measured("plan, run, record", "units", hundred, lambda size: running(units=size))
-    yield measured("board", "methods", (1, 2, 5, 10), lambda size: ranking(methods=size, units=5))
-    yield measured("board", "units", hundred, lambda size: ranking(units=size))
+    yield measure("plan", "methods", (10, 25, 50, 100), prepare_planning)
+    yield measure("plan, run, record", "methods", tens, lambda size: prepare_running(methods=size))
+    yield measure(
+        "plan, run, record", "data sets", tens, lambda size: prepare_running(datasets=size)
+    )
+    yield measure("plan, run, record", "units", hundred, lambda size: prepare_running(units=size))
+    yield measure(
+        "board", "methods", (1, 2, 5, 10), lambda size: prepare_ranking(methods=size, units=5)
+    )
+    yield measure("board", "units", hundred, lambda size: prepare_ranking(units=size))
     known = Knowledge()
     many = (125, 250, 500, 1000)
-    yield measured("answer", "studies", many, lambda size: answering(size, 1, known))
-    yield measured("answer", "methods", (2, 4, 7, 10), lambda size: answering(1000, size, known))
+    yield measure("answer", "studies", many, lambda size: prepare_answering(size, 1, known))
+    yield measure(
+        "answer", "methods", (2, 4, 7, 10), lambda size: prepare_answering(1000, size, known)
+    )
 
 
 def run() -> list[Verdict]:
@@ -202,7 +208,7 @@ def run() -> list[Verdict]:
 
 def main() -> int:
     """Measure, print, and return the exit status."""
-    return 1 if broken(run()) else 0
+    return 1 if any_broken(run()) else 0
 
 
 if __name__ == "__main__":

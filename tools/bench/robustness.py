@@ -32,8 +32,8 @@ from tools.bench.extractor_limits import OPENCV
 from tools.bench.extractor_peers import REACH, Method, opencv_loop, peers
 from tools.bench.extractors import single_spot
 from tools.bench.robustness_grids import GRID_SETS, GridSet
-from tools.bench.robustness_limits import LONGEST_PX, SIZE_PX, Measured, verdicts
-from tools.bench.verdicts import Verdict, broken
+from tools.bench.robustness_limits import LONGEST_PX, SIZE_PX, RobustnessResult, verdicts
+from tools.bench.verdicts import Verdict, any_broken
 
 #: Frames of a set of single spots of 64 x 64 px, where nothing else is asked for; sets of faults
 #: have `_MORE` times as many, larger frames and grids are fewer.
@@ -42,7 +42,7 @@ _FEWER = {64: 1.0, 256: 0.25, 512: 0.12}
 _GRID_SHARE = 0.3
 #: Seconds that a method that no limit is for may take for a set, and frames that it always sees.
 _SECONDS, _LEAST = 0.25, 8
-#: Frames and turns from which the time is told; a run that takes longer is not repeated.
+#: Frames and turns from which the time is measured; a run that takes longer is not repeated.
 _TIMED_FRAMES, _TURNS, _LONG_S = 100, 5, 0.05
 #: Cut-outs for fits hold this many times the spot's longest axis.
 _CUT_OUT = 1.6
@@ -99,7 +99,7 @@ def frames_of(chosen: FrameSet | GridSet, asked: int) -> int:
 
 def measure(
     chosen: FrameSet | GridSet, seed: int, asked: int, only: Collection[str] | None = None
-) -> list[Measured]:
+) -> list[RobustnessResult]:
     """Measure every method, or those named, on frames of a set under a seed.
 
     What is held to limits sees every frame, whatever it takes, so that a seed settles its verdicts.
@@ -119,11 +119,11 @@ def measure(
                 continue
             every = name.partition(" ")[0] in held
             found, seconds = _answers(method, scenes.frames, every=every)
-            error, wrong, missing = judged(found, scenes)
+            error, wrong, missing = error_and_shares(found, scenes)
             repeat = kind == "symmetric"
             us, over_opencv = _times(method, scenes.frames, seconds, repeat=repeat)
             rows.append(
-                Measured(
+                RobustnessResult(
                     group=chosen.group,
                     set_name=chosen.name,
                     kind=kind,
@@ -140,10 +140,10 @@ def measure(
     return rows
 
 
-def judged(found: Floats, scenes: Scenes) -> tuple[float, float, float]:
+def error_and_shares(found: Floats, scenes: Scenes) -> tuple[float, float, float]:
     """Return the root mean square error px of answers, and shares of wrong and missing ones.
 
-    Every finite answer is meant: `extract` has no other way to say that it doubts. Where there is
+    Every finite answer is meant: `extract` has no other way to raise a flag. Where there is
     no spot every answer is wrong, and with two equal lights that at the one which is not the Sun.
     """
     answered = np.isfinite(found).all(axis=1)
@@ -192,7 +192,7 @@ def _timed(method: Method, frames: NDArray[Any]) -> tuple[float, Floats]:
     return time.perf_counter() - started, found
 
 
-def cell(row: Measured) -> str:
+def cell(row: RobustnessResult) -> str:
     """Return what the table says of one method on one set."""
     if math.isnan(row.over_bound):
         said = "-"
@@ -202,9 +202,9 @@ def cell(row: Measured) -> str:
     return said + (f" ?{100.0 * row.missing:.3g}" if row.missing else "")
 
 
-def print_tables(rows: Sequence[Measured]) -> None:
+def print_tables(rows: Sequence[RobustnessResult]) -> None:
     """Print a table for each group of sets, and one of times."""
-    groups: dict[str, list[Measured]] = {}
+    groups: dict[str, list[RobustnessResult]] = {}
     for row in rows:
         groups.setdefault(row.group, []).append(row)
     print(
@@ -218,7 +218,9 @@ def print_tables(rows: Sequence[Measured]) -> None:
         _print_table("time over OpenCV's", symmetric, lambda row: f"{row.over_opencv:.2f}")
 
 
-def _print_table(title: str, rows: Sequence[Measured], said: Callable[[Measured], str]) -> None:
+def _print_table(
+    title: str, rows: Sequence[RobustnessResult], said: Callable[[RobustnessResult], str]
+) -> None:
     sets = list(dict.fromkeys(row.set_name for row in rows))
     cells: dict[str, dict[str, str]] = {}
     for row in rows:
@@ -245,7 +247,7 @@ def run(seed: int) -> list[Verdict]:
     return _reported(rows)
 
 
-def _reported(rows: Sequence[Measured]) -> list[Verdict]:
+def _reported(rows: Sequence[RobustnessResult]) -> list[Verdict]:
     print_tables(rows)
     for library in peers()[1]:
         print(f"{library}: not installed (make bench installs it)")
@@ -286,12 +288,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if given.methods is not None and not rows:
         parser.error(f"no method named {', '.join(given.methods)}")
     if given.format == "table":
-        return 1 if broken(_reported(rows)) else 0
+        return 1 if any_broken(_reported(rows)) else 0
     found = verdicts(rows, ours())
     limits = [{**asdict(verdict), "holds": verdict.holds} for verdict in found]
     measured = [asdict(row) for row in rows]
     print(json.dumps({"seed": seed, "measured": measured, "limits": limits}))
-    return 1 if broken(found) else 0
+    return 1 if any_broken(found) else 0
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ AVERAGING = 1.15
 
 
 @dataclass(frozen=True)
-class Measured:
+class RobustnessResult:
     """One method on one set.
 
     Attributes
@@ -56,7 +56,7 @@ class Measured:
     timed: bool = False
 
 
-def verdicts(rows: Sequence[Measured], ours: Collection[str]) -> list[Verdict]:
+def verdicts(rows: Sequence[RobustnessResult], ours: Collection[str]) -> list[Verdict]:
     """Return a verdict for each limit whose set and method were measured.
 
     `ours` names the methods that are not the survey's. Each says of how many frames it is: an error
@@ -79,10 +79,10 @@ def verdicts(rows: Sequence[Measured], ours: Collection[str]) -> list[Verdict]:
     return found + _averaging(rows)
 
 
-def _averaging(rows: Sequence[Measured]) -> list[Verdict]:
+def _averaging(rows: Sequence[RobustnessResult]) -> list[Verdict]:
     """Return verdicts on whether errors of grids as designed fall as their bounds do."""
     found = []
-    first: dict[str, Measured] = {}
+    first: dict[str, RobustnessResult] = {}
     for row in rows:
         if row.kind != "grid" or row.method != MANY:
             continue

@@ -36,7 +36,7 @@ from api.http.server.connections import bounds
 from api.http.service import create_app
 from registry.ranking import SORTS
 from registry.studies import facts
-from tools.bench.verdicts import Verdict, broken
+from tools.bench.verdicts import Verdict, any_broken
 
 LARGEST_RATIO = 3.0
 PATH = "/v1/recommendations"
@@ -49,7 +49,7 @@ _KEPT_S = 600
 
 
 @dataclass(frozen=True)
-class Measured:
+class QueryTimes:
     """Processor times of one kind of queries.
 
     Attributes
@@ -82,7 +82,7 @@ def empty_app() -> FastAPI:
 
 
 @contextmanager
-def serving(apps: Sequence[FastAPI], **options: Any) -> Iterator[list[HTTPConnection]]:
+def serve(apps: Sequence[FastAPI], **options: Any) -> Iterator[list[HTTPConnection]]:
     """Serve applications from a thread of this process; yield a connection to each.
 
     `options` are those of `uvicorn.Config`.
@@ -130,7 +130,7 @@ def _listening() -> socket.socket:
     return listening
 
 
-def excluding() -> Iterator[str]:
+def exclusion_paths() -> Iterator[str]:
     """Yield paths that ask for almost everything, each excluding another set of values."""
     values = facts().taxonomy.values
     names = ("extractor", "model", "detector", "error")
@@ -139,7 +139,7 @@ def excluding() -> Iterator[str]:
         yield f"{PATH}?{urlencode(pairs)}"
 
 
-def limiting() -> Iterator[str]:
+def limit_paths() -> Iterator[str]:
     """Yield paths that ask for a task and an error never asked for before."""
     tasks = facts().taxonomy.values("task")
     for number in count():
@@ -147,7 +147,7 @@ def limiting() -> Iterator[str]:
         yield f"{PATH}?{urlencode(pairs)}"
 
 
-def drawn(seed: int) -> Iterator[str]:
+def random_paths(seed: int) -> Iterator[str]:
     """Yield paths that ask for requirements drawn at random, none of them twice.
 
     Something meets them or nothing.
@@ -172,13 +172,13 @@ def drawn(seed: int) -> Iterator[str]:
             yield path
 
 
-def repeated() -> Iterator[str]:
+def repeated_path() -> Iterator[str]:
     """Yield the same path again and again."""
     while True:
         yield f"{PATH}?task=Accuracy"
 
 
-def asked(connection: HTTPConnection, path: str) -> float:
+def time_answer(connection: HTTPConnection, path: str) -> float:
     """Return the processor time of an answer, in microseconds.
 
     Raises
@@ -198,7 +198,7 @@ def asked(connection: HTTPConnection, path: str) -> float:
 
 def measure(
     seed: int, rounds: int = 15, requests: int = 30, app: FastAPI | None = None
-) -> list[Measured]:
+) -> list[QueryTimes]:
     """Measure every kind of queries, `rounds` times `requests` interleaved pairs each.
 
     Parameters
@@ -209,27 +209,30 @@ def measure(
     """
     service = create_app() if app is None else app
     kinds = {
-        "repeated": repeated(),
-        "excluding": excluding(),
-        "limiting": limiting(),
-        "drawn": drawn(seed),
+        "repeated": repeated_path(),
+        "excluding": exclusion_paths(),
+        "limiting": limit_paths(),
+        "drawn": random_paths(seed),
     }
     found: dict[str, list[list[tuple[float, float]]]] = {name: [] for name in kinds}
-    with serving([empty_app(), service]) as (empty, atlas):
+    with serve([empty_app(), service]) as (empty, atlas):
         for paths in kinds.values():  # warm
             for _ in range(WARM):
-                asked(empty, "/")
-                asked(atlas, next(paths))
+                time_answer(empty, "/")
+                time_answer(atlas, next(paths))
         for _ in range(rounds):
             for name, paths in kinds.items():
                 gc.collect()
                 found[name].append(
-                    [(asked(empty, "/"), asked(atlas, next(paths))) for _ in range(requests)]
+                    [
+                        (time_answer(empty, "/"), time_answer(atlas, next(paths)))
+                        for _ in range(requests)
+                    ]
                 )
     return [summary(name, pairs) for name, pairs in found.items()]
 
 
-def summary(queries: str, rounds: Sequence[Sequence[tuple[float, float]]]) -> Measured:
+def summary(queries: str, rounds: Sequence[Sequence[tuple[float, float]]]) -> QueryTimes:
     """Sum up the times (empty, recommendation) of every round."""
     empty, answers = zip(*(pair for pairs in rounds for pair in pairs), strict=True)
     ratios = [
@@ -237,7 +240,7 @@ def summary(queries: str, rounds: Sequence[Sequence[tuple[float, float]]]) -> Me
         for e, a in (zip(*r, strict=True) for r in rounds)
     ]
     typical = statistics.median(empty)
-    return Measured(
+    return QueryTimes(
         queries,
         typical,
         statistics.median(answers),
@@ -247,7 +250,7 @@ def summary(queries: str, rounds: Sequence[Sequence[tuple[float, float]]]) -> Me
     )
 
 
-def verdicts(results: Sequence[Measured]) -> list[Verdict]:
+def verdicts(results: Sequence[QueryTimes]) -> list[Verdict]:
     """Return the verdict on each kind of queries."""
     return [
         Verdict(
@@ -275,7 +278,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=36, help="of what is drawn")
     given = parser.parse_args(arguments)
     results = measure(given.seed, given.rounds, given.requests)
-    lost = broken(verdicts(results))
+    lost = any_broken(verdicts(results))
     if given.format == "json":
         document = {
             "largest_ratio": LARGEST_RATIO,
@@ -288,7 +291,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 1 if lost else 0
 
 
-def _print(results: Sequence[Measured]) -> None:
+def _print(results: Sequence[QueryTimes]) -> None:
     for result in results:
         print(
             f"{result.queries:10s} {result.recommendation_us:8.0f} us, "

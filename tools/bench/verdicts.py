@@ -36,6 +36,6 @@ class Verdict:
         return not self.holds and not self.cannot
 
 
-def broken(found: Sequence[Verdict]) -> bool:
+def any_broken(found: Sequence[Verdict]) -> bool:
     """Whether a limit is not kept that no reason excuses."""
     return any(verdict.breaks for verdict in found)

@@ -84,8 +84,8 @@ def _tried(kind: Kind, folder: Path, reference: Any) -> tuple[str, str, float, f
         signal.signal(signal.SIGPROF, signal.SIG_DFL)
         signal.alarm(PATIENCE_S)
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
-        told = json.dumps(_outcome(kind, folder, reference))
-        os.write(into, told.encode()[:60_000])
+        result = json.dumps(_outcome(kind, folder, reference))
+        os.write(into, result.encode()[:60_000])
         os._exit(0)
     os.close(into)
     with os.fdopen(back, "rb") as reader:
@@ -97,10 +97,10 @@ def _tried(kind: Kind, folder: Path, reference: Any) -> tuple[str, str, float, f
         killed = os.WTERMSIG(status)
         outcome = SLOW if killed in (signal.SIGALRM, signal.SIGPROF) else TRACEBACK
         return outcome, f"ended by signal {killed}", seconds, megabytes
-    outcome, told = json.loads(said)
+    outcome, result = json.loads(said)
     if megabytes > MEGABYTES:
         outcome = LARGE
-    return outcome, told, seconds, megabytes
+    return outcome, result, seconds, megabytes
 
 
 def _outcome(kind: Kind, folder: Path, reference: Any) -> tuple[str, str]:

@@ -20,16 +20,16 @@ WORDS = (
 )
 
 
-def flipped(rng: random.Random, data: bytes) -> bytes:
+def flip(rng: random.Random, data: bytes) -> bytes:
     at = rng.randrange(len(data))
     return data[:at] + bytes([data[at] ^ (1 << rng.randrange(8))]) + data[at + 1 :]
 
 
-def cut(rng: random.Random, data: bytes) -> bytes:
+def truncate(rng: random.Random, data: bytes) -> bytes:
     return data[: len(data) - rng.choice((1, 2, rng.randrange(1, len(data))))]
 
 
-def emptied(_rng: random.Random, _data: bytes) -> bytes:
+def empty(_rng: random.Random, _data: bytes) -> bytes:
     return b""
 
 
@@ -113,7 +113,7 @@ def with_another_value(rng: random.Random, data: bytes) -> bytes:
     return json.dumps(value).encode()
 
 
-def deep(_rng: random.Random, _data: bytes) -> bytes:
+def nest_deeply(_rng: random.Random, _data: bytes) -> bytes:
     return b"[" * 200_000 + b"]" * 200_000
 
 
@@ -143,7 +143,7 @@ def with_a_part_damaged(rng: random.Random, data: bytes) -> bytes:
     """Damage the bytes of one member of an archive, whose checksum holds again."""
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         chosen = rng.choice(archive.namelist())
-    how = rng.choice((flipped, cut, emptied))
+    how = rng.choice((flip, truncate, empty))
     return _zipped(data, lambda name, held: how(rng, held) if name == chosen and held else held)
 
 
@@ -176,13 +176,13 @@ def with_a_far_cell(rng: random.Random, data: bytes) -> bytes:
     return _zipped(data, lambda _name, held: held.replace(b"</sheetData>", new))
 
 
-ANY: tuple[Bytes, ...] = (flipped, flipped, cut, emptied)
+ANY: tuple[Bytes, ...] = (flip, flip, truncate, empty)
 TEXT: tuple[Bytes, ...] = (*ANY, in_other_encoding, with_other_line_ends, without_a_line)
 TABLE: tuple[Bytes, ...] = (
     *(*TEXT, with_a_line_twice, header_alone, with_cells_swapped, with_another_cell),
     *(with_another_cell, with_another_cell, with_a_column_swapped),
 )
-JSON: tuple[Bytes, ...] = (*TEXT, *(with_another_value,) * 4, deep, with_a_key_twice)
+JSON: tuple[Bytes, ...] = (*TEXT, *(with_another_value,) * 4, nest_deeply, with_a_key_twice)
 ARCHIVE: tuple[Bytes, ...] = (*ANY, with_a_part_damaged, with_a_part_damaged, bomb)
 WORKBOOK: tuple[Bytes, ...] = (*ARCHIVE, with_a_far_cell, with_a_far_cell)
 
@@ -193,7 +193,7 @@ def ways(name: str) -> tuple[Bytes, ...]:
     return by_ending.get(name.rpartition(".")[2], TEXT)
 
 
-def replaced(rng: random.Random, path: Path) -> str:
+def replace(rng: random.Random, path: Path) -> str:
     """Put something else in the place of a file; return what."""
     path.unlink()
     what = rng.choice(("nothing", "directory", "loop", "dangling link", "named pipe"))
@@ -211,7 +211,7 @@ def replaced(rng: random.Random, path: Path) -> str:
 def damage(rng: random.Random, path: Path) -> str:
     """Damage one file in place; return how, in a word or two."""
     if rng.random() < 0.12:
-        return f"replaced by {replaced(rng, path)}"
+        return f"replaced by {replace(rng, path)}"
     data = path.read_bytes()
     while True:
         how = rng.choice(ways(path.name))

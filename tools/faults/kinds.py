@@ -11,7 +11,7 @@ import survey_data
 from benchmark.results import record_manifest
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import times
-from benchmark.running.experiment import Recorded, experiments
+from benchmark.running.experiment import RecordedExperiment, experiments
 from survey_data import facts_manifest
 from survey_data.descriptor import DATA_DIRECTORY
 from tools.faults.kind import OFFERED, OTHERS, OWN, Kind, RefusedError
@@ -57,7 +57,9 @@ def _read_record(folder: Path) -> Any:
 
 def _read_files(folder: Path) -> Any:
     store = Store(folder)
-    records = [kind.record for kind in experiments().values() if issubclass(kind, Recorded)]
+    records = [
+        kind.record for kind in experiments().values() if issubclass(kind, RecordedExperiment)
+    ]
     kept = [record.read(folder) for record in records]
     return repr((store.rows(None), store.pins(), kept))
 

@@ -28,7 +28,7 @@ from benchmark.results.components import Components
 from benchmark.results.journal import Journal
 from benchmark.results.record import Record
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running.experiment import due, repeated
+from benchmark.running.experiment import list_due, repeat_at_random
 from files import manifest
 from tools.faults.forging import forged_export
 from tools.faults.forging_bundles import forged_bundle
@@ -163,9 +163,9 @@ def _outcome(folder: Path) -> list[Path]:
 def _read_outcome(folder: Path) -> Any:
     record_manifest.require_unchanged(folder, required=True)
     experiment = Claims(folder)
-    if reason := dict(due(experiment)).get(_CLAIM):
+    if reason := dict(list_due(experiment)).get(_CLAIM):
         raise RefusedError(f"{CLAIMS.name}: {_CLAIM}: {reason}")
-    for cell, text in repeated(experiment, 1, 0):
+    for cell, text in repeat_at_random(experiment, 1, 0):
         raise RefusedError(f"{CLAIMS.name}: {cell}: {text}")
     return []
 

@@ -38,7 +38,7 @@ _PAINTED = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime
 
 
 @dataclass(frozen=True)
-class Visited:
+class VisitResult:
     """A visit: seconds to its first words and to all of it, what came, and what went wrong."""
 
     path: str
@@ -49,7 +49,7 @@ class Visited:
     refused: int
 
 
-def visit(browser: Browser, address: str, path: str) -> Visited:
+def visit(browser: Browser, address: str, path: str) -> VisitResult:
     """Visit a page as a new visitor, down to its end."""
     context = browser.new_context(viewport={"width": 390, "height": 844})
     page = context.new_page()
@@ -74,7 +74,7 @@ def visit(browser: Browser, address: str, path: str) -> Visited:
     whole = time.monotonic() - start - 0.5  # which is how long the network has to be idle
     painted = page.evaluate(_PAINTED)
     context.close()
-    return Visited(
+    return VisitResult(
         path,
         whole if painted is None else painted / 1e3,
         whole,
@@ -84,7 +84,7 @@ def visit(browser: Browser, address: str, path: str) -> Visited:
     )
 
 
-def failures(visited: Sequence[Visited]) -> list[str]:
+def failures(visited: Sequence[VisitResult]) -> list[str]:
     """Say what is not as wanted, one sentence each."""
     found = []
     for one in visited:

@@ -17,8 +17,8 @@ from cosmic_ray.work_db import WorkDB, use_db
 
 from tools.mutation import running
 from tools.mutation.groups import GROUPS
-from tools.mutation.report import CAUGHT, accepted, report, score
-from tools.mutation.sample import Mutant, drawn
+from tools.mutation.report import CAUGHT, accepted_changes, report, score
+from tools.mutation.sample import Mutant, draw
 from tools.mutation.trying import try_all
 
 ROOT = Path(__file__).parents[2]
@@ -42,7 +42,7 @@ def main(arguments: list[str] | None = None) -> int:
         except RuntimeError as error:
             print(error, file=sys.stderr)
             return 2
-    text = report(tried, accepted())
+    text = report(tried, accepted_changes())
     print(text)
     if asked.report:
         asked.report.write_text(text)
@@ -69,7 +69,7 @@ def _sample(groups: list[str], parts: list[str] | None, times: int) -> dict[str,
     sample = {}
     for name in groups:
         group = GROUPS[name]
-        found = drawn(ROOT, group.modules(ROOT), times * group.mutants)
+        found = draw(ROOT, group.modules(ROOT), times * group.mutants)
         sample[name] = [
             one for one in found if not parts or any(part in one.module for part in parts)
         ]

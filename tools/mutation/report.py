@@ -18,7 +18,7 @@ Change = tuple[str, str, str]  # (module, lines before and after as a difference
 
 
 @dataclass(frozen=True)
-class Tried:
+class MutantResult:
     """A mutant, and whether a test failed on it or hung."""
 
     group: str
@@ -33,7 +33,7 @@ class Tried:
         return (self.mutant.module, self.diff, self.mutant.definition)
 
 
-def accepted(path: Path = SURVIVORS) -> dict[Change, str]:
+def accepted_changes(path: Path = SURVIVORS) -> dict[Change, str]:
     """Read the known survivors: why each may live, by what it changes where."""
     listed = tomllib.loads(path.read_text())["survivor"] if path.is_file() else []
     return {
@@ -41,13 +41,13 @@ def accepted(path: Path = SURVIVORS) -> dict[Change, str]:
     }
 
 
-def score(tried: Iterable[Tried]) -> float:
+def score(tried: Iterable[MutantResult]) -> float:
     """Return the share that was caught."""
     found = [one.caught for one in tried]
     return sum(found) / len(found) if found else 0.0
 
 
-def report(tried: Sequence[Tried], known: Mapping[Change, str]) -> str:
+def report(tried: Sequence[MutantResult], known: Mapping[Change, str]) -> str:
     """Write a Markdown report: scores of each group, then the survivors."""
     lines = [
         "# Mutants",
@@ -75,7 +75,7 @@ def report(tried: Sequence[Tried], known: Mapping[Change, str]) -> str:
     return "\n".join(lines).rstrip() + "\n"
 
 
-def _row(name: str, tried: Sequence[Tried], known: Mapping[Change, str]) -> str:
+def _row(name: str, tried: Sequence[MutantResult], known: Mapping[Change, str]) -> str:
     caught = sum(one.caught for one in tried)
     excused = sum(not one.caught and one.change in known for one in tried)
     apart = caught / (len(tried) - excused) if len(tried) > excused else 1.0

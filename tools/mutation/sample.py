@@ -91,7 +91,7 @@ class Mutant:
     definition: str
 
 
-def drawn(root: Path, modules: Sequence[str], count: int) -> list[Mutant]:
+def draw(root: Path, modules: Sequence[str], count: int) -> list[Mutant]:
     """Draw `count` mutants of a group of modules (fewer where there are not as many).
 
     A module's share goes by the root of the number of places where it can be changed, so that a

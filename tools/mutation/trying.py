@@ -21,7 +21,7 @@ from cosmic_ray.work_item import (
 
 from tools.mutation import running
 from tools.mutation.groups import GROUPS
-from tools.mutation.report import Tried
+from tools.mutation.report import MutantResult
 from tools.mutation.sample import Mutant
 
 
@@ -31,7 +31,7 @@ def try_all(
     directory: Path,
     workers: int,
     database: WorkDB,
-) -> list[Tried]:
+) -> list[MutantResult]:
     """Try mutants by group; RuntimeError where the tests fail without any.
 
     Parameters
@@ -56,7 +56,7 @@ def try_all(
     all_of_them = [(name, one) for name, found in sample.items() for one in found]
     database.add_work_items(_item(one) for _, one in all_of_them if one.key not in known)
     tried = [
-        Tried(name, one, True, caught[one.key], 0.0)
+        MutantResult(name, one, True, caught[one.key], 0.0)
         for name, one in all_of_them
         if one.key in caught
     ]
@@ -89,7 +89,7 @@ def _prepared(
 
 def _results(
     waiting: deque[tuple[str, Mutant]], slots: Sequence[_Slot], seconds: dict[str, float]
-) -> Iterator[Tried]:
+) -> Iterator[MutantResult]:
     try:
         while waiting or any(slot.busy for slot in slots):
             for slot in slots:
@@ -123,7 +123,7 @@ class _Slot:
         self._run = running.start(self.copy, tests, self._output, limit, clean=False)
         self.busy = True
 
-    def poll(self) -> Tried | None:
+    def poll(self) -> MutantResult | None:
         """Return what came of the mutant; None while it is tried, or where there is none."""
         status = self._run.outcome() if self.busy else None
         if status is None:
@@ -133,7 +133,7 @@ class _Slot:
         if status > running.BROKEN_OFF:
             raise RuntimeError(f"pytest ended with {status}:\n{running.tail(self._output)}")
         caught = status != running.PASSED
-        return Tried(self._group, self._mutant, caught, self._diff, taken)
+        return MutantResult(self._group, self._mutant, caught, self._diff, taken)
 
     def end(self) -> None:
         """Put the sources back; whatever still runs is stopped."""
@@ -151,8 +151,8 @@ def _difference(before: str, after: str | None) -> str:
     except SyntaxError:
         return ""
     changes = list(difflib.unified_diff(before.splitlines(), after.splitlines(), n=0))[2:]
-    told = [line for line in changes if not line.startswith("@@")]
-    return "\n".join(f"{line[0]}{line[1:].strip()}" for line in told)
+    changed = [line for line in changes if not line.startswith("@@")]
+    return "\n".join(f"{line[0]}{line[1:].strip()}" for line in changed)
 
 
 def _item(mutant: Mutant) -> WorkItem:
@@ -167,7 +167,7 @@ def _item(mutant: Mutant) -> WorkItem:
     return WorkItem.single(mutant.key, spec)
 
 
-def _result(tried: Tried) -> WorkResult:
+def _result(tried: MutantResult) -> WorkResult:
     return WorkResult(
         worker_outcome=WorkerOutcome.NORMAL,
         output=f"{tried.seconds:.1f} s",

@@ -19,10 +19,10 @@ from algorithms.calibration.coded.identity_kernel import (
     Code,
     Indices,
     Room,
-    dark,
+    are_near,
+    find_dark,
     leave,
     name_of,
-    near,
     partners_of,
     places_of_spot,
     room_for,
@@ -66,7 +66,7 @@ def _pair(spots: Floats, count: int, most: int, code: Code) -> Indices:
         sets += 1
         fewest = -1
         for j in range(i + 1, count):
-            if mates[j] < 0 and near(spots, i, j, code[5][0]):
+            if mates[j] < 0 and are_near(spots, i, j, code[5][0]):
                 number = spacings(spots, i, j, code)
                 if fewest < 0 or number < fewest:
                     fewest = number
@@ -86,14 +86,14 @@ def _agreement(dimensions: int, squares: float, noise: Noise) -> float:
     for prior in range(2):
         freedom, variance, cost = noise[3 * prior], noise[3 * prior + 1], noise[3 * prior + 2]
         all_of = 0.5 * (freedom + dimensions)
-        told = (
+        evidence = (
             math.lgamma(all_of)
             - math.lgamma(0.5 * freedom)
             - 0.5 * dimensions * math.log(math.pi * freedom * variance)
             - all_of * math.log1p(squares / (freedom * variance))
             - cost
         )
-        high, low = max(found, told), min(found, told)
+        high, low = max(found, evidence), min(found, evidence)
         found = high + math.log1p(math.exp(low - high))
     return found
 
@@ -109,14 +109,14 @@ def _dark_odds(dark_ones: int, noise: Noise) -> float:
 def _width_evidence(off: float, noise: Noise) -> float:
     """Logarithm of the density of a width's residual, over that of one nothing is known of."""
     design, odd = off / noise[_WIDTH], off / noise[_ODD_WIDTH]
-    told = (1.0 - noise[_ODD]) * math.exp(-0.5 * design * design) / noise[_WIDTH]
-    told += noise[_ODD] * math.exp(-0.5 * odd * odd) / noise[_ODD_WIDTH]
-    return math.log(max(told * noise[_ODD_WIDTH], noise[_ODD] * 1e-3))
+    evidence = (1.0 - noise[_ODD]) * math.exp(-0.5 * design * design) / noise[_WIDTH]
+    evidence += noise[_ODD] * math.exp(-0.5 * odd * odd) / noise[_ODD_WIDTH]
+    return math.log(max(evidence * noise[_ODD_WIDTH], noise[_ODD] * 1e-3))
 
 
 @compiled
 def _widths(spots: Floats, count: int, places: Floats, partners: Indices, noise: Noise) -> float:
-    """Evidence that widths told by light give for the partners: about their median, as they lie."""
+    """Evidence for the partners from widths estimated from light, about their median."""
     off = np.empty(count)
     number = 0
     for s in range(count):
@@ -176,7 +176,9 @@ def _evidence(  # noqa: PLR0917 - Numba takes no keyword-only ones
         found += _widths(spots, count, places, partners, noise)
     if found < least:
         return -math.inf
-    closed = dark(count, at, int(min((found - least) / noise[_DARK], 1e6)), code, view, partners)
+    closed = find_dark(
+        count, at, int(min((found - least) / noise[_DARK], 1e6)), code, view, partners
+    )
     found += _dark_odds(closed, noise)
     return found if found >= least else -math.inf
 
@@ -224,19 +226,19 @@ def _compare(  # noqa: C901, PLR0912, PLR0917 - one pass over places; positional
             if left[h] > most:
                 continue
             at = trials[h]
-            told = _evidence(spots, count, at, best - noise[_ODDS], code, view, noise, partners)
-            if told == -math.inf:
+            evidence = _evidence(spots, count, at, best - noise[_ODDS], code, view, noise, partners)
+            if evidence == -math.inf:
                 continue
             if known and abs(at[0] - place[0]) <= apart and abs(at[1] - place[1]) <= apart:
-                best = max(best, told)
-            elif told > best:
+                best = max(best, evidence)
+            elif evidence > best:
                 if known:
                     second = best
-                best, known = told, True
+                best, known = evidence, True
                 place[:] = at
             else:
-                second = max(second, told)
-    if sets <= most:  # other places cannot be told
+                second = max(second, evidence)
+    if sets <= most:  # other places cannot be determined
         second = best
     return best, second
 
@@ -272,7 +274,7 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if math.isnan(found[k, 0]) or best < noise[_MASK] - count * noise[_VIEW] + noise[_ODDS]:
             continue
         explained = count - partners_of(spots, count, found[k], code, own)
-        lit = explained + dark(count, found[k], len(code[0]), code, view, own)
+        lit = explained + find_dark(count, found[k], len(code[0]), code, view, own)
         if explained >= max(float(agreeing), share * count, share * lit):
             verdicts[k] = READ if best - second >= noise[_ODDS] else SEVERAL
         if verdicts[k] != READ:

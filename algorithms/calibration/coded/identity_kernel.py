@@ -92,7 +92,7 @@ def partners_of(spots: Floats, count: int, at: Floats, code: Code, partners: Ind
 
 
 @compiled
-def dark(  # noqa: PLR0917 - Numba takes no keyword-only ones
+def find_dark(  # noqa: PLR0917 - Numba takes no keyword-only ones
     count: int, at: Floats, most: int, code: Code, view: Floats, partners: Indices
 ) -> int:
     """Apertures well in view of which no spot is seen; stops after more than `most`."""
@@ -122,7 +122,7 @@ def dark(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
-def near(spots: Floats, i: int, j: int, reach: float) -> bool:
+def are_near(spots: Floats, i: int, j: int, reach: float) -> bool:
     """Whether two spots are within reach of each other along both axes."""
     return bool(abs(spots[j, 0] - spots[i, 0]) <= reach and abs(spots[j, 1] - spots[i, 1]) <= reach)
 
@@ -189,7 +189,7 @@ def _rarest(spots: Floats, count: int, code: Code, rare: Indices) -> int:
     found = 0
     for i in range(count):
         for j in range(i + 1, count):
-            if not near(spots, i, j, code[5][0]):
+            if not are_near(spots, i, j, code[5][0]):
                 continue
             number = spacings(spots, i, j, code)
             if number == 0 or (found == len(rare) and number >= rare[found - 1, 0]):
@@ -236,7 +236,7 @@ def _improve(  # noqa: PLR0917 - Numba takes no keyword-only ones
     for h in range(number):
         if left[h] == fewest and fewest < best:
             partners_of(spots, count, trials[h], code, partners)
-            faults = fewest + dark(count, trials[h], best - fewest, code, view, partners)
+            faults = fewest + find_dark(count, trials[h], best - fewest, code, view, partners)
             if faults < best:
                 best = faults
                 found[:] = trials[h]

@@ -30,7 +30,7 @@ def joint(  # noqa: C901, PLR0917 - one pass over spots; positional for Numba
     fewer have a partner.
     """
     room = np.empty((3, lists.shape[1]))
-    told = np.empty(lists.shape[1], dtype=np.int64)
+    previous = np.empty(lists.shape[1], dtype=np.int64)
     for k in range(lists.shape[0]):
         own = partners[k]
         found[k] = math.nan
@@ -47,7 +47,7 @@ def joint(  # noqa: C901, PLR0917 - one pass over spots; positional for Numba
         y = np.median(room[1, :n])
         for m in range(n):
             room[2, m] = math.hypot(room[0, m] - x, room[1, m] - y)
-        told[:] = own
+        previous[:] = own
         reach = worst * max(np.median(room[2, :n]), _LEAST_PX)
         across, along, kept, n = 0.0, 0.0, 0, 0
         for s in range(lists.shape[1]):
@@ -63,10 +63,10 @@ def joint(  # noqa: C901, PLR0917 - one pass over spots; positional for Numba
         if kept < agreeing:  # of so few, two that happen to agree do not make the third wrong
             across, along, kept = 0.0, 0.0, 0
             for s in range(lists.shape[1]):
-                if told[s] >= 0:
-                    across += lists[k, s, 0] - places[told[s], 0]
-                    along += lists[k, s, 1] - places[told[s], 1]
+                if previous[s] >= 0:
+                    across += lists[k, s, 0] - places[previous[s], 0]
+                    along += lists[k, s, 1] - places[previous[s], 1]
                     kept += 1
-            own[:] = told
+            own[:] = previous
         found[k, 0] = across / kept
         found[k, 1] = along / kept

@@ -99,8 +99,8 @@ class CodedMask(ForwardModel):
         Largest distance of a spot from its aperture's place along an axis, positive; below half of
         what tells two spacings of the code apart.
     size_tolerance : float or None
-        Largest relative error of an aperture's width as told by its spot's light, positive; None
-        where sizes are no code.
+        Largest relative error of an aperture's width as estimated from its spot's light, positive;
+        None where sizes are no code.
     half_fov_deg : float or None
         Edge of the field of view, in (0, 90): a place more than 2 degrees beyond it along an axis
         is no answer. None for no such edge.

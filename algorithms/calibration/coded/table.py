@@ -31,8 +31,8 @@ def code_of(
         Largest distance of a spot from its place, an axis; below a quarter of the least distance
         of two apertures over the root of two.
     size_tolerance : float
-        Largest relative error of a width that is told by a spot's light; infinity where sizes do
-        not count.
+        Largest relative error of a width that is estimated from a spot's light; infinity where
+        sizes do not count.
 
     Returns
     -------

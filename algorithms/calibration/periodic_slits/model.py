@@ -1,4 +1,4 @@
-"""`RulerModel`: slits on a raster over two lines of pixels, read together."""
+"""`PeriodicSlitModel`: slits on a raster over two lines of pixels, read together."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from algorithms.models.geometric.single_slit import DeflectedSlits
 
 
 @dataclass
-class RulerModel(DeflectedSlits):
+class PeriodicSlitModel(DeflectedSlits):
     """A model of the assembly of equal slits that are read together.
 
     Parameters
@@ -50,7 +50,7 @@ class RulerModel(DeflectedSlits):
 
     @abstractmethod
     def read(self, lines: Floats, found: Raster, middle: float, shifts: Floats) -> None:
-        """Write into `shifts` (M,) the pattern's, px, on lines (M, L) whose middle is told."""
+        """Write into `shifts` (M,) the pattern's, px, on lines (M, L) whose middle is given."""
         ...
 
     def raster(self) -> Raster:

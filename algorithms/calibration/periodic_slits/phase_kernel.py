@@ -140,11 +140,11 @@ def read_vernier(  # noqa: PLR0917 - Numba takes no keyword-only ones
     least: float,
     shifts: Floats,
 ) -> None:
-    """Write the shift (R,) of an optical vernier's moving ruler on each line, px.
+    """Write the shift (R,) of an optical vernier's moving scale on each line, px.
 
     The position code tells the shift to a pixel: where `slits` (S,) are lit and `gaps` (G,), the
     ones left out and those beyond the ends, are dark. Then each slit's light is compared with the
-    marks of `mark` pixels, the fixed ruler: its phase by `wave` (L, 2), less what the vernier has
+    marks of `mark` pixels, the fixed scale: its phase by `wave` (L, 2), less what the vernier has
     gained from slit to slit, is the shift within a mark, alike for all slits. NaN where the code
     is not there, or two shifts more than a pixel apart explain it.
     """

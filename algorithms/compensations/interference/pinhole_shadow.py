@@ -83,10 +83,10 @@ class PinholeShadow(CalibratedCompensation):
     >>> sun = sun_grid(range(-40, 41, 20))
     >>> tangents = sun[:, :2] / sun[:, 2:]
     >>> mask = PinholeShadow(1.0, unit_mm=1.0, thickness_mm=0.1, aperture_mm=0.2, disc_deg=2.0)
-    >>> outlines = mask.seen(tangents, share=0.5)
+    >>> outlines = mask.spots(tangents, share=0.5)
     >>> round(mask.fit(outlines, sun).share_, 6)
     0.5
-    >>> float(np.abs(mask.transform(outlines) - mask.seen(tangents, share=0.0)).max().round(9))
+    >>> float(np.abs(mask.transform(outlines) - mask.spots(tangents, share=0.0)).max().round(9))
     0.0
     """
 
@@ -144,7 +144,7 @@ class PinholeShadow(CalibratedCompensation):
             aperture_mm=geometry.aperture_width_mm or 0.0,
         )
 
-    def seen(self, tangents: Floats, share: float) -> Floats:
+    def spots(self, tangents: Floats, share: float) -> Floats:
         """Spots (N, 2) of the tangents (tan(beta), tan(alpha)) (N, 2) of the Sun's centre.
 
         Parameters
@@ -169,8 +169,8 @@ class PinholeShadow(CalibratedCompensation):
         lit = self._lit(np.sqrt((tangents**2).sum(axis=1)))
         require_samples(int(lit.sum()), FEWEST, by, "a share beside the assembly")
         tangents, found = tangents[lit], features[lit]
-        whole = self.seen(tangents, share=0.0)
-        shifted = (self.seen(tangents, share=1.0) - whole).T.ravel()
+        whole = self.spots(tangents, share=0.0)
+        shifted = (self.spots(tangents, share=1.0) - whole).T.ravel()
         x, y = tangents.T
         powers = np.column_stack([x**i * y**j for i in range(4) for j in range(4 - i)])
         assembly = np.kron(np.eye(2), powers)

@@ -1,4 +1,4 @@
-"""Sun and albedo told apart face by face, with a magnetometer where it takes one (SAIE)."""
+"""Sun and albedo distinguished face by face, with a magnetometer where it takes one (SAIE)."""
 
 from __future__ import annotations
 

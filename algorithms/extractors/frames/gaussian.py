@@ -125,7 +125,7 @@ class GaussianFit(Extractor):
         return self._answers(as_frames(observations))[0]
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
-        """Centres, covariances and doubts of frames (N, H, W) or of one.
+        """Centres, covariances and flags of frames (N, H, W) or of one.
 
         The covariance is that of the linearised fit, with the variance that pixels depart from it
         by. It is NaN where that is more than the noise that registration shows, or registration
@@ -141,7 +141,7 @@ class GaussianFit(Extractor):
         noise = np.where(nothing, np.nan, judged.noise)
         gaussian_kernel.covariances(frames, fitted, noise, _MISFIT, covariance)
         return Measurement(
-            centres, consistent_covariances(covariance, centres, judged), judged.doubts
+            centres, consistent_covariances(covariance, centres, judged), judged.flags
         )
 
     def _answers(
@@ -155,7 +155,7 @@ class GaussianFit(Extractor):
         found &= (x > -0.5) & (x < width - 0.5) & (y > -0.5) & (y < height - 0.5)
         centres = np.where(found[:, None], fitted[:, 1:3], np.nan)
         judged = judge(frames, centres, self.light, self.longest_px, bad)
-        centres[refused_flags(judged.doubts)] = np.nan
+        centres[refused_flags(judged.flags)] = np.nan
         return centres, fitted, judged
 
     def _fit(self, frames: Frames) -> Floats:

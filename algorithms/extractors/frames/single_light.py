@@ -78,16 +78,16 @@ class LightCheck(NamedTuple):
 
     Attributes
     ----------
-    doubts
+    flags
         (N,) `algorithms.measurement.QualityFlag` flags. Those that `refused_flags` is true of leave
         no answer; NO_SPOT where there is none, or it is of something else than the light.
     noise
-        (N, 2) variance of a dark pixel, and what a unit of light adds to it; NaN where not told.
+        (N, 2) variance of a dark pixel, and what a unit of light adds to it; NaN where unknown.
     centres
         (N, 2) centres that registration finds, px; NaN where it finds none or was not asked.
     """
 
-    doubts: NDArray[np.int64]
+    flags: NDArray[np.int64]
     noise: Floats
     centres: Floats
 
@@ -117,34 +117,34 @@ def judge(
     Returns
     -------
     Judged
-        Doubts, noise and registered centre of each frame.
+        Flags, noise and registered centre of each frame.
 
     Examples
     --------
     >>> y, x = np.mgrid[:40, :40]
     >>> disc = 900 / (1 + np.exp(2 * (np.hypot(x - 21.3, y - 18.8) - 7)))
     >>> frames = np.random.default_rng(1).normal(50 + disc + 1500 * (y < 6), 5.0)[None]
-    >>> QualityFlag(judge(frames, np.array([[20.5, 12.1]])).doubts[0])
+    >>> QualityFlag(judge(frames, np.array([[20.5, 12.1]])).flags[0])
     <QualityFlag.CUT: 4>
     """
-    doubts = np.full(len(frames), int(QualityFlag.NO_SPOT), dtype=np.int64)
+    flags = np.full(len(frames), int(QualityFlag.NO_SPOT), dtype=np.int64)
     noise, registered = np.full((2, len(frames), 2), np.nan)
     seen = np.flatnonzero(np.isfinite(centres).all(axis=1))
     if not len(seen):
-        return LightCheck(doubts, noise, registered)
+        return LightCheck(flags, noise, registered)
     some = frames if len(seen) == len(frames) else frames[seen]
     if light == "any":
-        doubts[seen] = _unlit(some)
+        flags[seen] = _unlit(some)
     else:
-        doubts[seen], noise[seen], registered[seen] = _elsewhere(
+        flags[seen], noise[seen], registered[seen] = _elsewhere(
             some, centres[seen], longest_px, bad
         )
-    return LightCheck(doubts, noise, registered)
+    return LightCheck(flags, noise, registered)
 
 
-def refused_flags(doubts: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Return where doubts leave no answer; SATURATED and GHOST may stand beside one."""
-    return np.asarray((doubts & ~int(QualityFlag.SATURATED | QualityFlag.GHOST)) != 0)
+def refused_flags(flags: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Return where flags leave no answer; SATURATED and GHOST may stand beside one."""
+    return np.asarray((flags & ~int(QualityFlag.SATURATED | QualityFlag.GHOST)) != 0)
 
 
 def consistent_covariances(covariance: Floats, centres: Floats, judged: LightCheck) -> Floats:
@@ -163,8 +163,8 @@ def check_agreement(
     frames: Frames, centres: Floats, light: Light = "spot", longest_px: float | None = None
 ) -> Floats:
     """Return the answers (N, 2) that nothing speaks against, and NaN for the others."""
-    doubts = judge(frames, centres, light, longest_px).doubts
-    return np.where(refused_flags(doubts)[:, None], np.nan, centres)
+    flags = judge(frames, centres, light, longest_px).flags
+    return np.where(refused_flags(flags)[:, None], np.nan, centres)
 
 
 def _elsewhere(
@@ -176,8 +176,8 @@ def _elsewhere(
     room = _APART_PX + _APART * found.deviations.max(axis=1)
     # registration's own NaN carries its reason already
     apart = np.abs(centres - found.features).max(axis=1) > room
-    doubts = found.doubts | np.where(apart, int(QualityFlag.NO_SPOT), 0)
-    return LightCheck(doubts, noise, found.features)
+    flags = found.flags | np.where(apart, int(QualityFlag.NO_SPOT), 0)
+    return LightCheck(flags, noise, found.features)
 
 
 def _unlit(frames: Frames) -> NDArray[np.int64]:

@@ -87,8 +87,8 @@ class ThresholdProfile(Extractor):
     ----------
     threshold : float
         The fraction mu, in (0, 1), of the line's brightest pixel above what is dark. The survey
-        gives no value; 0.1 is ours: a ruler's few large pixels share a slit's light, and what the
-        dim one has of it counts.
+        gives no value; 0.1 is ours: the few large pixels of a periodic mask's sensor share a slit's
+        light, and what the dim one has of it counts.
 
     Notes
     -----

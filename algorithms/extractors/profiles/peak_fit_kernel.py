@@ -27,7 +27,7 @@ _FAR = 8.0
 #: Ratios of a step to the one before from which on, and up to which, the rest of a series of such
 #: steps is taken at once.
 _SLOW, _SLOWEST = 0.3, 0.95
-#: Times that the pixels of a fit are told anew before it is taken as it is.
+#: Times that the pixels of a fit are selected anew before it is taken as it is.
 _ROUNDS = 3
 #: Largest step of a shift, half widths: further out an image has no slope to go by.
 _STRIDE = 0.5
@@ -220,9 +220,10 @@ def _iterate(  # noqa: PLR0917 - Numba takes no keyword-only ones
 ) -> bool:
     """Move `found` by Gauss-Newton steps, and say whether they end near the start.
 
-    The pixels that count stay the same until the steps end, and are then told anew: told at every
-    step, one on the border may come and go for ever. Where the image is not quite the light's,
-    steps shrink by a constant ratio; once they do, the rest of their series is taken at once.
+    The pixels that count stay the same until the steps end, and are then selected anew: selected at
+    every step, one on the border may come and go for ever. Where the image is not quite the
+    light's, steps shrink by a constant ratio; once they do, the rest of their series is taken at
+    once.
     """
     count = column.max() + 1
     size = found.size

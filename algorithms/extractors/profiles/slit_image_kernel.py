@@ -227,7 +227,7 @@ def _shift(  # noqa: C901, PLR0917 - one fit; Numba takes no keyword-only ones
         if not vector[0] > _DIMMER * bright:
             if held or turn == 0:
                 return math.nan
-            held = True  # light and width cannot be told apart: a pixel is as wide as it is
+            held = True  # light and width cannot be distinguished: a pixel is as wide as it is
             continue
         if turn < _WEIGHED:
             noise = max(square - (explained * vector).sum(), 0.0) / max(lit.sum() - 4, 1)

@@ -115,7 +115,7 @@ class SlitLines:
         return ("x_px", "y_px")
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
-        """Features as `extract`, their covariance and doubts; see `algorithms.measurement`."""
+        """Features as `extract`, their covariance and flags; see `algorithms.measurement`."""
         extract = cast("Extractor", self).extract
         return measurement_of(extract, self.about.observation, self.about.name, observations, bad)
 

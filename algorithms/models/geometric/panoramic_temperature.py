@@ -106,10 +106,10 @@ class WarmCells(WeightedCells):
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Learn the reference currents and the temperature coefficient."""
         warmth = context["temperature_K"] - self.reference_temperature_K
-        told = np.isfinite(warmth)
-        require_samples(int(told.sum()), 2, self.about.name, "with a temperature")
-        features, warmth = features[told], warmth[told]
-        cosines = sun[told] @ np.asarray(self.face_normals, dtype=np.float64).T
+        known = np.isfinite(warmth)
+        require_samples(int(known.sum()), 2, self.about.name, "with a temperature")
+        features, warmth = features[known], warmth[known]
+        cosines = sun[known] @ np.asarray(self.face_normals, dtype=np.float64).T
         cosines[cosines < self._smallest_cosine] = 0.0
         lit = (cosines**2).sum(axis=0) > 0
         require_samples(int(lit.sum()), 1, self.about.name, "that light a cell")

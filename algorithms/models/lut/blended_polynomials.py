@@ -10,7 +10,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from algorithms.angles import angles_from_sun
-from algorithms.calibration.blocks import best, folds, splits
+from algorithms.calibration.blocks import best_candidate, folds, splits
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.conditioning import WORST_CONDITION
 from algorithms.calibration.hull import median_spacing
@@ -193,7 +193,7 @@ class BlendedPolynomials(ProjectionModel):
             )
             found |= {(degree, s): e for s, e in zip(smoothings, errors_of.tolist(), strict=True)}
         tried = [(n, weight) for n in degrees for weight in smoothings]
-        return best(tried, lambda settings: found.get(settings, np.inf), self.about.name)
+        return best_candidate(tried, lambda settings: found.get(settings, np.inf), self.about.name)
 
     def solve(self, nominal: Floats, errors: Floats, degree: int, smoothing: float) -> None:
         """Solve for the rows that fit errors (n, 2) at nominal angles (n, 2), degrees."""

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from algorithms.angles import angles_from_sun
-from algorithms.calibration.blocks import best, folds, splits
+from algorithms.calibration.blocks import best_candidate, folds, splits
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.hull import median_spacing
 from algorithms.calibration.projection import ProjectionModel
@@ -156,7 +156,7 @@ class ErrorTable(ProjectionModel):
             design, surface_roughness(alpha.nodes, beta.nodes), weights, errors, splits(folds(sun))
         )
         errors_of = dict(zip(SMOOTHINGS, found.tolist(), strict=True))
-        return best(SMOOTHINGS, errors_of.__getitem__, self.about.name)
+        return best_candidate(SMOOTHINGS, errors_of.__getitem__, self.about.name)
 
     def solve(self, nominal: Floats, errors: Floats, smoothing: float) -> None:
         """Solve for the nodes that fit errors (n, 2) at nominal angles (n, 2), degrees."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from algorithms.calibration.periodic_slits.model import RulerModel
+from algorithms.calibration.periodic_slits.model import PeriodicSlitModel
 from algorithms.calibration.periodic_slits.pattern_fit import Raster
 from algorithms.calibration.slit_sensor import NEEDS
 from algorithms.contract import (
@@ -19,7 +19,7 @@ from algorithms.documented import documented
 
 @documented
 @dataclass
-class ReticlePhase(RulerModel):
+class ReticlePhase(PeriodicSlitModel):
     """Reticle of equal slits over a line of pixels, located by the phase of its light.
 
     All slits are read together: the light is correlated with the reticle's period, so that N slits
@@ -89,7 +89,7 @@ class ReticlePhase(RulerModel):
             )
 
     def read(self, lines: Floats, found: Raster, middle: float, shifts: Floats) -> None:
-        """Write into `shifts` (M,) the pattern's, px, on lines (M, L) whose middle is told."""
+        """Write into `shifts` (M,) the pattern's, px, on lines (M, L) whose middle is given."""
         from algorithms.calibration.periodic_slits import phase_kernel  # noqa: PLC0415 - Numba, at first use
 
         waves = phase_kernel.waves(self.line_pixels, found.period)

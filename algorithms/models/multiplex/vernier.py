@@ -1,4 +1,4 @@
-"""Optical verniers: slits that gain on the marks of a fixed ruler of pixels (Periodic)."""
+"""Optical verniers: slits that gain on the marks of a fixed scale of pixels (Periodic)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from algorithms.calibration.periodic_slits.model import RulerModel
+from algorithms.calibration.periodic_slits.model import PeriodicSlitModel
 from algorithms.calibration.periodic_slits.pattern_fit import Raster
 from algorithms.calibration.slit_sensor import NEEDS
 from algorithms.contract import (
@@ -21,7 +21,7 @@ from algorithms.documented import documented
 
 @documented
 @dataclass
-class OpticalVernier(RulerModel):
+class OpticalVernier(PeriodicSlitModel):
     """Vernier: slits slightly farther apart than marks of three pixels each.
 
     Slits cross the marks one after the other as the light moves, so few large pixels resolve fine
@@ -92,7 +92,7 @@ class OpticalVernier(RulerModel):
             )
 
     def read(self, lines: Floats, found: Raster, middle: float, shifts: Floats) -> None:
-        """Write into `shifts` (M,) the pattern's, px, on lines (M, L) whose middle is told."""
+        """Write into `shifts` (M,) the pattern's, px, on lines (M, L) whose middle is given."""
         from algorithms.calibration.periodic_slits import phase_kernel  # noqa: PLC0415 - Numba, at first use
 
         ends = np.array([found.slits[0] - found.period, found.slits[-1] + found.period])

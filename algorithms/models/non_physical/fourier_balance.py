@@ -21,7 +21,7 @@ from algorithms.models.non_physical.regression_axes import (
 )
 
 MAX_HARMONICS = 8
-"""Past it, waves of twice the range's period are hardly told from sums of each other."""
+"""Past it, waves of twice the range's period are hardly distinguished from sums of each other."""
 
 _FUNDAMENTAL = np.pi / 2.0
 """Of a feature scaled to [-1, 1]: half a wave over the calibrated range."""

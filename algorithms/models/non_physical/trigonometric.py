@@ -129,8 +129,8 @@ class TrigonometricPanels(FacesModel):
             design = np.column_stack([np.ones(int(lit.sum())), sun[lit]])
             try:
                 fitted[panel] = solve_regression(design, features[lit, panel], by)
-            except UnusableDataError as told:
-                refusal = told
+            except UnusableDataError as error:
+                refusal = error
                 continue
             residual = features[lit, panel] - design @ fitted[panel]
             size = residual @ residual / (len(design) - 4)

@@ -10,7 +10,7 @@ import numpy as np
 from algorithms.calibration.conditioning import WORST_SOLUTION
 from algorithms.calibration.quality import Parameter
 from algorithms.contract import Floats, UnusableDataError
-from algorithms.models.physics_informed.faces_weighing import Weighing
+from algorithms.models.physics_informed.faces_weighing import ResidualWeights
 
 FEWEST_LIT = 12
 """Samples that must light a face."""
@@ -107,16 +107,17 @@ class FacesFit:
         )
 
         method: Literal["lm", "trf"] = "lm" if self._used.sum() >= len(start) else "trf"
-        weighing = Weighing.even(self._used)
-        # where the numbers are only just settled, the lamp's strength cannot be told from them
+        weighing = ResidualWeights.even(self._used)
+        # where the numbers are only just settled, the lamp's strength cannot be distinguished from
+        # them
         rounds = _ROUNDS if self._used.sum() > 2 * (len(start) + len(self.sun)) else 1
         for number in range(rounds):
 
-            def residuals(vector: Floats, weighing: Weighing = weighing) -> Floats:
+            def residuals(vector: Floats, weighing: ResidualWeights = weighing) -> Floats:
                 off = self._model(*self._split(vector, shapes)) - self._light
                 return weighing.weigh(off)[self._used]
 
-            def jacobian(vector: Floats, weighing: Weighing = weighing) -> Floats:
+            def jacobian(vector: Floats, weighing: ResidualWeights = weighing) -> Floats:
                 return weighing.weigh(self._derivatives(vector, shapes))[self._used]
 
             tolerance = _PRECISION if number + 1 == rounds else _ON_THE_WAY
@@ -133,7 +134,9 @@ class FacesFit:
             start = solution.x
             modelled = self._model(*self._split(start, shapes))
             if number + 1 < rounds:
-                weighing = Weighing.of(modelled, self._light - modelled, self._used, len(start))
+                weighing = ResidualWeights.of(
+                    modelled, self._light - modelled, self._used, len(start)
+                )
         derivatives = jacobian(solution.x)
         lengths = np.linalg.norm(derivatives, axis=0)
         values = np.linalg.svd(derivatives / np.where(lengths > 0, lengths, 1.0), compute_uv=False)
@@ -149,7 +152,8 @@ class FacesFit:
         self.normals = self._tilt(tilts)
         self.responses = (self._size * gains)[:, None] * coefficients(shape)
         self.noise = (
-            self._size * Weighing.of(modelled, self._light - modelled, self._used, len(start)).noise
+            self._size
+            * ResidualWeights.of(modelled, self._light - modelled, self._used, len(start)).noise
         )
         self.condition = float(values[0] / values[-1])
         self.parameters = self._name_of(solution.x, deviations, shapes)

@@ -20,7 +20,7 @@ _SPREADS = np.concatenate([[0.0], 10.0 ** np.arange(-3.0, 6.01, 0.125)])
 
 
 @dataclass(frozen=True)
-class Weighing:
+class ResidualWeights:
     """Weights of residuals that share, sample by sample, an unknown strength of the light.
 
     A lamp flickers and drifts, the Sun is nearer in January: sample i of K faces reads
@@ -66,17 +66,19 @@ class Weighing:
             m, r = modelled / noise, off / noise
             power, along = (m**2).sum(axis=1), (m * r).sum(axis=1)
             tried = _SPREADS / power.mean()
-            told = tried[:, None] * power  # (spreads, n): how well a sample tells its strength
-            left = (r**2).sum() - (tried[:, None] * along**2 / (1.0 + told)).sum(axis=1)
-            turned = np.log1p(told).sum(axis=1)
+            information = (
+                tried[:, None] * power
+            )  # (spreads, n): how well a sample tells its strength
+            left = (r**2).sum() - (tried[:, None] * along**2 / (1.0 + information)).sum(axis=1)
+            turned = np.log1p(information).sum(axis=1)
             total = float(count.sum())
             best = int(np.argmin(total * np.log(np.maximum(left, 1e-300)) + turned))
             ratio = float(tried[best])
             # given the strength's, the noise expected of each face
             level = ratio * along / (1.0 + ratio * power)
-            doubt = ratio / (1.0 + ratio * power)
+            shrinkage = ratio / (1.0 + ratio * power)
             size = float(left[best]) / total
-            rest = (r - level[:, None] * m) ** 2 + size * doubt[:, None] * m**2
+            rest = (r - level[:, None] * m) ** 2 + size * shrinkage[:, None] * m**2
             spread = float(np.sqrt(ratio * size))
             before, noise = (
                 noise,

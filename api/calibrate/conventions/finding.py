@@ -27,7 +27,7 @@ class Finding:
     change : dict
         Settings that would apply it; empty where none can.
     certain : bool
-        Whether the evidence leaves hardly a doubt.
+        Whether the evidence is practically certain.
     note : str
         What else would look the same.
     """

@@ -65,7 +65,7 @@ def findings(
     else:
         angles = list(_of_angles((every or readings).thinned(_MOST_JUDGED), settings))
         found += angles
-        # axes and light are told by directions, which are others under other angles
+        # axes and light follow from directions, which are others under other angles
         if not any(one.certain and _moves_axes(one, settings) for one in angles):
             found += _of_runs(readings)
             light = list(of_light(readings, settings))
@@ -109,10 +109,10 @@ def linear_map(readings: Readings) -> tuple[Floats, Floats] | None:
 
 
 def _of_axes(readings: Readings) -> Iterator[Finding]:
-    told = linear_map(readings)
-    if told is None:
+    fit = linear_map(readings)
+    if fit is None:
         return
-    slope, _ = told
+    slope, _ = fit
     scale = np.sqrt(abs(np.linalg.det(slope))) or 1.0
     distance = {
         name: float(np.linalg.norm(np.asarray(matrix) @ slope / scale - np.eye(2)))

@@ -20,7 +20,7 @@ from api.cli.table_output import Format, FormatOption, emit
 from api.cli.wrong_call import WrongCallError
 from api.schema.scores import Score, ScoresQuery
 from api.schema.table import columns_of
-from benchmark.plan.combinations import Incompatible, cells, incompatible
+from benchmark.plan.combinations import Exclusion, cells, list_exclusions
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -75,7 +75,7 @@ def benchmark(
     planned = cells(**names)
     if not planned:
         names.pop("conditions", None)
-        refused = incompatible(**names)
+        refused = list_exclusions(**names)
         typer.echo(f"sunatlas: no compatible combination of these names{_why(refused)}", err=True)
         raise typer.Exit(1)
     result = score_cells(planned, workers, store, scheduler)
@@ -85,8 +85,8 @@ def benchmark(
     for warning in result.warnings:
         typer.echo(f"warning: {warning}", err=True)
     typer.echo(
-        f"{result.published} published, {result.kept} measured before, {result.measured} measured "
-        f"now; new results are kept in {result.directory}",
+        f"{result.published_count} published, {result.stored_count} measured before, "
+        f"{result.measured_count} measured now; new results are kept in {result.directory}",
         err=True,
     )
 
@@ -124,7 +124,7 @@ def _on_own_data(data: Path, config: Path | None, models: list[str] | None, form
         )
 
 
-def _why(refused: Sequence[Incompatible]) -> str:
+def _why(refused: Sequence[Exclusion]) -> str:
     """Say why the first combination is none."""
     if not refused:
         return ""

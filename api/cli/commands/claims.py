@@ -18,7 +18,7 @@ from api.schema.table import columns_of
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
-RULES = ("rule", "statistic", "decides", "estimate", "low", "high", "trials", "standing")
+RULES = ("rule", "statistic", "decides", "estimate", "low", "high", "trials", "result")
 
 
 @app.command()

@@ -156,8 +156,9 @@ def errors(
 ) -> None:
     """Show the published errors of each sample, nominal condition.
 
-    By extractor, model, unit and sample, with the true Sun direction; `doubt` gives the reason for
-    a missing answer. A data set has up to a million rows: choose a pipeline, or write to a file.
+    By extractor, model, unit and sample, with the true Sun direction; `outcome` gives the reason
+    for a missing answer. A data set has up to a million rows: choose a pipeline, or write to a
+    file.
     """
     ask(dataset_errors, {**asked, "limit": 1}, name=name)  # refuses what does not fit
     measured = knowledge().measurements

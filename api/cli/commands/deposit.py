@@ -157,10 +157,10 @@ def upload(
         "page": done.draft.page,
         "published": False,
         "files": rows,
-        "left": list(done.left),
+        "left": list(done.remaining_files),
     }
     emit(rows, ("file", "state"), form, document=document, title=f"draft {done.draft.id}")
-    for name in done.left:
+    for name in done.remaining_files:
         typer.echo(f"left as it was, though not of the bundle: {name}", err=True)
     where = "" if place.address.endswith("sandbox.zenodo.org") else _where(place, production)
     interface = "" if api is Interface.RECORDS else f" --api {api.value}"

@@ -38,5 +38,5 @@ def gc(
     document = {"store": str(there.directory), "done": yes, **found}
     emit([found], COLUMNS, form, document=document)
     freed = f"{found['freed']:,} bytes"
-    told = f"{freed} freed" if yes else f"{freed} to be freed; `sunatlas gc --yes` does it"
-    typer.echo(f"{there.directory}: {told}", err=True)
+    text = f"{freed} freed" if yes else f"{freed} to be freed; `sunatlas gc --yes` does it"
+    typer.echo(f"{there.directory}: {text}", err=True)

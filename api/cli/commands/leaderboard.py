@@ -26,7 +26,7 @@ from api.schema.table import columns_of
 from benchmark.contract import UnknownNameError
 from benchmark.metrics.rings import EDGES_DEG
 from benchmark.results.store import PUBLISHED
-from benchmark.results.unchanged import Unchanged
+from benchmark.results.unchanged import KeptAnswer
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -56,7 +56,7 @@ class Kernels(StrEnum):
     BOTH = "both"
 
     @property
-    def chosen(self) -> tuple[str, ...]:
+    def names(self) -> tuple[str, ...]:
         """Names that `benchmark.leaderboard.check.check` takes."""
         return ("native", "older") if self is Kernels.BOTH else (self.value,)
 
@@ -146,7 +146,7 @@ def leaderboard(
     if asked and (listing or check):
         raise WrongCallError("--detector and --mask narrow architectures and --overview alone")
     if check:
-        _check(workers, form, (kernels or Kernels.BOTH).chosen, stored_only=stored)
+        _check(workers, form, (kernels or Kernels.BOTH).names, stored_only=stored)
     elif stored or kernels:
         raise WrongCallError(f"{'--stored' if stored else '--kernels'} goes with --check")
     elif field is not None and max_error is not None:
@@ -260,10 +260,10 @@ def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only:
 
 def _architectures(query: Asked, form: Format) -> None:
     """Print the best pipeline of each architecture, as the service answers it."""
-    unchanged = Unchanged(
+    unchanged = KeptAnswer(
         f"architectures {sorted(query.items())}", [PUBLISHED, working_directory()]
     )
-    if form is Format.TABLE and (known := unchanged.known()):
+    if form is Format.TABLE and (known := unchanged.recall()):
         _tell(*known)
         return
     from api.cli.asking import ask, knowledge  # noqa: PLC0415 - slow; measuring does without it
@@ -276,9 +276,9 @@ def _architectures(query: Asked, form: Format) -> None:
         raise WrongCallError("nothing is published of such architectures")
     if form is Format.TABLE:
         record = knowledge().measurements.record
-        told = f"Record: version {record['version']}, sha256 {record['sha256']}"
-        unchanged.keep([rows, told])
-        _tell(rows, told)
+        line = f"Record: version {record['version']}, sha256 {record['sha256']}"
+        unchanged.keep([rows, line])
+        _tell(rows, line)
     else:
         emit(rows, columns_of(BestOfArchitecture), form, document=answer.document)
 

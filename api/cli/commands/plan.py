@@ -16,7 +16,7 @@ from api.cli.measuring import (
     stores_of,
 )
 from api.cli.table_output import Format, FormatOption, emit
-from benchmark.results.unchanged import Unchanged
+from benchmark.results.unchanged import KeptAnswer
 from benchmark.suites.selection import suite as suite_named
 
 if TYPE_CHECKING:
@@ -50,8 +50,8 @@ def plan(
     """
     chosen = suite_named(str(suite))
     stores = stores_of(store)
-    unchanged = Unchanged(f"plan {chosen.name}", [one.directory for one in stores])
-    planned = unchanged.known() if form is Format.TABLE else None
+    unchanged = KeptAnswer(f"plan {chosen.name}", [one.directory for one in stores])
+    planned = unchanged.recall() if form is Format.TABLE else None
     if planned is not None:
         typer.echo(f"{chosen.name}: {_count(0, planned)}", err=True)
         return
@@ -91,11 +91,11 @@ def _why(cell: Cell, reasons: tuple[str, ...]) -> str:
     if reasons in ((NEW,), (FAILED,)):
         return "new" if reasons == (NEW,) else "failed before"
     named = {"dataset": "data set", "extractor": cell.extractor, "model": cell.model}
-    told = [
+    parts = [
         f"{what} {named[what]}" if what in ("extractor", "model") else named.get(what, what)
         for what in reasons
     ]
-    return f"{', '.join(told)} changed"
+    return f"{', '.join(parts)} changed"
 
 
 def _summary(found: CellPlan, workers: int) -> str:

@@ -71,12 +71,12 @@ def rank(
     result = check_contract(name)
     if result is None:
         typer.echo("contract: not checked, the tests are in a checkout only", err=True)
-    elif result.failed:
-        for line in result.failed:
+    elif result.failures:
+        for line in result.failures:
             typer.echo(f"contract: {line}", err=True)
         typer.echo(
-            f"sunatlas: {name} fails {len(result.failed)} of {result.ran} checks; the rules are in "
-            f"{GUIDE}",
+            f"sunatlas: {name} fails {len(result.failures)} of {result.ran} checks; the rules are "
+            f"in {GUIDE}",
             err=True,
         )
         raise typer.Exit(1)

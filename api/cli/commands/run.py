@@ -107,19 +107,19 @@ def _run_suite(
     stores = stores_of(directory)
     planned = cells_of(chosen, stores)
     result = score_cells(planned, workers, directory, scheduler)
-    measured = result.measured
+    measured = result.measured_count
     while (now := cells_of(chosen, stores)) != planned:  # what follows from what was measured
         planned = now
         result = score_cells(planned, workers, directory, scheduler)
-        measured += result.measured
+        measured += result.measured_count
     columns = columns_of(Score) if form is Format.CSV else SUITE_COLUMNS
-    sources = {**result.sources(), "kept": result.kept - measured + result.measured}
+    sources = {**result.sources(), "kept": result.stored_count - measured + result.measured_count}
     sources["measured"] = measured
     document = {"suite": name, "scores": result.rows, "sources": sources}
     emit(result.rows, columns, form, document=document, title=f"{name}: {len(result.rows)} scores")
     typer.echo(
-        f"{result.published} published, {sources['kept']} measured before, {measured} measured "
-        f"now; new results are kept in {result.directory}",
+        f"{result.published_count} published, {sources['kept']} measured before, {measured} "
+        f"measured now; new results are kept in {result.directory}",
         err=True,
     )
 
@@ -135,7 +135,7 @@ def _plan(resolution: Resolution, conditions: Sequence[str] | None) -> dict[Cell
     wanted = set(conditions or known)
     planned: dict[Cell, list[str]] = {}
     for pipeline in resolution.pipelines:
-        assumed = [f"{attribute}: {rule}" for attribute, rule in pipeline.assumed.items()]
+        assumed = [f"{attribute}: {rule}" for attribute, rule in pipeline.assumptions.items()]
         for cell in everything:
             ours = cell.dataset in pipeline.datasets and cell.condition in wanted
             if ours and (cell.extractor, cell.model) == (pipeline.extractor, pipeline.model):
@@ -175,9 +175,9 @@ def _print(
     if form is not Format.JSON:
         for gap in gaps:
             typer.echo(f"gap: {gap['attribute']} {gap['value']}: {gap['reason']}", err=True)
-    if result.measured or result.kept:
+    if result.measured_count or result.stored_count:
         typer.echo(
-            f"{result.published} published, {result.kept} measured before, {result.measured} "
-            f"measured now; kept in {result.directory}",
+            f"{result.published_count} published, {result.stored_count} measured before, "
+            f"{result.measured_count} measured now; kept in {result.directory}",
             err=True,
         )

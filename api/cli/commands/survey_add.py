@@ -145,7 +145,7 @@ def _write_template(key: str, file: Path | None, chosen_key: str | None, folder:
     digits = "".join(letter for letter in key if letter.isdigit())
     publication = {"key": key, "year": digits}
     known = vocabulary(folder)
-    if taken := known.taken.get(key.casefold()):
+    if taken := known.used_names.get(key.casefold()):
         raise WrongCallError(f"--init: {key}: {taken}")
     if file is not None and file.suffix.casefold() in SUFFIXES:
         found = choose(read_publications(file), chosen_key, file.name)
@@ -165,13 +165,13 @@ def _write_template(key: str, file: Path | None, chosen_key: str | None, folder:
 
 def _preview(addition: Addition) -> dict[str, Any]:
     """Return the study's row and cells, and what of it would run."""
-    from benchmark.plan.combinations import scorable  # noqa: PLC0415 - loads the simulator
+    from benchmark.plan.combinations import scorable_plan  # noqa: PLC0415 - loads the simulator
     from benchmark.plan.shown import data_sets  # noqa: PLC0415 - as above
     from registry.resolution import resolve  # noqa: PLC0415 - as above
     from registry.studies import study_from  # noqa: PLC0415 - as above
 
     study = study_from(addition.rows)
-    resolution = resolve(study, scorable(), data_sets=data_sets())
+    resolution = resolve(study, scorable_plan(), data_sets=data_sets())
     cells = [
         {**cell, "name": _name(cell), "role": cell["role"] if cell["role"] != "unknown" else ""}
         for cell in _cells(study.to_dict())

@@ -31,7 +31,7 @@ class Archive(Protocol):
         """Look at a draft; NoDraftError where there is none."""
         ...
 
-    def published(self, identifier: str) -> PublishedRecord | None:
+    def published_record(self, identifier: str) -> PublishedRecord | None:
         """Look at a published record; None where there is none."""
         ...
 

@@ -71,10 +71,10 @@ class DepositionsArchive:
             raise NoDraftError(f"{self._address} has no unpublished draft {identifier_}")
         return self._draft(reply)
 
-    def published(self, identifier_: str) -> PublishedRecord | None:
+    def published_record(self, identifier_: str) -> PublishedRecord | None:
         """Look at a published record; None where there is none."""
         reply = self._public(identifier_)
-        return None if reply is None else self._published(reply)
+        return None if reply is None else self._published_record(reply)
 
     def describe(self, draft: Draft, description: Description) -> None:
         """Give the draft this description instead of the one it has."""
@@ -103,7 +103,7 @@ class DepositionsArchive:
         """Make the draft public, for good."""
         where = f"{_ALL}/{draft.id}/actions/publish"
         reply = self._ask("POST", where, Deposition, happened=lambda: self._public(draft.id))
-        return self._published(about(draft.id, reply, reply.id))
+        return self._published_record(about(draft.id, reply, reply.id))
 
     def _public(self, identifier_: str) -> Deposition | None:
         reply = self._deposition(identifier_)
@@ -118,5 +118,5 @@ class DepositionsArchive:
         page = f"{self._address}/deposit/{reply.id}"
         return Draft(reply.id, page, reply.authors, reply.link("bucket"))
 
-    def _published(self, reply: Deposition) -> PublishedRecord:
+    def _published_record(self, reply: Deposition) -> PublishedRecord:
         return PublishedRecord(reply.id, f"{self._address}/records/{reply.id}", reply.doi)

@@ -1,4 +1,4 @@
-"""What the archive is told of the bundle, in the words of both interfaces of Zenodo.
+"""Metadata of the bundle for the archive, in the words of both interfaces of Zenodo.
 
 The invenio form follows InvenioRDM's metadata reference (docs-invenio-rdm,
 `reference/metadata.md`), the legacy one the table of `developers.zenodo.org`. Both say the same,
@@ -56,7 +56,7 @@ _CONTENTS = (
 
 @dataclass(frozen=True)
 class Description:
-    """What is told of a version of the bundle.
+    """Metadata of a version of the bundle.
 
     Attributes
     ----------
@@ -111,22 +111,22 @@ def description(bundle: Path) -> Description:
     )
 
 
-def invenio(told: Description) -> dict[str, Any]:
+def invenio(described: Description) -> dict[str, Any]:
     """Return the body of a draft for InvenioRDM's records interface."""
     return {
         "access": {"record": "public", "files": "public"},
         "files": {"enabled": True},
         "metadata": {
             "resource_type": {"id": "dataset"},
-            "title": told.title,
-            "publication_date": told.released,
-            "creators": [_creator(author) for author in told.authors],
-            "description": told.html,
-            "rights": [{"id": name.lower()} for name, _ in told.licences],
-            "version": told.version,
+            "title": described.title,
+            "publication_date": described.released,
+            "creators": [_creator(author) for author in described.authors],
+            "description": described.html,
+            "rights": [{"id": name.lower()} for name, _ in described.licences],
+            "version": described.version,
             "publisher": "Zenodo",  # without one no DOI is registered
             "languages": [{"id": "eng"}],
-            "subjects": [{"subject": keyword} for keyword in told.keywords],
+            "subjects": [{"subject": keyword} for keyword in described.keywords],
             "related_identifiers": [
                 {
                     "identifier": work.identifier,
@@ -140,25 +140,25 @@ def invenio(told: Description) -> dict[str, Any]:
     }
 
 
-def legacy(told: Description) -> dict[str, Any]:
+def legacy(described: Description) -> dict[str, Any]:
     """Return the `metadata` of a deposition; of the licences it can name only the first."""
     return {
-        "title": told.title,
+        "title": described.title,
         "upload_type": "dataset",
-        "description": told.html,
+        "description": described.html,
         "creators": [
             {
-                "name": author.inverted,
+                "name": author.sort_name,
                 **({"orcid": author.orcid} if author.orcid else {}),
                 **({"affiliation": author.affiliation} if author.affiliation else {}),
             }
-            for author in told.authors
+            for author in described.authors
         ],
         "access_right": "open",
-        "license": told.licences[0][0].lower(),
-        "version": told.version,
-        "publication_date": told.released,
-        "keywords": list(told.keywords),
+        "license": described.licences[0][0].lower(),
+        "version": described.version,
+        "publication_date": described.released,
+        "keywords": list(described.keywords),
         "language": "eng",
         "related_identifiers": [
             {

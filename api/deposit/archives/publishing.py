@@ -12,7 +12,7 @@ from api.deposit.archives.contract import (
     file_differences,
 )
 from api.deposit.archives.sealed import SealedBundle, seal
-from api.deposit.citation import unpublishable
+from api.deposit.citation import author_problems
 
 
 class NotReadyError(ArchiveError):
@@ -46,7 +46,7 @@ def publish(archive: Archive, identifier: str, directory: Path) -> PublishedReco
 def _published(
     archive: Archive, identifier: str, directory: Path, bundle: SealedBundle
 ) -> PublishedRecord:
-    found = unpublishable(bundle.description.authors)
+    found = author_problems(bundle.description.authors)
     if found:
         raise NotReadyError(
             f"the bundle's authors cannot be published: {'; '.join(found)}. Fill in CITATION.cff, "
@@ -55,10 +55,10 @@ def _published(
     try:
         draft = archive.draft(identifier)
     except NoDraftError:
-        if (public := archive.published(identifier)) is not None:
+        if (public := archive.published_record(identifier)) is not None:
             raise NotReadyError(f"{public.page} is published already") from None
         raise
-    found = unpublishable(draft.authors)
+    found = author_problems(draft.authors)
     if found:
         raise NotReadyError(
             f"the authors of draft {identifier} cannot be published: {'; '.join(found)}. Upload "

@@ -65,10 +65,10 @@ class RecordsArchive:
             raise NoDraftError(f"{self._address} has no unpublished draft {identifier_}")
         return self._draft(about(identifier_, reply, reply.id))
 
-    def published(self, identifier_: str) -> PublishedRecord | None:
+    def published_record(self, identifier_: str) -> PublishedRecord | None:
         """Look at a published record; None where there is none."""
         reply = self._public(identifier_)
-        return None if reply is None else reply.published(self._address)
+        return None if reply is None else reply.published_record(self._address)
 
     def describe(self, draft: Draft, description: Description) -> None:
         """Give the draft this description; identifiers reserved for it are kept."""
@@ -78,7 +78,7 @@ class RecordsArchive:
 
     def files(self, draft: Draft) -> Mapping[str, StoredFile]:
         """List the files of a draft by name; those not committed have no checksum."""
-        return by_name([(entry.key, entry.stored) for entry in self._entries(draft).entries])
+        return by_name([(entry.key, entry.stored_file) for entry in self._entries(draft).entries])
 
     def send(self, draft: Draft, name: str, file: SealedFile) -> StoredFile:
         """Declare, send and commit a file; one of this name, or half of one, makes way."""
@@ -91,12 +91,12 @@ class RecordsArchive:
 
         def committed() -> Entry | None:
             entry = self._ask("GET", f"{where}/{segment(name)}", Entry)
-            return entry if entry.whole else None
+            return entry if entry.is_complete else None
 
         self._ask("POST", where, Entries, json=[{"key": name}], happened=declared)
         self._tell("PUT", f"{where}/{segment(name)}/content", content=file.content)
         commit = f"{where}/{segment(name)}/commit"
-        return self._ask("POST", commit, Entry, happened=committed).stored
+        return self._ask("POST", commit, Entry, happened=committed).stored_file
 
     def delete(self, draft: Draft, file: StoredFile) -> None:
         """Take a file out of a draft; that it is gone already is as well."""
@@ -111,7 +111,7 @@ class RecordsArchive:
             Record,
             happened=lambda: self._public(draft.id),
         )
-        return about(draft.id, reply, reply.id).published(self._address)
+        return about(draft.id, reply, reply.id).published_record(self._address)
 
     def _public(self, identifier_: str) -> Record | None:
         found = unless_missing(lambda: self._ask("GET", _record(identifier_), Record))

@@ -28,11 +28,11 @@ def reasons(answer: httpx.Response, body: bytes) -> str:
     if not body:
         return ""
     try:
-        told = parse_response(answer, body, Refusal)
+        refusal = parse_response(answer, body, Refusal)
     except ReplyError as error:
         return f"its reasons cannot be read: {error}"
-    parts: list[Any] = [told.message]
-    for reason in told.errors or ():
+    parts: list[Any] = [refusal.message]
+    for reason in refusal.errors or ():
         said = " ".join(reason.messages or ()) or reason.message
         parts.append(f"{reason.field or 'a field'}: {said}" if said else reason.field)
     return "; ".join(part for part in parts if part)

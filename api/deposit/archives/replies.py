@@ -129,7 +129,7 @@ class Record(Reply):
         creators = self.metadata.creators if self.metadata else None
         return tuple(creator.author for creator in creators or ())
 
-    def published(self, address: str) -> PublishedRecord:
+    def published_record(self, address: str) -> PublishedRecord:
         """Return the record as one that is public on a server."""
         doi = (self.pids or {}).get("doi")
         return PublishedRecord(
@@ -145,14 +145,14 @@ class Entry(Reply):
     checksum: Line | None = None
 
     @property
-    def whole(self) -> bool:
+    def is_complete(self) -> bool:
         """Whether it was committed."""
         return self.status == "completed"
 
     @property
-    def stored(self) -> StoredFile:
+    def stored_file(self) -> StoredFile:
         """The file as the archive holds it."""
-        return StoredFile(self.key, md5(self.checksum) if self.whole else None)
+        return StoredFile(self.key, md5(self.checksum) if self.is_complete else None)
 
 
 class Entries(Reply):
@@ -248,16 +248,16 @@ def by_name(files: list[tuple[str, StoredFile]]) -> dict[str, StoredFile]:
     return found
 
 
-def about(asked: str, reply: T, told: str) -> T:
+def about(asked: str, reply: T, record: str) -> T:
     """Return an answer about the record that was asked for.
 
     Raises
     ------
     ReplyError
-        Where it is about another (`told`).
+        If `record` is another one.
     """
-    if told != asked:
-        raise ReplyError(f"the archive answered of record {told}, expected {asked}")
+    if record != asked:
+        raise ReplyError(f"the archive answered of record {record}, expected {asked}")
     return reply
 
 

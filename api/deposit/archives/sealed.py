@@ -140,10 +140,10 @@ def seal(directory: Path) -> Iterator[SealedBundle]:
 def _verify(copy: Path, packed: Path, directory: Path) -> SealedBundle:
     if wrong := verify(copy):
         raise BundleError(f"{directory}: {wrong[0][0]}: {wrong[0][1]}; nothing was sent")
-    told = description(copy)
-    top = f"{NAME}-{told.version}"
+    metadata = description(copy)
+    top = f"{NAME}-{metadata.version}"
     try:
-        check(packed, copy, top, date.fromisoformat(told.released))
+        check(packed, copy, top, date.fromisoformat(metadata.released))
     except PackingError as error:
         raise BundleError(
             f"{packed}: not the zip of {directory}: {error}; build the bundle again"
@@ -153,7 +153,7 @@ def _verify(copy: Path, packed: Path, directory: Path) -> SealedBundle:
     if lacking:
         raise BundleError(f"{directory}: {lacking[0]} is missing; nothing was sent")
     paths = {f"{top}.zip": packed, **{name: apart[name] for name in APART}}
-    return SealedBundle({name: _seal(path) for name, path in paths.items()}, told)
+    return SealedBundle({name: _seal(path) for name, path in paths.items()}, metadata)
 
 
 def _seal(path: Path) -> SealedFile:

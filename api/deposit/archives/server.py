@@ -80,7 +80,7 @@ class Token:
         """The value of `Authorization`."""
         return f"Bearer {self._text}"
 
-    def hidden(self, text: str) -> str:
+    def hide(self, text: str) -> str:
         """Return a text without the token, where a server says it back."""
         return text.replace(self._text, "***")
 

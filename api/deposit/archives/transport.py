@@ -1,4 +1,4 @@
-"""Requests to one server: with the token to it and to nobody else, patient, and never in doubt.
+"""Requests to one server: the token goes to it alone; retries are patient and safe.
 
 An address elsewhere is not asked, and a redirect is followed to the same server alone, where
 something is only looked at. What fails for the moment (429, 5xx, a connection that drops) is tried
@@ -263,13 +263,13 @@ class Transport:
         advice = _ADVICE.get(status, "").format(
             variable=self.server.variable, address=self.server.address
         )
-        told = reasons(*answer) if holds_json(answer[0]) else ""
-        parts = (f"{what}: {status} {answer[0].reason_phrase}", told, advice)
+        reason = reasons(*answer) if holds_json(answer[0]) else ""
+        parts = (f"{what}: {status} {answer[0].reason_phrase}", reason, advice)
         return RefusedError(self._said("; ".join(part for part in parts if part)), status)
 
     def _said(self, text: str) -> str:
         shown = "".join(letter if letter.isprintable() else " " for letter in text)
-        return self._token.hidden(" ".join(shown.split()))[:600]
+        return self._token.hide(" ".join(shown.split()))[:600]
 
 
 def _host(url: str) -> str:

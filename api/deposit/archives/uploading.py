@@ -42,12 +42,12 @@ class UploadResult:
     ----------
     draft : it went to
     files : what happened to each file
-    left : files of the draft that are not of the bundle and were there before
+    remaining_files : files of the draft that are not of the bundle and were there before
     """
 
     draft: Draft
     files: Mapping[str, State]
-    left: tuple[str, ...]
+    remaining_files: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -58,12 +58,12 @@ class OpenDraft:
     ----------
     draft : where files go
     version_of : record that it is the next version of, or None
-    described : whether it has the bundle's description already
+    has_metadata : whether it has the bundle's description already
     """
 
     draft: Draft
     version_of: str | None
-    described: bool
+    has_metadata: bool
 
 
 def upload(
@@ -100,7 +100,7 @@ def upload(
 def _send(archive: Archive, bundle: SealedBundle, opened: OpenDraft, tell: Tell) -> UploadResult:
     """Send what the draft lacks."""
     draft = opened.draft
-    if not opened.described:
+    if not opened.has_metadata:
         archive.describe(draft, bundle.description)
     there = archive.files(draft)
     done: dict[str, State] = {}
@@ -134,7 +134,7 @@ def _settle(
 
 
 def _open(
-    archive: Archive, memory: Memory, version_of: str | None, draft: str | None, told: Description
+    archive: Archive, memory: Memory, version_of: str | None, draft: str | None, record: Description
 ) -> OpenDraft:
     """Find or open the draft."""
     if draft is not None:
@@ -145,14 +145,14 @@ def _open(
         if remembered is not None and remembered[0] == found.id:
             of = remembered[1]
         memory.keep(found.id, of)
-        return OpenDraft(found, of, described=False)
+        return OpenDraft(found, of, has_metadata=False)
     remembered = memory.recall()
     if remembered is not None and version_of in (None, remembered[1]):
         identifier, of = remembered
         try:
-            return OpenDraft(archive.draft(identifier), of, described=False)
+            return OpenDraft(archive.draft(identifier), of, has_metadata=False)
         except NoDraftError:
-            published = archive.published(identifier)
+            published = archive.published_record(identifier)
             if published is not None and version_of is None:
                 raise ArchiveError(
                     f"{published.page} is published; `sunatlas deposit upload --new-version "
@@ -160,7 +160,7 @@ def _open(
                 ) from None
             # Deleted by hand, or published since: a draft of its own is wanted.
     if version_of is None:
-        opened, fresh = archive.create(told), True
+        opened, fresh = archive.create(record), True
     else:
         opened, fresh = archive.new_version(version_of), False
     memory.keep(opened.id, version_of)

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query
 from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
 from api.http.pagination import narrow, order, page
-from api.protocol import protocol as told
+from api.protocol import protocol as protocol_document
 from api.schema.advice import Advice, AdviceQuery, Advices, Protocol, Statement
 from api.schema.base import Selected
 from api.schema.table import columns_of
@@ -37,7 +37,7 @@ async def protocol(
 
     CSV: a row per sentence.
     """
-    document = told()
+    document = protocol_document()
     return Answer(
         document, columns_of(Statement), lambda: [*document["survey"], *document["scores"]]
     )

@@ -16,7 +16,7 @@ from api.http.dependencies import NO_PARAMETERS
 from api.http.negotiation import JSON, media_type
 from api.http.problems import Problem, Violation
 from api.http.uploads import Form, read_form
-from survey_data.nearest import nearest
+from survey_data.nearest import nearest_name
 
 HTML, ZIP = "text/html", "application/zip"
 OFFERED = (JSON, HTML, ZIP)
@@ -52,7 +52,7 @@ _BODY: dict[str, Any] = {
                     "apply": {
                         **_TEXT,
                         "enum": ["true", "false"],
-                        "description": "Whether conventions found beyond doubt are applied.",
+                        "description": "Whether conventions found with certainty are applied.",
                     },
                     "answer": {
                         **_TEXT,
@@ -149,7 +149,9 @@ async def calibrated(request: Request, wanted: str) -> Response:
 def _checked(form: Form) -> str | None:
     """Return the media type that the form asks for; refuse fields that there are not."""
     wrong = [
-        Violation(name, None, f"a field, one of file, {', '.join(_FIELDS)}", nearest(name, _FIELDS))
+        Violation(
+            name, None, f"a field, one of file, {', '.join(_FIELDS)}", nearest_name(name, _FIELDS)
+        )
         for name in form.fields
         if name not in _FIELDS
     ]
@@ -159,7 +161,7 @@ def _checked(form: Form) -> str | None:
     for name, words in allowed.items():
         given = form.fields.get(name)
         if given is not None and given not in words:
-            error = Violation(name, given, f"one of {', '.join(words)}", nearest(given, words))
+            error = Violation(name, given, f"one of {', '.join(words)}", nearest_name(given, words))
             raise Problem(422, "invalid-value", errors=[error])
     if not form.files:
         raise Problem(422, "invalid-value", errors=[Violation("file", None, "a file")])

@@ -47,8 +47,8 @@ async def claim(
     CSV: the criteria.
     """
     document = detail(known.measurements.claims[id])
-    second = {rule["rule"]: rule["standing"] for rule in document["second"]}
-    rows = [{**rule, "second_standing": second.get(rule["rule"])} for rule in document["rules"]]
+    second = {rule["rule"]: rule["result"] for rule in document["second"]}
+    rows = [{**rule, "second_result": second.get(rule["rule"])} for rule in document["rules"]]
     return Answer(document, columns_of(CheckedRule), lambda: rows)
 
 

@@ -95,7 +95,7 @@ async def errors(known: Known, name: Name, query: Annotated[SampleErrorsQuery, Q
 def errors_file(known: Known, name: Name) -> Columns:
     """Return the published errors of all samples as Parquet.
 
-    Columns: extractor, model, unit, sample, error_deg (NaN: no answer) and doubt.
+    Columns: extractor, model, unit, sample, error_deg (NaN: no answer) and outcome.
     """
     return _file(known, samples.path_of(name), f"{name}.errors.parquet")
 

@@ -94,7 +94,7 @@ def _answer(requirements: Requirements, known: Knowledge) -> Recommendation:
         name: getattr(requirements, name) for name in (*PARAMETERS, *SETTINGS) if name in given
     }
     studies = known.of(requirements.edition).facts
-    found = answer(asked, known.measured, sort=requirements.sort, facts=studies)
+    found = answer(asked, known.measured_pipelines, sort=requirements.sort, facts=studies)
     shown = (requirements.limit, requirements.calibrations)
     digest = digest_of(answer_digest(found, *shown))
     return Recommendation(answer_json(found, *shown), digest)

@@ -26,7 +26,7 @@ async def search(known: Known, query: Annotated[SearchQuery, Query()]) -> Answer
     ranked: list[dict[str, Any]] = []
     for rank, hit in enumerate(hits, start=1):
         entry = asdict(hit.entry)
-        told = {name: entry[name] for name in ("kind", "id", "title", "address")}
-        ranked.append({"rank": rank, **told, "excerpt": hit.excerpt, "score": hit.score})
+        members = {name: entry[name] for name in ("kind", "id", "title", "address")}
+        ranked.append({"rank": rank, **members, "excerpt": hit.excerpt, "score": hit.score})
     shown = page(ranked, "/v1/search", query)
     return list_answer(shown, shown.items, columns_of(Found))

@@ -124,7 +124,7 @@ def _row(study: Study, known: Knowledge) -> dict[str, Any]:
     summary = study.summary()
     values = summary.pop("values")
     resolution = known.resolutions[study.key]
-    best = resolution.best
+    best = resolution.best_pipeline
     graded = resolution.fidelity
     scored = [_scores(pipeline, known) for pipeline in resolution.pipelines]
     runs = {
@@ -132,7 +132,7 @@ def _row(study: Study, known: Knowledge) -> dict[str, Any]:
         "cells": sum(map(len, scored)),
         "scored": sum(score["status"] is not None for scores in scored for score in scores),
         "basis": {} if best is None else dict(best.basis),
-        "assumed": {} if best is None else dict(best.assumed),
+        "assumed": {} if best is None else dict(best.assumptions),
     }
     return {
         **summary,
@@ -170,11 +170,11 @@ def headline(resolution: Resolution, known: Knowledge) -> dict[str, Any] | None:
     the least error.
     """
     found = []
-    for pipeline in resolution.nearest:
+    for pipeline in resolution.strongest_pipelines:
         score = _scores(pipeline, known)[0]
         if score["rms_deg"] is not None:
-            told = {name: score[name] for name in ("dataset", "condition", *_NUMBERS[1:])}
-            found.append({"extractor": pipeline.extractor, "model": pipeline.model, **told})
+            members = {name: score[name] for name in ("dataset", "condition", *_NUMBERS[1:])}
+            found.append({"extractor": pipeline.extractor, "model": pipeline.model, **members})
     return min(found, key=lambda score: score["rms_deg"], default=None)
 
 

@@ -20,13 +20,13 @@ class Scale:
 
     Attributes
     ----------
-    least, most : ends in the values' unit
+    minimum, maximum : ends in the values' unit
     start, end : their pixels
     logarithmic : whether equal ratios are equally long
     """
 
-    least: float
-    most: float
+    minimum: float
+    maximum: float
     start: float
     end: float
     logarithmic: bool = False
@@ -34,22 +34,22 @@ class Scale:
     def at(self, value: float) -> float:
         """Return the pixel of a value."""
         if self.logarithmic:
-            share = math.log(value / self.least) / math.log(self.most / self.least)
+            share = math.log(value / self.minimum) / math.log(self.maximum / self.minimum)
         else:
-            share = (value - self.least) / (self.most - self.least)
+            share = (value - self.minimum) / (self.maximum - self.minimum)
         return round(self.start + share * (self.end - self.start), 1)
 
     def ticks(self) -> list[float]:
         """Return round values within the ends: some three to seven."""
         if not self.logarithmic:
-            return _even(self.least, self.most)
-        first, last = math.floor(math.log10(self.least)), math.ceil(math.log10(self.most))
+            return _even(self.minimum, self.maximum)
+        first, last = math.floor(math.log10(self.minimum)), math.ceil(math.log10(self.maximum))
         for steps in ((1,), (1, 3), (1, 2, 5)):
             every = [s * 10.0**power for power in range(first, last + 1) for s in steps]
-            inside = [v for v in every if self.least * 0.999 <= v <= self.most * 1.001]
+            inside = [v for v in every if self.minimum * 0.999 <= v <= self.maximum * 1.001]
             if len(inside) > 2:
                 return inside[:: math.ceil(len(inside) / 7)]
-        return _even(self.least, self.most)  # less than a decade: even steps tell more
+        return _even(self.minimum, self.maximum)  # less than a decade: even steps tell more
 
 
 def scale(

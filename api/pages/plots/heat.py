@@ -37,13 +37,13 @@ class HeatMap:
     ----------
     conditions : one a column
     rows : (extractor, model, cells)
-    least, most : ends of the shades, in degrees
+    minimum, maximum : ends of the shades, in degrees
     """
 
     conditions: Sequence[str]
     rows: Sequence[tuple[str, str, Sequence[Cell]]]
-    least: float
-    most: float
+    minimum: float
+    maximum: float
 
 
 def heat_map(board: Sequence[Row], conditions: Sequence[str], ranked_by: str, most: int) -> HeatMap:

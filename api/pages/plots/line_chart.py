@@ -24,18 +24,18 @@ class Line:
     name : in the legend
     points : (across, up); up is None where there is nothing, also where NaN was given
     band : (across, low, high) around it, if any
-    bound : whether it is a limit, which is dashed
+    is_bound : whether it is a limit, which is dashed
     """
 
     name: str
     points: Sequence[tuple[float, float | None]]
     band: Sequence[tuple[float, float | None, float | None]] = ()
-    bound: bool = False
+    is_bound: bool = False
 
     def __post_init__(self) -> None:
-        told = [(x, _told(y)) for x, y in self.points]
-        object.__setattr__(self, "points", told)
-        band = [(x, _told(low), _told(high)) for x, low, high in self.band]
+        points = [(x, _finite(y)) for x, y in self.points]
+        object.__setattr__(self, "points", points)
+        band = [(x, _finite(low), _finite(high)) for x, low, high in self.band]
         whole = [(x, *((a, b) if None not in {a, b} else (None, None))) for x, a, b in band]
         object.__setattr__(self, "band", whole)
 
@@ -67,8 +67,8 @@ class LineChart:
         parts = [frame(across, up, self.across, self.up)]
         number_of = 0
         for line in self.lines:
-            kind = "limit" if line.bound else f"line{number_of % SHADES}"
-            number_of += not line.bound
+            kind = "limit" if line.is_bound else f"line{number_of % SHADES}"
+            number_of += not line.is_bound
             lows = _runs([(x, low) for x, low, _ in line.band])
             highs = _runs([(x, high) for x, _, high in line.band])
             for low, high in zip(lows, highs, strict=True):
@@ -79,7 +79,7 @@ class LineChart:
             for run in _runs(line.points):
                 path = "L".join(f"{across.at(x)} {up.at(y)}" for x, y in run)
                 parts.append(Markup('<path class="line {}" d="M{}"/>').format(kind, path))
-            if line.bound:
+            if line.is_bound:
                 continue
             for x, y in line.points:
                 if y is not None:
@@ -91,7 +91,7 @@ class LineChart:
     def legend(self) -> list[tuple[str, str]]:
         """Class and name of each line."""
         shades = iter(f"line{k % SHADES}" for k in range(len(self.lines)))
-        return [("limit" if x.bound else next(shades), x.name) for x in self.lines]
+        return [("limit" if x.is_bound else next(shades), x.name) for x in self.lines]
 
     @property
     def places(self) -> list[float]:
@@ -99,12 +99,12 @@ class LineChart:
         return sorted({x for line in self.lines for x, _ in line.points})
 
     @property
-    def drawn(self) -> bool:
+    def has_points(self) -> bool:
         """Whether there is anything to draw."""
         return any(y is not None for line in self.lines for _, y in line.points)
 
 
-def _told(value: float | None) -> float | None:
+def _finite(value: float | None) -> float | None:
     return None if value is None or not math.isfinite(value) else value
 
 

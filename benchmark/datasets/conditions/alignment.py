@@ -8,7 +8,7 @@ from benchmark.simulator.optics.assembly import Assembly
 MISALIGNED = "tilted by 1.0 and -0.7 deg, turned by 0.5 deg"
 
 
-def careful(
+def careful_alignment(
     focal_length_error_mm: float, offset_x_mm: float = 0.004, offset_y_mm: float = -0.003
 ) -> Assembly:
     """Return the small errors that remain after careful assembly."""

@@ -20,7 +20,7 @@ UNDER_GLASS = (
 FIRM = "The nominal sensor with an assembly that does not drift."
 
 
-def grounded(ground: Preset, condition: str, sensor: type[Any]) -> dict[str, Any]:
+def ground_conditions(ground: Preset, condition: str, sensor: type[Any]) -> dict[str, Any]:
     """Return the fields of a ground sensor, for one of a derived class that drifts."""
     still = ground.condition(condition).sensor
     return {field.name: getattr(still, field.name) for field in fields(sensor)}

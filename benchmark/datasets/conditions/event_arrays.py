@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any, Final
 
 from algorithms.contract import Observation, SensorGeometry
-from benchmark.datasets.conditions.alignment import MISALIGNED, careful, misalign
+from benchmark.datasets.conditions.alignment import MISALIGNED, careful_alignment, misalign
 from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.datasets.conditions.propagation import LIGHT
 from benchmark.datasets.fields import AngleField
@@ -59,7 +59,7 @@ def behind(mask: Mask, focal_length_mm: float, events: int, pitch_mm: float = 0.
         camera=Camera(
             focal_length_mm=focal_length_mm,
             mask=mask,
-            assembly=careful(round(0.002 * focal_length_mm, 6)),
+            assembly=careful_alignment(round(0.002 * focal_length_mm, 6)),
         ),
         detector=SpikingArray(
             columns=64,

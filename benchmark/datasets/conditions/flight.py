@@ -278,7 +278,7 @@ class FlightPreset(Preset):
         """Return what else is known of each sample: the columns of the card's ``context``."""
         if split == REPEAT:
             test = self.context(condition, "test")
-            again = np.tile(self.repeats.chosen(len(test["time_s"])), self.repeats.passes)
+            again = np.tile(self.repeats.pose_indices(len(test["time_s"])), self.repeats.passes)
             return {name: column[again] for name, column in test.items()}
         known = drawn_split(split)
         setup = self.condition(condition)

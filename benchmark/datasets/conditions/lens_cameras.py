@@ -122,7 +122,7 @@ def cmos(columns: int, pitch_mm: float) -> PixelArray:
     )
 
 
-def blooming(camera: LensCamera) -> dict[str, Condition]:
+def blooming_conditions(camera: LensCamera) -> dict[str, Condition]:
     """Return the conditions of a camera with a CCD without drains."""
     pixels = camera.detector
     glare = Flare(

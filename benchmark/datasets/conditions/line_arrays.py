@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any
 
 from algorithms.contract import Observation, SensorGeometry
-from benchmark.datasets.conditions.alignment import careful, misalign
+from benchmark.datasets.conditions.alignment import careful_alignment, misalign
 from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.datasets.conditions.pixel_arrays import as_bought
 from benchmark.datasets.conditions.propagation import GLASS, LIGHT
@@ -36,7 +36,7 @@ _CCD_ERRORS = PixelErrors(crosstalk=0.02, nonlinearity=0.005)
 _CMOS_ERRORS = PixelErrors(crosstalk=0.02, nonlinearity=0.01, column_offset_e=60.0)
 _DIODE_ERRORS = PixelErrors(crosstalk=0.01, nonlinearity=0.004, column_offset_e=300.0)
 
-ASSEMBLED = careful(0.003)
+ASSEMBLED = careful_alignment(0.003)
 SLITS_ASSEMBLED = SlitErrors(deflection_deg=0.03, inclination_deg=0.05)
 MISASSEMBLED = misalign(0.03)
 SLITS_MISASSEMBLED = SlitErrors(deflection_deg=0.5, inclination_deg=1.0)

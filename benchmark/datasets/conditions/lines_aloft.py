@@ -5,7 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import cast
 
-from benchmark.datasets.conditions.aloft import FIRM, UNDER_GLASS, conditions_aloft, grounded
+from benchmark.datasets.conditions.aloft import (
+    FIRM,
+    UNDER_GLASS,
+    conditions_aloft,
+    ground_conditions,
+)
 from benchmark.datasets.conditions.line_arrays import design
 from benchmark.datasets.conditions.propagation import GLASS
 from benchmark.datasets.preset import Condition, Preset
@@ -25,7 +30,7 @@ def lines_aloft(ground: Preset, drift: AssemblyDrift) -> dict[str, Condition]:
     """Return the conditions of a ground dataset's lines in orbit, under glass."""
 
     def flying(condition: str) -> DriftingLineSensor:
-        same = grounded(ground, condition, LineSensor)
+        same = ground_conditions(ground, condition, LineSensor)
         same["camera"] = replace(same["camera"], glass=GLASS)
         return DriftingLineSensor(**same, drift=drift)
 

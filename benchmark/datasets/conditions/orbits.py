@@ -5,7 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from benchmark.datasets.conditions.aloft import FIRM, UNDER_GLASS, conditions_aloft, grounded
+from benchmark.datasets.conditions.aloft import (
+    FIRM,
+    UNDER_GLASS,
+    conditions_aloft,
+    ground_conditions,
+)
 from benchmark.datasets.conditions.flight import Flight, FlightPreset, Span
 from benchmark.datasets.conditions.instruments import ABOARD
 from benchmark.datasets.conditions.propagation import GLASS
@@ -79,7 +84,7 @@ def frames_aloft(ground: Preset, drift: AssemblyDrift) -> dict[str, Condition]:
     """Return the conditions of a ground dataset's frames in orbit, under glass."""
 
     def flying(condition: str) -> DriftingFrameSensor:
-        same = grounded(ground, condition, DiffractiveFrameSensor)
+        same = ground_conditions(ground, condition, DiffractiveFrameSensor)
         same["camera"] = replace(same["camera"], glass=GLASS)
         return DriftingFrameSensor(**same, drift=drift, thermal=ThermalCycle())
 
@@ -95,7 +100,7 @@ def photodiodes_aloft(
 
     def flying(condition: str) -> DriftingFaceSensor | DriftingSolarCellSensor:
         cells = isinstance(ground.condition(condition).sensor, SolarCellSensor)
-        same = grounded(ground, condition, SolarCellSensor if cells else FaceSensor)
+        same = ground_conditions(ground, condition, SolarCellSensor if cells else FaceSensor)
         made = DriftingSolarCellSensor if cells else DriftingFaceSensor
         return made(**same, drift=drift, thermal=ThermalCycle())
 

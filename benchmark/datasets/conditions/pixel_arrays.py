@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any, TypeVar
 
 from algorithms.contract import Observation, SensorGeometry
-from benchmark.datasets.conditions.alignment import MISALIGNED, careful, misalign
+from benchmark.datasets.conditions.alignment import MISALIGNED, careful_alignment, misalign
 from benchmark.datasets.conditions.other_light import with_albedo
 from benchmark.datasets.conditions.propagation import GLASS, LIGHT
 from benchmark.datasets.fields import AngleField
@@ -109,7 +109,7 @@ def window(
 
 def assemble(focal_length_mm: float) -> Assembly:
     """Return the small errors that remain after careful assembly, 0.2 % of focal length."""
-    return careful(round(0.002 * focal_length_mm, 6))
+    return careful_alignment(round(0.002 * focal_length_mm, 6))
 
 
 def hole(diameter_mm: float, thickness_mm: float = 0.0) -> Mask:

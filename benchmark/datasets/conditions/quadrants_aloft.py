@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from benchmark.datasets.conditions.aloft import conditions_aloft, grounded
+from benchmark.datasets.conditions.aloft import conditions_aloft, ground_conditions
 from benchmark.datasets.preset import Condition, Preset
 from benchmark.simulator.flight.drift import AssemblyDrift, PhotodiodeDrift
 from benchmark.simulator.flight.drifting_quadrants import DriftingQuadrantSensor
@@ -17,7 +17,7 @@ def quadrants_aloft(
     """Return the conditions of a ground dataset's quadrants in orbit."""
 
     def flying(condition: str) -> DriftingQuadrantSensor:
-        same = grounded(ground, condition, QuadrantSensor)
+        same = ground_conditions(ground, condition, QuadrantSensor)
         return DriftingQuadrantSensor(**same, assembly=assembly, photodiodes=photodiodes)
 
     still = replace(flying("nominal"), assembly=AssemblyDrift(), photodiodes=PhotodiodeDrift())

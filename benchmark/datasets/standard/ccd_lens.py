@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from benchmark.datasets.conditions.alignment import careful
-from benchmark.datasets.conditions.lens_cameras import blooming, ccd, lens_camera
+from benchmark.datasets.conditions.alignment import careful_alignment
+from benchmark.datasets.conditions.lens_cameras import blooming_conditions, ccd, lens_camera
 from benchmark.simulator.optics.flare import Aureole, Flare, Ghost
 from benchmark.simulator.optics.lens import Lens
 from benchmark.simulator.sensors.lens_camera import LensCamera
@@ -14,7 +14,7 @@ _CAMERA = LensCamera(
     detector=ccd(256, 0.01),
     blur_mm=0.01,
     flare=Flare(Aureole(0.3, radius_mm=0.03), veil=0.05, ghosts=_GHOSTS),
-    assembly=careful(0.006, 0.007, -0.005),
+    assembly=careful_alignment(0.006, 0.007, -0.005),
     dead_share=2e-4,
 )
 
@@ -24,7 +24,7 @@ PRESET = lens_camera(
     detector="CCD",
     camera=_CAMERA,
     half_fov_deg=20.0,
-    setups=blooming(_CAMERA),
+    setups=blooming_conditions(_CAMERA),
     follows=("Liu2016", "Minor2010", "TrebiOllennu2001"),
     description=(
         "A CCD camera with a lens behind a dark filter (Minor2010). It has no anti-blooming "

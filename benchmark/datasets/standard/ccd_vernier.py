@@ -1,4 +1,4 @@
-"""`ccd-vernier`: two linear CCDs at right angles as fixed rulers of an optical vernier."""
+"""`ccd-vernier`: two linear CCDs at right angles as fixed scales of an optical vernier."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from benchmark.datasets.conditions.alignment import careful
+from benchmark.datasets.conditions.alignment import careful_alignment
 from benchmark.datasets.conditions.lens_cameras import black_sun, cmos, lens_camera
 from benchmark.simulator.optics.flare import Aureole, Flare, Ghost
 from benchmark.simulator.optics.lens import Lens
@@ -14,7 +14,7 @@ _CAMERA = LensCamera(
     detector=cmos(250, 0.003),
     blur_mm=0.003,
     flare=Flare(Aureole(0.08, radius_mm=0.012), veil=0.02, ghosts=_GHOSTS),
-    assembly=careful(0.001, 0.002, -0.0015),
+    assembly=careful_alignment(0.001, 0.002, -0.0015),
     dead_share=2e-4,
 )
 

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
 from benchmark.datasets.conditions import other_light
-from benchmark.datasets.conditions.alignment import careful, misalign
+from benchmark.datasets.conditions.alignment import careful_alignment, misalign
 from benchmark.datasets.conditions.propagation import GLASS, measured_geometric
 
 _CAMERA = diodes.through(
-    diodes.rectangular_opening(0.8, 0.8), 0.5, careful(0.002, 0.002, -0.0015), GLASS
+    diodes.rectangular_opening(0.8, 0.8), 0.5, careful_alignment(0.002, 0.002, -0.0015), GLASS
 )
 _SENSOR = diodes.quadrants(_CAMERA, half_width_mm=0.8, gap_mm=0.02)
 _NOMINAL = (

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
-from benchmark.datasets.conditions.alignment import careful, misalign
+from benchmark.datasets.conditions.alignment import careful_alignment, misalign
 from benchmark.datasets.conditions.other_light import seen_with
 from benchmark.datasets.conditions.propagation import measured_geometric
 from benchmark.simulator.sensors.slit_pairs import DiodePair, SlitPairSensor
 
 _CAMERA = diodes.through(
-    diodes.rectangular_opening(2.8, 5.0, thickness_mm=0.02), 0.5, careful(0.001)
+    diodes.rectangular_opening(2.8, 5.0, thickness_mm=0.02), 0.5, careful_alignment(0.001)
 )
 _PAIR = DiodePair(reach_mm=2.9, breadth_mm=2.0, gap_mm=0.05)
 _SENSOR = SlitPairSensor(_CAMERA, _PAIR, diodes.amplifiers(250.0, 0.02, 120.0))

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
-from benchmark.datasets.conditions.alignment import careful, misalign
+from benchmark.datasets.conditions.alignment import careful_alignment, misalign
 from benchmark.datasets.conditions.other_light import seen_with
 from benchmark.datasets.conditions.pixel_arrays import hole
 from benchmark.datasets.conditions.propagation import measured_geometric
 from benchmark.simulator.sensors.position_sensitive import LateralEffect, PositionSensor
 
-_CAMERA = diodes.through(hole(0.56), 1.5, careful(0.004, 0.01, -0.008))
+_CAMERA = diodes.through(hole(0.56), 1.5, careful_alignment(0.004, 0.01, -0.008))
 _READOUT = diodes.amplifiers(100.0, 0.01, 120.0, gain_mismatch=0.005)
 _SENSOR = PositionSensor(_CAMERA, LateralEffect(4.0, nonlinearity=0.01), _READOUT)
 _NOMINAL = "Non-linear by 1 % at an edge's middle, amplifiers within 0.5 %, noise 1e-4 of sunlight."

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
-from benchmark.datasets.conditions.alignment import careful, misalign
+from benchmark.datasets.conditions.alignment import careful_alignment, misalign
 from benchmark.datasets.conditions.other_light import seen_with
 from benchmark.datasets.conditions.propagation import measured_geometric
 
 _MASK = diodes.rectangular_opening(2.0, 2.0, thickness_mm=0.02, rotation_deg=0.1)
-_CAMERA = diodes.through(_MASK, 1.0, careful(0.002))
+_CAMERA = diodes.through(_MASK, 1.0, careful_alignment(0.002))
 _SENSOR = diodes.quadrants(_CAMERA, half_width_mm=1.8, gap_mm=0.05)
 _GEOMETRY = diodes.design(_SENSOR, 40.0, width_mm=2.0)
 _NOMINAL = "Square aperture, 50 um gap, 1 % gain mismatch, noise of 2e-4 of full sunlight."

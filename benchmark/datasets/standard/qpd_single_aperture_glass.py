@@ -5,13 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 from benchmark.datasets.conditions import masked_photodiodes as diodes
-from benchmark.datasets.conditions.alignment import careful, misalign
+from benchmark.datasets.conditions.alignment import careful_alignment, misalign
 from benchmark.datasets.conditions.other_light import seen_with
 from benchmark.datasets.conditions.propagation import measured_geometric
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 
 _GLASS = CoverGlass((Plate(1.0, 1.52),))
-_CAMERA = diodes.through(diodes.rectangular_opening(2.0, 2.0), 1.0, careful(0.002), _GLASS)
+_CAMERA = diodes.through(
+    diodes.rectangular_opening(2.0, 2.0), 1.0, careful_alignment(0.002), _GLASS
+)
 _SENSOR = diodes.quadrants(_CAMERA, half_width_mm=1.8, gap_mm=0.05)
 _NOMINAL = "Square window, 2 um of glue, 1 % gain mismatch, noise of 2e-4 of full sunlight."
 _OFF = "25 um of glue, window 50 and -40 um off centre"

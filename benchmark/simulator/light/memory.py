@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
-from benchmark.canonical import plain
+from benchmark.canonical import to_plain
 
 #: A worker's data, tables and code take up to 1.2 GB; with this it stays below 1.5 GB.
 LIMIT_BYTES = 256 * 2**20
@@ -89,14 +89,14 @@ class LightMemory:
         Parameters
         ----------
         named_by
-            All that the array depends on: a dataclass, as `benchmark.canonical.plain` takes it.
+            All that the array depends on: a dataclass, as `benchmark.canonical.to_plain` takes it.
         make
             Makes the array.
         """
         path = None
         if self._directory is not None:
             # to the last bit, unlike digests of the record
-            spelt = json.dumps(plain(named_by, float.hex, _fields))
+            spelt = json.dumps(to_plain(named_by, float.hex, _fields))
             name = hashlib.sha256(f"{type(named_by).__qualname__} {spelt}".encode()).hexdigest()
             path = self._directory / f"{name}.npy"
             if path.is_file():

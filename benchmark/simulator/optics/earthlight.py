@@ -84,7 +84,7 @@ def sky(rings: int = RINGS, spokes: int = SPOKES) -> tuple[Floats, Floats]:
     return found, solid
 
 
-def upright(camera: Camera) -> Camera:
+def upright_camera(camera: Camera) -> Camera:
     """Return the camera in its head's own frame, and a point for a Sun."""
     built = camera.assembly
     straight = Assembly(
@@ -118,7 +118,7 @@ def on_elements(
 
     directions, solid = sky(*nodes)
     count = len(directions)
-    response = lit(upright(camera), Scene(directions, np.ones(count), np.zeros(count)))
+    response = lit(upright_camera(camera), Scene(directions, np.ones(count), np.zeros(count)))
     seen = response.any(axis=1)
     weights = np.ascontiguousarray((response * solid[:, None])[seen])
     out = np.empty((len(view.nadir), response.shape[1]))

@@ -33,7 +33,7 @@ class References:
         Readings of every element in uniform light, and without light; 0 for none.
     level
         Light of the flats, as a share of the scale from dark to its end. Only ratios between
-        elements are told by it: the light itself is common to all.
+        elements are estimated from it: the light itself is common to all.
     """
 
     flats: int = 16

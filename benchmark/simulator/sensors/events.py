@@ -208,7 +208,7 @@ class EventSensor:
 
         On a bus without load: which pixels leave it, in which order and when, all follow from
         when they ask for it, so that no estimator that sees the stamps does better than one that
-        is told those times. Where pixels queue, who sees the stamps alone has to do with less.
+        is given those times. Where pixels queue, who sees the stamps alone has to do with less.
 
         That a pixel has not fired when the array is reset at the time c tells something, too: a
         Gaussian time with mean m and deviation s that is only known where it is below c has the

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import Delaunay
 
-from algorithms.calibration.blocks import best, folds, folds_along, splits
+from algorithms.calibration.blocks import best_candidate, folds, folds_along, splits
 from algorithms.calibration.hull import Hull, median_spacing
 from algorithms.calibration.orders import choose_order, errors_of_orders
 from algorithms.contract import UnusableDataError
@@ -116,15 +116,15 @@ def test_along_an_axis_the_ends_are_always_fitted():
 
 
 def test_the_best_is_the_first_of_the_smallest():
-    assert best(["b", "a", "c"], {"a": 1.0, "b": 1.0, "c": 2.0}.get, "test") == ("b", 1.0)
+    assert best_candidate(["b", "a", "c"], {"a": 1.0, "b": 1.0, "c": 2.0}.get, "test") == ("b", 1.0)
     with pytest.raises(UnusableDataError, match="test needs samples of several poses"):
-        best([1, 2], lambda _: math.nan, "test")
+        best_candidate([1, 2], lambda _: math.nan, "test")
 
     def refuse(_):
         raise UnusableDataError("too few of them")
 
     with pytest.raises(UnusableDataError, match="too few of them"):
-        best([1], refuse, "test")
+        best_candidate([1], refuse, "test")
 
 
 #: No places between poses: errors on samples left out as they are.

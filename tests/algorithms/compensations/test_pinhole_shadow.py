@@ -35,7 +35,7 @@ def outline_middle(theta_deg, disc_deg=DISC_DEG):
 @pytest.mark.parametrize("theta_deg", [0.0, 0.1, 0.2, 0.3, 1.0, 10.0, 30.0, 45.0, 58.0])
 def test_the_outline_is_that_of_every_ray_through_both_rims(theta_deg):
     tangent = np.array([[np.tan(np.radians(theta_deg)), 0.0]])
-    found = (MASK.seen(tangent, share=1.0)[0, 0] - 30.0) * 0.01
+    found = (MASK.spots(tangent, share=1.0)[0, 0] - 30.0) * 0.01
     assert found == pytest.approx(outline_middle(theta_deg), abs=1e-9)
 
 
@@ -58,7 +58,7 @@ def test_the_whole_chain_finds_the_sun_where_parts_of_it_do_not():
         focal_length_mm=LOWER + THICK / 2, pixel_pitch_mm=0.01, centre_px=(30.0, 20.0),
         aperture_width_mm=WIDE, aperture_shape="round", mask_thickness_mm=THICK,
     )  # fmt: skip
-    spots = MASK.seen(SUN[:, :2] / SUN[:, 2:], share=1.0)
+    spots = MASK.spots(SUN[:, :2] / SUN[:, 2:], share=1.0)
     off = {}
     for name in ("spm", "solar-disc + spm", "pinhole-shadow + solar-disc + spm"):
         made = discover_chains()[name].for_sensor(design, FeatureKind.SPOT)
@@ -75,12 +75,12 @@ def test_the_share_is_learnt_beside_a_turned_and_shifted_head(share):
     head = SUN @ np.array(
         [[np.cos(turn), 0, np.sin(turn)], [0, 1, 0], [-np.sin(turn), 0, np.cos(turn)]]
     )
-    spots = np.add(MASK.seen(head[:, :2] / head[:, 2:], share), (1.5, -0.7))
+    spots = np.add(MASK.spots(head[:, :2] / head[:, 2:], share), (1.5, -0.7))
     assert MASK.fit(spots, SUN).share_ == pytest.approx(share, abs=0.03)
 
 
 def test_noise_gives_no_share_outside_its_range():
-    spots = MASK.seen(SUN[:, :2] / SUN[:, 2:], share=0.0)
+    spots = MASK.spots(SUN[:, :2] / SUN[:, 2:], share=0.0)
     for seed in range(5):
         noisy = spots + np.random.default_rng(seed).normal(0.0, 0.5, spots.shape)
         assert 0.0 <= MASK.fit(noisy, SUN).share_ <= 1.0
@@ -89,15 +89,15 @@ def test_noise_gives_no_share_outside_its_range():
 def test_no_light_passes_where_the_rims_part():
     steepest = np.degrees(np.arctan(WIDE / THICK))
     near = np.tan(np.radians([steepest - 0.5, steepest + 0.5]))
-    MASK.fit(MASK.seen(SUN[:, :2] / SUN[:, 2:], 0.5), SUN)
-    found = MASK.transform(MASK.seen(np.column_stack([near, [0.0, 0.0]]), MASK.share_))
+    MASK.fit(MASK.spots(SUN[:, :2] / SUN[:, 2:], 0.5), SUN)
+    found = MASK.transform(MASK.spots(np.column_stack([near, [0.0, 0.0]]), MASK.share_))
     assert np.isnan(found).any(axis=1).tolist() == [False, True]
 
 
 def test_a_calibration_about_the_boresight_tells_no_share():
     sun = sun_from_angles(np.random.default_rng(1).uniform(-0.1, 0.1, (40, 2)))
     with pytest.raises(UnusableDataError, match="spread over the field"):
-        MASK.fit(MASK.seen(sun[:, :2] / sun[:, 2:], 1.0), sun)
+        MASK.fit(MASK.spots(sun[:, :2] / sun[:, 2:], 1.0), sun)
 
 
 @pytest.mark.parametrize(

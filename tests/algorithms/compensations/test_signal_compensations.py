@@ -142,7 +142,7 @@ def test_the_earths_share_is_learnt_and_taken_off():
     assert np.sqrt(np.mean(raw**2)) > 4
 
 
-def told(sun, field):
+def context_of(sun, field):
     return {
         "magnetic_field_nT": 4e4 * field,
         "sun_inertial": sun,
@@ -154,13 +154,13 @@ def test_up_to_two_shared_faces_are_told_apart():
     """Frezza2022's types: as many faces as Sun and Earth both light, noise-free."""
     sun, nadir, field = spread(3000), spread(3000, seed=1), spread(3000, seed=2)
     stage = SunAndAlbedoInputs(CUBE, tolerance=0.005)
-    stage.fit(np.maximum(sun @ NORMALS, 0), sun, told(sun, field))
+    stage.fit(np.maximum(sun @ NORMALS, 0), sun, context_of(sun, field))
     seen = with_earth(sun, nadir)
     share = 0.3 * ((1 - (sun * nadir).sum(axis=1)) / 2) ** 2
     earth = share[:, None] * nadir
     clear = (np.abs(sun) > 0.02).all(axis=1) & (np.abs(earth) > 0.02).all(axis=1)
     shared = ((sun > 0) == (earth > 0)).sum(axis=1)
-    error = separation_deg(sun_of(stage.transform(seen, told(sun, field))), sun)
+    error = separation_deg(sun_of(stage.transform(seen, context_of(sun, field))), sun)
     for kind, answered in ((0, 0.5), (1, 0.35), (2, 0.3)):
         chosen = error[clear & (shared == kind)]
         found = chosen[np.isfinite(chosen)]
@@ -173,12 +173,12 @@ def test_three_shared_faces_have_no_solution():
     sun = np.full((1, 3), 3**-0.5)
     field = spread(1)
     stage = SunAndAlbedoInputs(CUBE).fit(
-        np.maximum(spread(60) @ NORMALS, 0), spread(60), told(spread(60), spread(60))
+        np.maximum(spread(60) @ NORMALS, 0), spread(60), context_of(spread(60), spread(60))
     )
     alone = np.maximum(sun @ NORMALS, 0)
-    np.testing.assert_allclose(stage.transform(alone, told(sun, field)), alone, rtol=1e-9)
+    np.testing.assert_allclose(stage.transform(alone, context_of(sun, field)), alone, rtol=1e-9)
     both = alone + 0.1 * (alone > 0)
-    assert np.isnan(stage.transform(both, told(sun, field))).all()
+    assert np.isnan(stage.transform(both, context_of(sun, field))).all()
 
 
 def test_what_is_learnt_is_kept():

@@ -44,7 +44,7 @@ def test_the_nearest_aperture_is_that_of_all():
     for x, y in rng.uniform((-45, -20), (40, 22), (400, 2)):
         away = (TABLE[:, 0] - x) ** 2 + (TABLE[:, 1] - y) ** 2
         for reach in (3.0, 9.0):
-            a, squared = kernel.nearest(known, x, y, reach)
+            a, squared = kernel.nearest_aperture(known, x, y, reach)
             if away.min() < reach**2:
                 assert a == away.argmin()
                 assert squared == pytest.approx(away.min())

@@ -109,21 +109,21 @@ def test_the_shift_and_the_variance_it_leaves_are_numpys_least_squares():
 
 
 @pytest.mark.parametrize(
-    ("gain", "told"), [(1.49, True), (1.51, False), (0.51, True), (0.49, False)]
+    ("gain", "expected"), [(1.49, True), (1.51, False), (0.51, True), (0.49, False)]
 )
-def test_light_half_as_bright_again_or_half_gone_is_another(gain, told):
+def test_light_half_as_bright_again_or_half_gone_is_another(gain, expected):
     energies = 500 * spot(11.2, 6.4) + 30.0
     frame = gain * (energies - 30.0) + 30.0
     variance = shift_of(frame, energies, 30.0, 90.0, np.zeros(3), np.zeros(2))
-    assert math.isnan(variance) is not told
+    assert math.isnan(variance) is not expected
 
 
 def test_a_shift_needs_four_pixels_and_two_slopes():
-    for pixels, told in ((3, False), (4, True)):
+    for pixels, expected in ((3, False), (4, True)):
         energies = np.random.default_rng(3).uniform(0, 1, (6, 9))
         energies[2, 2 : 2 + pixels] += 10.0
         variance = shift_of(energies, energies, 0.0, 5.0, np.zeros(3), np.zeros(2))
-        assert math.isnan(variance) is not told
+        assert math.isnan(variance) is not expected
     ridge = np.tile(10.0 + np.arange(9.0), (6, 1))  # no slope from row to row
     assert math.isnan(shift_of(ridge, ridge, 0.0, 5.0, np.zeros(3), np.zeros(2)))
 

@@ -1,4 +1,4 @@
-"""Methods of profiles on frames with one spot: closed forms, bounds, and what cannot be told."""
+"""Methods of profiles on frames with one spot: closed forms, bounds, and what is undetermined."""
 
 from __future__ import annotations
 

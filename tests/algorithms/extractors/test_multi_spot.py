@@ -1,4 +1,4 @@
-"""Masks of many apertures: what the spots are, which aperture cast them, what cannot be told."""
+"""Masks of many apertures: what the spots are, which aperture cast them, what is undetermined."""
 
 import itertools
 

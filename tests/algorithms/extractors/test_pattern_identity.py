@@ -126,19 +126,19 @@ def test_a_doubled_edge_makes_the_very_frame_of_a_mask_moved_by_a_pitch():
 
 @pytest.mark.slow
 @every_grid
-def test_an_identity_without_a_doubt_is_right(side, pitch):
+def test_an_identity_without_a_flag_is_right(side, pitch):
     for seed, faults in ((210, {"doubled": 1.0}), (211, {"dark": True}), (212, {})):
         scenes = Scenes(seed, side, pitch, **faults)
         extractor = MultipleCentroids(scenes.apertures, faulty_lines=1)
         found = extractor.measure(scenes.frames)
-        doubted = found.doubts == int(QualityFlag.AMBIGUOUS_PATTERN)
+        unsure = found.flags == int(QualityFlag.AMBIGUOUS_PATTERN)
         wrong = np.abs(found.features - scenes.places).max(axis=1) > pitch / 4
-        assert not (wrong & ~doubted).any()
+        assert not (wrong & ~unsure).any()
         np.testing.assert_array_equal(found.features, extractor.extract(scenes.frames))
 
 
 @pytest.mark.parametrize("method", [MultipleCentroids, MeanShift, ImageCorrelation, WeightedSpots])
-def test_an_ambiguous_pattern_and_a_dark_frame_are_different_doubts(method):
+def test_an_ambiguous_pattern_and_a_dark_frame_are_different_flags(method):
     apertures = grid(4, 16.0)
     own = {MeanShift: {"bandwidth_px": 8.0}, ImageCorrelation: {"correlations": 4}}
     rng = np.random.default_rng(213)
@@ -149,7 +149,7 @@ def test_an_ambiguous_pattern_and_a_dark_frame_are_different_doubts(method):
     frames.append(draw(rng, (120, 120), []))
     found = method(apertures, faulty_lines=1, **own.get(method, {})).measure(np.array(frames))
     unsure = int(QualityFlag.AMBIGUOUS_PATTERN)
-    assert found.doubts.tolist() == [0, unsure, unsure, int(QualityFlag.NO_SPOT)]
+    assert found.flags.tolist() == [0, unsure, unsure, int(QualityFlag.NO_SPOT)]
     assert np.isfinite(found.features[:, 0]).tolist() == [True, False, True, False]
 
 

@@ -1,4 +1,4 @@
-"""Extractors of profiles: closed-form shadows of slits, brute force, and what cannot be told."""
+"""Extractors of profiles: closed-form shadows of slits, brute force, and what is undetermined."""
 
 from __future__ import annotations
 
@@ -247,7 +247,7 @@ def test_mt_acm_of_a_line_is_that_of_a_frame_with_its_sums(crossing):
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-6)
 
 
-# What cannot be told
+# What cannot be determined
 
 TELLING = (PeakDetection, LinearPhase, EigenAnalysis)
 

@@ -53,7 +53,7 @@ def draw(rng, side, pitch, count, **how):
 def error(method, apertures, frames, places):
     found = method(apertures, blur_px=2.0).extract(frames.astype(np.uint16))
     answered = np.isfinite(found).all(axis=1)
-    assert answered.mean() > 0.99, "a doubt now and then; of one spot alone there are more"
+    assert answered.mean() > 0.99, "a flag now and then; of one spot alone there are more"
     return float(np.sqrt(np.mean((found[answered] - places[answered]) ** 2)))
 
 

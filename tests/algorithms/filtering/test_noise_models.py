@@ -19,10 +19,10 @@ def through(kalman, space, read):
     return belief
 
 
-@pytest.mark.parametrize("told", [0.1, 1.0, 10.0])
-def test_the_adaptive_filter_finds_the_noise_whatever_it_was_told(told: float) -> None:
+@pytest.mark.parametrize("reported", [0.1, 1.0, 10.0])
+def test_the_adaptive_filter_finds_the_noise_whatever_it_was_told(reported: float) -> None:
     _, read = history(runs=60, steps=1500)
-    space = LinearStateSpace(CART.dynamics, CART.process, CART.observation, told * CART.noise)
+    space = LinearStateSpace(CART.dynamics, CART.process, CART.observation, reported * CART.noise)
     found = through(AdaptiveKalman(window=100.0), space, read).noise.mean(axis=0)
     # 60 runs of some 100 readings: a variance is known to sqrt(2 / 6000) = 2 %
     np.testing.assert_allclose(found, CART.noise, rtol=0.12, atol=0.03)

@@ -12,7 +12,7 @@ from kalman_runs import (
     STEP_S,
     cube,
     drawn,
-    first_doubt,
+    first_covariance,
     pinhole,
     turned_exactly,
 )
@@ -92,7 +92,7 @@ FILTERS = {"extended": ExtendedKalman(), "unscented": SigmaPointKalman(), "cubat
 def test_errors_and_innovations_are_as_large_as_the_filter_says(name: str, by: str) -> None:
     """100 runs: squares in units of the filter's own covariance within their 95 % bounds."""
     space, kalman = SPACES[name], FILTERS[by]
-    first = first_doubt(space)
+    first = first_covariance(space)
     runs = drawn(space, first=first, seed=11)
     belief = kalman.begin(space, runs.first, first)
     errors, innovations = [], []
@@ -122,7 +122,7 @@ def test_errors_and_innovations_are_as_large_as_the_filter_says(name: str, by: s
 def test_a_filter_that_ignores_gains_is_too_sure_and_one_that_considers_them_is_not() -> None:
     """Faces whose gains are 1 % off: 200 runs, the direction's errors beside each filter's own."""
     whole, plain = SPACES["gains"], SPACES["faces"]
-    first = first_doubt(whole)
+    first = first_covariance(whole)
     runs = drawn(whole, runs=200, steps=80, first=first, seed=12)
     schmidt = ExtendedKalman(considered=tuple(range(6, 12)))
     considering = schmidt.begin(whole, runs.first, first)
@@ -180,7 +180,7 @@ def test_a_reference_that_was_turned_is_considered(by) -> None:
 
     A turn lasts: the runs' mean is one draw for all steps, of 0.05 standard deviation.
     """
-    space, first = SPACES["turned"], first_doubt(SPACES["turned"])
+    space, first = SPACES["turned"], first_covariance(SPACES["turned"])
     runs = drawn(space, first=first, seed=14, runs=400, steps=50)
     if isinstance(by, MultipleModels):
         estimates = mixed_errors(space, by, runs, first)
@@ -236,9 +236,9 @@ def test_a_turned_head_sees_what_turning_the_sun_shows() -> None:
 
 
 def test_readings_that_err_alike_for_some_steps_tell_as_much_as_fewer() -> None:
-    """An autoregression of 0.8 lasts for nine steps: 100 runs, told of that and not."""
-    space, first = SPACES["spot"], first_doubt(SPACES["spot"])
-    told = SunSpace(pinhole(), 0.01 * np.eye(2), GYROSCOPE, (), steps=np.full(2, 9.0))
+    """An autoregression of 0.8 lasts for nine steps: 100 runs, with and without knowing it."""
+    space, first = SPACES["spot"], first_covariance(SPACES["spot"])
+    with_steps = SunSpace(pinhole(), 0.01 * np.eye(2), GYROSCOPE, (), steps=np.full(2, 9.0))
     runs = drawn(space, first=first, seed=15, steps=200)
     clean = np.array(
         [
@@ -250,10 +250,10 @@ def test_readings_that_err_alike_for_some_steps_tell_as_much_as_fewer() -> None:
     for step in range(1, len(white)):
         white[step] = 0.8 * white[step - 1] + 0.6 * white[step]
     lasting = replace(runs, readings=clean + white)
-    knowing, innovations = squared_errors(told, ExtendedKalman(), lasting, first)
+    knowing, innovations = squared_errors(with_steps, ExtendedKalman(), lasting, first)
     ignoring, _ = squared_errors(space, ExtendedKalman(), lasting, first)
     assert 0.7 < knowing[40:].mean() / 2.0 < 1.3
-    # what was told so far has the error of the reading, too: innovations are somewhat less
+    # the estimate so far has the error of the reading, too: innovations are somewhat less
     assert 0.4 < innovations[40:].mean() < 1.1
     assert ignoring[40:].mean() / 2.0 > 2.0
 
@@ -285,7 +285,7 @@ def test_what_is_considered_explains_a_first_reading_that_its_noise_does_not() -
 
 def test_gains_that_drift_are_found_by_the_filter_that_has_them_in_its_state() -> None:
     space = SPACES["gains"]
-    first = first_doubt(space)
+    first = first_covariance(space)
     runs = drawn(space, runs=50, steps=200, first=first, seed=13)
     kalman = ExtendedKalman()
     belief = kalman.begin(space, runs.first, first)

@@ -126,11 +126,11 @@ def residuals_density(squares, dimensions, tolerance):
         return 0.0
     at = np.zeros(dimensions)
     at[0] = math.sqrt(squares)
-    told = [
+    expected = [
         multivariate_t.logpdf(at, shape=(tolerance / deviations) ** 2 * np.eye(dimensions), df=df)
         for deviations, df in ((5.0, 30.0), (2.0, 4.0))
     ]
-    return float(logsumexp(told, b=[1.0 - 1e-4, 1e-4]))
+    return float(logsumexp(expected, b=[1.0 - 1e-4, 1e-4]))
 
 
 def evidence_everywhere(spots, model):
@@ -161,11 +161,11 @@ def _evidence(listed, view, widest, tolerance):
         inside = np.abs(places + here - MIDDLE).max(axis=1) <= MIDDLE - margin
         inside[partner[kept]] = False
         left = len(spots) - len(kept)
-        told = residuals_density(squares, 2 * len(kept) - 2, tolerance)
-        told -= left * math.log(100.0 * SIZE**2)
-        told += math.log(0.9 * 0.01 ** inside.sum() + 0.1 * 0.2 ** inside.sum())
+        expected = residuals_density(squares, 2 * len(kept) - 2, tolerance)
+        expected -= left * math.log(100.0 * SIZE**2)
+        expected += math.log(0.9 * 0.01 ** inside.sum() + 0.1 * 0.2 ** inside.sum())
         at.append(here)
-        found.append(told)
+        found.append(expected)
     return np.array(at), np.array(found)
 
 
@@ -216,8 +216,8 @@ def test_spots_that_fill_the_tolerance_tell_no_place(cls):
     assert not (off > 3.0).any()
     assert found.ambiguous.mean() > 0.3
     # the same spots where they belong
-    told = model.read(lists(places_px(), displaced, model.spots).reshape(200, -1)).displacement
-    assert np.isfinite(told[:, 0]).mean() > 0.97
+    expected = model.read(lists(places_px(), displaced, model.spots).reshape(200, -1)).displacement
+    assert np.isfinite(expected[:, 0]).mean() > 0.97
 
 
 def test_pieces_of_one_spot_are_one_spot():
@@ -323,7 +323,7 @@ def test_a_mask_that_is_seen_whole_needs_no_code():
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "expected"),
     [
         ({"spots": 2}, "spots"),
         ({"agreeing": 2}, "agreeing"),
@@ -335,8 +335,8 @@ def test_a_mask_that_is_seen_whole_needs_no_code():
         ({"apertures_px": ((0.0, 0.0, 5.0),)}, "apertures_px"),
     ],
 )
-def test_parameters_out_of_range_are_named(change, told):
-    with pytest.raises(ValueError, match=told):
+def test_parameters_out_of_range_are_named(change, expected):
+    with pytest.raises(ValueError, match=expected):
         model_of(CodedSpacing, **change)
 
 

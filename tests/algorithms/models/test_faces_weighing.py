@@ -10,7 +10,7 @@ from algorithms.angles import separation_deg
 from algorithms.contract import FeatureKind
 from algorithms.models.physics_informed.assembled_faces import AssembledFaces
 from algorithms.models.physics_informed.faces_fit import FacesFit
-from algorithms.models.physics_informed.faces_weighing import Weighing
+from algorithms.models.physics_informed.faces_weighing import ResidualWeights
 from benchmark import datasets
 
 PYRAMID = np.array(
@@ -73,15 +73,15 @@ def own_fit(nominal, signals, sun, test):
 def test_no_standard_data_set_is_read_better_by_an_independent_fit(name, unit):
     """Of what both answer and the readings settle: its error, within two per cent."""
     preset = datasets.get(name).for_unit(unit)
-    told = preset.generate("nominal", "calibration")
+    calibration = preset.generate("nominal", "calibration")
     asked = preset.generate("nominal", "test", 400)
     nominal = np.array(preset.geometry.face_normals)
     model = AssembledFaces.for_sensor(preset.geometry, FeatureKind.SIGNALS)
     error = separation_deg(
-        model.fit(told.observations, told.sun).predict(asked.observations), asked.sun
+        model.fit(calibration.observations, calibration.sun).predict(asked.observations), asked.sun
     )
     other = separation_deg(
-        own_fit(nominal, told.observations, told.sun, asked.observations), asked.sun
+        own_fit(nominal, calibration.observations, calibration.sun, asked.observations), asked.sun
     )
     both = preset.bound("nominal", n=400).observable & np.isfinite(error)
     assert both.mean() > 0.9
@@ -95,7 +95,7 @@ def test_weighed_residuals_are_independent_ones():
     noise, modelled, tau = np.array([1.0, 2.0, 1.5, 3.0]), rng.uniform(0.1, 1, (5, 4)), 0.7
     used = np.ones((5, 4), dtype=bool)
     used[0, 1:] = False  # one face alone
-    weighing = Weighing(used, noise, np.where(used, modelled, 0) / noise, tau)
+    weighing = ResidualWeights(used, noise, np.where(used, modelled, 0) / noise, tau)
     off = rng.normal(size=(5, 4))
     found = weighing.weigh(off)
     for row in range(5):
@@ -117,7 +117,7 @@ def test_the_lights_spread_and_the_noise_are_told_apart(flicker, low, high):
     strength = flicker * rng.standard_normal((600, 1))
     noise = 1e-3 * np.arange(1, 7)
     off = strength * modelled + noise * rng.standard_normal(c.shape)
-    weighing = Weighing.of(modelled, off, c > 0.05, 1)
+    weighing = ResidualWeights.of(modelled, off, c > 0.05, 1)
     assert low <= weighing.spread <= high
     np.testing.assert_allclose(weighing.noise, noise, rtol=0.1)
 

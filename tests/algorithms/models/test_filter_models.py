@@ -126,11 +126,11 @@ def test_signals_without_faces_are_refused(geometry) -> None:
 
 
 def test_an_answer_that_is_too_uncertain_is_not_given(geometry) -> None:
-    told = flights.flight(FeatureKind.SPOT, geometry)
-    model = ExtendedKalmanFilter().fit(**told)
-    deviation = model.deviation_deg(told["features"], told["context"])
+    flight = flights.flight(FeatureKind.SPOT, geometry)
+    model = ExtendedKalmanFilter().fit(**flight)
+    deviation = model.deviation_deg(flight["features"], flight["context"])
     strict = ExtendedKalmanFilter(worst_deg=float(np.nanmedian(deviation)))
-    found = strict.fit(**told).predict(told["features"], told["context"])
+    found = strict.fit(**flight).predict(flight["features"], flight["context"])
     answered = np.isfinite(found[:, 0])
     assert np.array_equal(answered[1:], deviation[1:] <= strict.worst_deg)
     assert 0.4 < answered.mean() < 0.6
@@ -138,39 +138,39 @@ def test_an_answer_that_is_too_uncertain_is_not_given(geometry) -> None:
 
 @pytest.mark.parametrize("kind", [FeatureKind.SIGNALS, FeatureKind.SPOT])
 def test_wild_readings_pull_the_robust_filter_less(geometry, kind) -> None:
-    told = flights.flight(kind, geometry)
-    wild = told["features"].copy()
+    flight = flights.flight(kind, geometry)
+    wild = flight["features"].copy()
     wild[60:200:20, 0] += 0.2 * np.abs(wild).max()
     worst = {}
     for cls in (ExtendedKalmanFilter, RobustKalmanFilter):
-        model = cls.for_sensor(geometry, kind).fit(**told)
-        error = separation_deg(model.predict(wild, told["context"]), told["sun"])
+        model = cls.for_sensor(geometry, kind).fit(**flight)
+        error = separation_deg(model.predict(wild, flight["context"]), flight["sun"])
         worst[cls] = float(np.nanmax(error))
     assert worst[RobustKalmanFilter] < 0.5 * worst[ExtendedKalmanFilter]
 
 
 def test_what_is_considered_stays_and_makes_the_filter_less_sure(geometry) -> None:
-    told = flights.flight(FeatureKind.SIGNALS, geometry)
-    plain = ExtendedKalmanFilter.for_sensor(geometry, FeatureKind.SIGNALS).fit(**told)
-    schmidt = ConsiderKalmanFilter.for_sensor(geometry, FeatureKind.SIGNALS).fit(**told)
-    track = schmidt.track(told["features"], told["context"])
+    flight = flights.flight(FeatureKind.SIGNALS, geometry)
+    plain = ExtendedKalmanFilter.for_sensor(geometry, FeatureKind.SIGNALS).fit(**flight)
+    schmidt = ConsiderKalmanFilter.for_sensor(geometry, FeatureKind.SIGNALS).fit(**flight)
+    track = schmidt.track(flight["features"], flight["context"])
     assert (track.drift[1:, 1:] == 0).all()  # behind the light's strength
     np.testing.assert_allclose(track.drift_deviation[1:, 2:], schmidt.gain_deviation, rtol=1e-9)
-    sure = plain.deviation_deg(told["features"], told["context"])
+    sure = plain.deviation_deg(flight["features"], flight["context"])
     assert (track.deviation_deg[20:] > sure[20:]).all()
 
 
 def test_noise_is_heard_once_by_filters_of_one_space_and_anew_by_others(
     geometry, monkeypatch
 ) -> None:
-    told = flights.flight(FeatureKind.SPOT, geometry)
-    alone = UnscentedKalmanFilter().fit(**told).noise_
+    flight = flights.flight(FeatureKind.SPOT, geometry)
+    alone = UnscentedKalmanFilter().fit(**flight).noise_
     monkeypatch.setattr(reading_noise, "_heard", {})
     heard = reading_noise._heard
     noise = {}
     for model in (ExtendedKalmanFilter(), UnscentedKalmanFilter(), RobustKalmanFilter()):
-        noise[type(model)] = model.fit(**told).noise_
+        noise[type(model)] = model.fit(**flight).noise_
     assert len(heard) == 1
     assert all(one.tobytes() == alone.tobytes() for one in noise.values())
-    ExtendedKalmanFilter(bias_deg_h=3.0).fit(**told)
+    ExtendedKalmanFilter(bias_deg_h=3.0).fit(**flight)
     assert len(heard) == 2

@@ -316,14 +316,14 @@ def test_a_track_is_open_above_the_mean_of_all_four_fine_rows() -> None:
         assert places == pytest.approx(np.full((1, 2), exact / 2.0))
 
 
-@pytest.mark.parametrize(("contrast", "told"), [(0.2001, True), (0.1999, False)])
-def test_a_dial_is_read_down_to_its_smallest_contrast(contrast: float, told: bool) -> None:
+@pytest.mark.parametrize(("contrast", "context"), [(0.2001, True), (0.1999, False)])
+def test_a_dial_is_read_down_to_its_smallest_contrast(contrast: float, context: bool) -> None:
     code = DialCode(3, 0.3, 0.6, 2.0, ("x", "y"), 0.2)
     phase = 0.15 / 0.6 * 2 * np.pi
     wave = contrast * np.array([-np.cos(phase), -np.sin(phase), np.cos(phase), np.sin(phase)])
     one = [1.0, 1.0, 0.0, *(0.5 * (1 + wave))]  # cell 4, middle of it
     places, _ = code.read(np.tile(one, 2)[None])
-    assert np.isfinite(places).all() == told
+    assert np.isfinite(places).all() == context
 
 
 def test_a_direction_behind_the_detector_is_none() -> None:

@@ -383,7 +383,7 @@ def test_weights_are_the_same_with_the_kernels_of_other_processors(tmp_path):
 
 
 def _beyond_baseline():
-    """What NumPy may be told to do without on this processor."""
+    """What NumPy can be made to do without on this processor."""
     from numpy._core._multiarray_umath import __cpu_dispatch__, __cpu_features__
 
     return " ".join(name for name in __cpu_dispatch__ if __cpu_features__.get(name))

@@ -127,16 +127,16 @@ def test_warm_cells_are_found_with_their_coefficient():
     rng = np.random.default_rng(2)
     temperature, gains = rng.uniform(230, 370, len(sun)), rng.uniform(0.8, 1.2, 16)
     signals = warmed(sun, normals, temperature, 0.0045, gains)
-    told = {"temperature_K": temperature}
-    model = WarmCells(as_design(normals)).fit(signals, sun, told)
-    assert separation_deg(model.predict(signals, told), sun).max() < 1e-9
+    context = {"temperature_K": temperature}
+    model = WarmCells(as_design(normals)).fit(signals, sun, context)
+    assert separation_deg(model.predict(signals, context), sun).max() < 1e-9
     assert model.coefficient_ == pytest.approx(0.0045, abs=1e-12)
     np.testing.assert_allclose(model.reference_, gains, atol=1e-12)
     # and that is the one least squares finds over all numbers together
     from scipy.optimize import least_squares
 
     noisy = signals + rng.normal(0, 0.01, signals.shape)
-    model.fit(noisy, sun, told)
+    model.fit(noisy, sun, context)
     cosines = sun @ normals.T
     cosines[cosines < math.cos(math.radians(75))] = 0.0
 
@@ -155,10 +155,10 @@ def test_cells_calibrated_cold_and_flown_warm_need_their_temperature():
     normals, sun = lattice(16), rings(*range(5, 180, 10))
     temperature = np.tile([T_0 - 40, T_0 + 40], len(sun) // 2)
     gains = 1 + 0.1 * np.sin(np.arange(16))
-    told = {"temperature_K": temperature}
+    context = {"temperature_K": temperature}
     signals = warmed(sun, normals, temperature, 0.0045, gains)
     blind = WeightedCells(as_design(normals)).fit(signals, sun)
-    aware = WarmCells(as_design(normals)).fit(signals, sun, told)
+    aware = WarmCells(as_design(normals)).fit(signals, sun, context)
     assert aware.quality_.residual_rms_deg < 1e-9
     assert blind.quality_.residual_rms_deg > 0.01
 
@@ -166,8 +166,10 @@ def test_cells_calibrated_cold_and_flown_warm_need_their_temperature():
 def test_at_the_reference_it_is_the_model_without_temperature():
     normals, sun = lattice(16), rings(20, 60, 100, 140)
     temperature = np.linspace(260, 340, len(sun))
-    told = {"temperature_K": temperature}
-    model = WarmCells(as_design(normals)).fit(warmed(sun, normals, temperature, 0.004), sun, told)
+    context = {"temperature_K": temperature}
+    model = WarmCells(as_design(normals)).fit(
+        warmed(sun, normals, temperature, 0.004), sun, context
+    )
     plain = WeightedCells(as_design(normals)).fit(lit(sun, normals), sun)
     noisy = lit(sun, normals) + np.random.default_rng(4).normal(0, 0.02, (len(sun), 16))
     found = model.predict(noisy, {"temperature_K": np.full(len(sun), T_0)})
@@ -177,11 +179,11 @@ def test_at_the_reference_it_is_the_model_without_temperature():
 def test_intervals_of_the_coefficient_hold_the_truth_as_often_as_they_say():
     normals, sun = lattice(16), rings(*range(5, 180, 20))
     temperature = np.random.default_rng(3).uniform(260, 340, len(sun))
-    signals, told = warmed(sun, normals, temperature, 0.0045), {"temperature_K": temperature}
+    signals, context = warmed(sun, normals, temperature, 0.0045), {"temperature_K": temperature}
     model, held = WarmCells(as_design(normals)), []
     for seed in range(200):
         noise = np.random.default_rng(seed).normal(0, 0.003, signals.shape)
-        model.learn(signals + noise, sun, told)
+        model.learn(signals + noise, sun, context)
         low, high = model.fitted_parameters()[0].interval()
         held.append(low <= 0.0045 <= high)
     assert 0.93 <= np.mean(held) <= 0.97
@@ -190,8 +192,8 @@ def test_intervals_of_the_coefficient_hold_the_truth_as_often_as_they_say():
 def test_a_temperature_that_is_not_known_or_does_not_change():
     normals, sun = lattice(16), rings(*range(5, 180, 20))
     temperature = np.random.default_rng(3).uniform(260, 340, len(sun))
-    signals, told = warmed(sun, normals, temperature, 0.0045), {"temperature_K": temperature}
-    model = WarmCells(as_design(normals)).fit(signals, sun, told)
+    signals, context = warmed(sun, normals, temperature, 0.0045), {"temperature_K": temperature}
+    model = WarmCells(as_design(normals)).fit(signals, sun, context)
     found = model.predict(signals[:3], {"temperature_K": [temperature[0], np.nan, 9000.0]})
     assert np.isnan(found).all(axis=1).tolist() == [False, True, True]
     steady = {"temperature_K": np.full(len(sun), 300.0)}

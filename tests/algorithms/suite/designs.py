@@ -14,8 +14,8 @@ PYRAMID = tuple(
 )
 DIAL = {"code_bits": 5, "code_cell_mm": 0.15, "fine_period_mm": 0.3}
 LINE_PIXELS = 60
-#: Rulers of slits over lines of pixels of 0.05 mm: places, mm.
-RULERS = {
+#: Periodic slits over lines of pixels of 0.05 mm: places, mm.
+PERIODIC_SLITS = {
     "reticle": tuple(0.2 * (k - 2.5) for k in range(6)),
     "vernier": tuple(0.16 * (k - 3.5) for k in range(8) if k not in {2, 4}),
 }
@@ -80,7 +80,7 @@ OWN_DESIGN = {
             "line_pixels": LINE_PIXELS,
             "slits": tuple((place, 0.0, 0.08) for place in places),
         }
-        for name, places in RULERS.items()
+        for name, places in PERIODIC_SLITS.items()
     },
     "coded-spacing": {"centre_px": (49.5, 49.5), "apertures": CODED},
     "coded-correlation": {"centre_px": (49.5, 49.5), "apertures": CODED},

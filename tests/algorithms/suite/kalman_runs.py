@@ -99,7 +99,7 @@ def spaces() -> dict[str, SunSpace]:
     }
 
 
-def first_doubt(space: SunSpace) -> Floats:
+def first_covariance(space: SunSpace) -> Floats:
     """Covariance at the start: 3 degrees a tangent axis, and what may drift."""
     covariance = space._first.copy()
     covariance[0, 0] = covariance[1, 1] = np.radians(3.0) ** 2

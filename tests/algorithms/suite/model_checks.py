@@ -73,7 +73,7 @@ def check_fitted_attributes_appear_with_fit(cls, model, cal):
 @model_check
 def check_parameters_are_plain_and_kept(cls, model, cal):
     seen = witnessed(model, cal)
-    before, after = seen.told
+    before, after = seen.documents
     assert after == before == json.dumps(parameters(model), allow_nan=False)
     assert seen.model == model == cls(**parameters(model))
 
@@ -151,9 +151,9 @@ def check_model_refuses_wrong_suns(cls, model, cal):
 def check_data_that_do_not_settle_it_are_refused_by_their_own_error(cls, model, cal):
     """Nothing found, one sample, one pose again and again: refused, or enough for this model."""
     nothing = replace(cal, features=np.full_like(cal.features, np.nan))
-    for told in (nothing, cal.of(slice(1)), cal.of(np.zeros(len(cal.features), dtype=int))):
+    for calibration in (nothing, cal.of(slice(1)), cal.of(np.zeros(len(cal.features), dtype=int))):
         try:
-            model.fit(told.features, told.sun, told.context)
+            model.fit(calibration.features, calibration.sun, calibration.context)
         except UnusableDataError as refusal:
             assert model.about.name in str(refusal)  # noqa: PT017 - either outcome is right
         else:

@@ -138,9 +138,9 @@ def check_what_does_not_settle_it_is_refused(cls, model, cal):
     nothing = replace(cal, features=np.full_like(cal.features, np.nan))
     shuffled = replace(cal, sun=cal.sun[np.random.default_rng(2).permutation(len(cal.sun))])
     still = cal.of(np.zeros(len(cal.sun), dtype=int))
-    for told in (nothing, shuffled, still, cal.of(slice(20))):
+    for calibration in (nothing, shuffled, still, cal.of(slice(20))):
         with pytest.raises(UnusableDataError, match=model.about.name):
-            model.fit(told.features, told.sun, told.context)
+            model.fit(calibration.features, calibration.sun, calibration.context)
 
 
 @sequence_check

@@ -30,7 +30,7 @@ class Witnessed:
     model : the model it was called of
     answers : (N, 3) what it then answers to what it learnt
     attributes : public names of the model before the fit and after it
-    told : its parameters as JSON before the fit, and after it and the answers
+    documents : its parameters as JSON before the fit, and after it and the answers
     given : copies of features, Suns and context that `fit` and `predict` were handed
     """
 
@@ -38,7 +38,7 @@ class Witnessed:
     model: Any
     answers: Floats
     attributes: tuple[frozenset[str], frozenset[str]]
-    told: tuple[str, str]
+    documents: tuple[str, str]
     given: Any
 
 
@@ -53,12 +53,12 @@ def witnessed(model: Any, cal: Any) -> Witnessed:
     if key not in _FITS:
         fresh = type(model)(**parameters(model))
         given = copy.deepcopy(cal)
-        before, said = _public(fresh), _told(fresh)
+        before, said = _public(fresh), _document(fresh)
         returned = fresh.fit(given.features, given.sun, given.context)
         after = _public(fresh)
         answers = fresh.predict(given.features, given.context)
         _FITS[key] = Witnessed(
-            returned, fresh, answers, (before, after), (said, _told(fresh)), given
+            returned, fresh, answers, (before, after), (said, _document(fresh)), given
         )
     return _FITS[key]
 
@@ -91,7 +91,7 @@ def _public(model: Any) -> frozenset[str]:
     )
 
 
-def _told(model: Any) -> str:
+def _document(model: Any) -> str:
     return json.dumps(parameters(model), allow_nan=False)
 
 

@@ -82,12 +82,12 @@ def test_nothing_overlaps_as_the_browser_draws_it(
         assert found["smallest"] >= 10.5, "letters stay readable"
         boxes = [shape(box) for box in found["boxes"]]
         drawn.add(len(boxes))
-        meeting = [
+        overlapping = [
             (a.said, b.said)
             for a, b in itertools.combinations(boxes, 2)
             if not inside_its_cell(a, b) and overlap(a, b)
         ]
-        assert meeting == [], f"{width} px"
+        assert overlapping == [], f"{width} px"
         left, top, right, bottom = found["frame"]
         for box in boxes:
             for x, y in box.corners:

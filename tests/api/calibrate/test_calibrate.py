@@ -128,9 +128,9 @@ def test_no_model_calls_a_mirrored_file_good_without_leave_to_mirror(model, tmp_
     mirrored = (spots(SUN, 1) - CENTRE) * [-1, 1] + CENTRE
     path = write(tmp_path / "mirrored.csv", HEADER, mirrored, ANGLES)
     found = calibrate([path], models=(model,))
-    assert found.verdict.word == "conventions in doubt"
+    assert found.verdict.word == "conventions uncertain"
     assert "mirror-x" in found.verdict.reason
-    assert calibrate([path], models=(model,), apply=True).verdict.word != "conventions in doubt"
+    assert calibrate([path], models=(model,), apply=True).verdict.word != "conventions uncertain"
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -201,14 +201,14 @@ def test_the_c_code_passes_its_own_test_without_a_warning(camera, flags, tmp_pat
     assert run.returncode == 0, run.stdout
     example = ["cam.c", "cam_table.c", "cam_example.c", "-o", "example", "-lm"]
     subprocess.run([*command, *example], cwd=tmp_path, check=True)
-    told = subprocess.run(
+    output = subprocess.run(
         ["./example"], cwd=tmp_path, check=True, capture_output=True, text=True,
         input="512 512\n700.5 300.25\n5 5\n1e30 nan\n",
     ).stdout.splitlines()  # fmt: skip
-    directions = np.array([line.split() for line in told[:2]], dtype=float)
+    directions = np.array([line.split() for line in output[:2]], dtype=float)
     exact = camera.model.predict([[512.0, 512.0], [700.5, 300.25]])
     assert np.max(separation_deg(directions, exact)) < 1e-3
-    assert told[2:] == ["outside", "outside"]
+    assert output[2:] == ["outside", "outside"]
 
 
 def test_the_command_writes_report_and_code_and_a_template(tmp_path, monkeypatch, capsys):

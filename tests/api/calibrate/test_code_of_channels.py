@@ -50,9 +50,9 @@ def test_c_agrees_with_its_vectors_and_with_python(more, made):
     signals = bench.faces(sun, 4)
     signals[-3:] = [[0.0] * 6, [np.nan, 0, 0, 0, 0, 1], [1, 1, 1, 1, 1, 1]]
     lines = "\n".join(" ".join(f"{v:.9g}" for v in row) for row in signals)
-    told = run(out, "./example", input=lines).splitlines()
-    assert told[-3:] == ["outside"] * 3
-    code = [[np.nan] * 3 if "outside" in line else line.split() for line in told]
+    lines_out = run(out, "./example", input=lines).splitlines()
+    assert lines_out[-3:] == ["outside"] * 3
+    code = [[np.nan] * 3 if "outside" in line else line.split() for line in lines_out]
     answered = np.array(code, dtype=float)
     expected = channel_table(
         found.model, found.readings.features, {}, found.chosen.rms_deg
@@ -80,8 +80,8 @@ def test_python_without_the_package_answers_what_the_table_does(made):
 @pytest.mark.skipif(shutil.which("cppcheck") is None, reason="no cppcheck here")
 def test_the_code_that_flies_has_no_misra_finding(made):
     _, out = made
-    told = subprocess.run(
+    lines_out = subprocess.run(
         ["cppcheck", "--addon=misra", "--quiet", "--std=c99", "box.c", "box_table.c"],
         cwd=out, check=True, capture_output=True, text=True,
     )  # fmt: skip
-    assert told.stderr == ""
+    assert lines_out.stderr == ""

@@ -104,7 +104,7 @@ def test_falling_readings_of_faces_are_found_and_applied(sound, tmp_path):
 def test_falling_readings_are_found_and_cost_nothing_once_stated(kind, sound, tmp_path):
     made = mistakes.mistaken(tmp_path / "bench.csv", kind, "falling", 1)
     found = calibrate(made.paths)
-    assert found.verdict.word == "conventions in doubt"
+    assert found.verdict.word == "conventions uncertain"
     assert any("fall when light rises" in one.found for one in found.findings)
     readings = found.settings.readings.model_copy(update={"inverted": True, "dark": mistakes.LEVEL})
     stated: Settings = found.settings.model_copy(update={"readings": readings})

@@ -132,7 +132,7 @@ def test_the_page_prints_the_definitions_and_outcomes(published, monkeypatch):
     assert len(columns) == len(PROPERTIES)
     counted = [[int(n) for n in cell.split("→")] for cell in whole.split("|")[2:-1]]
     assert [sum(version) for version in zip(*counted, strict=True)] == [19 * 21, 19 * 21]
-    assert pages.values().count("### ") == sum(d.measured for d in DEFINITIONS.values())
+    assert pages.values().count("### ") == sum(d.has_experiment for d in DEFINITIONS.values())
     assert "quadrants, noise: peak SNR" in pages.accuracy()
     assert all(make().startswith("<svg") for make in pages.PICTURES.values())
 

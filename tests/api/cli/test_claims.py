@@ -9,14 +9,14 @@ from api.cli.command_line import app
 from benchmark.claims.ledger import ledger, tally
 
 
-def told(*arguments):
+def run_claims(*arguments):
     answer = CliRunner().invoke(app, ["claims", *arguments])
     assert answer.exit_code == 0, answer.output
     return answer.stdout
 
 
 def test_the_whole_ledger_by_command_and_by_http(atlas):
-    document = json.loads(told("--format", "json"))
+    document = json.loads(run_claims("--format", "json"))
     assert document == atlas.get("/v1/claims").json()
     assert document["total"] == 55
     assert document["tally"] == tally(ledger())
@@ -30,33 +30,33 @@ def test_the_whole_ledger_by_command_and_by_http(atlas):
 
 
 def test_one_claim_in_full(atlas):
-    document = json.loads(told("c04", "--format", "json"))
+    document = json.loads(run_claims("c04", "--format", "json"))
     assert document == atlas.get("/v1/claims/C04").json()
     assert {len(values) for values in document["values"].values()} == {document["trials"]}
-    shown = told("C04")
+    shown = run_claims("C04")
     assert document["statement"] in shown
     assert f"Verdict: {document['verdict']}" in shown
     assert "Second method" in shown
 
 
 def test_verdicts_and_words_narrow(atlas):
-    whole = json.loads(told("--format", "json"))["items"]
+    whole = json.loads(run_claims("--format", "json"))["items"]
     for item in whole:
         item["verdict"] = item["verdict"] or "not measured"
     for verdict in {item["verdict"] for item in whole}:
-        found = json.loads(told("--verdict", verdict, "--format", "json"))["items"]
+        found = json.loads(run_claims("--verdict", verdict, "--format", "json"))["items"]
         assert [item["id"] for item in found] == [
             item["id"] for item in whole if item["verdict"] == verdict
         ]
-    found = json.loads(told("--search", "albedo photodiodes", "--format", "json"))["items"]
+    found = json.loads(run_claims("--search", "albedo photodiodes", "--format", "json"))["items"]
     assert found == []
-    found = json.loads(told("--search", "ALBEDO dnn", "--format", "json"))["items"]
+    found = json.loads(run_claims("--search", "ALBEDO dnn", "--format", "json"))["items"]
     assert [item["id"] for item in found] == ["C28"]
     assert atlas.get("/v1/claims", params={"q": "albedo dnn"}).json()["items"] == found
 
 
 def test_as_csv_a_row_a_claim(atlas):
-    lines = told("--format", "csv").splitlines()
+    lines = run_claims("--format", "csv").splitlines()
     assert len(lines) == 56
     assert lines[0].startswith("id,section,section_name,study,statement,verdict")
 

@@ -291,7 +291,7 @@ def test_errors_are_shown_and_saved_as_csv_and_as_the_published_file(sampled, tm
     table = pd.read_csv(out)
     assert table["unit"].tolist() == [4, 4]
     assert table["error_deg"].tolist()[0] == 4.25
-    assert table["doubt"].tolist() == [0, 1]
+    assert table["outcome"].tolist() == [0, 1]
     shown = json.loads(sunatlas("errors", APERTURE, "--format", "json").stdout)
     assert [row["error_deg"] for row in shown] == [0.25, None, 4.25, None]
     whole = tmp_path / "all.parquet"

@@ -18,7 +18,7 @@ from api.cli.commands import leaderboard
 from benchmark.contract import ON_BENCH, Cell
 from benchmark.leaderboard.pages import FORMATS
 from benchmark.leaderboard.scope import published_scope
-from benchmark.plan.combinations import cells, scorable
+from benchmark.plan.combinations import cells, scorable_plan
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import times
@@ -48,7 +48,7 @@ def test_a_study_s_pipelines_are_scored_against_the_bound_and_its_gaps_listed():
     shown = sunatlas("run", "Chang2008", "--condition", "nominal", "--format", "json")
     assert shown.exit_code == 0, shown.stderr
     found = json.loads(shown.stdout)
-    resolution = resolve("Chang2008", scorable())
+    resolution = resolve("Chang2008", scorable_plan())
     expected = {
         (name, pipeline.extractor, pipeline.model)
         for pipeline in resolution.pipelines

@@ -119,13 +119,13 @@ def test_workers_add_up_their_counts_and_leave_nothing_behind(tmp_path):
                 with urllib.request.urlopen(f"{url}/v1/taxonomy", timeout=600) as answer:
                     assert answer.status == 200
             with urllib.request.urlopen(f"{url}/metrics", timeout=600) as answer:
-                told = answer.read().decode()
+                text = answer.read().decode()
             process.send_signal(signal.SIGTERM)
             out, said = process.communicate(timeout=600)
         finally:
             process.kill()
     wanted = re.compile(r"sunatlas_http_requests_total\{.*taxonomy.*\} 40\.0")
-    assert wanted.search(told)
+    assert wanted.search(text)
     lines = [json.loads(line) for line in out.splitlines()]
     assert [line["route"] for line in lines].count("/v1/taxonomy") == 40
     assert "Traceback" not in said

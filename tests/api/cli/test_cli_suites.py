@@ -67,18 +67,18 @@ def test_nothing_of_the_published_code_is_planned_and_run_reads_it(working: Path
 @pytest.mark.slow
 def test_a_suite_is_planned_run_and_then_there(small: Path) -> None:
     planned = sunatlas("plan", "--format", "json")
-    told = json.loads(planned.stdout)
-    assert {row["why"] for row in told["missing"]} == {"new"}
+    document = json.loads(planned.stdout)
+    assert {row["why"] for row in document["missing"]} == {"new"}
     assert "how long that takes is known here once it has been run" in planned.stderr
     # the first condition only: what follows depends on the scores
-    assert {row["condition"] for row in told["missing"]} == {"nominal"}
+    assert {row["condition"] for row in document["missing"]} == {"nominal"}
     table = sunatlas("plan").stdout
     assert "standard: to be measured" in table
     assert table.count("new") == 2, "a row a data set"
 
     done = json.loads(sunatlas("run", "--suite", "standard", "--format", "json").stdout)
     measured = Store(small).scores()
-    assert done["sources"]["measured"] == len(measured) > len(told["missing"])
+    assert done["sources"]["measured"] == len(measured) > len(document["missing"])
     assert done["sources"]["published"] == done["sources"]["kept"] == 0
     assert {cell.unit for cell in measured} == set(range(UNITS))
     again = json.loads(sunatlas("run", "--suite", "standard", "--format", "json").stdout)
@@ -182,12 +182,12 @@ def test_gc_tells_and_with_yes_does(working: Path) -> None:
     other = f'{digest[: digest.rindex(": ")]}: "0123456789abcdef"}}'
     store.components_path.write_text(text.replace(digest.rstrip(","), other))
     (working / manifest.FILE).unlink()  # else a change by hand, which is refused
-    told = json.loads(sunatlas("gc", "--format", "json").stdout)
-    assert (told["done"], told["scores"], told["kept"]) == (False, 1, 0)
-    assert told["freed"] > 0
+    document = json.loads(sunatlas("gc", "--format", "json").stdout)
+    assert (document["done"], document["scores"], document["kept"]) == (False, 1, 0)
+    assert document["freed"] > 0
     assert len(store.scores()) == 1
     size = bytes_without_manifest(working)
     done = sunatlas("gc", "--yes")
-    assert f"{told['freed']:,} bytes freed" in done.stderr
+    assert f"{document['freed']:,} bytes freed" in done.stderr
     assert store.scores() == {}
-    assert size - bytes_without_manifest(working) == told["freed"]
+    assert size - bytes_without_manifest(working) == document["freed"]

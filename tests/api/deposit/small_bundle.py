@@ -67,8 +67,8 @@ def make(directory: Path, people: str = PEOPLE, readme: str = "# read me\n") -> 
         name: ((directory / name).stat().st_size, sha256(directory / name))
         for name in contents(directory)
     }
-    told = crate(who, described, {}, {name: terms(name) for name in described}, ["sun sensor"])
-    (directory / CRATE).write_text(json.dumps(told))
+    document = crate(who, described, {}, {name: terms(name) for name in described}, ["sun sensor"])
+    (directory / CRATE).write_text(json.dumps(document))
     write_checksums(directory)
     packed = directory.with_name(f"{directory.name}.zip")
     pack(directory, packed, "sun-sensor-atlas-0.1.0", who.released)

@@ -177,17 +177,17 @@ def test_every_column_is_described(built):
 
 def test_the_terms_go_with_the_files(built):
     assert (built.directory / "LICENSE").read_bytes() == (ROOT / "LICENSE").read_bytes()
-    told, ours = (
+    theirs, ours = (
         yaml.safe_load((place / "CITATION.cff").read_text("utf-8"))
         for place in (built.directory, ROOT)
     )
-    named, *cited = told.pop("identifiers")
+    named, *cited = theirs.pop("identifiers")
     assert [one["value"] for one in cited] == [
         f"{edition.name}:{edition.version}" for edition in editions()
     ]
     content = (PUBLISHED / manifest.FILE).read_bytes()
     assert named["value"] == f"sha256:{hashlib.sha256(content).hexdigest()}"
-    assert told == {**ours, "type": "dataset"}
+    assert theirs == {**ours, "type": "dataset"}
     assert "CC BY 4.0" in (built.directory / "survey" / "LICENSE").read_text("utf-8")
 
 

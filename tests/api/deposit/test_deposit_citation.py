@@ -1,4 +1,4 @@
-"""Authors: read from CITATION.cff, told to the archive, and refused while they are nobody."""
+"""Authors: read from CITATION.cff, sent to the archive, and refused while they are nobody."""
 
 from pathlib import Path
 
@@ -10,9 +10,9 @@ from api.deposit.archives.replies import Deposition, Record
 from api.deposit.citation import (
     Author,
     CitationError,
+    author_problems,
     authors,
     check_digit,
-    unpublishable,
     wrong_orcid,
 )
 from tests.api.deposit import small_bundle
@@ -71,7 +71,7 @@ def test_what_is_nobody_s_orcid_is_refused(orcid, why):
     ],
 )
 def test_who_is_nobody_is_not_published(listed, why):
-    assert any(why in text for text in unpublishable(listed))
+    assert any(why in text for text in author_problems(listed))
 
 
 @pytest.mark.parametrize(
@@ -84,14 +84,14 @@ def test_who_is_nobody_is_not_published(listed, why):
     ],
 )
 def test_who_is_somebody_is(listed):
-    assert unpublishable(listed) == []
+    assert author_problems(listed) == []
 
 
 def test_this_project_s_authors_are_not_filled_in_yet_and_so_not_published():
     """Once a person has filled in CITATION.cff this says that the list is publishable."""
     listed = authors((ROOT / "CITATION.cff").read_text("utf-8"), "CITATION.cff")
     placeholder = any(author.name.endswith("contributors") for author in listed)
-    assert bool(unpublishable(listed)) == placeholder
+    assert bool(author_problems(listed)) == placeholder
 
 
 @pytest.mark.parametrize(
@@ -111,27 +111,27 @@ def test_a_citation_that_cannot_be_read_is_named(text, why):
 
 
 @pytest.fixture
-def told(tmp_path):
+def document(tmp_path):
     return described(small_bundle.make(tmp_path / "bundle"))
 
 
-def as_told_back(told):
-    """The authors that an archive tells, which keeps what it was told."""
+def as_returned(document):
+    """The authors that an archive returns, which keeps what it was sent."""
     return [
-        Record.model_validate({"id": "a1", "metadata": invenio(told)["metadata"]}).authors,
-        Deposition.model_validate({"id": 1, "metadata": legacy(told)}).authors,
+        Record.model_validate({"id": "a1", "metadata": invenio(document)["metadata"]}).authors,
+        Deposition.model_validate({"id": 1, "metadata": legacy(document)}).authors,
     ]
 
 
-def test_both_forms_name_the_same_people(told):
-    assert as_told_back(told) == [(ADA,), (ADA,)]
+def test_both_forms_name_the_same_people(document):
+    assert as_returned(document) == [(ADA,), (ADA,)]
     who = Author(name="Institute of Light")
-    crowd = told.__class__(**{**told.__dict__, "authors": (ADA, who)})
-    assert as_told_back(crowd) == [(ADA, who), (ADA, who)]
+    crowd = document.__class__(**{**document.__dict__, "authors": (ADA, who)})
+    assert as_returned(crowd) == [(ADA, who), (ADA, who)]
 
 
-def test_both_forms_say_data_set_survey_and_terms(told):
-    new, old = invenio(told)["metadata"], legacy(told)
+def test_both_forms_say_data_set_survey_and_terms(document):
+    new, old = invenio(document)["metadata"], legacy(document)
     assert new["resource_type"] == {"id": "dataset"}
     assert old["upload_type"] == "dataset"
     assert [right["id"] for right in new["rights"]] == ["cc-by-4.0", "mit"]

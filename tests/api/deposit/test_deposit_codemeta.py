@@ -46,13 +46,13 @@ repository-code: https://code.example/atlas
 """
 
 
-def told(citation: str) -> tuple[dict[str, Any], dict[str, Any]]:
+def documents(citation: str) -> tuple[dict[str, Any], dict[str, Any]]:
     return yaml.safe_load(citation), codemeta(citation)
 
 
 @pytest.mark.parametrize("citation", [(ROOT / "CITATION.cff").read_text("utf-8"), PUBLISHED])
 def test_the_two_agree(citation: str) -> None:
-    cited, made = told(citation)
+    cited, made = documents(citation)
     for theirs, ours in SAME.items():
         expected = cited.get(theirs)
         expected = str(expected) if isinstance(expected, float) else expected
@@ -65,7 +65,7 @@ def test_the_two_agree(citation: str) -> None:
 
 
 def test_people_are_named_by_their_identifiers() -> None:
-    _, made = told(PUBLISHED)
+    _, made = documents(PUBLISHED)
     assert made["author"] == [
         {
             "@id": "https://orcid.org/0009-0000-0012-3455",

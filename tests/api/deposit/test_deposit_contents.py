@@ -14,7 +14,7 @@ import pyarrow.parquet
 import pytest
 import rispy
 
-from api.deposit.database import NameNotPlainError, plain, write_database
+from api.deposit.database import NameNotPlainError, sql_name, write_database
 from api.deposit.frames import LEAST, ROOM, sample_size
 from api.deposit.typed_tables import CellError, typed_tables
 from benchmark.datasets.checksums import CHECKSUMS
@@ -73,36 +73,39 @@ def test_sqlite_holds_what_csv_holds_under_plain_names(built):
         assert base.execute("PRAGMA foreign_key_check").fetchall() == []
         known = {r[0] for r in base.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
         assert known == {
-            *(plain(resource["name"]) for resource in tables(built.directory)),
+            *(sql_name(resource["name"]) for resource in tables(built.directory)),
             *("tables_of_the_atlas", "columns_of_the_atlas"),
         }
         for resource in tables(built.directory):
-            name = plain(resource["name"])
+            name = sql_name(resource["name"])
             fields = resource["schema"]["fields"]
             # No quotes: a name that needs them would be a syntax error here.
-            listed = ", ".join(plain(field["name"]) for field in fields)
+            listed = ", ".join(sql_name(field["name"]) for field in fields)
             made = base.execute(f"SELECT {listed} FROM {name} ORDER BY rowid").fetchall()
             cells = rows(built.directory / resource["path"])
-            for row, told in zip(made, cells, strict=True):
+            for row, stored in zip(made, cells, strict=True):
                 for value, field in zip(tuple(row), fields, strict=True):
-                    assert agrees(told[field["name"]], value, field["type"]), (name, field["name"])
+                    assert agrees(stored[field["name"]], value, field["type"]), (
+                        name,
+                        field["name"],
+                    )
             keys = {r["from"] for r in base.execute(f"PRAGMA foreign_key_list({name})")}
             wanted = resource["schema"].get("foreignKeys", ())
-            assert keys == {plain(f) for key in wanted for f in key["fields"]}
+            assert keys == {sql_name(f) for key in wanted for f in key["fields"]}
 
 
 def test_sqlite_says_what_its_columns_hold(built):
     with closing(sqlite3.connect(built.directory / "sun-sensor-atlas.sqlite")) as base:
-        told = base.execute("SELECT name, column_name FROM columns_of_the_atlas").fetchall()
-        for name, column in told:
+        stored = base.execute("SELECT name, column_name FROM columns_of_the_atlas").fetchall()
+        for name, column in stored:
             base.execute(f"SELECT {column} FROM {name} LIMIT 1")
-        assert len(told) == sum(len(r["schema"]["fields"]) for r in tables(built.directory))
+        assert len(stored) == sum(len(r["schema"]["fields"]) for r in tables(built.directory))
 
 
 @pytest.mark.parametrize("name", ["select", "two words", "1st", "a-b", "Group", "a;drop", ""])
 def test_a_name_that_needs_quotes_is_refused(name):
     with pytest.raises(NameNotPlainError, match="no plain name"):
-        plain(name)
+        sql_name(name)
 
 
 def test_a_reference_to_nothing_does_not_go_out(bundle, tmp_path):

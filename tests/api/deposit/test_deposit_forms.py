@@ -48,17 +48,17 @@ def found(bundle: Path) -> dict[str, str]:
 
 def test_a_table_changed_in_csv_alone_is_seen_in_the_other_forms(small):
     (small / TABLE).write_text("name\nb\n")
-    told = found(small)
-    assert told.keys() == {PARQUET, DATABASE}
-    assert "column name holds other values" in told[PARQUET]
-    assert "table one, row 1 is another" in told[DATABASE]
+    problems = found(small)
+    assert problems.keys() == {PARQUET, DATABASE}
+    assert "column name holds other values" in problems[PARQUET]
+    assert "table one, row 1 is another" in problems[DATABASE]
 
 
 def test_a_table_of_other_rows_is_seen_by_its_count(small):
     (small / TABLE).write_text("name\na\nb\n")
-    told = found(small)
-    assert told[PARQUET] == "has 1 rows, the table in CSV has 2"
-    assert DATABASE in told
+    problems = found(small)
+    assert problems[PARQUET] == "has 1 rows, the table in CSV has 2"
+    assert DATABASE in problems
 
 
 def test_a_number_changed_in_every_form_is_not_seen_and_this_is_said(small):
@@ -86,9 +86,9 @@ def test_a_form_with_any_byte_turned_is_refused_or_holds_the_same(small, name):
     seen = 0
     for at in range(0, len(data), max(1, len(data) // 40)):
         (small / name).write_bytes(data[:at] + bytes([data[at] ^ 0xFF]) + data[at + 1 :])
-        told = found(small)
-        assert told.keys() <= {name}
-        seen += bool(told)
+        problems = found(small)
+        assert problems.keys() <= {name}
+        seen += bool(problems)
     assert seen
 
 
@@ -102,8 +102,8 @@ def test_a_form_that_is_missing_or_of_no_table_is_seen(small):
     other = next(entity for entity in crate["@graph"] if entity["@id"] == "README.md")
     crate["@graph"].append({**other, "@id": "parquet/two.parquet"})
     (small / CRATE).write_text(json.dumps(crate))
-    told = found(small)
-    assert told == {
+    problems = found(small)
+    assert problems == {
         PARQUET: "missing",
         DATABASE: "missing",
         "parquet/two.parquet": "no table of this bundle",

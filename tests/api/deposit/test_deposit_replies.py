@@ -39,11 +39,11 @@ def in_one_sentence(error: BaseException) -> bool:
 @pytest.mark.parametrize("name", [name for name, answer in ANSWERS.items() if answer is not drip])
 def test_any_answer_ends_in_one_sentence_and_nothing_is_sent(journey, name):
     journey.fails(ANSWERS[name], "create", times=99)
-    with pytest.raises(ArchiveError) as told:
+    with pytest.raises(ArchiveError) as raised:
         journey.upload()
-    assert in_one_sentence(told.value), str(told.value)
+    assert in_one_sentence(raised.value), str(raised.value)
     assert not journey.sent()
-    assert (" 404 " in str(told.value)) == (name in UNREAD and journey.api == "records")
+    assert (" 404 " in str(raised.value)) == (name in UNREAD and journey.api == "records")
 
 
 @pytest.mark.parametrize("step", ["list", "publish"])
@@ -51,9 +51,9 @@ def test_any_answer_ends_in_one_sentence_and_nothing_is_sent(journey, name):
 def test_later_steps_read_as_strictly(journey, name, step):
     draft = journey.upload().draft.id
     journey.fails(ANSWERS[name], step, times=99)
-    with pytest.raises(ArchiveError) as told:
+    with pytest.raises(ArchiveError) as raised:
         journey.publish(draft)
-    assert in_one_sentence(told.value)
+    assert in_one_sentence(raised.value)
     assert not journey.archive.records
 
 
@@ -160,9 +160,9 @@ def test_any_bytes_end_in_one_sentence(journey, body, head, status):
     journey.archive.faults.clear()
     journey.bundle.with_name("bundle.drafts.json").unlink(missing_ok=True)
     journey.fails(reply(status, body) if status % 2 else head + body, "create", times=99)
-    with pytest.raises(ArchiveError) as told:
+    with pytest.raises(ArchiveError) as raised:
         journey.upload()
-    assert in_one_sentence(told.value), str(told.value)
+    assert in_one_sentence(raised.value), str(raised.value)
 
 
 def test_a_file_that_is_listed_twice_is_not_taken_for_one(journey):
@@ -215,14 +215,14 @@ def test_the_reviewed_answers_are_among_these():
     """Those of the review's own file, where it lies beside the checkout."""
     if not (CASES / "archive-replies.json").is_file():
         pytest.skip(f"no archive-replies.json in {CASES}; SUNATLAS_CASES names another directory")
-    told = json.loads((CASES / "archive-replies.json").read_text("utf-8"))
+    raised = json.loads((CASES / "archive-replies.json").read_text("utf-8"))
     known = {
         "[ nested 200,000 deep ]": ANSWERS["200,000 arrays deep"],
         "300 MB of zeros, compressed": ANSWERS["300 MB of zeros in gzip"],
     }
-    assert len(told) == 4
+    assert len(raised) == 4
     ours = set(ANSWERS.values())
-    for case in told:
+    for case in raised:
         headers = {name.replace("-", "_"): value for name, value in case.get("headers", {}).items()}
         body = case["body"]
         answer = known[body] if isinstance(body, str) else of(body, case["status"], **headers)

@@ -47,10 +47,10 @@ def test_an_altered_zip_is_told_in_one_sentence(whole, tmp_path, name):
     before = packed.read_bytes()
     ALTERED[name](packed)
     assert packed.read_bytes() != before
-    with pytest.raises(PackingError) as told:
+    with pytest.raises(PackingError) as raised:
         check(packed, whole, TOP, RELEASED)
-    assert str(told.value).isprintable()
-    assert len(str(told.value)) < 400
+    assert str(raised.value).isprintable()
+    assert len(str(raised.value)) < 400
 
 
 @pytest.mark.filterwarnings("ignore:Duplicate name")

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tools.bench.service import serving
+from tools.bench.service import serve
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "http.md"
 SNIPPETS = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
@@ -14,7 +14,7 @@ SNIPPETS = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), 
 @pytest.fixture(scope="module")
 def address(atlas):
     # the application has loaded what it answers, or does with its first answer
-    with serving([atlas.app], lifespan="off") as (connection,):
+    with serve([atlas.app], lifespan="off") as (connection,):
         yield f"http://{connection.host}:{connection.port}"
 
 
@@ -26,11 +26,11 @@ def run(snippet, address):
 
 def test_a_table_is_one_line(atlas, address):
     best = run(SNIPPETS[0], address)["best"]
-    told = atlas.get("/v1/leaderboard/architectures").json()["items"]
+    items = atlas.get("/v1/leaderboard/architectures").json()["items"]
     assert list(best["rms_deg"].dropna()) == [
-        i["rms_deg"] for i in told if i["rms_deg"] is not None
+        i["rms_deg"] for i in items if i["rms_deg"] is not None
     ]
-    assert list(best["mask"]) == [item["mask"] for item in told]
+    assert list(best["mask"]) == [item["mask"] for item in items]
 
 
 def test_an_answer_with_a_shape_is_two(address):

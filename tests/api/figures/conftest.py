@@ -48,7 +48,7 @@ def sensors() -> dict[str, set[tuple[str, str]]]:
     return found
 
 
-def having(
+def studies_with(
     values: Values,
     sensors: dict[str, set[tuple[str, str]]],
     one: tuple[str, str],

@@ -115,7 +115,7 @@ def overlap(a: Shape, b: Shape) -> bool:
     return True
 
 
-def meeting(drawing: Drawing) -> list[tuple[str, str]]:
+def overlaps(drawing: Drawing) -> list[tuple[str, str]]:
     """Pairs that overlap: texts with texts, rectangles with rectangles, texts with rectangles.
 
     A cell of a matrix holds its own number, which is no overlap.

@@ -13,14 +13,14 @@ import pytest
 
 from api.figures.catalogue import evidence_map
 from api.http.measurements import Measurements
-from benchmark.plan.combinations import cells, scorable
+from benchmark.plan.combinations import cells, scorable_plan
 from benchmark.results.store import PUBLISHED, Store
 from registry.catalogue import catalogue
 from registry.evidence import Evidence
 from registry.fitting import stages
 from registry.possibility import GIVES, TELLS
 from registry.studies import facts
-from tests.api.figures.conftest import Values, having
+from tests.api.figures.conftest import Values, studies_with
 
 
 def test_a_model_is_impossible_with_another_category_than_its_own() -> None:
@@ -51,7 +51,7 @@ def measurements() -> Measurements:
 
 @pytest.fixture(scope="module")
 def evidence(measurements: Measurements) -> Evidence:
-    return Evidence(catalogue(), measurements.pipelines, scorable())
+    return Evidence(catalogue(), measurements.pipelines, scorable_plan())
 
 
 def place(row: Any) -> tuple[str, str, str]:
@@ -113,7 +113,7 @@ def test_each_pair_is_in_the_state_that_sets_of_studies_and_scores_say(
             if value in of[level] and not of[other[0]]
         }
         assert set(row["unknown"]) == unknown
-        assert row["count"] == len(having(values, sensors, *pair))
+        assert row["count"] == len(studies_with(values, sensors, *pair))
         assert (row["state"] == "measured") == bool(scored)
         if row["state"] == "studied":
             assert row["count"]

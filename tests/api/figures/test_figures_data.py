@@ -12,7 +12,7 @@ from api.figures.catalogue import LEVELS, TITLES, evidence_map, figure
 from api.figures.statements import number_of_studies, statements
 from registry.studies import facts
 from registry.taxonomy import InvalidValueError
-from tests.api.figures.conftest import Values, having, read
+from tests.api.figures.conftest import Values, read, studies_with
 
 FLOWS = ("error", "performance", "cross-analysis", "task", "aggregate")
 
@@ -32,7 +32,7 @@ def test_every_flow_has_the_studies_with_both_values(
         pairs = {
             ((one, a), (other, b)) for of in values.values() for a in of[one] for b in of[other]
         }
-        expected |= {pair: having(values, sensors, *pair) for pair in pairs}
+        expected |= {pair: studies_with(values, sensors, *pair) for pair in pairs}
     assert links == {pair: keys for pair, keys in expected.items() if keys}
 
 
@@ -150,7 +150,7 @@ def test_a_matrix_counts_the_studies_with_both_and_shows_every_gap(
     taxonomy = facts().taxonomy
     assert len(table) == len(taxonomy.values(rows)) * len(taxonomy.values(columns))
     for row in table:
-        keys = having(values, sensors, (rows, row["row"]), (columns, row["column"]))
+        keys = studies_with(values, sensors, (rows, row["row"]), (columns, row["column"]))
         if rows == columns:
             pair = {row["row"], row["column"]}
             keys = {key for key, of in values.items() if pair <= of[rows]}

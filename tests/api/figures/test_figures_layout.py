@@ -18,7 +18,7 @@ from api.figures.sankey_svg import Mark, SankeyMarks, draw_sankey
 from api.figures.sunburst_svg import Sector, draw_sunburst
 from api.figures.svg import Drawing
 from registry.studies import facts
-from tests.api.figures.geometry import meeting, outside, shapes, width_of
+from tests.api.figures.geometry import outside, overlaps, shapes, width_of
 
 WIDTHS = (322.0, 390.0, 501.0, 680.0, 820.0, 960.0, 1100.0, 1240.0)
 PAIRS = [
@@ -36,12 +36,12 @@ def test_the_oracle_sees_what_overlaps_and_what_reaches_out() -> None:
         return Drawing(100, 60, "".join(parts))
 
     first = svg.text(10, 20, "CCD 18")
-    assert meeting(drawn(first, svg.text(40, 28, "CMOS 48"))) == [("CCD 18", "CMOS 48")]
-    assert meeting(drawn(first, svg.text(10, 36, "CMOS 48"))) == []
-    assert meeting(drawn(first, svg.rectangle(30, 5, 9, 50, "node"))) == [("CCD 18", "node")]
+    assert overlaps(drawn(first, svg.text(40, 28, "CMOS 48"))) == [("CCD 18", "CMOS 48")]
+    assert overlaps(drawn(first, svg.text(10, 36, "CMOS 48"))) == []
+    assert overlaps(drawn(first, svg.rectangle(30, 5, 9, 50, "node"))) == [("CCD 18", "node")]
     # Boxes around the two texts meet; the texts themselves, both turned, do not.
     turned = [svg.text(x, 10, "Single", anchor="start", turned=45) for x in (10, 40)]
-    assert meeting(drawn(*turned)) == []
+    assert overlaps(drawn(*turned)) == []
     assert outside(drawn(svg.text(80, 20, "CMOS 48"))) == ["CMOS 48"]
 
 
@@ -50,7 +50,7 @@ def test_the_oracle_sees_what_overlaps_and_what_reaches_out() -> None:
 def test_nothing_overlaps_in_a_figure_of_the_survey(name: str, width: float) -> None:
     drawing = figure(name, facts()).draw(width)
     assert len([s for s in shapes(drawing) if s.kind == "text"]) > 10
-    assert meeting(drawing) == []
+    assert overlaps(drawing) == []
     assert outside(drawing) == []
 
 
@@ -60,7 +60,7 @@ def test_nothing_overlaps_in_a_figure_of_the_survey(name: str, width: float) -> 
 )
 def test_nothing_overlaps_in_a_matrix(rows: str, columns: str, width: float) -> None:
     drawing = evidence_map(facts(), {}, rows, columns).draw(width)
-    assert meeting(drawing) == []
+    assert overlaps(drawing) == []
     assert outside(drawing) == []
 
 
@@ -71,7 +71,7 @@ def test_nothing_overlaps_in_a_matrix(rows: str, columns: str, width: float) -> 
 def test_nothing_overlaps_in_a_figure_of_few_studies(name: str, where: dict[str, str]) -> None:
     found = figure(name, facts(), where)
     for drawing in found.drawings.values():
-        assert meeting(drawing) == []
+        assert overlaps(drawing) == []
         assert outside(drawing) == []
 
 
@@ -109,7 +109,7 @@ def flow(draw: st.DrawFn) -> SankeyMarks:
 @settings(max_examples=60)
 def test_nothing_overlaps_in_any_flow(marks: SankeyMarks, width: float) -> None:
     drawing = draw_sankey(marks, width)
-    assert meeting(drawing) == []
+    assert overlaps(drawing) == []
     assert outside(drawing) == []
 
 
@@ -192,7 +192,7 @@ def test_nothing_overlaps_in_any_sunburst(
         ring = sector(total, "offline", tuple(sector(size, leaf) for leaf, size in leaves))
         sectors.append(sector(total, name, (ring,)))
     drawing = draw_sunburst(sectors, width)
-    assert meeting(drawing) == []
+    assert overlaps(drawing) == []
     assert outside(drawing) == []
 
 

@@ -12,7 +12,7 @@ import pytest
 from api.figures.catalogue import MATRIX, TITLES, evidence_map, figure
 from api.figures.interactive import specification
 from api.http.measurements import Measurements
-from benchmark.plan.combinations import scorable
+from benchmark.plan.combinations import scorable_plan
 from registry.catalogue import catalogue
 from registry.evidence import Evidence
 from registry.studies import facts
@@ -20,7 +20,7 @@ from registry.studies import facts
 
 @functools.cache
 def evidence():
-    return Evidence(catalogue(), Measurements().pipelines, scorable())
+    return Evidence(catalogue(), Measurements().pipelines, scorable_plan())
 
 
 def drawn(name):
@@ -40,14 +40,14 @@ def test_plotly_reads_every_figure_back_and_it_is_the_same_each_time(name):
 def test_flows_into_a_node_are_those_of_the_table(name):
     found = drawn(name)
     (trace,) = json.loads(specification(found))["data"]
-    told, counted = Counter(), Counter()
+    values, counted = Counter(), Counter()
     for target, value in zip(trace["link"]["target"], trace["link"]["value"], strict=True):
-        told[target] += value
+        values[target] += value
     nodes = [(row["level"], row["value"]) for row in found.rows if not row["next_level"]]
     for row in found.rows:
         if row["next_level"]:
             counted[nodes.index((row["next_level"], row["next_value"]))] += row["count"]
-    assert told == counted
+    assert values == counted
     assert len(trace["node"]["label"]) == len(nodes)
 
 

@@ -169,9 +169,9 @@ def test_hostile_files_are_refused_within_time_and_memory(names):
     run = subprocess.run(
         [sys.executable, "-c", code, __file__, *names], check=True, capture_output=True, text=True
     )
-    told = [json.loads(line) for line in run.stdout.splitlines()]
-    assert tuple(name for name, _, _ in told) == names
-    for name, said, largest in told:
+    lines = [json.loads(line) for line in run.stdout.splitlines()]
+    assert tuple(name for name, _, _ in lines) == names
+    for name, said, largest in lines:
         assert said != "accepted", name
         assert "over 20 s" not in said, name
         assert "ended early" not in said, name

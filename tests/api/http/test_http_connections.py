@@ -1,4 +1,4 @@
-"""Over real sockets: half requests are closed in time, too many are told when to come back."""
+"""Over real sockets: half requests are closed in time, too many get a time to retry."""
 
 import json
 import socket
@@ -8,7 +8,7 @@ from contextlib import ExitStack
 import pytest
 
 from api.http.server.connections import BoundedProtocol
-from tools.bench.service import serving
+from tools.bench.service import serve
 
 
 class Impatient(BoundedProtocol):
@@ -26,7 +26,7 @@ class Small(BoundedProtocol):
 @pytest.fixture
 def place(atlas, request):
     # what the application answers is loaded with its first answer, not once more by every server
-    with serving([atlas.app], http=request.param, lifespan="off") as (connection,):
+    with serve([atlas.app], http=request.param, lifespan="off") as (connection,):
         yield connection.host, connection.port
 
 

@@ -111,7 +111,7 @@ def test_what_the_container_copies_builds_and_serves_with_nothing_beside(tmp_pat
         packed.extractall(installed)
     shutil.rmtree(source)
     asked = [sys.executable, "-P", "-c", _ASKED, installed, ROOT / "CITATION.cff"]
-    told = subprocess.run(
+    run = subprocess.run(
         asked,
         cwd=elsewhere,
         env={**os.environ, "PYTHONPATH": str(installed), "SUNATLAS_STORE": str(tmp_path / "store")},
@@ -119,7 +119,7 @@ def test_what_the_container_copies_builds_and_serves_with_nothing_beside(tmp_pat
         text=True,
         check=False,
     )
-    assert told.stdout.strip() == "served", told.stderr[-2000:]
+    assert run.stdout.strip() == "served", run.stderr[-2000:]
 
 
 def test_sections_of_the_unit_are_those_of_systemd():

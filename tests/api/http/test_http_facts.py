@@ -86,9 +86,9 @@ def test_years_and_words_narrow(atlas):
     texts = {
         r["key"]: " ".join(r[n] for n in ("key", "title", "authors", "venue")) for r in studies
     }
-    having = [k for k, text in texts.items() if "liebe" in text.lower() and "2001" in text]
-    assert [item["key"] for item in found] == having
-    assert "Liebe2001" in having
+    expected = [k for k, text in texts.items() if "liebe" in text.lower() and "2001" in text]
+    assert [item["key"] for item in found] == expected
+    assert "Liebe2001" in expected
     assert atlas.walk("/v1/studies?year_min=2008&year_max=2005") == []
     assert atlas.walk("/v1/studies?q=nothing-has-this-word") == []
 

@@ -50,7 +50,8 @@ OPERATIONS = [
 PLAIN = {"/healthz", "/v1/leaderboard/croissant.json", "/v1/leaderboard/linkset.json"}
 # Nothing but `format` can be asked for, and so little else be right.
 ONLY_FORMAT = {"/v1/figures", "/v1/taxonomy", "/v1/protocol"}
-# A cursor cannot be told from its schema: one that was never given out is a 400 (see the check).
+# A cursor cannot be distinguished from its schema: one that was never given out is a 400 (see the
+# check).
 ACCEPTED = ["2xx", "304", "400"]
 CONFIG = {
     "generation": {"mode": "all", "deterministic": True},

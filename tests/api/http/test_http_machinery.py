@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from api.http.negotiation import CSV, JSON, accepts_gzip, media_type
 from api.http.problems import Problem
 from api.http.representations import Representation, RepresentationCache, matches
-from survey_data.nearest import nearest
+from survey_data.nearest import nearest_name
 
 fuzz = settings(deadline=None, derandomize=True)
 
@@ -103,8 +103,8 @@ def test_if_none_match_is_a_list_compared_weakly(header, same):
 def test_gzip_carries_the_same_bytes_and_no_time():
     body = b'{"a": 1}' * 200
     one, two = (Representation(body, "application/json") for _ in range(2))
-    assert gzip.decompress(one.compressed) == body
-    assert one.compressed == two.compressed
+    assert gzip.decompress(one.gzip_body) == body
+    assert one.gzip_body == two.gzip_body
     assert one.digest == two.digest
 
 
@@ -126,7 +126,7 @@ def test_the_cache_forgets_the_least_recently_used_within_its_bounds():
 @fuzz
 @given(st.text(max_size=80), st.lists(st.text(min_size=1, max_size=20), max_size=5))
 def test_the_nearest_is_one_of_the_valid(text, valid):
-    found = nearest(text, valid, cutoff=0)
+    found = nearest_name(text, valid, cutoff=0)
     assert found is None or found in valid
     for word in valid:
-        assert nearest(word, [word], cutoff=0) is not None or not word.strip()
+        assert nearest_name(word, [word], cutoff=0) is not None or not word.strip()

@@ -55,9 +55,14 @@ def stored_scores():
 def stored_pins():
     def pin(dataset, condition, bound):
         sizes = {"n": 200, "data_hash": "d" * 32, "head_hash": "h" * 32}
-        told = {"observable": 190, "bound_deg": bound, "head_bound_deg": bound}
+        bound_facts = {"observable": 190, "bound_deg": bound, "head_bound_deg": bound}
         return Pin(
-            dataset, condition, "test", installed_parts().presets[dataset].version, **sizes, **told
+            dataset,
+            condition,
+            "test",
+            installed_parts().presets[dataset].version,
+            **sizes,
+            **bound_facts,
         )
 
     return [pin(CMOS, "nominal", 0.0015), pin(CMOS, "misaligned", 0.001), pin(QPD, "nominal", 0.05)]
@@ -254,7 +259,7 @@ def test_recommendations_carry_what_is_measured(measured):
             "count": 5,
             "least_deg": 0.009,
             "largest_deg": 0.03,
-            "meeting": None,
+            "within_limit": None,
             "of": 10,
         },
         "finer": None,

@@ -92,10 +92,10 @@ def test_croissant_loads_what_is_served_of_a_data_set(atlas, address, load, name
     assert [row[f"sun_{axis}"] for axis in "xyz"] == [float(known[f"sun_{axis}"]) for axis in "xyz"]
     assert math.hypot(*(row[f"sun_{axis}"] for axis in "xyz")) == pytest.approx(1.0, abs=1e-6)
     splits = rows_of(dataset, "splits")
-    told = atlas.get(f"/v1/datasets/{name}").json()["data"]
+    rows = atlas.get(f"/v1/datasets/{name}").json()["data"]
     texts = ("condition", "split", "data_hash")
-    told = [{k: v.encode() if k in texts and v else v for k, v in row.items()} for row in told]
-    assert splits == told
+    rows = [{k: v.encode() if k in texts and v else v for k, v in row.items()} for row in rows]
+    assert splits == rows
 
 
 def test_croissant_loads_errors_with_their_types(atlas, address, load) -> None:
@@ -103,8 +103,8 @@ def test_croissant_loads_errors_with_their_types(atlas, address, load) -> None:
     published = atlas.app.state.knowledge.measurements.sample_errors("pd-slit")
     assert len(published) > 2000
     first = zip(range(2000), records, published.itertuples(index=False), strict=False)
-    for _, named, told in list(first)[::97]:
-        row, known = {k.removeprefix("errors/"): v for k, v in named.items()}, told._asdict()
+    for _, named, rows in list(first)[::97]:
+        row, known = {k.removeprefix("errors/"): v for k, v in named.items()}, rows._asdict()
         assert row["extractor"].decode() == known["extractor"]
         assert (row["unit"], row["sample"]) == (known["unit"], known["sample"])
         assert row["error_deg"] == (None if pd.isna(known["error_deg"]) else known["error_deg"])
@@ -251,13 +251,13 @@ def test_the_link_set_has_every_link_of_the_headers(address) -> None:
         page = find_signposting_http(f"{address}{path}")
         found = find_signposting_linkset(str(page.linksets.copy().pop().target))
         for context in [f"{address}{path}", *(str(i.target) for i in page.items)]:
-            told = {
+            rows = {
                 (s.rel.value, str(s.target)) for s in found.signposts if str(s.context) == context
             }
             own = find_signposting_http(context)
             there = {(s.rel.value, str(s.target)) for s in own.signposts}
             there -= {pair for pair in there if pair[0] == "alternate"}
-            assert told == there, context
+            assert rows == there, context
 
 
 def test_codemeta_is_served(atlas) -> None:

@@ -87,9 +87,9 @@ def test_a_request_is_a_line_of_json_that_nobody_can_break(client_of, lines):
     client.get("/a%0Ab?x=%0A%1b", headers={"User-Agent": "me\x1b[31m"})
     (line,) = lines
     assert line.isprintable()
-    told = json.loads(line)
-    assert (told["method"], told["status"], told["route"]) == ("GET", 404, "unmatched")
-    assert told["path"] == "/a\nb"
-    assert told["query"] == "x=%0A%1b"
-    assert told["bytes"] > 0
-    assert told["ms"] >= 0
+    record = json.loads(line)
+    assert (record["method"], record["status"], record["route"]) == ("GET", 404, "unmatched")
+    assert record["path"] == "/a\nb"
+    assert record["query"] == "x=%0A%1b"
+    assert record["bytes"] > 0
+    assert record["ms"] >= 0

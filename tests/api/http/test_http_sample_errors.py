@@ -51,9 +51,9 @@ def test_rows_are_those_of_the_file_with_their_directions(client):
         "observable": True,
         "bound_deg": 0.0125,
         "error_deg": 1.25,
-        "doubt": 0,
+        "outcome": 0,
     }
-    assert [(row["error_deg"], row["doubt"]) for row in rows[:3]] == [
+    assert [(row["error_deg"], row["outcome"]) for row in rows[:3]] == [
         (0.25, 0),
         (None, 2),
         (None, 1),

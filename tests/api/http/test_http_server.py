@@ -5,12 +5,12 @@ from http.client import HTTPConnection
 
 import pytest
 
-from tools.bench.service import serving
+from tools.bench.service import serve
 
 
 @pytest.fixture(scope="module")
 def connection(atlas):
-    with serving([atlas.app], lifespan="off") as (opened,):
+    with serve([atlas.app], lifespan="off") as (opened,):
         yield opened
 
 

@@ -7,12 +7,12 @@ from tools.bench import service as speed
 
 
 def test_queries_that_are_to_differ_do(atlas):
-    for kind in (speed.excluding(), speed.limiting(), speed.drawn(1)):
+    for kind in (speed.exclusion_paths(), speed.limit_paths(), speed.random_paths(1)):
         paths = list(itertools.islice(kind, 500))
         assert len(set(paths)) == 500
         answers = [atlas.get(path) for path in paths[:3]]
         assert all(answer.status_code == 200 for answer in answers)
-    broad = atlas.get(next(speed.excluding())).json()
+    broad = atlas.get(next(speed.exclusion_paths())).json()
     assert broad["count"] > 20
     assert broad["designs"] > 200
 

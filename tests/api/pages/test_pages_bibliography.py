@@ -65,12 +65,14 @@ def test_a_study_without_a_doi_is_cited_by_itself(atlas: Client) -> None:
 
 
 def test_the_missing_is_counted_as_the_table_has_it(atlas: Client) -> None:
-    told = atlas.get("/bibliography.json").json()
+    document = atlas.get("/bibliography.json").json()
     rows = read("studies")
     for field in ("title", "authors", "venue", "doi"):
-        assert told["missing"][field] == sum(not row[field] for row in rows)
-    assert told["missing"]["type"] == sum(row["type"] == "unknown" for row in rows)
-    assert told["missing"]["confirmation"] == sum(row["identity"] != "confirmed" for row in rows)
+        assert document["missing"][field] == sum(not row[field] for row in rows)
+    assert document["missing"]["type"] == sum(row["type"] == "unknown" for row in rows)
+    assert document["missing"]["confirmation"] == sum(
+        row["identity"] != "confirmed" for row in rows
+    )
     text = atlas.get("/bibliography", accept="text/html").text
     for row in rows:
         incomplete = row["identity"] != "confirmed" or not row["doi"]
@@ -84,9 +86,9 @@ def test_the_file_to_fill_in_has_every_incomplete_study_and_confirms_nothing(
     assert answer.headers["content-type"].startswith("application/x-bibtex")
     library = bibtexparser.parse_string(answer.text)
     assert library.failed_blocks == []
-    told = atlas.get("/bibliography.json").json()["items"]
+    document = atlas.get("/bibliography.json").json()["items"]
     assert {entry.key for entry in library.entries} == {
-        row["key"] for row in told if row["missing"]
+        row["key"] for row in document if row["missing"]
     }
     path = tmp_path / "missing.bib"
     path.write_text(answer.text, encoding="utf-8")

@@ -27,12 +27,12 @@ def text_of(html: str) -> str:
 
 
 def test_a_study_shows_every_value_with_its_basis_and_every_score(atlas: Client) -> None:
-    told = atlas.get("/v1/studies/Chang2008").json()
+    document = atlas.get("/v1/studies/Chang2008").json()
     page = text_of(atlas.get("/studies/Chang2008").text)
-    for cell in told["attributes"]:
+    for cell in document["attributes"]:
         assert cell["value"] in page
         assert cell["note"] in page
-    errors = [s["rms_deg"] for p in told["pipelines"] for s in p["scores"]]
+    errors = [s["rms_deg"] for p in document["pipelines"] for s in p["scores"]]
     assert len(errors) > 4
     assert all(degrees(error) in page for error in errors if error is not None)
 
@@ -69,12 +69,12 @@ def test_the_leaderboard_is_that_of_the_service_in_the_order_asked_for(atlas: Cl
 
 
 def test_the_leaderboard_counts_parts_as_the_service_does(atlas: Client) -> None:
-    told = atlas.get("/v1/leaderboard/overview").json()
+    document = atlas.get("/v1/leaderboard/overview").json()
     html = atlas.get("/leaderboard", accept="text/html").text
     for role in ("extractor", "compensation", "model"):
         section = html[html.index(f'id="{role}s"') :]
         section = section[: section.index("</section>")]
-        parts = [part for part in told["parts"] if part["role"] == role]
+        parts = [part for part in document["parts"] if part["role"] == role]
         names = re.findall(r'<td class="first"><a href="[^"]+">([^<]+)<', section)
         assert names == [part["part"] for part in parts]
         assert f"{100 * parts[0]['share_10']:.0f} %" in section
@@ -90,11 +90,11 @@ def test_a_condition_of_another_data_set_is_refused_with_the_nearest(atlas: Clie
 
 def test_the_answer_reads_without_a_script(atlas: Client) -> None:
     asked = "task=Accuracy&survive=albedo"
-    told = atlas.get(f"/v1/recommendations?{asked}&limit=500").json()
+    document = atlas.get(f"/v1/recommendations?{asked}&limit=500").json()
     page = text_of(atlas.get(f"/?{asked}").text)
-    assert count_text(told["count"], "architecture") in page
-    assert count_text(told["designs"], "calibration") in page
-    for architecture in told["architectures"][:10]:
+    assert count_text(document["count"], "architecture") in page
+    assert count_text(document["designs"], "calibration") in page
+    for architecture in document["architectures"][:10]:
         assert f"{architecture['detector']} + {architecture['mask']}" in page
         measured = architecture["best"]["measured"]
         assert degrees(measured["error_deg"]) in page
@@ -102,10 +102,10 @@ def test_the_answer_reads_without_a_script(atlas: Client) -> None:
 
 
 def test_what_leaves_nothing_and_what_would_help_are_said(atlas: Client) -> None:
-    told = atlas.get("/v1/recommendations?detector=Event&mask=Lens").json()["blocked"]
+    document = atlas.get("/v1/recommendations?detector=Event&mask=Lens").json()["blocked"]
     page = text_of(atlas.get("/?detector=Event&mask=Lens").text)
-    assert told["constraint"] in page
-    assert all(relaxation["words"][1:] in page for relaxation in told["relaxations"])
+    assert document["constraint"] in page
+    assert all(relaxation["words"][1:] in page for relaxation in document["relaxations"])
 
 
 def test_how_the_answer_is_shown_is_no_requirement(atlas: Client) -> None:
@@ -114,10 +114,10 @@ def test_how_the_answer_is_shown_is_no_requirement(atlas: Client) -> None:
 
 
 def test_the_scatter_has_a_point_for_every_measured_architecture(atlas: Client) -> None:
-    told = atlas.get("/v1/recommendations?limit=500").json()["architectures"]
+    document = atlas.get("/v1/recommendations?limit=500").json()["architectures"]
     page = atlas.get("/scatter").text
     drawn = re.findall(r'<circle class="dot (\w+)"', page)
-    every = [a["best"]["measured"] for a in told]
+    every = [a["best"]["measured"] for a in document]
     seen = [m for m in every if m["field_deg"] or m["fov_deg"]]
     assert 20 < len(drawn) == len(seen) == len(every)
     # The front: none errs less over a field as wide.
@@ -136,22 +136,22 @@ def test_comparison_needs_two_and_takes_four(atlas: Client) -> None:
         f"architecture=CMOS:{m}" for m in ("Encoded", "Slit", "Lens", "L-Slit", "N-Slit")
     )
     assert atlas.get(f"/compare?{five}").status_code == 422
-    told = atlas.get("/compare.json?architecture=CMOS:Encoded&architecture=PD:Maskless").json()
-    assert [item["detector"] for item in told["items"]] == ["CMOS", "PD"]
+    document = atlas.get("/compare.json?architecture=CMOS:Encoded&architecture=PD:Maskless").json()
+    assert [item["detector"] for item in document["items"]] == ["CMOS", "PD"]
 
 
 def test_comparison_names_what_is_far_finer_under_a_condition(atlas: Client) -> None:
     asked = "architecture=CMOS:Multi-Ap.&architecture=CMOS:Single-Ap."
     items = atlas.get(f"/v1/compare?{asked}").json()["items"]
     page = text_of(atlas.get(f"/compare?{asked}", accept="text/html").text)
-    told = [t for item in items for t in item["conditions"].values()]
-    finer = [t["finer"] for t in told if t["finer"]]
+    document = [t for item in items for t in item["conditions"].values()]
+    finer = [t["finer"] for t in document if t["finer"]]
     for f in finer:
         by = f"({f['extractor']} + {f['model']})"
         if f["availability"] < 0.95:
             by = f"at {percent(f['availability'])} {by}"
         assert f"{degrees(f['rms_deg'])} {by}" in page
-    seldom = [t for t in told if t["availability"] < 0.95]
+    seldom = [t for t in document if t["availability"] < 0.95]
     assert all(f"availability {percent(t['availability'])}" in page for t in seldom)
 
 
@@ -189,8 +189,8 @@ def test_what_is_far_finer_on_a_part_stands_beside_the_best(
 
 def test_a_card_of_the_answer_names_what_is_far_finer_with_its_share(atlas: Client) -> None:
     """Asked to survive ageing, one architecture errs by degrees but for most of its samples."""
-    told = atlas.get("/v1/recommendations?survive=ageing&limit=500").json()["architectures"]
-    seldom = [a for a in told if a["best"]["measured"] and a["best"]["measured"]["finer"]]
+    document = atlas.get("/v1/recommendations?survive=ageing&limit=500").json()["architectures"]
+    seldom = [a for a in document if a["best"]["measured"] and a["best"]["measured"]["finer"]]
     for a in seldom:
         asked = f"/?survive=ageing&detector={a['detector']}&mask={a['mask']}"
         html = atlas.get(asked, accept="text/html").text

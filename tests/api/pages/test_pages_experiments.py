@@ -25,7 +25,7 @@ from pathlib import Path
 
 from benchmark.plot_style import svg
 from benchmark.results.row_file import Row, RowFile
-from benchmark.running.experiment import Recorded
+from benchmark.running.experiment import RecordedExperiment
 from files.strict_json import require_members
 
 
@@ -33,7 +33,7 @@ def _require_row(path: Path, row: object) -> None:
     require_members(row, path, {"cell": str, "cube": int, "parts": list, "key": str})
 
 
-class Cubes(Recorded[str]):
+class Cubes(RecordedExperiment[str]):
     """A row of each number, with its cube."""
 
     name = "cubes"

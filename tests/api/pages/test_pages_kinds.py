@@ -52,7 +52,7 @@ class Page(HTMLParser):
         if self.open and self.open[-1] in {"script", "style"} and data.strip() and not linked:
             self.inline.append(data)
 
-    def having(self, name: str) -> list[tuple[str, str]]:
+    def attributes(self, name: str) -> list[tuple[str, str]]:
         return [(tag, a[name] or "") for tag, a in self.tags if a.get(name) is not None]
 
 
@@ -67,16 +67,16 @@ def page(request: pytest.FixtureRequest, atlas: Client) -> Page:
 def test_markup_is_whole_and_ids_are_one_elements(page: Page) -> None:
     assert page.unmatched == []
     assert page.open == []
-    ids = [value for _, value in page.having("id")]
+    ids = [value for _, value in page.attributes("id")]
     assert sorted(set(ids)) == sorted(ids)
 
 
 def test_nothing_is_inline_and_nothing_comes_from_elsewhere(page: Page) -> None:
     assert page.inline == []
     assert not [a for _, attributes in page.tags for a in attributes if a.startswith("on")]
-    assert page.having("style") == []
-    for tag, address in page.having("src") + [
-        (tag, value) for tag, value in page.having("href") if tag == "link"
+    assert page.attributes("style") == []
+    for tag, address in page.attributes("src") + [
+        (tag, value) for tag, value in page.attributes("href") if tag == "link"
     ]:
         assert not urlsplit(address).netloc, (tag, address)
         if address.startswith("/page/"):
@@ -91,7 +91,7 @@ def test_there_is_one_heading_of_the_page_and_none_is_skipped(page: Page) -> Non
 
 
 def test_every_part_of_the_atlas_is_a_press_away(page: Page) -> None:
-    links = {value for tag, value in page.having("href") if tag == "a"}
+    links = {value for tag, value in page.attributes("href") if tag == "a"}
     assert {address for address, _ in NAVIGATION} <= links
 
 
@@ -127,7 +127,7 @@ def test_every_link_within_the_atlas_leads_somewhere(atlas: Client) -> None:
     for kind, start in KINDS.items():
         if kind == "answer, refused":
             continue  # its links ask the same again
-        for tag, link in Page(atlas.get(start, accept="text/html").text).having("href"):
+        for tag, link in Page(atlas.get(start, accept="text/html").text).attributes("href"):
             target = urlsplit(link)
             if tag == "a" and not target.netloc and not link.startswith(BESIDE) and target.path:
                 leads.setdefault(link, start)
@@ -139,7 +139,7 @@ def test_every_link_within_the_atlas_leads_somewhere(atlas: Client) -> None:
             response = atlas.get(path, accept="text/html, */*;q=0.8")
             assert response.status_code == 200, (start, link)
             pages[path] = Page(response.text if "html" in response.headers["content-type"] else "")
-            anchors[path] = {value for _, value in pages[path].having("id")}
+            anchors[path] = {value for _, value in pages[path].attributes("id")}
         if fragment:
             assert fragment in anchors[path], (start, link)
 
@@ -150,7 +150,9 @@ def test_every_link_within_the_atlas_leads_somewhere(atlas: Client) -> None:
 )
 def test_every_one_of_a_kind_has_its_page(atlas: Client, kind: str) -> None:
     index = Page(atlas.get(f"/{kind}").text)
-    pages = {v.partition("?")[0].partition("#")[0] for tag, v in index.having("href") if tag == "a"}
+    pages = {
+        v.partition("?")[0].partition("#")[0] for tag, v in index.attributes("href") if tag == "a"
+    }
     own = {address for address in pages if address.startswith(f"/{kind}/")}
     assert len(own) >= 10
     for address in own:

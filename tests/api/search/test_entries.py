@@ -1,4 +1,4 @@
-"""Everything that is told can be found, by its own name and with a slip in it."""
+"""Every entry can be found, by its own name and with a slip in it."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Search on small texts whose answers can be told by hand, and slips against a plain recursion."""
+"""Search on small texts with answers known by hand, and slips against a plain recursion."""
 
 from functools import cache
 

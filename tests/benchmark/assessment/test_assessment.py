@@ -37,14 +37,16 @@ def score(**fields):
 def test_definitions_are_of_the_survey_s_properties_in_its_order():
     table = load().feature_assessment
     assert list(DEFINITIONS) == list(dict.fromkeys(table["property"]))
-    measured = {name for name, d in DEFINITIONS.items() if d.measured}
+    measured = {name for name, d in DEFINITIONS.items() if d.has_experiment}
     assert measured == {*SWEPT, *SCORED, "Computationally light"}
     assert set(DEFINITIONS) - measured == {
         "No pre-processing", "Algorithmically simple", "Feature pattern agnostic",
     }  # fmt: skip
     for definition in DEFINITIONS.values():
         assert definition.measure
-        assert bool(definition.limits()) == definition.measured == (definition.judged != "never")
+        assert (
+            bool(definition.limits()) == definition.has_experiment == (definition.judged != "never")
+        )
         assert bool(definition.why) == (definition.judged in ("claimed", "failed"))
 
 
@@ -214,7 +216,7 @@ def test_without_results_nothing_is_measured_and_every_reason_is_given(tmp_path)
     assert len(verdicts) == 19 * 21
     assert {v.agreement for v in verdicts} == {"not judged", "not measured"}
     for v in verdicts:
-        never = not DEFINITIONS[v.name].measured
+        never = not DEFINITIONS[v.name].has_experiment
         unclaimed = DEFINITIONS[v.name].judged == "claimed" and v.survey == 0
         assert (v.agreement == "not judged") == (never or unclaimed)
     assert all(v.reason and v.measured is None and v.value is None for v in verdicts)

@@ -36,11 +36,11 @@ def test_of_a_hundred_sets_the_best_is_named_first_and_the_usual_answer_tells_it
 @pytest.mark.slow
 def test_the_best_is_named_first_and_regret_told_for_a_few_sets():
     found = list(regret.regrets(Store(), 12, 3))
-    assert [one.asked for one in found if not one.kept] == []
+    assert [one.requirements for one in found if not one.is_consistent] == []
     assert sum(math.isfinite(one.best_deg) for one in found) > 6
     for one in found:  # what the survey advises for a kind of error leads, whatever it measures
-        if "error" not in one.asked and math.isfinite(one.best_deg):
-            assert math.isnan(one.own_ratio) or one.own_ratio <= 2.0, one.asked
+        if "error" not in one.requirements and math.isfinite(one.best_deg):
+            assert math.isnan(one.own_ratio) or one.own_ratio <= 2.0, one.requirements
 
 
 def test_what_is_no_seed_is_refused(capsys):
@@ -50,7 +50,7 @@ def test_what_is_no_seed_is_refused(capsys):
 
 
 @pytest.mark.parametrize(
-    ("measured", "advice", "told", "kept"),
+    ("measured", "advice", "ratio", "kept"),
     [
         (0.1, 0.3, 3.0, True),
         (0.2, 0.3, 1.5, False),  # not the best first
@@ -60,7 +60,7 @@ def test_what_is_no_seed_is_refused(capsys):
         (0.1, math.inf, 1.0, False),
     ],
 )
-def test_an_answer_that_hides_its_regret_is_found(measured, advice, told, kept):
+def test_an_answer_that_hides_its_regret_is_found(measured, advice, ratio, kept):
     first = {"measured": measured, "advice": advice}
-    one = regret.DrawnRequirement({}, 0.1, 0.1, 0.1, first, {"measured": 1.0, "advice": told})
-    assert one.kept == kept
+    one = regret.DrawnRequirement({}, 0.1, 0.1, 0.1, first, {"measured": 1.0, "advice": ratio})
+    assert one.is_consistent == kept

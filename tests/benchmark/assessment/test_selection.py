@@ -31,11 +31,11 @@ def test_a_choice_is_set_beside_the_best_degree_of_all():
     def read(a):  # beta on x, alpha on y, each bent
         return a[:, ::-1] + 1e-3 * a[:, ::-1] ** 3
 
-    told = SelectionData(
+    data = SelectionData(
         read(angles), sun_from_angles(angles), read(between), sun_from_angles(between)
     )
     settings = [{"degree": 1}, {"degree": 7}]
-    chosen, best, chosen_deg, best_deg = chosen_and_best(AxisPolynomial(), settings, told)
+    chosen, best, chosen_deg, best_deg = chosen_and_best(AxisPolynomial(), settings, data)
     assert best == {"degree": 7}
     assert chosen["degree"] >= 5
     assert chosen_deg < 2.0 * best_deg

@@ -1,4 +1,4 @@
-"""Outcomes that cannot be of their plan, and forged ones that can, are told."""
+"""Outcomes that cannot be of their plan, and forged ones that can, are reported."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from benchmark.claims.rules import claims
 from benchmark.claims.verification import contradictions
 from benchmark.experiments import claims as experiment
 from benchmark.experiments.claims import Claims
-from benchmark.running.experiment import due, repeated
+from benchmark.running.experiment import list_due, repeat_at_random
 
 QUICK = "C05"
 
@@ -45,7 +45,7 @@ def test_no_published_outcome_contradicts_its_plan() -> None:
     found = {
         name: list(contradictions(claims()[name], one)) for name, one in read_outcomes().items()
     }
-    assert {name for name, told in found.items() if told} == set()
+    assert {name for name, entry in found.items() if entry} == set()
     assert len(found) >= 50
 
 
@@ -64,17 +64,17 @@ def test_no_published_outcome_contradicts_its_plan() -> None:
 def test_what_cannot_be_is_said_by_check_and_ledger(
     directory: Path, edit: Callable[[Any], object], said: str
 ) -> None:
-    assert QUICK not in dict(due(Claims(directory)))
+    assert QUICK not in dict(list_due(Claims(directory)))
     change(directory, edit)
     with pytest.raises(LedgerError, match=rf"{QUICK}: .*{said}.*measure it again"):
         ledger(directory)
-    assert dict(due(Claims(directory)))[QUICK]
+    assert dict(list_due(Claims(directory)))[QUICK]
 
 
 @pytest.mark.slow
 def test_a_forged_number_is_found_by_measuring_again_and_no_true_one(directory: Path) -> None:
     change(directory, lambda d: first(d).__setitem__(1, first(d)[1] * 1.001))
-    ((cell, text),) = repeated(Claims(directory), 1, 3)
+    ((cell, text),) = repeat_at_random(Claims(directory), 1, 3)
     assert cell == QUICK
     assert text.startswith("values, ")
     assert "measured again" in text

@@ -33,11 +33,11 @@ def test_ratios_are_averaged_so_that_turning_them_over_turns_the_verdict_over(va
     assert other.estimate == pytest.approx(1.0 / one.estimate)
     near = min(abs(math.log(one.low / limit)), abs(math.log(one.high / limit)))
     if near > 1e-9:
-        assert one.standing == other.standing
+        assert one.result == other.result
 
 
 @pytest.mark.parametrize(
-    ("relation", "values", "standing"),
+    ("relation", "values", "result"),
     [
         (">", [2.0, 2.1, 1.9, 2.0, 2.05], "holds"),
         (">", [0.5, 0.6, 0.4, 0.5, 0.55], "fails"),
@@ -49,20 +49,20 @@ def test_ratios_are_averaged_so_that_turning_them_over_turns_the_verdict_over(va
         (">", [1.0, 1.0, 1.0, 1.0, 1.0], "fails"),
     ],
 )
-def test_a_rule_holds_where_the_whole_interval_keeps_the_limit(relation, values, standing):
-    assert judge(rule(relation, 1.0), values).standing == standing
+def test_a_rule_holds_where_the_whole_interval_keeps_the_limit(relation, values, result):
+    assert judge(rule(relation, 1.0), values).result == result
 
 
 def test_within_needs_both_ends():
     within = rule("within", -0.6, -0.4)
-    assert judge(within, [-0.5, -0.51, -0.49, -0.5, -0.5]).standing == "holds"
-    assert judge(within, [-0.3, -0.31, -0.29, -0.3, -0.3]).standing == "fails"
-    assert judge(within, [-0.6, -0.61, -0.59, -0.6, -0.6]).standing == "open"
+    assert judge(within, [-0.5, -0.51, -0.49, -0.5, -0.5]).result == "holds"
+    assert judge(within, [-0.3, -0.31, -0.29, -0.3, -0.3]).result == "fails"
+    assert judge(within, [-0.6, -0.61, -0.59, -0.6, -0.6]).result == "open"
 
 
 def test_four_trials_decide_nothing_whatever_they_say():
     found = judge(rule(">", 1.0), [9.0, 9.0, math.nan, 9.0, 9.0])
-    assert (found.standing, found.trials) == ("open", 4)
+    assert (found.result, found.trials) == ("open", 4)
     assert math.isnan(found.estimate)
 
 
@@ -72,7 +72,7 @@ def test_no_logarithm_of_less_than_nothing():
 
 
 @pytest.mark.parametrize(
-    ("standings", "expected"),
+    ("results", "expected"),
     [
         ("hh", "reproduced"),
         ("hf", "partly"),
@@ -82,9 +82,9 @@ def test_no_logarithm_of_less_than_nothing():
         ("oo", "not testable here"),
     ],
 )
-def test_verdicts(standings, expected):
+def test_verdicts(results, expected):
     values = {"h": [2.0] * 5, "f": [0.5] * 5, "o": [0.1, 5.0, 0.2, 3.0, 0.4]}
-    assert verdict(judge(rule(">", 1.0), values[letter]) for letter in standings) == expected
+    assert verdict(judge(rule(">", 1.0), values[letter]) for letter in results) == expected
 
 
 def test_nothing_has_no_verdict():

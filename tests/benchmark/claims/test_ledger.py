@@ -24,7 +24,7 @@ from benchmark.claims.rules import DIRECTORY, VERDICTS, claims
 from benchmark.experiments.__main__ import main
 from benchmark.experiments.claims import Claims
 from benchmark.results.csv_tables import StoreError
-from benchmark.running.experiment import due
+from benchmark.running.experiment import list_due
 
 
 def trials(count=6, **more):
@@ -53,7 +53,7 @@ def test_every_claim_has_an_experiment_in_its_family():
 
 def test_every_outcome_is_of_the_rules_and_the_code_as_they_are():
     """What CI checks: a changed algorithm, data set or rule leaves no outcome behind."""
-    assert due(Claims()) == [], "measure again: python -m benchmark.experiments claims"
+    assert list_due(Claims()) == [], "measure again: python -m benchmark.experiments claims"
 
 
 def test_verdicts_follow_from_the_published_numbers():
@@ -65,7 +65,7 @@ def test_verdicts_follow_from_the_published_numbers():
         rows = table[table["claim"] == entry.claim.id]
         assert set(document["values"]) == set(rows["rule"])
         assert entry.verdict in VERDICTS
-        standings = {one.rule.name: one.standing for one in entry.rules}
+        results = {one.rule.name: one.result for one in entry.rules}
         for row in rows.itertuples():
             values = pd.Series(document["values"][row.rule], dtype=float).dropna()
             assert len(document["values"][row.rule]) == entry.claim.trials >= 5
@@ -79,7 +79,7 @@ def test_verdicts_follow_from_the_published_numbers():
                     "<=": low > float(row.limit),
                 }
                 if row.relation in outside and abs(half) > 1e-9:
-                    assert (standings[row.rule] == "fails") == outside[row.relation]
+                    assert (results[row.rule] == "fails") == outside[row.relation]
 
 
 def test_what_is_not_reproduced_is_explained():
@@ -136,10 +136,10 @@ def test_a_changed_rule_or_code_makes_an_outcome_stale(tmp_path):
     keep(tmp_path, trials())
     experiment, row = Claims(tmp_path), RECORD.read(tmp_path)["C04"]
     key = experiment.keys()["C04"]
-    assert experiment.outdated(row, key) == ""
+    assert experiment.why_outdated(row, key) == ""
     plan, code = key.split()
-    assert experiment.outdated(row, f"other {code}") == "rules or plan changed"
-    assert experiment.outdated(row, f"{plan} other") == "code changed"
+    assert experiment.why_outdated(row, f"other {code}") == "rules or plan changed"
+    assert experiment.why_outdated(row, f"{plan} other") == "code changed"
 
 
 def test_a_plan_is_of_rules_and_trials_and_of_no_words():
@@ -183,7 +183,7 @@ def test_the_second_method_disagrees_where_a_rule_comes_out_otherwise(tmp_path):
     said.write_text("claim,verdict,says\n")
     (entry,) = (e for e in ledger(tmp_path, said) if e.claim.id == "C04")
     assert entry.agrees is False
-    assert judge(entry.claim.rule("little"), [0.5] * 6).standing == "fails"
+    assert judge(entry.claim.rule("little"), [0.5] * 6).result == "fails"
 
 
 @pytest.mark.slow

@@ -17,10 +17,10 @@ from benchmark.claims.truth import with_true_directions
 from benchmark.datasets.standard import pd_maskless_cube, pd_orbit
 
 
-def standings(claim, trials):
+def outcome_of(claim, trials):
     """How each rule of a claim stands after these trials, and the verdict."""
     rules = [judge(rule, [t[rule.name] for t in trials]) for rule in claims()[claim].rules]
-    return {one.rule.name: one.standing for one in rules}, verdict(rules)
+    return {one.rule.name: one.result for one in rules}, verdict(rules)
 
 
 def poses(bend, noise, count, seed):
@@ -41,13 +41,13 @@ def test_orders_do_not_overfit_a_response_that_needs_them():
     for seed in range(8):
         worse = c05.worse(poses(15, 1e-4, 3000, seed), asked)
         made.append({"practice": worse, "few": worse})
-    assert standings("C05", made) == ({"practice": "fails", "few": "fails"}, "refuted")
+    assert outcome_of("C05", made) == ({"practice": "fails", "few": "fails"}, "refuted")
 
 
 def test_orders_overfit_a_line_read_with_noise():
     asked = poses(1, 0.0, 300, 99)
     made = [{"practice": c05.worse(poses(1, 0.01, 40, s), asked)} for s in range(8)]
-    found = standings("C05", [{**one, "few": one["practice"]} for one in made])
+    found = outcome_of("C05", [{**one, "few": one["practice"]} for one in made])
     assert found == ({"practice": "holds", "few": "holds"}, "reproduced")
 
 
@@ -60,9 +60,9 @@ def test_a_series_that_takes_up_little_of_a_wave_refutes():
     assert half == pytest.approx(0.75)
     made = [{"captures": c07.capture(0.3, 0.1, 0.4 + 0.001 * n), "better": 0.9, "costs": 0.8}
             for n in range(8)]  # fmt: skip
-    assert standings("C07", made)[1] == "refuted"
+    assert outcome_of("C07", made)[1] == "refuted"
     made = [{"captures": 0.95, "better": 1.1, "costs": 1.3}] * 8
-    assert standings("C07", made)[1] == "reproduced"
+    assert outcome_of("C07", made)[1] == "reproduced"
 
 
 def test_a_wrong_focal_length_or_a_bent_spot_refutes_the_main_error():
@@ -72,38 +72,38 @@ def test_a_wrong_focal_length_or_a_bent_spot_refutes_the_main_error():
         return c09.statistics(c09.Parts(**like | changed))
 
     good, long, bent = parts(), parts(focal_length=0.6), parts(neither=0.25, table=0.003)
-    assert standings("C09", [c09.values([good] * 3)] * 8)[1] == "reproduced"
+    assert outcome_of("C09", [c09.values([good] * 3)] * 8)[1] == "reproduced"
     assert c09.values([good, long, good])["main"] == pytest.approx(0.5, rel=1e-3)
     assert bent["main"] == pytest.approx(math.sqrt(0.3**2 - 0.25**2) / 0.25)
     warm = parts(focal_length=0.6, table=0.001, dark=0.01, expansion=0.05)
     made = [c09.values([good, warm, bent])] * 8
-    assert standings("C09", made) == (dict.fromkeys(made[0], "fails"), "refuted")
+    assert outcome_of("C09", made) == (dict.fromkeys(made[0], "fails"), "refuted")
 
 
 def test_a_filter_that_its_gyroscope_misleads_is_refuted():
     """C24: its memory makes answers worse, and it is more hurt by noise than without."""
     made = [c24.values(c24.Pair(0.6 + 0.01 * n, 0.5), c24.Pair(4.0, 3.0)) for n in range(8)]
-    assert standings("C24", made) == ({"filter": "fails", "noise": "fails"}, "refuted")
+    assert outcome_of("C24", made) == ({"filter": "fails", "noise": "fails"}, "refuted")
     made = [c24.values(c24.Pair(0.2, 0.5 + 0.01 * n), c24.Pair(1.0, 3.0)) for n in range(8)]
-    assert standings("C24", made)[1] == "reproduced"
+    assert outcome_of("C24", made)[1] == "reproduced"
 
 
 def test_an_earth_that_costs_little_or_far_more_refutes():
-    assert standings("C26", [{"mean": 5.0 + 0.1 * n, "bright": 12.0} for n in range(6)])[0] == {
+    assert outcome_of("C26", [{"mean": 5.0 + 0.1 * n, "bright": 12.0} for n in range(6)])[0] == {
         "mean": "fails", "bright": "holds"}  # fmt: skip
-    assert standings("C26", [{"mean": 30.0 + n, "bright": 60.0 + n} for n in range(6)])[1] == (
+    assert outcome_of("C26", [{"mean": 30.0 + n, "bright": 60.0 + n} for n in range(6)])[1] == (
         "refuted"
     )
 
 
 @pytest.mark.parametrize("preset", [pd_maskless_cube.PRESET, pd_orbit.PRESET])
 def test_true_directions_come_with_the_same_readings(preset):
-    told, truly = (
+    reported, truly = (
         one.generate("nominal", "calibration", 40) for one in (preset, with_true_directions(preset))
     )
-    np.testing.assert_array_equal(truly.observations, told.observations)
-    assert np.abs(told.sun - told.true_sun).max() > 1e-5
-    np.testing.assert_allclose(truly.sun, told.true_sun, atol=1e-15)
+    np.testing.assert_array_equal(truly.observations, reported.observations)
+    assert np.abs(reported.sun - reported.true_sun).max() > 1e-5
+    np.testing.assert_allclose(truly.sun, reported.true_sun, atol=1e-15)
 
 
 def test_an_assembly_that_is_better_left_alone_refutes():
@@ -111,9 +111,9 @@ def test_an_assembly_that_is_better_left_alone_refutes():
     still = c25.Pair(kept=0.10, tracked=0.20, kept_last=0.10, tracked_last=0.20)
     moving = c25.Pair(kept=0.15, tracked=0.25, kept_last=0.15, tracked_last=0.25)
     made = [c25.values(still, moving, still)] * 8
-    assert standings("C25", made) == ({"corrects": "fails", "drift": "fails"}, "refuted")
+    assert outcome_of("C25", made) == ({"corrects": "fails", "drift": "fails"}, "refuted")
     tracked = c25.Pair(kept=0.50, tracked=0.20, kept_last=0.50, tracked_last=0.20)
-    assert standings("C25", [c25.values(tracked, tracked, still)] * 8)[1] == "reproduced"
+    assert outcome_of("C25", [c25.values(tracked, tracked, still)] * 8)[1] == "reproduced"
 
 
 @pytest.mark.parametrize(
@@ -126,4 +126,4 @@ def test_an_assembly_that_is_better_left_alone_refutes():
 def test_an_effect_that_nobody_would_notice_does_not_count(claim, lost, kept):
     for one, said in ((lost, "refuted"), (kept, "reproduced")):
         spread = [{name: value * (1 + 1e-4 * n) for name, value in one.items()} for n in range(6)]
-        assert standings(claim, spread)[1] == said
+        assert outcome_of(claim, spread)[1] == said

@@ -35,7 +35,7 @@ def test_a_mounting_rotation_is_an_error_until_a_rotation_is_fitted() -> None:
     """Of length w about n the readings are off by w |n x s|; Kabsch takes it away to rounding."""
     bench = replace(PERFECT, mounting_deg=0.02)
     said = bench.report(GRID, "unit")
-    vector = np.array(bench.drawn("unit").mounting_deg)
+    vector = np.array(bench.draw_errors("unit").mounting_deg)
     expected = np.linalg.norm(np.cross(vector, GRID), axis=1)
     np.testing.assert_allclose(off_deg(said, GRID), expected, rtol=1e-3)  # w^2 / 2 of an axis
     fitted, _ = Rotation.align_vectors(said, GRID)
@@ -48,7 +48,7 @@ def test_the_table_is_that_of_its_rotations() -> None:
     bench = replace(
         PERFECT, mounting_deg=0.5, squareness_deg=0.4, eccentricity_deg=0.3, axis_random_deg=0.0
     )
-    built = bench.drawn("unit")
+    built = bench.draw_errors("unit")
     outer = np.degrees(np.arctan2(SPHERE[:, 1], SPHERE[:, 2]))
     inner = np.degrees(np.arcsin(SPHERE[:, 0]))
 
@@ -94,7 +94,7 @@ def test_the_stated_reference_error_is_the_spread_of_benches(sun: np.ndarray) ->
 
 def test_lamp_drift_goes_with_the_order_of_poses_and_leaves_ratios_unmoved() -> None:
     bench = replace(PERFECT, lamp_drift_per_hour=0.05, lamp_level=0.02, pose_s=9.0)
-    built = bench.drawn("unit")
+    built = bench.draw_errors("unit")
     hours = np.arange(len(GRID)) * 9.0 / 3600.0
     light = bench.light(GRID, "unit")
     expected = (1 + built.level) * (1 + built.drift_per_hour * hours)
@@ -112,7 +112,7 @@ def test_lamp_drift_goes_with_the_order_of_poses_and_leaves_ratios_unmoved() -> 
 
 def test_an_uneven_beam_changes_light_with_the_pose_and_flicker_at_random() -> None:
     uneven = replace(PERFECT, lamp_uneven=0.01)
-    gradient = np.array(uneven.drawn("unit").uneven)
+    gradient = np.array(uneven.draw_errors("unit").uneven)
     expected = 1 + (GRID - [0.0, 0.0, 1.0]) @ gradient
     np.testing.assert_allclose(uneven.light(GRID, "unit"), expected, rtol=1e-15)
     many = np.repeat([[0.0, 0.0, 1.0]], 4000, axis=0)
@@ -186,8 +186,8 @@ def test_the_effect_can_be_seen_beside_a_perfect_calibration(name: str) -> None:
 
 def test_hashes_cover_the_truth_where_readings_stand_beside_it() -> None:
     plain = Samples(np.arange(2.0), np.ones((2, 3)), None)
-    told = replace(plain, true_sun=np.ones((2, 3)))
+    changed = replace(plain, true_sun=np.ones((2, 3)))
     moved = replace(plain, true_sun=np.zeros((2, 3)))
-    assert len({samples_hash(samples) for samples in (plain, told, moved)}) == 3
+    assert len({samples_hash(samples) for samples in (plain, changed, moved)}) == 3
     assert plain.truth is plain.sun
-    assert list(told.arrays()) == ["observations", "sun", "origin_px", "true_sun"]
+    assert list(changed.arrays()) == ["observations", "sun", "origin_px", "true_sun"]

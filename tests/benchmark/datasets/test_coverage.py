@@ -12,7 +12,7 @@ import pytest
 import survey_data
 from benchmark import datasets
 from benchmark.datasets.coverage import REASONS, CoverageError, coverage
-from benchmark.plan.combinations import scorable
+from benchmark.plan.combinations import scorable_plan
 from registry.resolution import resolve_all
 from registry.studies import facts
 
@@ -92,7 +92,7 @@ def test_every_pair_that_a_study_has_is_simulated():
 
 
 def test_a_data_set_follows_studies_of_its_own_architecture():
-    resolved = resolve_all(scorable())
+    resolved = resolve_all(scorable_plan())
     for preset in map(datasets.get, datasets.names()):
         for key in preset.follows:
             pairs = {(p.detector, p.mask) for p in resolved[key].pipelines}
@@ -114,8 +114,8 @@ def test_coverage_is_counted_of_what_studies_use_and_data_sets_have():
     simulated = {"b": ("CMOS", "Slit"), "a": ("CMOS", "Slit"), "c": ("Event", "Slit")}
     reasons = {("PD", "Slit"): "too dim", ("CMOS", "Lens"): "too bright"}
     found = coverage(simulated, known=known, reasons=reasons)
-    told = {(p.detector, p.mask): (p.studies, p.datasets, p.reason) for p in found.pairs}
-    assert told == {
+    pairs = {(p.detector, p.mask): (p.studies, p.datasets, p.reason) for p in found.pairs}
+    assert pairs == {
         ("CMOS", "Slit"): (("S0", "S1"), ("a", "b"), ""),
         ("PD", "Slit"): (("S0",), (), "too dim"),
         ("CMOS", "Lens"): (("S1",), (), "too bright"),

@@ -93,8 +93,8 @@ def test_every_stream_is_named_after_what_it_is_for(condition: str, split: str) 
     light, stray = LIGHT.draw(count, generator(*names, "irradiance"))
     if split == "calibration":
         light = STANDARD_BENCH.light(sun, "fake-teller", 3, "bench")
-        told = STANDARD_BENCH.report(sun, "fake-teller", 3, "bench")
-        np.testing.assert_array_equal(found.sun, told)
+        reported = STANDARD_BENCH.report(sun, "fake-teller", 3, "bench")
+        np.testing.assert_array_equal(found.sun, reported)
     origin = generator(*names, "window").integers(0, 1000, (count, 2))
     level = {"nominal": 1.0, "brighter": 2.0}[condition]
     unit = level * len(repr(("fake-teller", 3, "unit")))
@@ -167,7 +167,7 @@ def test_repeats_are_poses_of_the_test_split_pass_after_pass() -> None:
     one = fake()
     test, repeat = one.scene("nominal", "test"), one.scene("nominal", "repeat")
     # every third of 11, from the middle of the first third
-    assert one.repeats.chosen(11).tolist() == [1, 5, 9]
+    assert one.repeats.pose_indices(11).tolist() == [1, 5, 9]
     rows = [1, 5, 9] * 4
     for name in ("sun", "irradiance", "stray", "origin_px"):
         np.testing.assert_array_equal(getattr(repeat, name), getattr(test, name)[rows])
@@ -186,7 +186,7 @@ def test_repeats_are_poses_of_the_test_split_pass_after_pass() -> None:
 def test_poses_stand_in_the_middle_of_equal_parts(
     poses: int, samples: int, chosen: list[int]
 ) -> None:
-    assert Repeats(poses, 2).chosen(samples).tolist() == chosen
+    assert Repeats(poses, 2).pose_indices(samples).tolist() == chosen
     card = Repeats(poses, 2).card(samples)
     assert (card["samples"], card["poses"], card["passes"]) == (2 * len(chosen), len(chosen), 2)
 

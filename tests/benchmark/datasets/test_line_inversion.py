@@ -349,7 +349,7 @@ def test_light_of_the_dial_is_conserved_over_the_field() -> None:
 
 def test_quadrant_balances_are_not_planned_on_a_code_dial() -> None:
     assert not plan.cells("pd-code-dial", extractors="voltage-balance")
-    refused = plan.incompatible("pd-code-dial", extractors="voltage-balance")
+    refused = plan.list_exclusions("pd-code-dial", extractors="voltage-balance")
     assert any("the sensor has a code dial" in pair.reason for pair in refused)
 
 

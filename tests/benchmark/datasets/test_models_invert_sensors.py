@@ -156,7 +156,7 @@ def test_every_dataset_with_a_direct_extractor_has_a_model(name: str) -> None:
 
 
 def test_models_of_other_bodies_say_why_they_cannot_read_a_dataset() -> None:
-    direct = plan.incompatible(extractors=["direct", "dial-tracks"])
+    direct = plan.list_exclusions(extractors=["direct", "dial-tracks"])
     reasons = {(r.dataset, r.model): r.reason for r in direct if r.model}
     assert "regular pyramid" in reasons["pva-maskless-sphere", "pyramidal"]
     assert "six panel normals" in reasons["pd-maskless-pyramid", "solar-panel"]

@@ -85,9 +85,9 @@ def test_axes_of_a_tumbling_body_are_uniform_over_the_sphere() -> None:
 def test_cards_tell_the_motion_where_there_is_one() -> None:
     preset = datasets.get("cmos-single-aperture")
     card = preset.card()
-    told = {name: datasets.parameters_of(card, name).get("spin") for name in preset.conditions}
-    assert told.pop("spinning") == {"type": "Spin", "rate_deg_s": TUMBLING.rate_deg_s}
-    assert set(told.values()) == {None}
+    spins = {name: datasets.parameters_of(card, name).get("spin") for name in preset.conditions}
+    assert spins.pop("spinning") == {"type": "Spin", "rate_deg_s": TUMBLING.rate_deg_s}
+    assert set(spins.values()) == {None}
     assert datasets.parameters_of(card, "spinning") == preset.parameters("spinning")
 
 

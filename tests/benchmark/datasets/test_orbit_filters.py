@@ -136,7 +136,7 @@ def test_dead_reckoning_through_eclipse_is_as_good_as_it_says(flown) -> None:
     track = model.track(test.observations, test.context)
     eclipse = np.asarray(test.context["eclipse"]) & np.isfinite(track.sun[:, 0])
     error = separation_deg(track.sun, test.sun)
-    assert not track.read[eclipse].any()
+    assert not track.is_read[eclipse].any()
     inside = np.flatnonzero(eclipse[1:] & eclipse[:-1]) + 1
     assert (track.deviation_deg[inside] > track.deviation_deg[inside - 1]).all()
     assert rms(error[eclipse]) < 3.0 * rms(np.sqrt(2.0) * track.deviation_deg[eclipse])

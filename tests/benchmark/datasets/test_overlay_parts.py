@@ -1,4 +1,4 @@
-"""What overlays show of each frame, told by a sheet that draws nothing; where letters stand."""
+"""What overlays show of each frame, recorded by a sheet that draws nothing; where letters stand."""
 
 from __future__ import annotations
 
@@ -100,14 +100,14 @@ def test_a_row_a_condition_of_the_first_frames_each_with_its_words(
     wide = 2 * overlay._LEFT + 4 * overlay._TILE + 3 * overlay._GAP
     size.assert_called_once_with(wide, overlay._TOP + 2 * (overlay._TILE + 52))
     assert asked == [("quiet", "test", 4), ("noisy", "test", 4)]
-    told = [(call.args[2], call.kwargs.get("bold", False)) for call in sheet.text.call_args_list]
+    texts = [(call.args[2], call.kwargs.get("bold", False)) for call in sheet.text.call_args_list]
     row = [
         ("(1.0, 2.0)", False),
         ("(3.0, 1.0)", False),
         ("not found", False),
         ("(0.0, 0.0)", False),
     ]
-    assert told == [
+    assert texts == [
         ("fake: finder", True), (overlay._SAID, False),
         ("quiet", True), *row, ("noisy", True), *row,
     ]  # fmt: skip

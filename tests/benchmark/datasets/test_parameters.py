@@ -32,14 +32,14 @@ def test_parameters_are_exact_where_digests_forgive_the_last_bits() -> None:
 
 
 def test_a_design_tells_its_first_fields_always_and_later_ones_where_there_are_any() -> None:
-    told = describe(SensorGeometry(line_axes=("x",)))
-    assert told.pop("type") == "SensorGeometry"
-    assert told.pop("line_axes") == ["x"]
-    assert set(told) == {
+    described = describe(SensorGeometry(line_axes=("x",)))
+    assert described.pop("type") == "SensorGeometry"
+    assert described.pop("line_axes") == ["x"]
+    assert set(described) == {
         "focal_length_mm", "pixel_pitch_mm", "centre_px", "aperture_width_mm", "aperture_shape",
         "face_normals", "half_fov_deg",
     }  # fmt: skip
-    assert set(told.values()) == {None}
+    assert set(described.values()) == {None}
 
 
 def test_numpy_s_numbers_and_words_of_an_enumeration_are_plain() -> None:

@@ -1,4 +1,4 @@
-"""What previews say and plot, told by a sheet that draws nothing."""
+"""What previews say and plot, recorded by a sheet that draws nothing."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ SUN = np.vstack([from_angles(np.array([0.0, 20.0, -5.0]), np.array([30.0, 0.0, 5
 
 @pytest.fixture
 def sheet(monkeypatch: pytest.MonkeyPatch) -> MagicMock:
-    """The sheet that is drawn on: it keeps what it is told."""
-    told = MagicMock()
-    made = MagicMock(return_value=told)
+    """The sheet that is drawn on: it records what is drawn."""
+    stub = MagicMock()
+    made = MagicMock(return_value=stub)
     monkeypatch.setattr(preview, "Sheet", made)
-    told.size = made
-    told.plots = []
-    told.plot.side_effect = lambda *area, **more: told.plots.append(MagicMock()) or told.plots[-1]
-    return told
+    stub.size = made
+    stub.plots = []
+    stub.plot.side_effect = lambda *area, **more: stub.plots.append(MagicMock()) or stub.plots[-1]
+    return stub
 
 
 def texts(sheet: MagicMock) -> list[str]:

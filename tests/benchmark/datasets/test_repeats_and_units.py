@@ -23,7 +23,7 @@ PRESETS = {name: datasets.get(name) for name in datasets.names()}
 def test_passes_differ_in_noise_alone(name: str) -> None:
     preset = PRESETS[name]
     scene, test = preset.scene("nominal", "repeat"), preset.scene("nominal", "test")
-    again = preset.repeats.chosen(len(test))
+    again = preset.repeats.pose_indices(len(test))
     poses, passes = len(again), preset.repeats.passes
     assert len(scene) == poses * passes == 200
     for column in ("sun", "irradiance", "stray", "origin_px", "albedo", "temperature_k"):
@@ -55,7 +55,7 @@ def test_the_spread_of_repeats_is_the_noise_the_sensor_states() -> None:
 def test_repeats_of_a_flight_carry_the_context_of_their_moments() -> None:
     preset = PRESETS["ccd-orbit"]
     repeat, test = (preset.generate("nominal", split) for split in ("repeat", "test"))
-    again = np.tile(preset.repeats.chosen(len(test.sun)), preset.repeats.passes)
+    again = np.tile(preset.repeats.pose_indices(len(test.sun)), preset.repeats.passes)
     assert repeat.context.keys() == test.context.keys()
     for name, column in repeat.context.items():
         assert (column == test.context[name][again]).all(), name
@@ -63,7 +63,7 @@ def test_repeats_of_a_flight_carry_the_context_of_their_moments() -> None:
 
 @pytest.mark.parametrize("count", [1, 7, 24, 25, 1000])
 def test_poses_are_spread_over_the_test_split(count: int) -> None:
-    chosen = Repeats().chosen(count)
+    chosen = Repeats().pose_indices(count)
     assert len(chosen) == min(25, count) == len(set(chosen.tolist()))
     assert 0 <= chosen.min() <= chosen.max() < count
     assert np.ptp(np.diff(chosen)) <= 1 if len(chosen) > 2 else True

@@ -7,7 +7,7 @@ from benchmark.error_budget.record import RECORD
 from benchmark.error_budget.variants import VARIANTS
 from benchmark.experiments.error_budget import ErrorBudget, leaders
 from benchmark.results.store import Store
-from benchmark.running.experiment import due
+from benchmark.running.experiment import list_due
 
 SCORE = {
     "dataset": "ccd-slit",
@@ -30,13 +30,13 @@ def _row(**errors):
 
 
 def test_every_data_set_of_the_leaderboard_has_a_row_of_the_score_that_leads_it():
-    leading = ErrorBudget().leading
+    leading = ErrorBudget().leader_rows
     assert leading.keys() == {row["dataset"] for row in Store().rows()}
     assert RECORD.read().keys() == leading.keys()
 
 
 def test_every_row_is_of_the_score_and_the_code_as_they_are():
-    assert due(ErrorBudget()) == [], "run `python -m benchmark.experiments error_budget`"
+    assert list_due(ErrorBudget()) == [], "run `python -m benchmark.experiments error_budget`"
 
 
 def test_whatever_is_not_near_its_bound_has_a_sentence_with_its_measurement():
@@ -45,10 +45,10 @@ def test_whatever_is_not_near_its_bound_has_a_sentence_with_its_measurement():
         assert name in found.sentence
         assert sentences.degrees(row["rms_deg"]) in found.sentence
         bound = row["bound_unit_deg"] or row["bound_deg"]
-        assert found.near == (row["rms_deg"] <= 2.0 * bound)
-        if not found.near:
+        assert found.is_near_bound == (row["rms_deg"] <= 2.0 * bound)
+        if not found.is_near_bound:
             assert "holds it back" in found.sentence
-            assert found.parts_deg[found.leading] == max(found.parts_deg.values())
+            assert found.parts_deg[found.leading_part] == max(found.parts_deg.values())
 
 
 def test_errors_of_independent_parts_add_as_squares():
@@ -106,7 +106,7 @@ def test_errors_of_independent_parts_add_as_squares():
             (
                 "with calibration, unit and readings perfect it is 0.040 deg (8.0 times), fitted "
                 "to the test poses as well 0.039 deg: the method itself (extractor and model are "
-                "not told apart) holds it back."
+                "not distinguished) holds it back."
             ),
         ),
         (
@@ -121,15 +121,15 @@ def test_errors_of_independent_parts_add_as_squares():
 )
 def test_the_part_that_contributes_most_is_named_with_what_was_measured(errors, part, said):
     found = sentences.verdict(_row(**errors))
-    assert found.leading == part
+    assert found.leading_part == part
     assert found.sentence == (
         f"`ccd-slit`: the own error of ppe + slit is 0.050 deg, 10 times its bound; {said}"
     )
 
 
-def test_what_is_near_its_bound_is_held_back_by_nothing():
+def test_what_is_near_its_bound_has_no_leading_part():
     found = sentences.verdict(_row() | {"rms_deg": 0.006})
-    assert found.near
+    assert found.is_near_bound
     assert found.sentence == (
         "`ccd-slit`: the own error of ppe + slit is 0.0060 deg, 1.2 times its bound."
     )

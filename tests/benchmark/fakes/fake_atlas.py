@@ -75,7 +75,7 @@ class FakeRepeats:
 
     passes: int = 4
 
-    def chosen(self, test_samples: int) -> Any:
+    def pose_indices(self, test_samples: int) -> Any:
         return np.arange(0, test_samples, 20)
 
 
@@ -85,8 +85,8 @@ class Diodes:
 
     `late` is a current added to one diode from the tenth sample on, `looseness` a factor of the
     bound, `unit_share` how many times it is where the unit is not known, `reference_error` that of
-    the calibration's directions, `dark` a share of the test samples that no direction can be told
-    of.
+    the calibration's directions, `dark` a share of the test samples that no direction can be
+    determined of.
     """
 
     name: str = "fake-diodes"
@@ -136,7 +136,7 @@ class Diodes:
     def truth(self, condition: str, split: str) -> Any:
         if split == "repeat":
             test = self.truth(condition, "test")
-            return np.tile(test[self.repeats.chosen(self.n)], (self.repeats.passes, 1))
+            return np.tile(test[self.repeats.pose_indices(self.n)], (self.repeats.passes, 1))
         rng = np.random.default_rng([self.seed, *f"{self.name} {condition} {split}".encode()])
         off = np.deg2rad(25.0) * np.sqrt(rng.random(self.n))
         around = 2 * np.pi * rng.random(self.n)

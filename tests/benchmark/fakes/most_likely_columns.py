@@ -86,17 +86,17 @@ def errors_deg(setup: Condition, one: Scene, names: tuple[str | int, ...], trial
 
 def _moves(
     own: Floats,
-    told: tuple[Floats, Floats],
+    given: tuple[Floats, Floats],
     known: tuple[Floats, Floats],
     column: tuple[float, float, Floats] | None,
 ) -> tuple[Floats, Floats | float]:
     """One step of Newton's: of the parameters (N, 4), and of the columns' noise (N, W).
 
-    `own` (N, 4, M) are slopes of the mean, `told` score and weight of the readings, `known` the
+    `own` (N, 4, M) are slopes of the mean, `given` score and weight of the readings, `known` the
     prior's weight and how far the guess is from it, `column` the gain, and spread and guess of
     the columns' noise.
     """
-    score, weight = told
+    score, weight = given
     prior, away = known
     left = np.einsum("nim,nm,njm->nij", own, weight, own) + np.diag(prior)
     right = np.einsum("nim,nm->ni", own, score) - prior * away

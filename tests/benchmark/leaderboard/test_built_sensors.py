@@ -12,7 +12,7 @@ import pytest
 
 from benchmark import datasets
 from benchmark.datasets.conditions.flight import FlightPreset
-from benchmark.datasets.realism import standings
+from benchmark.datasets.realism import hardware_matches
 from benchmark.results.store import PUBLISHED, Store
 
 #: Rings of the field, degrees from the boresight, as columns of a score.
@@ -26,7 +26,7 @@ def leaders(model: str | None = None) -> dict[str, Mapping[str, Any]]:
     Of all models, or behind one.
     """
     best: dict[str, Mapping[str, Any]] = {}
-    built = {name for name, one in standings().items() if one.sensors}
+    built = {name for name, one in hardware_matches().items() if one.sensors}
     for row in Store(PUBLISHED).rows():
         name = row["dataset"]
         if name not in built or row["condition"] != datasets.get(name).conditions[0] or row["unit"]:

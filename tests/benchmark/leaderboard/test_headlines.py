@@ -9,7 +9,13 @@ from typing import Any
 import pytest
 
 from benchmark import datasets
-from benchmark.leaderboard.headlines import COLUMNS, Headline, HeadlineError, headlines, table
+from benchmark.leaderboard.headlines import (
+    COLUMNS,
+    Headline,
+    HeadlineError,
+    headlines,
+    read_headlines,
+)
 from benchmark.results.store import PUBLISHED, Store
 from survey_data.tables import load
 
@@ -80,10 +86,14 @@ def test_published_figures_are_those_of_the_facts_where_they_have_one() -> None:
     for quantity in ("accuracy", "precision"):
         named = attributes[attributes["attribute"] == f"{quantity}_deg"]
         facts = named.set_index("study")["value"].astype(float)
-        for one in table():
+        for one in read_headlines():
             if one.published_deg is None or one.study not in facts.index:
                 continue
-            same = [h.published_deg for h in table() if (h.study, h.kind) == (one.study, quantity)]
+            same = [
+                h.published_deg
+                for h in read_headlines()
+                if (h.study, h.kind) == (one.study, quantity)
+            ]
             if same:
                 assert any(h == pytest.approx(facts[one.study], rel=0.02) for h in same), one
 
@@ -102,4 +112,4 @@ def test_a_broken_line_is_named(tmp_path: Path, line: str, said: str) -> None:
     path = tmp_path / "headlines.csv"
     path.write_text(f"{','.join(COLUMNS)}\n{line}\n", "utf-8")
     with pytest.raises(HeadlineError, match=said):
-        table(path)
+        read_headlines(path)

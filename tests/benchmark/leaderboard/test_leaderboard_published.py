@@ -180,7 +180,7 @@ def test_no_planned_pipeline_fails(published):
 def unreadable():
     """Datasets of which no installed pipeline can measure anything, by the plan's own reasons."""
     parts = installed_parts()
-    why_not = {(i.dataset, i.extractor, i.model): i.reason for i in plan.incompatible()}
+    why_not = {(i.dataset, i.extractor, i.model): i.reason for i in plan.list_exclusions()}
 
     def refused(dataset, extractor, model):
         return why_not.get((dataset, extractor, "")) or why_not.get((dataset, extractor, model))

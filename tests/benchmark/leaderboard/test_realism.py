@@ -16,7 +16,7 @@ from benchmark.datasets.realism import (
     HardwareMatch,
     RealismError,
     hardware_match,
-    standings,
+    hardware_matches,
 )
 from benchmark.leaderboard.realism import FACTOR, nearest_ratio, realism, unexplained_differences
 from benchmark.metrics.rings import RINGS
@@ -42,7 +42,7 @@ def fake(*ids: str, sentence: str = "") -> dict[str, HardwareMatch]:
 
 
 def test_every_dataset_has_a_row_and_every_row_a_dataset() -> None:
-    assert set(standings()) == set(datasets.names())
+    assert set(hardware_matches()) == set(datasets.names())
 
 
 def test_no_published_difference_is_unexplained() -> None:
@@ -56,7 +56,7 @@ def test_a_sensor_stands_beside_data_of_its_own_kind() -> None:
     """Mask as the table has it; detectors differ where no nearer sensor is known."""
     masks = {
         (datasets.get(name).mask, sensor.mask)
-        for name, one in standings().items()
+        for name, one in hardware_matches().items()
         for sensor in one.sensors
         if sensor.mask
     }
@@ -139,8 +139,8 @@ def test_the_nearest_ratio_is_that_of_the_range(ratios: list[float]) -> None:
     ("line", "said"),
     [
         ("a,C01 X99,,", "line 2: no built sensor X99"),
-        ("a,,,", "line 2: a needs built sensors or a reason for having none"),
-        ("a,C01,why,", "line 2: a needs built sensors or a reason for having none"),
+        ("a,,,", "line 2: a needs built sensors or a reason why it has none"),
+        ("a,C01,why,", "line 2: a needs built sensors or a reason why it has none"),
         ("a,C01,,\na,C02,,", "line 3: a stands there already"),
         ("a,C01", "row 2"),
     ],
@@ -149,4 +149,4 @@ def test_a_broken_table_is_named_with_its_line(line: str, said: str, tmp_path: P
     path = tmp_path / "realism.csv"
     path.write_text(f"{','.join(COLUMNS)}\n{line}\n", "utf-8", newline="\n")
     with pytest.raises(RealismError, match=said):
-        standings(path)
+        hardware_matches(path)

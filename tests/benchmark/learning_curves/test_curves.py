@@ -23,7 +23,7 @@ from benchmark.progress import silent
 from benchmark.results.components import current
 from benchmark.results.csv_tables import StoreError
 from benchmark.results.store import Store
-from benchmark.running.experiment import due, update
+from benchmark.running.experiment import list_due, update
 
 LEADER = Leader("fake-plane", 1, "nominal", "fake-readings", "fake-lines")
 BOUND, BENCH = float(np.sqrt(mean_square(np.inf))), 0.5
@@ -173,7 +173,7 @@ def test_the_file_is_the_same_for_any_number_of_workers_and_nothing_is_measured_
     path.unlink()
     assert update(LearningCurves(store, PARTS), 2, silent).computed == 4
     assert path.read_bytes() == text
-    assert due(LearningCurves(store, PARTS)) == []
+    assert list_due(LearningCurves(store, PARTS)) == []
     with pytest.raises(ValueError, match="workers"):
         update(LearningCurves(store, PARTS), 0, silent)
 
@@ -187,14 +187,16 @@ def test_what_is_of_other_code_data_or_leaders_is_named_and_renewed_alone(store)
     held["curves"][0]["key"] = "0" * 16
     held["curves"][1]["model"] = "gone"
     path.write_text(json.dumps(held), "utf-8")
-    said = due(LearningCurves(store, PARTS))
+    said = list_due(LearningCurves(store, PARTS))
     assert [why for _, why in said] == ["of other code or data", "absent", "no longer wanted"]
     assert update(LearningCurves(store, PARTS), 1, silent).computed == 2
     assert path.read_bytes() == text
     changed = replace(
         PARTS, presets={**PARTS.presets, "fake-other": Plane("fake-other", version=2)}
     )
-    assert {leader.dataset for leader, _ in due(LearningCurves(store, changed))} == {"fake-other"}
+    assert {leader.dataset for leader, _ in list_due(LearningCurves(store, changed))} == {
+        "fake-other"
+    }
 
 
 def test_a_file_of_something_else_is_named(tmp_path):

@@ -12,7 +12,7 @@ from benchmark.learning_curves.record import RECORD
 from benchmark.plan.parts import installed_parts
 from benchmark.progress import silent
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running.experiment import due, measured
+from benchmark.running.experiment import list_due, measure_tasks
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +30,7 @@ def cell(leader, unit=0):
 
 
 def test_they_are_of_the_code_and_of_the_leaders_as_they_are(rows):
-    assert due(LearningCurves()) == [], "run `python -m benchmark.experiments learning_curves`"
+    assert list_due(LearningCurves()) == [], "run `python -m benchmark.experiments learning_curves`"
     assert list(rows) == LearningCurves().cells()
     assert {leader.dataset for leader in rows} == set(installed_parts().presets)
 
@@ -72,8 +72,8 @@ def test_each_is_of_enough_draws_over_two_units_and_of_no_floor_above_its_end(ro
 def test_measured_again_they_are_the_same(rows):
     """Of data sets whose curves take seconds."""
     experiment = LearningCurves()
-    chosen = experiment.named(["pd-code-dial"])
-    for leader, again in chain.from_iterable(measured(experiment, chosen, 1, silent)):
+    chosen = experiment.cells_named(["pd-code-dial"])
+    for leader, again in chain.from_iterable(measure_tasks(experiment, chosen, 1, silent)):
         known = {name: value for name, value in rows[leader].items() if name != "key"}
         for name in ("needed", "error_from", "answers_from", "floor", "refusal", "poses"):
             assert again[name] == known[name], name

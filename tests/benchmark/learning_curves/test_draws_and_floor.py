@@ -71,7 +71,7 @@ def test_a_random_pose_is_as_likely_as_any_other():
 def test_the_floor_of_a_curve_that_follows_the_law_is_its_own(floor, excess, exponent):
     errors = law(floor, excess, exponent)
     found = floor_of(STEPS, errors, every(errors), rng())
-    assert found.fitted
+    assert found.is_fitted
     assert found.exponent == exponent
     assert found.error_deg == pytest.approx([floor, floor], rel=1e-6)
     assert found.low_deg == pytest.approx([floor, floor], rel=1e-6)
@@ -120,7 +120,7 @@ def test_what_does_not_follow_the_law_ends_with_the_error_of_all_poses():
         (whole, every(whole), False),
     ):
         found = floor_of(STEPS, errors, counted, rng(), lawful=lawful)
-        assert not found.fitted
+        assert not found.is_fitted
         assert found.error_deg == tuple(errors[:, 0, -1])
     none = every(few)
     none[1, :, -1] = False

@@ -259,10 +259,13 @@ def test_either_nuisance_without_spread_is_refused(irradiance: Irradiance) -> No
         bound_of(sensor(), 1.0, irradiance)
 
 
-@pytest.mark.parametrize(("sun_z", "told"), [(0.0, False), (-0.5, False), (1e-9, True)])
-def test_the_axis_angles_are_told_of_suns_in_front_alone(sun_z: float, told: bool) -> None:
+@pytest.mark.parametrize(("sun_z", "readings"), [(0.0, False), (-0.5, False), (1e-9, True)])
+def test_the_axis_angles_are_told_of_suns_in_front_alone(sun_z: float, readings: bool) -> None:
     across = math.sqrt((1 - sun_z**2) / 2)
     found = bound_of(sensor(np.array([across, -across, sun_z])))
     assert found.observable[0]
-    assert np.isfinite([found.alpha_deg[0], found.beta_deg[0]]).tolist() == [told, told]
-    assert np.isnan([found.alpha_deg[0], found.beta_deg[0]]).tolist() == [not told, not told]
+    assert np.isfinite([found.alpha_deg[0], found.beta_deg[0]]).tolist() == [readings, readings]
+    assert np.isnan([found.alpha_deg[0], found.beta_deg[0]]).tolist() == [
+        not readings,
+        not readings,
+    ]

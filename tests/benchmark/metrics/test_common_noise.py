@@ -31,10 +31,10 @@ def test_products_are_those_over_the_inverse_covariance(seed: int, common: float
     signals = np.stack([mean + first, mean + second])
     found = noise_products(mean, signals, variance, CommonNoise(group, common))
     for n in range(2):
-        told = np.isfinite(variance[n])
-        same = group[n, told][:, None] == group[n, told][None]
-        covariance = np.diag(variance[n, told]) + common**2 * same
-        changes = np.stack([first[n, told], second[n, told]])
+        known = np.isfinite(variance[n])
+        same = group[n, known][:, None] == group[n, known][None]
+        covariance = np.diag(variance[n, known]) + common**2 * same
+        changes = np.stack([first[n, known], second[n, known]])
         expected = changes @ np.linalg.solve(covariance, changes.T)
         assert found[n] == pytest.approx(expected, rel=1e-9, abs=1e-9)
 
@@ -56,7 +56,7 @@ def test_columns_are_groups_of_every_so_many_elements() -> None:
 
 
 def window(errors: PixelErrors) -> tuple[Any, Any, Scene]:
-    """A small window of a slit's end: both axes are told, columns by many rows."""
+    """A small window of a slit's end: both axes are determined, columns by many rows."""
     setup = datasets.get("cmos-single-aperture").setups["nominal"]
     sensor: Any = setup.sensor
     detector = replace(sensor.detector, columns=96, rows=96, errors=errors)
@@ -100,9 +100,9 @@ def test_the_bound_is_that_of_the_whole_covariance(references: References | None
     fisher = np.diag([0.0, 0.0, 1.0, 1.0])
     for column in range(mean.shape[2]):
         own = variance[0, :, column]
-        told = np.isfinite(own)
-        covariance = np.diag(own[told]) + shared
-        slopes = np.stack([d[told, column] for d in derivatives], axis=1)
+        known = np.isfinite(own)
+        covariance = np.diag(own[known]) + shared
+        slopes = np.stack([d[known, column] for d in derivatives], axis=1)
         fisher += slopes.T @ np.linalg.solve(covariance, slopes)
     exact = math.degrees(math.sqrt(np.trace(np.linalg.inv(fisher)[:2, :2])))
     found = bound.angle_deg if references is None else bound.unit_angle_deg
@@ -127,7 +127,7 @@ def test_common_noise_costs_more_than_nothing_and_less_than_noise_of_pixels() ->
     (alpha, beta), (shared_alpha, shared_beta), (own_alpha, own_beta) = angles
     assert alpha < shared_alpha < own_alpha
     assert beta < shared_beta
-    # columns lie along y: alpha is told by differences within them
+    # columns lie along y: alpha is determined by differences within them
     assert shared_alpha / alpha < 1.05 < own_alpha / alpha
     assert own_beta > beta
 

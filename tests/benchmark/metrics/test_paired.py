@@ -1,4 +1,4 @@
-"""Methods told apart by a paired test: simulated boards of known truth are the oracle."""
+"""Methods distinguished by a paired test: simulated boards of known truth are the oracle."""
 
 import math
 from itertools import pairwise
@@ -75,9 +75,9 @@ def test_a_difference_of_ten_percent_is_told_apart(spread, shared):
 
 @pytest.mark.parametrize("spread", [0.01, 0.05, 0.2])
 def test_the_smallest_ratio_is_told_apart_in_nine_cases_of_ten(spread):
-    told = np.median([smallest_ratio(logs, leader(logs)) for logs in boards(5, spread)])
+    ratio = np.median([smallest_ratio(logs, leader(logs)) for logs in boards(5, spread)])
     ratios = np.ones(METHODS)
-    ratios[3] = told
+    ratios[3] = ratio
     found = [separate(logs, 0)[3] for logs in boards(6, spread, ratios=ratios)]
     assert 0.83 <= np.mean(found) <= 0.97
 
@@ -121,6 +121,6 @@ def test_a_method_is_not_told_apart_from_itself_nor_is_one_alone():
 def test_more_units_tell_smaller_ratios_apart():
     rng = np.random.default_rng(8)
     logs = rng.normal(0.0, 0.03, (5, 40))
-    told = [smallest_ratio(logs[:, :n], 0) for n in (5, 10, 20, 40)]
-    assert all(later < earlier for earlier, later in pairwise(told))
-    assert min(told) > EQUIVALENT
+    ratio = [smallest_ratio(logs[:, :n], 0) for n in (5, 10, 20, 40)]
+    assert all(later < earlier for earlier, later in pairwise(ratio))
+    assert min(ratio) > EQUIVALENT

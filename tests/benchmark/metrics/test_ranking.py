@@ -1,4 +1,4 @@
-"""Ranks by own error over units, and groups of what is not told apart."""
+"""Ranks by own error over units, and groups of what is not distinguished."""
 
 import math
 
@@ -7,7 +7,7 @@ import pytest
 
 from benchmark.contract import Cell
 from benchmark.leaderboard.beside import expected_on_bench, on_bench, twins_of
-from benchmark.metrics.ranking import Spread, judged, order, spreads
+from benchmark.metrics.ranking import UnitErrors, order, rank_board, spreads
 from benchmark.metrics.score import METRICS
 
 
@@ -22,7 +22,7 @@ def row(model, charged, *, unit=0, condition="nominal", **more):
 def board(**errors):
     """Judge pipelines by their errors on units; several availabilities by a tuple at the end."""
     rows = [row(model, units[0]) for model, units in errors.items()]
-    found = judged(rows, [Spread(tuple(units)) for units in errors.values()])
+    found = rank_board(rows, [UnitErrors(tuple(units)) for units in errors.values()])
     return {model: found.places[at] for at, model in enumerate(errors)}, found
 
 
@@ -31,12 +31,12 @@ def units(middle, spread, seed, count=10):
 
 
 def test_own_error_is_the_geometric_mean_over_units_with_its_standard_error():
-    spread = Spread((1.0, 2.0, 4.0))
+    spread = UnitErrors((1.0, 2.0, 4.0))
     assert spread.own_deg == 2.0
     assert spread.own_se == pytest.approx(math.log(2.0) / math.sqrt(3), rel=1e-4)
     assert (spread.low_deg, spread.high_deg) == (1.0, 4.0)
-    assert Spread((1.0, None)).low_deg is None
-    assert Spread((3.0,)).own_se is None
+    assert UnitErrors((1.0, None)).low_deg is None
+    assert UnitErrors((3.0,)).own_se is None
 
 
 def test_units_are_paired_so_that_what_is_hard_for_all_separates_nothing_less():
@@ -69,7 +69,7 @@ def test_the_leader_is_chosen_on_even_units_and_quoted_on_odd_ones():
 
 def test_answers_too_few_come_behind_and_without_an_error_last():
     rows = [row("a", 1.0, availability=0.9), row("b", 2.0), row("c", None)]
-    found = judged(rows, [Spread((1.0,)), Spread((2.0,)), Spread((None,))])
+    found = rank_board(rows, [UnitErrors((1.0,)), UnitErrors((2.0,)), UnitErrors((None,))])
     assert [rows[at]["model"] for at in found.order] == ["b", "a", "c"]
     assert found.places[2].rank is None
 
@@ -87,8 +87,8 @@ def test_errors_by_unit_are_those_of_each_pipeline_under_each_condition():
         row("b", 3.0, unit=1),
     ]
     assert spreads(rows) == {
-        Cell("d", "nominal", "e", "a"): Spread((1.0, 2.0)),
-        Cell("d", "hot", "e", "a"): Spread((9.0,)),
+        Cell("d", "nominal", "e", "a"): UnitErrors((1.0, 2.0)),
+        Cell("d", "hot", "e", "a"): UnitErrors((9.0,)),
     }
 
 

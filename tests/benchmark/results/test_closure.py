@@ -11,7 +11,13 @@ from hypothesis import strategies as st
 from benchmark.plan.parts import installed_parts
 from benchmark.results import analyses
 from benchmark.results.analyses import Analyses
-from benchmark.results.closure import FIRST_PARTY, ClosureError, Sources, closure_digest, reached
+from benchmark.results.closure import (
+    FIRST_PARTY,
+    ClosureError,
+    Sources,
+    closure_digest,
+    reachable_definitions,
+)
 from benchmark.results.definitions import analyse
 from benchmark.results.digests import entries_of, method_entries
 
@@ -224,14 +230,14 @@ def test_local_names_are_not_those_of_the_module(plug_in):
     before = [digest(f"top:{name}") for name in names]
     plug_in(far="value = 2\n")
     assert [digest(f"top:{name}") for name in names] == before
-    assert reached("plugged_pkg.top:work") == ("plugged_pkg.top:work",)
+    assert reachable_definitions("plugged_pkg.top:work") == ("plugged_pkg.top:work",)
 
 
 def test_an_entry_is_a_name_or_a_whole_module(plug_in):
     plug_in(top="from .far import other\nx = 1\n\ndef work():\n    return 2\n", far="other = 3\n")
     assert digest("top:work.__call__") == digest("top:work") != digest("top")
     assert digest("top:<lambda>") == digest("top:nobody") == digest("top")
-    assert set(reached("plugged_pkg.top")) == {
+    assert set(reachable_definitions("plugged_pkg.top")) == {
         f"plugged_pkg.{name}" for name in ("top:work", "top:x", "top:other", "far:other")
     }
     assert "plugged_pkg" not in sys.modules, "nothing is imported to find out"
@@ -292,7 +298,7 @@ class Edited(Analyses):
 
     def of(self, path):
         edited, found = self._edited
-        return found if path == edited else Analyses.shared().of(path)
+        return found if path == edited else Analyses.of_user().of(path)
 
 
 SCORE = "benchmark/metrics/score.py"
@@ -327,7 +333,7 @@ def digests_of(components, known):
 
 @pytest.mark.parametrize(("file", "old", "new", "moved"), EDITS)
 def test_an_edit_of_the_tree_moves_the_digests_of_what_uses_it(components, file, old, new, moved):
-    before = digests_of(components, Analyses.shared())
+    before = digests_of(components, Analyses.of_user())
     after = digests_of(components, Edited(file, old, new))
     assert {name for name in components if after[name] != before[name]} == moved
 

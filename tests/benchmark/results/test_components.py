@@ -57,14 +57,14 @@ def test_a_score_s_key_depends_on_all_it_was_measured_with(changed):
 def test_what_has_changed_since_a_key_was_made_is_named(changed, kind):
     known = components(d="1", e="2", m="3")
     key = known.cell_key(cell())
-    assert known.changed(key, cell()) == ()
+    assert known.changed_parts(key, cell()) == ()
     since = components(**{"d": "1", "e": "2", "m": "3", changed: "0f"})
-    assert since.changed(key, cell()) == (kind,)
-    assert components(data="x", d="1", e="4", m="3").changed(key, cell()) == (
+    assert since.changed_parts(key, cell()) == (kind,)
+    assert components(data="x", d="1", e="4", m="3").changed_parts(key, cell()) == (
         "code of data",
         "extractor",
     )
-    assert known.changed("a key of another layout", cell()) == tuple(KEYED)
+    assert known.changed_parts("a key of another layout", cell()) == tuple(KEYED)
 
 
 def test_the_key_of_a_stage_begins_that_of_the_next_and_knows_nothing_of_what_follows():

@@ -253,12 +253,12 @@ def test_a_condition_s_digest_depends_on_its_own_parameters_and_those_of_its_ref
     assert list(before) == list(fake_atlas.Diodes().conditions) == ["quiet", "noisy"]
     monkeypatch.setattr(corrected, "reference_condition", lambda *_: "quiet")
     before = condition_digests(fake_atlas.Diodes())
-    told = fake_atlas.Diodes.parameters
+    parameters = fake_atlas.Diodes.parameters
     for changed, expected in (("noisy", ["noisy"]), ("quiet", ["quiet", "noisy"])):
 
         def moved(self, condition, changed=changed):
             more = {"more": 1} if condition == changed else {}
-            return {**told(self, condition), **more}
+            return {**parameters(self, condition), **more}
 
         with monkeypatch.context() as patch:
             patch.setattr(fake_atlas.Diodes, "parameters", moved)
@@ -296,8 +296,8 @@ def test_a_data_set_s_digest_depends_on_the_code_of_all_it_is_made_of(plug_in):
 
     preset = replace(fake_atlas.Diodes(), repeats=Part())
     assert "plugin_pkg.deep.leaf:Part" in entries_of(preset)
-    for holding in ({"x": Part()}, [Part()], (1, {"y": ("z", Part())}), {"x": write, "y": Part()}):
-        held = entries_of(replace(fake_atlas.Diodes(), repeats=holding))
+    for repeats in ({"x": Part()}, [Part()], (1, {"y": ("z", Part())}), {"x": write, "y": Part()}):
+        held = entries_of(replace(fake_atlas.Diodes(), repeats=repeats))
         assert set(held) >= {"fake_atlas:Diodes", "plugin_pkg.deep.leaf:Part"}
     assert f"{write.__module__}:write" in held, "a function's too"
     before = data_digest(preset)

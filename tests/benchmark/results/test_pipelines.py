@@ -70,9 +70,9 @@ def test_a_hazard_is_tried_by_all_of_its_conditions_or_not():
     first = row(datasets.get(dataset).conditions[0], dataset=dataset)
     tried = [row(name, dataset=dataset) for name in names]
     (whole,) = pipelines([first, *tried])
-    assert whole.tried(hazard)
+    assert whole.covers(hazard)
     (part,) = pipelines([first, *tried[:-1]])
-    assert not part.tried(hazard)
+    assert not part.covers(hazard)
 
 
 def test_what_there_is_no_longer_and_what_has_no_first_condition_is_passed_over():

@@ -43,14 +43,14 @@ def record(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_pandas_reads_rows_sorted_with_errors_and_doubts(record: Path) -> None:
+def test_pandas_reads_rows_sorted_with_errors_and_outcomes(record: Path) -> None:
     found = pd.read_parquet(record / "samples" / "lamp.parquet")
     assert list(found.columns) == list(samples.COLUMNS)
     cells = found[["extractor", "model", "unit"]].drop_duplicates().to_numpy().tolist()
     assert cells == [["a", "x", 0], ["a", "x", 3], ["b", "y", 0]]
     first = found[:4]
     assert first["sample"].tolist() == [0, 1, 2, 3]
-    assert first["doubt"].tolist() == [0, 2, 0, 1]
+    assert first["outcome"].tolist() == [0, 2, 0, 1]
     np.testing.assert_allclose(first["error_deg"], ERRORS, rtol=1 / 2048)
 
 
@@ -119,7 +119,7 @@ def test_the_journal_brings_errors_and_directions_back() -> None:
     errors = CellErrors.of(ERRORS, FOUND)
     again = CellErrors.read(errors.to_texts())
     np.testing.assert_array_equal(again.error_deg, errors.error_deg)
-    np.testing.assert_array_equal(again.doubt, errors.doubt)
+    np.testing.assert_array_equal(again.outcome, errors.outcome)
     directions = collected().directions["lamp"]
     known = Directions.read(directions.to_texts())
     for name in ("sun", "observable", "bound_deg"):
@@ -163,8 +163,8 @@ def _written(record: Path, **changes: Any) -> None:
         ({"unit": "int64"}, r"unit \(int64\)"),
         ({"error_deg": [-1.0] * 12}, "values of error_deg"),
         ({"error_deg": [200.0] * 12}, "values of error_deg"),
-        ({"error_deg": [1.0] * 12}, "values of doubt"),
-        ({"doubt": [7] * 12}, "values of doubt"),
+        ({"error_deg": [1.0] * 12}, "values of outcome"),
+        ({"outcome": [7] * 12}, "values of outcome"),
         ({"sample": [0, 1, 2, 2] * 3}, "values of sample"),
         ({"sample": [1, 2, 3, 4] * 3}, "values of sample"),
         ({"unit": [0] * 12}, "order of rows"),
@@ -181,7 +181,7 @@ def test_other_types_and_values_are_refused(
 
 def test_other_columns_are_refused(record: Path) -> None:
     path = record / "samples" / "lamp.parquet"
-    pd.read_parquet(path).drop(columns="doubt").to_parquet(path)
+    pd.read_parquet(path).drop(columns="outcome").to_parquet(path)
     with pytest.raises(StoreError, match="expected the columns extractor"):
         samples.read_samples("lamp", record)
 

@@ -5,7 +5,7 @@ from fake_results import cell, components, numbers, pin
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchmark.datasets.pins import alike
+from benchmark.datasets.pins import bounds_agree
 from benchmark.metrics.score import METRICS
 from benchmark.results.components import ComponentsError
 from benchmark.results.csv_tables import StoreError, format_cell, number, read_csv, text_of
@@ -251,6 +251,6 @@ def test_pins_differ_in_hashes_exactly_and_in_bounds_beyond_rounding(changed, sa
 
 
 def test_no_bound_is_like_no_bound_alone():
-    assert alike(None, None)
-    assert not alike(None, 0.0)
-    assert not alike(0.0, None)
+    assert bounds_agree(None, None)
+    assert not bounds_agree(None, 0.0)
+    assert not bounds_agree(0.0, None)

@@ -5,7 +5,7 @@ import os
 import pytest
 
 from benchmark.results import unchanged
-from benchmark.results.unchanged import Unchanged, fingerprint
+from benchmark.results.unchanged import KeptAnswer, fingerprint
 
 
 @pytest.fixture
@@ -21,21 +21,21 @@ def place(tmp_path, monkeypatch):
 
 
 def known(place, what="plan"):
-    return Unchanged(what, [place / "record"]).known()
+    return KeptAnswer(what, [place / "record"]).recall()
 
 
 def test_an_answer_is_known_until_a_source_or_the_record_changes(place):
     assert known(place) is None
-    Unchanged("plan", [place / "record"]).keep(7)
+    KeptAnswer("plan", [place / "record"]).keep(7)
     assert known(place) == 7
     assert known(place, "another question") is None
-    assert Unchanged("plan", [place]).known() is None
+    assert KeptAnswer("plan", [place]).recall() is None
     for name in ("tree/benchmark/results/m.py", "record/scores/d.csv", "record/.sunatlas/j.jsonl"):
-        Unchanged("plan", [place / "record"]).keep(7)
+        KeptAnswer("plan", [place / "record"]).keep(7)
         with (place / name).open("a") as file:
             file.write("more\n")
         assert known(place) is None, name
-    Unchanged("plan", [place / "record"]).keep(7)
+    KeptAnswer("plan", [place / "record"]).keep(7)
     os.utime(place / "record" / "scores" / "d.csv", (1, 1))
     assert known(place) is None
 
@@ -50,14 +50,14 @@ def test_what_can_be_made_again_does_not_count(place):
 
 def test_an_answer_made_while_something_changed_is_not_taken(place):
     """It may be of either state."""
-    asked = Unchanged("plan", [place / "record"])
+    asked = KeptAnswer("plan", [place / "record"])
     (place / "record" / "scores" / "d.csv").write_text("a,b,c\n")
     asked.keep(7)
     assert known(place) is None
 
 
 def test_a_damaged_answer_is_none(place):
-    Unchanged("plan", [place / "record"]).keep(7)
+    KeptAnswer("plan", [place / "record"]).keep(7)
     (file,) = (place / "cache" / "unchanged").iterdir()
     whole = file.read_bytes()
     for damaged in (b"", whole[:-1], b"x" * 40):

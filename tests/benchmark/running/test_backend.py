@@ -39,10 +39,10 @@ class Hands:
     def workers(self) -> int:
         return 2
 
-    def free(self) -> bool:
+    def is_free(self) -> bool:
         return len(self.given) < 2
 
-    def busy(self) -> bool:
+    def is_busy(self) -> bool:
         return bool(self.given)
 
     def give(self, work: backend.Work) -> None:

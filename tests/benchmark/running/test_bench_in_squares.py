@@ -40,7 +40,7 @@ def sampled(number: int) -> list[tuple[str, str, str]]:
     return [found[place] for place in dict.fromkeys(places.tolist())]
 
 
-def told(sun: Array, fixed: Array, random: Array) -> Array:
+def reported(sun: Array, fixed: Array, random: Array) -> Array:
     """Directions (N, 3) that a turntable reads: outer axis x, inner y.
 
     `fixed` are eight standard normal numbers, `random` two each pose (N, 2).
@@ -94,9 +94,9 @@ def on_drawn_benches(dataset: str, extractor_name: str, model_name: str) -> tupl
     for _ in range(BENCHES):
         fixed = rng.standard_normal(8)
         random = rng.standard_normal((len(truth), 2))
-        on_bench.append(mean_square(errors(told(truth, fixed, random))))
+        on_bench.append(mean_square(errors(reported(truth, fixed, random))))
         # a fit to hundreds of poses averages out what they err at random
-        steady = told(sun, fixed, np.zeros((len(sun), 2)))
+        steady = reported(sun, fixed, np.zeros((len(sun), 2)))
         bench.append(mean_square(angles_deg(steady, sun)))
     return mean_square(errors(truth)), float(np.mean(on_bench)), float(np.mean(bench))
 

@@ -115,10 +115,10 @@ def test_a_worker_killed_after_its_first_result_loses_nothing(
     killed: list[int] = []
     held: list[int] = []
 
-    told: list[tuple[int, str]] = []
+    messages: list[tuple[int, str]] = []
 
     def kill(done: int, total: int, what: str, share: float | None = None) -> None:
-        told.append((done, what))
+        messages.append((done, what))
         if done and not killed:
             assert (done, total) == (1, PLANNED)
             assert what.startswith("fake-a quiet")
@@ -139,8 +139,8 @@ def test_a_worker_killed_after_its_first_result_loses_nothing(
     assert {what for process, what in there if process in killed} == {
         f"fake-a quiet {split}" for split in ("calibration", "test", "repeat")
     }
-    assert [done for done, _ in told] == list(range(PLANNED + 1))
-    assert sum(what.startswith("fake-a") for _, what in told) == 2, "each result is taken once"
+    assert [done for done, _ in messages] == list(range(PLANNED + 1))
+    assert sum(what.startswith("fake-a") for _, what in messages) == 2, "each result is taken once"
     others = {process for process, _ in there} - set(killed)
     assert len(others) in (1, 2)
     assert os.getpid() not in others

@@ -15,7 +15,14 @@ from benchmark.progress import silent
 from benchmark.results.csv_tables import StoreError
 from benchmark.results.row_file import Row, RowFile
 from benchmark.running import experiment as running
-from benchmark.running.experiment import Recorded, Report, due, experiments, repeated, update
+from benchmark.running.experiment import (
+    RecordedExperiment,
+    Report,
+    experiments,
+    list_due,
+    repeat_at_random,
+    update,
+)
 from files.strict_json import require_members
 
 
@@ -23,7 +30,7 @@ def _require(path: Path, row: object) -> None:
     require_members(row, path, {"cell": str, "square": float, "key": str})
 
 
-class Squares(Recorded[str]):
+class Squares(RecordedExperiment[str]):
     name = "squares"
     record = RowFile("squares.json", "squares", 1, lambda row: str(row["cell"]), _require)
     wanted: tuple[str, ...] = ("1", "2", "3")
@@ -46,18 +53,18 @@ def computed(experiment: Squares, workers: int = 1, **options: Any) -> int:
 
 def test_what_is_due_alone_is_measured_and_what_is_gone_is_dropped(tmp_path: Path) -> None:
     experiment = Squares(tmp_path)
-    assert [why for _, why in due(experiment)] == ["absent"] * 3
+    assert [why for _, why in list_due(experiment)] == ["absent"] * 3
     assert computed(experiment) == 3
     assert computed(experiment) == 0
-    assert due(experiment) == []
+    assert list_due(experiment) == []
     experiment.wanted = ("2", "3", "4")
-    assert due(experiment) == [("1", "no longer wanted"), ("4", "absent")]
+    assert list_due(experiment) == [("1", "no longer wanted"), ("4", "absent")]
     assert computed(experiment) == 1
     assert list(experiment.record.read(tmp_path)) == ["2", "3", "4"]
     experiment.code = "second"
-    assert {why for _, why in due(experiment)} == {"of other code or data"}
+    assert {why for _, why in list_due(experiment)} == {"of other code or data"}
     assert computed(experiment, only=["3"]) == 1
-    assert [cell for cell, _ in due(experiment)] == ["2", "4"]
+    assert [cell for cell, _ in list_due(experiment)] == ["2", "4"]
 
 
 def test_the_file_is_the_same_for_any_number_of_workers(tmp_path: Path) -> None:
@@ -75,16 +82,18 @@ def test_the_file_is_the_same_for_any_number_of_workers(tmp_path: Path) -> None:
 def test_a_number_that_another_run_does_not_repeat_is_named(tmp_path: Path) -> None:
     experiment = Squares(tmp_path)
     computed(experiment)
-    assert list(repeated(experiment, 3, 1)) == []
+    assert list(repeat_at_random(experiment, 3, 1)) == []
     path = tmp_path / "squares.json"
     path.write_text(path.read_text().replace("9.0", "9.1"))
-    assert list(repeated(experiment, 3, 1)) == [("3", "square, is 9.1; measured again it is 9.0")]
+    assert list(repeat_at_random(experiment, 3, 1)) == [
+        ("3", "square, is 9.1; measured again it is 9.0")
+    ]
 
 
 def test_cells_are_asked_for_by_name(tmp_path: Path) -> None:
-    assert Squares(tmp_path).named(["3", "1"]) == ["1", "3"]
+    assert Squares(tmp_path).cells_named(["3", "1"]) == ["1", "3"]
     with pytest.raises(UnknownNameError, match="squares"):
-        Squares(tmp_path).named(["nine"])
+        Squares(tmp_path).cells_named(["nine"])
 
 
 @pytest.mark.parametrize(
@@ -103,7 +112,7 @@ def test_a_row_that_is_none_is_named(tmp_path: Path, edit: Any, said: str) -> No
     edit(held)
     path.write_text(json.dumps(held))
     with pytest.raises(StoreError, match=said):
-        due(experiment)
+        list_due(experiment)
 
 
 class Sums(Report[int]):
@@ -122,7 +131,7 @@ class Sums(Report[int]):
     def lines(self, rows: Mapping[int, Row]) -> Iterator[str]:
         return (f"{cell} and itself are {row['sum']}" for cell, row in rows.items())
 
-    def passed(self, rows: Mapping[int, Row]) -> bool:
+    def passes(self, rows: Mapping[int, Row]) -> bool:
         return all(row["sum"] < 4 for row in rows.values())
 
 
@@ -138,7 +147,7 @@ def test_a_report_is_printed_and_its_exit_code_says_whether_it_passed(
 
 def test_every_module_of_the_folder_is_an_experiment() -> None:
     found = experiments()
-    recorded = {name for name, kind in found.items() if issubclass(kind, Recorded)}
+    recorded = {name for name, kind in found.items() if issubclass(kind, RecordedExperiment)}
     assert recorded == {"claims", "error_budget", "learning_curves", "sweeps"}
     assert found.keys() - recorded == {"networks", "regret", "selection"}
 
@@ -162,7 +171,7 @@ def test_a_check_that_found_nothing_due_is_not_made_again(
     monkeypatch.setattr(command, "PUBLISHED", tmp_path / "record")
     asked: list[str] = []
 
-    def found() -> dict[str, type[Recorded[Any] | Report[Any]]]:
+    def found() -> dict[str, type[RecordedExperiment[Any] | Report[Any]]]:
         asked.append("looked")
         return {"sums": Sums}
 

@@ -1,4 +1,4 @@
-"""Measuring as an older processor would: what the limited process is told, and what it finds."""
+"""Measuring as an older processor would: what the limited process is given, and what it finds."""
 
 import json
 import os
@@ -69,13 +69,13 @@ def test_every_library_is_told_and_the_rest_of_the_environment_stays(monkeypatch
     monkeypatch.setattr(kernels, "_beyond_avx2", lambda: ["X86_V4", "AVX512_ICL"])
     monkeypatch.setattr(kernels, "_found_by_opencv", lambda: ["AVX512-SKX", "AVX512-COMMON"])
     monkeypatch.setenv("OPENCV_CPU_DISABLE", "AVX512-ICL")  # by whoever started this process
-    told = older_environment()
-    assert told["NPY_DISABLE_CPU_FEATURES"] == "X86_V4 AVX512_ICL"
-    assert told["OPENBLAS_CORETYPE"] == "Haswell"
-    assert told["NUMBA_CPU_NAME"] == "haswell"
-    assert told["OPENCV_CPU_DISABLE"] == "AVX512-COMMON,AVX512-ICL,AVX512-SKX"
+    environment = older_environment()
+    assert environment["NPY_DISABLE_CPU_FEATURES"] == "X86_V4 AVX512_ICL"
+    assert environment["OPENBLAS_CORETYPE"] == "Haswell"
+    assert environment["NUMBA_CPU_NAME"] == "haswell"
+    assert environment["OPENCV_CPU_DISABLE"] == "AVX512-COMMON,AVX512-ICL,AVX512-SKX"
     rest = {name: value for name, value in os.environ.items() if name not in kernels.OLDER}
-    assert {name: value for name, value in told.items() if name not in kernels.OLDER} == rest
+    assert {name: value for name, value in environment.items() if name not in kernels.OLDER} == rest
 
 
 def test_every_library_does_as_it_is_told():

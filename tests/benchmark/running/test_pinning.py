@@ -189,7 +189,7 @@ def test_generating_again_tells_what_is_not_as_pinned_and_writes_nothing(store):
     there = parts(Diodes())
     update(store, parts=there)
 
-    def told(**changed):
+    def differences(**changed):
         pins = store.pins()
         first = pins.pop(("fake-diodes", "noisy", "test"))
         wrong = Store(store.directory.with_name("wrong"))
@@ -200,16 +200,16 @@ def test_generating_again_tells_what_is_not_as_pinned_and_writes_nothing(store):
         assert contents(wrong) == before
         return found
 
-    assert told() == []
+    assert differences() == []
     place = "fake-diodes noisy test"
-    (line,) = told(data_hash="0" * 32)
+    (line,) = differences(data_hash="0" * 32)
     assert line.startswith(f"{place}: data_hash ")
     assert line.endswith(f", pinned {'0' * 32}")
-    assert told(n=500) == [f"{place}: n 400, pinned 500"]
+    assert differences(n=500) == [f"{place}: n 400, pinned 500"]
     bound = store.pins()["fake-diodes", "noisy", "test"].bound_deg
-    assert told(bound_deg=1.0) == [f"{place}: bound_deg {bound}, pinned 1.0"]
-    assert told(version=3) == [f"{place}: version 1, pinned 3"]
-    assert told(dataset="else") == [f"{place}: not pinned"]
+    assert differences(bound_deg=1.0) == [f"{place}: bound_deg {bound}, pinned 1.0"]
+    assert differences(version=3) == [f"{place}: version 1, pinned 3"]
+    assert differences(dataset="else") == [f"{place}: not pinned"]
     gone = pinning.differences(store, progress=silent, parts=parts(Diodes(), Missing()))
     assert gone == [
         f"fake-missing {condition}: cannot be generated: OSError: no data today"

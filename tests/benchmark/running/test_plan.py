@@ -27,7 +27,7 @@ def test_every_compatible_combination_is_planned_in_sorted_order(parts):
 
 def test_cells_and_incompatible_pairs_together_are_everything(parts):
     planned = {(c.dataset, c.extractor, c.model) for c in plan.cells(parts=parts)}
-    refused = plan.incompatible(parts=parts)
+    refused = plan.list_exclusions(parts=parts)
     assert [(r.extractor, r.model) for r in refused] == [("fake-balanced", ""), ("fake-framed", "")]
     assert "aperture_width_mm" in refused[0].reason
     assert "reads frames; the dataset has currents" in refused[1].reason
@@ -42,7 +42,7 @@ def test_features_a_model_cannot_read_are_refused_with_the_reason(parts):
             accepts=frozenset({fake_atlas.FeatureKind.SPOT}),
         )
 
-    refused = plan.incompatible(
+    refused = plan.list_exclusions(
         extractors="fake-currents", models="fake-spots", parts=fake_plan.parts(Spots)
     )
     assert [r.reason for r in refused] == ["accepts spot; the extractor gives signals"]
@@ -68,7 +68,7 @@ def test_a_design_that_an_implementation_refuses_is_not_planned_and_says_why():
     assert {c.model for c in plan.cells(parts=parts)} == {"fake-least-squares"}
     assert "fake-halves" not in {c.extractor for c in plan.cells(parts=parts)}
     faces = len(fake_atlas.Diodes().geometry.face_normals)
-    refused = {(r.extractor, r.model): r.reason for r in plan.incompatible(parts=parts)}
+    refused = {(r.extractor, r.model): r.reason for r in plan.list_exclusions(parts=parts)}
     assert refused["fake-currents", "fake-pairs"] == f"needs two faces; got {faces}"
     assert refused["fake-halves", ""] == "needs halves"
 
@@ -95,7 +95,7 @@ def test_a_defect_of_an_implementation_is_planned_so_that_its_row_says_what_fail
     parts = dataclasses.replace(parts, extractors={**parts.extractors, "fake-blind": Blind})
     planned = {(cell.extractor, cell.model) for cell in plan.cells(parts=parts)}
     assert {("fake-currents", "fake-defective"), ("fake-blind", "fake-least-squares")} <= planned
-    refused = {(one.extractor, one.model) for one in plan.incompatible(parts=parts)}
+    refused = {(one.extractor, one.model) for one in plan.list_exclusions(parts=parts)}
     assert refused == {("fake-balanced", ""), ("fake-framed", "")}
 
 
@@ -133,7 +133,7 @@ def test_an_unknown_name_raises_with_the_nearest(parts, argument, given, nearest
 
 
 def test_architectures_and_their_datasets(parts):
-    found = plan.scorable(parts=parts)
+    found = plan.scorable_plan(parts=parts)
     assert set(found) == {("PD", "Maskless")}
     planned = {(cell.extractor, cell.model) for cell in plan.cells(parts=parts)}
     assert found["PD", "Maskless"] == dict.fromkeys(planned, ("fake-diodes",))

@@ -1,4 +1,4 @@
-"""A runner that is killed or told to end loses nothing stored and records nothing but results."""
+"""A runner that is killed or asked to end loses nothing stored and records nothing but results."""
 
 import json
 import os
@@ -29,7 +29,7 @@ parts = fake_plan.parts(presets=(fake_atlas.Diodes(), second))
 summary = runner.run(plan.cells(parts=parts), Store(sys.argv[1]), int(sys.argv[2]), parts=parts)
 print(summary.planned, summary.computed)
 """
-#: The same as a command that ends as it should when it is told to.
+#: The same as a command that ends as it should on a signal.
 COMMAND = f"""
 def main():
 {textwrap.indent(PROGRAM, "    ")}
@@ -137,7 +137,7 @@ def test_what_is_told_to_end_at_any_moment_ends_and_is_no_result(
     process = start(store.directory, workers, tmp_path / "log", 0.25, before + COMMAND)
     deadline = time.monotonic() + 600
     while not (journal.is_file() and b'"score"' in journal.read_bytes()):
-        assert process.poll() is None, "the run ended before it could be told to"
+        assert process.poll() is None, "the run ended before it could be asked to"
         assert time.monotonic() < deadline
         time.sleep(0.01)
     time.sleep(random.Random(f"{number} {workers} {before}").uniform(0.0, 0.7))

@@ -22,7 +22,7 @@ from benchmark.contract import ON_BENCH
 from benchmark.running import backend
 from benchmark.running.backend import Done, Work, shared_out
 from benchmark.running.durations import Durations, Took
-from benchmark.running.schedule import Bundle, Waiting, cut, place_of
+from benchmark.running.schedule import Bundle, WaitingBundles, cut, place_of
 from benchmark.running.task import Task
 
 MEASURED = Path(__file__).parent / "measured_durations.csv"
@@ -57,10 +57,10 @@ class Workers:
         self._under_way: list[tuple[float, int, Done]] = []
         self._given = 0
 
-    def free(self) -> bool:
+    def is_free(self) -> bool:
         return self.idle > 0
 
-    def busy(self) -> bool:
+    def is_busy(self) -> bool:
         return bool(self._under_way)
 
     def give(self, work: Work) -> None:
@@ -95,7 +95,7 @@ def run(seconds: dict[Task, float], durations: Durations, workers: int) -> Worke
 
 @pytest.fixture
 def known(seconds: dict[Task, float], monkeypatch: pytest.MonkeyPatch) -> Durations:
-    """What an earlier run has told of times; nothing is measured really."""
+    """What an earlier run has recorded of times; nothing is measured really."""
     monkeypatch.setattr(backend, "measure", lambda task: task)
     durations = Durations()
     for one, takes in seconds.items():
@@ -161,7 +161,7 @@ def test_the_longest_waits_least_and_of_equal_ones_the_earliest() -> None:
     bundles = [
         Bundle((task(name, "quiet"),), takes) for name, takes in zip("abc", (1, 2, 2), strict=True)
     ]
-    waiting = Waiting(bundles)
+    waiting = WaitingBundles(bundles)
     assert [waiting.take() for _ in bundles] == [bundles[1], bundles[2], bundles[0]]
     assert len(waiting) == 0
 
@@ -175,5 +175,5 @@ def test_times_that_are_not_known_are_those_of_their_like() -> None:
     durations.add(here, Took(0, 1, 5.0))
     assert durations.seconds([here]) == 5.0
     assert durations.seconds([task("a", "quiet", 1)]) == 5.0
-    assert durations.following([here]) == 0.0
-    assert durations.following([task("a", "noisy")]) == 5.0
+    assert durations.seconds_of_rest([here]) == 0.0
+    assert durations.seconds_of_rest([task("a", "noisy")]) == 5.0

@@ -8,7 +8,7 @@ import pytest
 from benchmark.contract import Cell
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import installed_parts
-from benchmark.suites.perturbation import SIZE, Sensitive, perturb, search
+from benchmark.suites.perturbation import SIZE, SensitiveCell, perturb, search
 
 
 def test_counts_stay_and_other_numbers_move_by_a_rounding():
@@ -32,7 +32,7 @@ def test_counts_stay_and_other_numbers_move_by_a_rounding():
 def test_no_model_of_a_cube_hangs_on_rounding(wanted):
     found = search(wanted, installed_parts())
     assert found.cells == len(wanted) > 0
-    assert [str(one) for one in found.moved] == []
+    assert [str(one) for one in found.moved_cells] == []
 
 
 @pytest.mark.parametrize(
@@ -48,5 +48,6 @@ def test_no_model_of_a_cube_hangs_on_rounding(wanted):
 )
 def test_what_moves_is_told_from_a_last_digit_that_turns(before, after, moved):
     assert (
-        Sensitive(Cell("d", "c", "e", "m"), "features", {"rms_deg": (before, after)}).moved is moved
+        SensitiveCell(Cell("d", "c", "e", "m"), "features", {"rms_deg": (before, after)}).is_moved
+        is moved
     )

@@ -125,12 +125,12 @@ def test_what_a_task_is_expected_to_take_is_its_own_time_or_what_is_usual() -> N
         }
     )
     cells = [Cell("d", "one", "a", "m"), Cell("d", "two", "a", "m"), Cell("f", "one", "a", "m")]
-    assert durations.expected(cells) == {
+    assert durations.seconds_by_task(cells) == {
         ExtractionTask("d", "one", 0, "a"): 6.0,
         ExtractionTask("d", "two", 0, "a"): 4.0,
         ExtractionTask("f", "one", 0, "a"): 2.5,
     }
-    assert Durations().expected(cells) == {}
+    assert Durations().seconds_by_task(cells) == {}
 
 
 def test_an_estimate_is_of_the_data_and_the_tasks() -> None:

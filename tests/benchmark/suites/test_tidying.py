@@ -69,10 +69,10 @@ def test_scores_pins_and_times_of_changed_data_go(store: Store) -> None:
     before = contents(store)
     size = total(before)
     now = parts(seed=8)
-    told = would_tidy(store, parts=now)
-    assert contents(store) == before, "only told"
+    result = would_tidy(store, parts=now)
+    assert contents(store) == before, "only reported"
     done = tidy(store, parts=now)
-    assert told == done
+    assert result == done
     assert (dropped(done), done.kept) == ((4, 3, 4), 4)
     assert done.freed == size - total(contents(store)) > 0
     assert (store.directory / "notes.txt").read_text() == "mine"

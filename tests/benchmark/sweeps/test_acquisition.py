@@ -1,4 +1,4 @@
-"""The part of a coded mask that is seen, told in one frame of a unit nobody calibrated."""
+"""The part of a coded mask that is seen, identified in one frame of a unit nobody calibrated."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from benchmark.experiments import sweeps as experiment
 from benchmark.experiments.sweeps import Sweeps
 from benchmark.plan.parts import Parts
 from benchmark.progress import silent
-from benchmark.running.experiment import due, update
+from benchmark.running.experiment import list_due, update
 from benchmark.sweeps import plan as sweep_plan
 from benchmark.sweeps import plots as sweep_pictures
 from benchmark.sweeps import sweep_tables
@@ -109,7 +109,7 @@ def test_the_closed_form_of_balances_is_at_the_bound(made):
 
 def test_what_is_current_stays_and_failures_are_tried_again(made):
     before = table(made)
-    assert {why for _, why in due(of(made))} == {"failed"}
+    assert {why for _, why in list_due(of(made))} == {"failed"}
     assert computed(made) == POINTS
     assert table(made) == before
     assert computed(made, {"plain": Plain}) == 0
@@ -167,7 +167,7 @@ def test_a_missing_point_and_one_too_much_are_named(made):
     other = dataclasses.replace(gone, point="else")
     row = rows.pop(gone)
     RECORD.write({**rows, other: {**row, "point": "else"}}, made)
-    found = [(point, why) for point, why in due(of(made)) if why != "failed"]
+    found = [(point, why) for point, why in list_due(of(made)) if why != "failed"]
     assert sorted(found) == sorted([(gone, "absent"), (other, "no longer wanted")])
 
 

@@ -22,7 +22,7 @@ def answering(answers):
     @dataclasses.dataclass(frozen=True)
     class Told(Extractor):
         about = AboutExtractor(
-            name="told", taxonomy="None", observation=Observation.FRAMES, kind=FeatureKind.SPOT
+            name="fake", taxonomy="None", observation=Observation.FRAMES, kind=FeatureKind.SPOT
         )
 
         def extract(self, observations):
@@ -34,7 +34,7 @@ def answering(answers):
 def row_of(point, answers, frames=40):
     """Measure given answers to the first frames of a set."""
     setting = dataclasses.replace(SETTINGS[point], frames=frames)
-    place = Point("frames", setting.sweep, point, "told")
+    place = Point("frames", setting.sweep, point, "fake")
     ((_, row),) = measure(Task({place: answering(answers)}, setting, {}))
     assert row["status"] == "ok", row["reason"]
     return row

@@ -2,7 +2,7 @@
 
 from registry.measured_pipelines import MeasuredPipeline, Score
 
-_SCORE = {"rms_deg", "bound_deg", "over_bound", "repeatability_deg", "availability", "available"}
+_SCORE = {"rms_deg", "bound_deg", "over_bound", "repeatability_deg", "availability", "is_available"}
 
 
 def pipeline(**changed: object) -> MeasuredPipeline:

@@ -63,7 +63,7 @@ def additions(draw: st.DrawFn) -> Addition:
             basis = draw(st.sampled_from([b for b in known.bases if b != "unknown"]))
             cells = {"basis": basis, "source": draw(SOURCE), "note": draw(TEXT)}
             rows["attributes"].append({**dict.fromkeys(own, ""), **at, **cells})
-            if definition.named and draw(st.booleans()):
+            if definition.has_names and draw(st.booleans()):
                 nearest = draw(st.sampled_from(["true", "false"]))
                 rows["names"].append({**at, "name": draw(TEXT), "nearest": nearest})
             if attribute in ("model", "extractor") and draw(st.booleans()):

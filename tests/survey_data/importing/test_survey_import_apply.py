@@ -170,7 +170,7 @@ def test_our_own_table_brings_no_difference(copy: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "row", "column", "told"),
+    ("text", "row", "column", "expected"),
     [
         ("Key,Mask\nAlvi2014,Lens\nChang2008,Sundial\n", 3, "Mask", "'Sundial' is no value"),
         ("Key,Mask,FOV\nAlvi2014,Lens,wide\n", 2, "FOV", "expected an angle"),
@@ -179,20 +179,20 @@ def test_our_own_table_brings_no_difference(copy: Any) -> None:
     ],
 )  # fmt: skip
 def test_an_unreadable_cell_stops_everything(
-    text: str, row: int, column: str, told: str, copy: Any
+    text: str, row: int, column: str, expected: str, copy: Any
 ) -> None:
     path = offer(copy, text)
     before = copy.path("attributes").read_bytes()
     overrides = {"FOV": "fov_deg"} if "FOV" in text else None
     plan = import_table(path, copy.directory, overrides=overrides)
     assert [(p.row, p.column) for p in plan.errors] == [(row, column)]
-    with pytest.raises(SurveyImportError, match=told) as caught:
+    with pytest.raises(SurveyImportError, match=expected) as caught:
         import_table(path, copy.directory, overrides=overrides, apply=True)
     assert (caught.value.row, caught.value.column) == (row, column)
     assert copy.path("attributes").read_bytes() == before
     tables = load(copy.directory)
     frame = survey_data.read_table(path)
-    with pytest.raises(SurveyImportError, match=told):
+    with pytest.raises(SurveyImportError, match=expected):
         survey_data.differences(tables, frame, survey_data.match_columns(tables, frame, overrides))
 
 

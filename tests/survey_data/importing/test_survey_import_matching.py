@@ -67,7 +67,7 @@ def test_an_override_decides(tables: survey_data.SurveyTables) -> None:
 
 
 @pytest.mark.parametrize(
-    ("overrides", "told"),
+    ("overrides", "expected"),
     [
         ({"Masc": "mask"}, r"column Masc: no such column \(did you mean 'Mask'\?\)"),
         ({"Mask": "masque"}, r"column Mask: cannot be mapped to 'masque' \(did you mean 'mask'\?"),
@@ -77,10 +77,10 @@ def test_an_override_decides(tables: survey_data.SurveyTables) -> None:
     ],
 )
 def test_an_impossible_mapping_is_refused(
-    overrides: dict[str, str], told: str, tables: survey_data.SurveyTables
+    overrides: dict[str, str], expected: str, tables: survey_data.SurveyTables
 ) -> None:
     given = frame(Key=["Chang2008"], Mask=["Slit"])
-    with pytest.raises(SurveyImportError, match=told):
+    with pytest.raises(SurveyImportError, match=expected):
         match_columns(tables, given, overrides)
 
 
@@ -133,7 +133,7 @@ def test_values_are_read(
 
 
 @pytest.mark.parametrize(
-    ("attribute", "text", "told"),
+    ("attribute", "text", "expected"),
     [
         ("mask", "Sundial", "no value of mask"),
         ("extractor", "BCXM", "no value"),  # one letter from BCTM and no guess
@@ -146,9 +146,9 @@ def test_values_are_read(
     ],
 )
 def test_what_is_no_value_is_not_guessed(
-    attribute: str, text: str, told: str, tables: survey_data.SurveyTables
+    attribute: str, text: str, expected: str, tables: survey_data.SurveyTables
 ) -> None:
-    with pytest.raises(UnreadableValueError, match=told):
+    with pytest.raises(UnreadableValueError, match=expected):
         ValueReader(tables).read(attribute, text)
 
 
@@ -199,7 +199,7 @@ def test_studies_are_found(
 
 
 @pytest.mark.parametrize(
-    ("said", "told"),
+    ("said", "expected"),
     [
         ({}, "names no study"),
         ({"key": "Nobody1999"}, "no study has the key"),
@@ -211,9 +211,9 @@ def test_studies_are_found(
     ],
 )
 def test_a_study_is_not_guessed(
-    said: dict[str, str], told: str, tables: survey_data.SurveyTables
+    said: dict[str, str], expected: str, tables: survey_data.SurveyTables
 ) -> None:
-    with pytest.raises(StudyNotFoundError, match=told):
+    with pytest.raises(StudyNotFoundError, match=expected):
         StudyFinder(tables).find(**said)
 
 

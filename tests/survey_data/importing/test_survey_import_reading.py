@@ -73,7 +73,7 @@ def test_rows_are_numbered_as_lines_of_the_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "content", "place", "told"),
+    ("name", "content", "place", "expected"),
     [
         ("a.csv", b"", (1, None), "empty"),
         ("a.csv", b"\n \n", (1, None), "empty"),
@@ -95,11 +95,11 @@ def test_rows_are_numbered_as_lines_of_the_file(tmp_path: Path) -> None:
     ],
 )
 def test_what_is_no_table_is_refused_with_its_place(
-    name: str, content: bytes, place: tuple[int | None, str | None], told: str, tmp_path: Path
+    name: str, content: bytes, place: tuple[int | None, str | None], expected: str, tmp_path: Path
 ) -> None:
     path = tmp_path / name
     path.write_bytes(content)
-    with pytest.raises(SurveyImportError, match=told) as caught:
+    with pytest.raises(SurveyImportError, match=expected) as caught:
         read_table(path)
     assert (caught.value.row, caught.value.column) == place
 

@@ -17,7 +17,7 @@ import time
 from pathlib import Path
 
 from tools.faults.kills.commands import COMMANDS, preload
-from tools.faults.kills.pairs import PAIRS, Met, meet
+from tools.faults.kills.pairs import PAIRS, PairResult, meet
 from tools.faults.kills.report import complaints, report
 from tools.faults.kills.trials import Kill, kills
 
@@ -42,7 +42,7 @@ def main(arguments: list[str] | None = None) -> int:
             found.append(one)
             for said in one.wrong:
                 print(f"{one.command}, {one.signal} after {one.at_s:.2f} s: {said}", flush=True)
-            _keep(asked.report, found, met)  # a campaign that is broken off has told something
+            _keep(asked.report, found, met)  # a campaign that is broken off has found something
         draw = random.Random(asked.seed)
         for number, what in enumerate(() if asked.no_pairs else PAIRS):
             met.append(meet(what, work / f"pair {number}", draw))
@@ -58,7 +58,7 @@ def main(arguments: list[str] | None = None) -> int:
     return 1 if wrong else 0
 
 
-def _keep(path: Path | None, found: list[Kill], met: list[Met]) -> None:
+def _keep(path: Path | None, found: list[Kill], met: list[PairResult]) -> None:
     """Write the report of what has been tried so far."""
     if path is not None:
         path.parent.mkdir(parents=True, exist_ok=True)

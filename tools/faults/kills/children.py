@@ -64,11 +64,11 @@ class Child:
         deadline = time.monotonic() + GRACE_S
         while (left := session(self.process)) and time.monotonic() < deadline:
             time.sleep(0.02)
-        told = list(left.values())
+        numbers = list(left.values())
         for process in left:
             with suppress(ProcessLookupError):
                 os.kill(process, signal.SIGKILL)
-        return told
+        return numbers
 
     def said(self) -> str:
         """Return what it wrote on standard error, the end of it."""
@@ -79,10 +79,10 @@ def start(act: Callable[[], object], place: Path) -> Child:
     """Start a program in a directory."""
     sys.stdout.flush()
     sys.stderr.flush()
-    ready, told = os.pipe()
+    ready, numbers = os.pipe()
     process = os.fork()
     if process:
-        os.close(told)
+        os.close(numbers)
         os.read(ready, 1)  # it leads its session from here on
         os.close(ready)
         return Child(process, place, time.monotonic())
@@ -92,7 +92,7 @@ def start(act: Callable[[], object], place: Path) -> Child:
         signal.signal(signal.SIGINT, signal.default_int_handler)
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
         _settle(place)
-        os.close(told)
+        os.close(numbers)
         status = _status(act)
     except BaseException:  # noqa: BLE001 - a child never returns into its parent's code
         traceback.print_exc()

@@ -53,7 +53,7 @@ _VARYING = ("durations.csv", "times.csv")
 
 
 @dataclass(frozen=True)
-class Met:
+class PairResult:
     """What came of a pair: how many were refused, and what is not as wanted."""
 
     what: str
@@ -61,7 +61,7 @@ class Met:
     wrong: tuple[str, ...]
 
 
-def meet(what: str, work: Path, draw: random.Random) -> Met:
+def meet(what: str, work: Path, draw: random.Random) -> PairResult:
     """Start two writers at once, call again who was refused, and compare with one after another."""
     name, *both = PAIRS[what]
     template = work / "template" / "place"
@@ -90,7 +90,7 @@ def meet(what: str, work: Path, draw: random.Random) -> Met:
     wrong += [f"called again it ended with {code}" for code in again if code]
     if _made(place) not in either:
         wrong.append("what is there is not what one after the other makes")
-    return Met(what, len(refused), tuple(wrong))
+    return PairResult(what, len(refused), tuple(wrong))
 
 
 def _made(place: Path) -> dict[str, bytes | None]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tools.faults.kills.commands import COMMANDS
-from tools.faults.kills.pairs import Met
+from tools.faults.kills.pairs import PairResult
 from tools.faults.kills.trials import SIGNALS, Kill
 
 
-def report(kills: Sequence[Kill], met: Sequence[Met]) -> str:
+def report(kills: Sequence[Kill], met: Sequence[PairResult]) -> str:
     """Return what was killed, what met, and what was wrong of either."""
     hit, left = sum(kill.hit for kill in kills), sum(kill.left for kill in kills)
     columns = (*(by.name for by in SIGNALS), "before its end", "left something", "not as wanted")
@@ -37,7 +37,7 @@ def report(kills: Sequence[Kill], met: Sequence[Met]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def complaints(kills: Sequence[Kill], met: Sequence[Met]) -> list[str]:
+def complaints(kills: Sequence[Kill], met: Sequence[PairResult]) -> list[str]:
     """Return what was not as wanted, a line each."""
     found = [
         f"{kill.command}, {kill.signal} after {kill.at_s:.2f} s: {said}"

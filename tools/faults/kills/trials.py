@@ -46,7 +46,7 @@ class Kill:
 
 
 @dataclass(frozen=True)
-class Undisturbed:
+class UndisturbedRun:
     """What a program makes when it is left alone: where it starts, what is there then, how long."""
 
     template: Path
@@ -54,7 +54,7 @@ class Undisturbed:
     seconds: float
 
 
-def undisturbed(name: str, work: Path) -> Undisturbed:
+def run_undisturbed(name: str, work: Path) -> UndisturbedRun:
     """Prepare a program's place and run it twice, which must make the same bytes."""
     command = COMMANDS[name]
     template = work / name / "template" / "place"
@@ -74,7 +74,7 @@ def undisturbed(name: str, work: Path) -> Undisturbed:
         made.append(contents(place, command.varying))
     if made[0] != made[1]:
         raise RuntimeError(f"{name} does not make the same bytes twice: nothing to compare with")
-    return Undisturbed(template, made[0], seconds)
+    return UndisturbedRun(template, made[0], seconds)
 
 
 def kills(number: int, seed: int, work: Path, names: list[str]) -> Iterator[Kill]:
@@ -82,15 +82,17 @@ def kills(number: int, seed: int, work: Path, names: list[str]) -> Iterator[Kill
     draw = random.Random(seed)
     known = {}
     for name in names:
-        known[name] = undisturbed(name, work)
+        known[name] = run_undisturbed(name, work)
         sys.stderr.write(f"{name}: {known[name].seconds:.2f} s when it is left alone\n")
     for count in range(number):
         name = names[count % len(names)]
         by = SIGNALS[count // len(names) % len(SIGNALS)]
-        yield killed(name, by, draw.uniform(0.0, 1.0), known[name], work / name / "killed")
+        yield kill_once(name, by, draw.uniform(0.0, 1.0), known[name], work / name / "killed")
 
 
-def killed(name: str, by: signal.Signals, share: float, known: Undisturbed, work: Path) -> Kill:
+def kill_once(
+    name: str, by: signal.Signals, share: float, known: UndisturbedRun, work: Path
+) -> Kill:
     """Kill a program after a share of its time, and call it again."""
     command = COMMANDS[name]
     place = fresh(known.template, work)
@@ -112,7 +114,7 @@ def killed(name: str, by: signal.Signals, share: float, known: Undisturbed, work
     return Kill(name, by.name, at_s, code != 0, left, tuple(wrong))
 
 
-def _again(command: Command, known: Undisturbed, place: Path) -> list[str]:
+def _again(command: Command, known: UndisturbedRun, place: Path) -> list[str]:
     """Call a program again and say what is not as it is when left alone."""
     code, _ = run(command.act, place)
     if code:
@@ -123,5 +125,5 @@ def _again(command: Command, known: Undisturbed, place: Path) -> list[str]:
         time.sleep(0.1)
     more, less = sorted(now.keys() - known.made.keys()), sorted(known.made.keys() - now.keys())
     other = sorted(n for n in now.keys() & known.made.keys() if now[n] != known.made[n])
-    told = {"left behind": more, "missing": less, "of other bytes": other}
-    return [f"{len(them)} {what}: {them[0]}" for what, them in told.items() if them]
+    differences = {"left behind": more, "missing": less, "of other bytes": other}
+    return [f"{len(them)} {what}: {them[0]}" for what, them in differences.items() if them]

@@ -139,8 +139,8 @@ def load(
 
 def memory(process: int) -> tuple[int, int]:
     """Return a process' own and its resident memory, bytes."""
-    told = Path(f"/proc/{process}/status").read_text().splitlines()
-    kilobytes = {line.split(":")[0]: int(line.split()[1]) for line in told if line.endswith(" kB")}
+    lines = Path(f"/proc/{process}/status").read_text().splitlines()
+    kilobytes = {line.split(":")[0]: int(line.split()[1]) for line in lines if line.endswith(" kB")}
     if "VmRSS" not in kilobytes:
         raise RuntimeError(f"process {process} has ended")
     own = kilobytes["RssAnon"] + kilobytes["RssShmem"]

@@ -17,9 +17,9 @@ from algorithms.row_arithmetic import normalise
 Matrix = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
 
 _STRAIGHT: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-#: Newton steps of the distortion's inverse, and of the meeting point's: both settle in five.
+#: Newton steps of the distortion's inverse, and of the intersection's: both settle in five.
 _STEPS = 12
-#: Sine of the angle between two lines below which they do not tell a meeting point.
+#: Sine of the angle between two lines below which they do not determine an intersection.
 _PARALLEL = 0.05
 #: Half step along a line for its direction, px.
 _STEP_PX = 0.5
@@ -101,7 +101,7 @@ def sun_from_blooming_lines(lines: Sequence[ArrayLike], cameras: Sequence[LineCa
     pair of cameras the point that both curves have in common is found by Newton steps along
     their tangents; the Sun is the mean over pairs, weighted by the square of the sine under which
     the two curves meet, times the votes that both have (half their harmonic mean): the inverse
-    of the meeting point's variance, but for what all share.
+    of the intersection's variance, but for what all share.
 
     Implements: alg:BHT from the lines on (Liu2016), eq. of ERRATA: weighted mean of pairwise
     intersections after distortion correction.

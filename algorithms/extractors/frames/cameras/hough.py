@@ -59,9 +59,9 @@ class HoughLines(Extractor):
     cuts is left out. One camera's lines are parallel; they are intersected with the lines along
     the gradients of the halo on both sides, voting along the blooming line, weighted by the
     inverse variance of each intersection. Coordinates are those of the detector, before any
-    distortion correction (a window's origin is unknown here, and the correction of the meeting
-    point is the meeting point of the corrected lines); models, and `sun_from_blooming_lines`, do
-    the correction.
+    distortion correction (a window's origin is unknown here, and the correction of the
+    intersection is the intersection of the corrected lines); models, and `sun_from_blooming_lines`,
+    do the correction.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 

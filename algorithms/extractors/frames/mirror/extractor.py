@@ -109,7 +109,7 @@ class MirrorRegistration(Extractor):
         return centres
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
-        """Centres, covariances and doubts of frames (N, H, W) or of one; bad pixels are left out.
+        """Centres, covariances and flags of frames (N, H, W) or of one; bad pixels are left out.
 
         See `algorithms.extractors.frames.mirror.registration.register`.
         """

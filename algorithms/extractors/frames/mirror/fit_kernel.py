@@ -23,7 +23,7 @@ from algorithms.extractors.frames.mirror.lines_kernel import (
     Line,
     core_start,
     fold,
-    padded,
+    padded_length,
     places,
 )
 from algorithms.extractors.frames.mirror.records import SUMS, Background, Box, State, Sums
@@ -339,7 +339,7 @@ def fit(  # noqa: PLR0915, PLR0917 - the method's steps in order
         box, state = boxes[k], states[k]
         if not np.isfinite(state.xx):
             continue
-        stride, n, p = box.stride, padded(box), core_start(box)
+        stride, n, p = box.stride, padded_length(box), core_start(box)
         from_row = box.above * stride
         kept, left = keep[k, :n], e[k, :n]
         differences = d[k, from_row : from_row + n]

@@ -22,7 +22,7 @@ from algorithms.extractors.frames.mirror.lines_kernel import (
     core_start,
     departure_noise,
     fold,
-    padded,
+    padded_length,
     places,
 )
 from algorithms.extractors.frames.mirror.records import State
@@ -183,7 +183,7 @@ def skewness(  # noqa: PLR0917 - Numba takes no keyword-only ones
         form.skew = False
         if not np.isfinite(states[k].xx) or box.columns * box.rows > _MOST:
             continue
-        n, p = padded(box), core_start(box)
+        n, p = padded_length(box), core_start(box)
         w = space[0, :n]
         most, light = _weight(s[k, p : p + n], keep[k, :n], e[k, :n], states[k], w, lanes)
         least = max(_SURELY * form.scatter, _MUCH * light)

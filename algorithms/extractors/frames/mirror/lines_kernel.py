@@ -27,7 +27,7 @@ _OWN, _COMMON = taps.noise_of_slopes()
 
 
 @compiled
-def padded(box: Box) -> int:
+def padded_length(box: Box) -> int:
     """Numbers in a line of the core, up to a multiple of `WHOLE`."""
     return (box.rows * box.stride + WHOLE - 1) // WHOLE * WHOLE
 

@@ -19,7 +19,7 @@ from algorithms.extractors.frames.mirror.lines_kernel import (
     departure_noise,
     fold,
     mirror_below,
-    padded,
+    padded_length,
 )
 from algorithms.extractors.frames.mirror.records import Box, State
 from algorithms.kernels.records import Records
@@ -27,7 +27,7 @@ from algorithms.kernels.records import Records
 #: A pair is left out whose difference departs by so many deviations, this share of the slope and
 #: this of the peak: at first, and when the fit is good.
 _BAD, _BAD_SLOPE, _BAD_PEAK = (5.0, 4.5), (0.4, 0.05), (0.1, 0.003)
-#: Square of the share of the slope by which sharp rims depart: little of noise is told where that
+#: Square of the share of the slope by which sharp rims depart: little is known of noise where that
 #: is above the noise that is there in the dark.
 _SHARP, _FLOOR_SQUARE = 0.03**2, FLOOR**2
 #: Variance of the mean of N neighbours' departures, over its square and times N: half of a normal
@@ -164,7 +164,7 @@ def leave_out(  # noqa: PLR0917 - Numba takes no keyword-only ones
         box, state = boxes[k], states[k]
         if not np.isfinite(state.xx):
             continue
-        n, p = padded(box), core_start(box)
+        n, p = padded_length(box), core_start(box)
         before = state.gain
         kept = keep[k, :n]
         variance, light = _noise(

@@ -20,7 +20,7 @@ from algorithms.extractors.frames.mirror.lines_kernel import (
     ZERO,
     Line,
     mirror_below,
-    padded,
+    padded_length,
 )
 from algorithms.extractors.frames.mirror.records import Box, Light
 from algorithms.kernels.records import Records
@@ -273,4 +273,4 @@ def pair_up(  # noqa: PLR0917 - Numba takes no keyword-only ones
         far = _RING_BAD + _BAD * math.sqrt(2.0 * light.noise) / light.peak
         _clean_ring(s[k], d[k], box, far, largest)
         _complete(s[k], box)
-        _keep(bad, box, keep[k, : padded(box)])
+        _keep(bad, box, keep[k, : padded_length(box)])

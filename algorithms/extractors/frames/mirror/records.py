@@ -101,7 +101,7 @@ class Background:
     Attributes
     ----------
     slope, bend, square
-        Of a pair's difference along both axes; square of the length that the bend is told at.
+        Of a pair's difference along both axes; square of the length at which the bend is measured.
     slope_variance, bend_variance
         Variances of slope and bend.
     """

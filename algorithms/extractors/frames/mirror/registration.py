@@ -1,11 +1,11 @@
-"""Centres, covariances and doubts of point-symmetric spots: one frame or window each.
+"""Centres, covariances and flags of point-symmetric spots: one frame or window each.
 
 What `mirror.extractor.MirrorRegistration` does to whole frames, for whoever has windows of frames.
 On as many frames at once as the processor's cache holds, the light is found (`search_kernel`) and
 the pixels about its middle are paired (`pairs_kernel`); by turns, the displacement is fitted
 (`fit_kernel`) and pairs that depart are left out (`outlier_kernel`), after the first turn without
 the background's slope (`ring_kernel`). Numbers that tell one spot (`shape_kernel`, `ghost_kernel`)
-decide what speaks against an answer (`doubts_kernel`).
+decide what speaks against an answer (`flags_kernel`).
 
 About a point m / 2, m whole, pixels x and m - x pair without interpolation. With f the spot about
 its centre c, d = 2 c - m and u = x - m / 2, a pair's difference is ``D = f(u - d/2) - f(u + d/2)``
@@ -59,7 +59,7 @@ class Registration(NamedTuple):
     Attributes
     ----------
     found
-        Centres, covariances and doubts.
+        Centres, covariances and flags.
     noise
         (N, 2) variance of a dark pixel, and what a unit of light adds to it; NaN where nothing was
         found to tell it by.
@@ -89,7 +89,7 @@ def register(
     -------
     Measurement
         Centres (N, 2) ``(x, y)`` px from the first pixel's middle, their covariance (N, 2, 2) px^2
-        and doubts (N,): `NO_SPOT`, `SEVERAL_SPOTS`, `CUT` and `NOT_SYMMETRIC` say why a row is
+        and flags (N,): `NO_SPOT`, `SEVERAL_SPOTS`, `CUT` and `NOT_SYMMETRIC` say why a row is
         NaN; `SATURATED` and `GHOST` stand beside an answer too.
 
     Raises
@@ -104,7 +104,7 @@ def register(
     >>> disc = 900 / (1 + np.exp(2 * (np.hypot(x - 21.3, y - 18.8) - 7)))
     >>> windows = np.random.default_rng(1).normal(50 + disc, 5.0)
     >>> found = register(windows)
-    >>> found.features.round(1), found.deviations.round(3), found.doubts
+    >>> found.features.round(1), found.deviations.round(3), found.flags
     (array([[21.3, 18.8]]), array([[0.003, 0.003]]), array([0]))
     """
     return register_frames(observations, bad, longest_px).found
@@ -136,8 +136,8 @@ def register_frames(
     kernels.moments.unusable(frames, frames.dtype.kind == "f", unusable)
     search.find_lights(frames, unusable, lights)
     why = lights["refusal"]
-    found.doubts[why == search.SEVERAL] = int(QualityFlag.SEVERAL_SPOTS)
-    found.doubts[why == search.EDGE] = int(QualityFlag.CUT)
+    found.flags[why == search.SEVERAL] = int(QualityFlag.SEVERAL_SPOTS)
+    found.flags[why == search.EDGE] = int(QualityFlag.CUT)
     seen = np.flatnonzero(why == 0)
     if len(seen):
         _register_seen(frames, seen, lights[seen], mask, longest_px, result)
@@ -152,7 +152,7 @@ def _register_seen(  # noqa: PLR0917 - what is known of the frames
     longest_px: float | None,
     result: Registration,
 ) -> None:
-    """Write centres, covariances, doubts and noise of the frames `seen`, chunk by chunk."""
+    """Write centres, covariances, flags and noise of the frames `seen`, chunk by chunk."""
     kernels, n = _kernels(), len(seen)
     numbers = np.empty(3, dtype=np.int64)
     states, grounds = np.zeros(n, dtype=STATE), np.zeros(n, dtype=BACKGROUND)
@@ -171,7 +171,7 @@ def _register_seen(  # noqa: PLR0917 - what is known of the frames
         state = _State(boxes[part], middles[part], states[part], grounds[part], forms[part])
         _chunk(frames, seen[part], lights[part], mask, lines, work, state)
     found = result.found
-    kernels.doubts.conclude(
+    kernels.flags.conclude(
         frames,
         seen,
         -np.inf if longest_px is None else longest_px,
@@ -182,7 +182,7 @@ def _register_seen(  # noqa: PLR0917 - what is known of the frames
         forms,
         found.features,
         found.covariance,
-        found.doubts,
+        found.flags,
         result.noise,
     )
 
@@ -198,15 +198,15 @@ class _Kernels(NamedTuple):
     ring: ModuleType
     shape: ModuleType
     ghost: ModuleType
-    doubts: ModuleType
+    flags: ModuleType
 
 
 @cache
 def _kernels() -> _Kernels:
     """Load Numba at first use; from then on that costs nothing."""
     from algorithms.extractors.frames.mirror import (  # noqa: PLC0415
-        doubts_kernel,
         fit_kernel,
+        flags_kernel,
         ghost_kernel,
         outlier_kernel,
         pairs_kernel,
@@ -225,7 +225,7 @@ def _kernels() -> _Kernels:
         ring_kernel,
         shape_kernel,
         ghost_kernel,
-        doubts_kernel,
+        flags_kernel,
     )
 
 

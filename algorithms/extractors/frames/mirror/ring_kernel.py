@@ -1,4 +1,4 @@
-"""Take the background's odd part, told by the ring around a spot, off its pairs' differences.
+"""Take the background's odd part, from the ring around a spot, off its pairs' differences.
 
 The third stage of `mirror.registration`, which says what the arrays hold.
 """

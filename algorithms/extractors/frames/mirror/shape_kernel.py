@@ -21,7 +21,7 @@ from algorithms.extractors.frames.mirror.lines_kernel import (
     core_start,
     departure_noise,
     fold,
-    padded,
+    padded_length,
     places,
 )
 from algorithms.extractors.frames.mirror.records import Box, State
@@ -189,7 +189,7 @@ def _scatter(  # noqa: PLR0917 - Numba takes no keyword-only ones
     departing, leniently = fold(lanes, 0, _LANES), fold(lanes, 1, _LANES)
     scale = number / max(total, 1e-30)
     count = max(number - 2.0, 0.0) + _EXPECTED
-    # a variance that is itself told by so many departures: that of Student's distribution
+    # a variance that is itself estimated from so many departures: that of Student's distribution
     student = count / (count - 2.0)
     departing = student * (departing * scale + _EXPECTED) / count
     return departing, (leniently * scale + _EXPECTED) / count
@@ -214,7 +214,7 @@ def shapes(  # noqa: PLR0917 - Numba takes no keyword-only ones
         box, form = boxes[k], forms[k]
         if not np.isfinite(states[k].xx):
             continue
-        n, p = padded(box), core_start(box)
+        n, p = padded_length(box), core_start(box)
         mean, kept, left = s[k, p : p + n], keep[k, :n], e[k, :n]
         share, light = _alike(mean, kept, left, box.stride, own, line[:n], lanes)
         form.scatter, form.lenient = _scatter(

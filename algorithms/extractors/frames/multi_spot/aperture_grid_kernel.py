@@ -30,7 +30,7 @@ _REACH = 2.0
 
 
 @compiled
-def nearest(lattice: Lattice, x: float, y: float, reach: float) -> tuple[int, float]:
+def nearest_aperture(lattice: Lattice, x: float, y: float, reach: float) -> tuple[int, float]:
     """Aperture nearest to a point within `reach`, and its squared distance; -1 for none."""
     table, corner, cell = lattice.table, lattice.corner, lattice.cell_px
     best = -1
@@ -143,7 +143,7 @@ def _pair(  # noqa: PLR0917 - Numba takes no keyword-only ones
     """Write the nearest spot of each aperture moved by (x, y), and which have one, rising."""
     number = 0
     for s in range(spots.shape[0]):
-        a, squared = nearest(lattice, spots[s, 0] - x, spots[s, 1] - y, reach)
+        a, squared = nearest_aperture(lattice, spots[s, 0] - x, spots[s, 1] - y, reach)
         if a < 0 or (partner[a] >= 0 and not squared < distance[a]):
             continue
         if partner[a] < 0:

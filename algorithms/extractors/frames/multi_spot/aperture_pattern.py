@@ -199,7 +199,7 @@ def _find_pattern(
         np.empty(shape, dtype=np.int32),
         np.empty(count, dtype=np.int64),
     )
-    # for a doubt, a line of spots unexplained is a fault, and some are missing
+    # for an uncertain answer, a line of spots unexplained is a fault, and some are missing
     slack = (faulty_lines + 0.5) * max(int(np.bincount(line).max()) for line in known.lines) + 4
     aperture_grid_kernel.match(seen, known, (height, width), tolerance_px, slack, matches)
     views = Views(

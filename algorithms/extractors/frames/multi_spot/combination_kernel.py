@@ -12,7 +12,7 @@ from algorithms.contract import Floats
 
 #: Deviations by which a spot may be away from the others, and its misfit above theirs.
 _AWAY, _MISFIT = 4.0, 8.0
-#: Least number of spots of which one can be told to disagree.
+#: Least number of spots of which one can be found to disagree.
 _VOTERS = 4
 #: Turns of finding what spots scatter more than noise, and weights from it.
 _TURNS = 3

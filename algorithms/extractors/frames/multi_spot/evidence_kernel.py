@@ -8,7 +8,7 @@ import numpy as np
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
-from algorithms.extractors.frames.multi_spot.aperture_grid_kernel import nearest
+from algorithms.extractors.frames.multi_spot.aperture_grid_kernel import nearest_aperture
 from algorithms.extractors.frames.multi_spot.records import (
     Flags,
     FrameView,
@@ -25,11 +25,11 @@ from algorithms.extractors.frames.multi_spot.view_kernel import DARK, OUT
 
 #: What `decide` says of a frame: an answer, no pattern found, several that it may be, and an answer
 #: that it is not, should lines be seen twice in full light.
-FOUND, NOTHING, SEVERAL, DOUBTFUL = 0, 1, 2, 3
+FOUND, NOTHING, SEVERAL, UNCERTAIN = 0, 1, 2, 3
 #: Price of a dark line of apertures, and of one of it: one over those in view, within limits.
 _DARKNESS, _DARK_ONE = 1.0, (0.25, 0.34)
 #: The same of lit ones that a displacement leaves unexplained: no reflection is as bright as they.
-#: For a doubt suffices a line of them that may be one of its own seen twice: as a dark one.
+#: A line of them that may be one of its own seen twice makes an answer uncertain: as a dark one.
 _LIGHT, _LIGHT_ONE, _DOUBLED = 2.0, (0.8, 0.8), 1.0
 #: The same of a Sun out of the field.
 _OUTSIDE = 1.0
@@ -85,7 +85,7 @@ def _dark_alone(  # noqa: PLR0917 - Numba takes no keyword-only ones
         faults[a] = dim or state[a] == DARK
         if faults[a]:
             x, y = apertures[a, 0] + away_x, apertures[a, 1] + away_y
-            faults[a] = nearest(lattice, x, y, reach)[0] < 0
+            faults[a] = nearest_aperture(lattice, x, y, reach)[0] < 0
             some |= faults[a]
     return some
 
@@ -261,13 +261,13 @@ def _choose(  # noqa: PLR0917 - Numba takes no keyword-only ones
             best = h
     for h in range(best):  # compared with another one above
         ahead[h, 0], ahead[h, 1] = _ahead(frame, best, h, lattice, tolerance, work)
-    doubtful = _is_thin(frame.partners[best], lattice.lines, allowed, work.faulty)
+    uncertain = _is_thin(frame.partners[best], lattice.lines, allowed, work.faulty)
     near_last = 0
     answer = -1
     others = 0
     for h in range(places.shape[0]):
         if h != best:
-            doubtful |= ahead[h, 1] < allowed + _CLEAR
+            uncertain |= ahead[h, 1] < allowed + _CLEAR
             if ahead[h, 0] >= allowed + _CLEAR:
                 continue
             others += 1
@@ -278,7 +278,7 @@ def _choose(  # noqa: PLR0917 - Numba takes no keyword-only ones
     if others == 0 and not enough[best]:
         return -1, NOTHING
     if others == 0:
-        return best, DOUBTFUL if doubtful else FOUND
+        return best, UNCERTAIN if uncertain else FOUND
     return (answer, FOUND) if near_last == 1 else (-1, SEVERAL)
 
 
@@ -329,7 +329,7 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
     Against a displacement speak places in view that are dark where another one has no aperture,
     spots that only the other explains or lie nearer to, and a Sun out of the field; a whole dark
     line is one fault, and what is out of view speaks for neither. The answer is what every other
-    exceeds by enough, doubtful where one does not if a line seen twice is one fault, too.
+    exceeds by enough, uncertain where one does not if a line seen twice is one fault, too.
 
     Parameters
     ----------
@@ -345,7 +345,7 @@ def decide(  # noqa: PLR0917 - Numba takes no keyword-only ones
         x and y of the middle of the field, and how far displacements are from it along an axis.
     displacement, chosen, reason
         (N, 2), (N, A) and (N,): receive the displacement, NaN where none is found, the spot of
-        each aperture, -1 for none, and FOUND, NOTHING, SEVERAL or DOUBTFUL.
+        each aperture, -1 for none, and FOUND, NOTHING, SEVERAL or UNCERTAIN.
     """
     allowed, reach = limits
     places, kept = matches.places, matches.kept

@@ -30,7 +30,7 @@ from algorithms.measurement import Measurement
 
 @dataclass(frozen=True)
 class MaskSpots:
-    """Reads the spots that a mask of apertures casts, having found which aperture cast which.
+    """Reads the spots that a mask of apertures casts, and finds which aperture cast which.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class MaskSpots:
         return cls(**design_pattern(geometry, cls.about.name))
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
-        """Positions and doubts of frames (N, H, W) or of one; no covariance is stated.
+        """Positions and flags of frames (N, H, W) or of one; no covariance is stated.
 
         AMBIGUOUS_PATTERN where another identity of the spots explains a frame nearly as well.
         Bad pixels are replaced by their neighbours.

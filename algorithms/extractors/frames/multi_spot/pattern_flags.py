@@ -10,8 +10,8 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import Pattern
 from algorithms.measurement import Measurement, QualityFlag
 
 
-def pattern_doubts(features: Floats, pattern: Pattern) -> NDArray[np.int64]:
-    """Doubts (N,) of answers (N, 2) from a pattern found in their frames.
+def find_pattern_flags(features: Floats, pattern: Pattern) -> NDArray[np.int64]:
+    """Return the flags (N,) of answers (N, 2) from a pattern found in their frames.
 
     AMBIGUOUS_PATTERN where another displacement explains the frame nearly as well, whether or not
     there is an answer; NO_SPOT where there is none for another reason.
@@ -23,4 +23,4 @@ def pattern_doubts(features: Floats, pattern: Pattern) -> NDArray[np.int64]:
 def without_covariance(features: Floats, pattern: Pattern) -> Measurement:
     """Return what `Extractor.measure` gives of a method that states no covariance."""
     n, f = features.shape
-    return Measurement(features, np.full((n, f, f), np.nan), pattern_doubts(features, pattern))
+    return Measurement(features, np.full((n, f, f), np.nan), find_pattern_flags(features, pattern))

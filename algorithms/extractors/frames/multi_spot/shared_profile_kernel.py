@@ -247,7 +247,7 @@ def _variances(  # noqa: PLR0917 - Numba takes no keyword-only ones
     changed = False
     gains = np.empty(ends.size)
     for turn in range(2):
-        told = 0
+        count = 0
         begin = 0
         for s in range(ends.size):
             excess = 0.0
@@ -266,9 +266,9 @@ def _variances(  # noqa: PLR0917 - Numba takes no keyword-only ones
                 light += value
             begin = ends[s]
             if light > 0.0:
-                gains[told] = excess / light
-                told += 1
-        gain = max(float(np.median(gains[:told])), 0.0) if told > 0 else 0.0
+                gains[count] = excess / light
+                count += 1
+        gain = max(float(np.median(gains[:count])), 0.0) if count > 0 else 0.0
     return gain, changed
 
 

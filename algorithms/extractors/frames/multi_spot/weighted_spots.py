@@ -25,7 +25,7 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     lattice,
 )
 from algorithms.extractors.frames.multi_spot.mask_spots import MaskSpots
-from algorithms.extractors.frames.multi_spot.pattern_flags import pattern_doubts
+from algorithms.extractors.frames.multi_spot.pattern_flags import find_pattern_flags
 from algorithms.extractors.frames.single_light import (
     check_agreement,
     frames_to_measure,
@@ -75,9 +75,9 @@ class WeightedSpots(MaskSpots, Extractor):
     alike on the pixels: 0.0003 px of a disc seven pixels wide, 0.001 to 0.002 px of strong rings.
 
     Failure: a NaN row where the pattern is not found, as for MCAM, and where no spot's centre can
-    be fitted. With less than four spots none can be told to be the wrong one; with one aperture,
-    also where registration (`algorithms.extractors.frames.mirror`) does not find one whole
-    symmetric light within half a pixel of the answer.
+    be fitted. With less than four spots none can be determined to be the wrong one; with one
+    aperture, also where registration (`algorithms.extractors.frames.mirror`) does not find one
+    whole symmetric light within half a pixel of the answer.
 
     Cost: as MCAM, and some 150 operations a pixel of the spots' surroundings.
 
@@ -123,7 +123,7 @@ class WeightedSpots(MaskSpots, Extractor):
         return self._read(as_frames(observations))[0][0]
 
     def measure(self, observations: ArrayLike, bad: ArrayLike | None = None) -> Measurement:
-        """Positions, covariances and doubts of frames (N, H, W) or of one.
+        """Positions, covariances and flags of frames (N, H, W) or of one.
 
         The covariance is that of the weighted mean, x and y apart; with one aperture none is
         stated, for no other spot tells noise from what a profile misses of the image.
@@ -135,7 +135,7 @@ class WeightedSpots(MaskSpots, Extractor):
         covariance = np.zeros((len(found), 2, 2))
         covariance[:, [0, 1], [0, 1]] = sure
         covariance[np.isnan(sure[:, 0]) | np.isnan(found[:, 0])] = np.nan
-        return Measurement(found, covariance, pattern_doubts(found, pattern))
+        return Measurement(found, covariance, find_pattern_flags(found, pattern))
 
     def spots(self, observations: ArrayLike) -> Floats:
         """Centres (N, A, 2) of each aperture's spot in frames (N, H, W), px.

@@ -3,7 +3,7 @@
 The photodiode cube in orbit. `consider-kalman` is set beside itself without a memory: the same
 fit, with the same readings, Earth's light, temperature and rates, but a direction that is taken to
 wander by a radian from sample to sample, so that every sample is a least-squares answer of its
-own. Both are told the true directions in their calibration and tested a quarter of a year later,
+own. Both are given the true directions in their calibration and tested a quarter of a year later,
 over samples in sunlight that both answer. Once as it is, once with ten times the noise, which is
 what a filter is for. `sun-and-earth` and `assembled-faces`, which know less, are drawn beside them.
 """

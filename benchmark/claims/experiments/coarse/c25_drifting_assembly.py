@@ -3,7 +3,7 @@
 Two sensors in orbit: the CCD behind a hole, whose head tilts, shifts and lengthens, and the
 photodiode cube, whose gains move. `assembly-drift` carries the assembly in its state; the other is
 `extended-kalman`, the same filter of the same readings, light, temperature and rates, whose
-assembly stays as the calibration found it. Both learn from the same three orbits, told the true
+assembly stays as the calibration found it. Both learn from the same three orbits, given the true
 directions, and are tested a quarter of a year later over samples in sunlight that both answer. The
 same flights without drift and ageing tell how much of the error is drift; on the cube that is too
 little to tell, so that the CCD alone decides of it.

@@ -1,7 +1,7 @@
 """C29: the same Earth before a digital sensor and before an analog one (Xie2013).
 
 The pinhole camera on CMOS with its thresholded centroid, and the photodiode cube by least squares
-over its calibrated faces, each calibrated on the ground, told the true directions, and tested with
+over its calibrated faces, each calibrated on the ground, given the true directions, and tested with
 and without the sunlit Earth in view. What albedo adds is ``sqrt(rms_with^2 - rms_without^2)``, 0
 where it is no larger.
 """
@@ -20,7 +20,8 @@ from benchmark.claims.truth import with_true_directions
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.standard import cmos_single_aperture_pinhole, pd_maskless_cube
 
-#: Less than this cannot be told from nothing, deg: the least that a test of 400 samples resolves.
+#: Less than this cannot be distinguished from nothing, deg: the least that a test of 400 samples
+#: resolves.
 _LEAST_DEG = 1e-6
 
 

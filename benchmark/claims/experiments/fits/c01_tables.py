@@ -2,7 +2,7 @@
 
 Units of a CMOS array and of a quadrant photodiode are calibrated with `lut` at its published
 interval of 1 degree (its smoothing chosen by the calibration samples, as it ships), with
-`polynomial-2d`, `lsq` and `pinhole`, all told the true directions. Errors are those on the test
+`polynomial-2d`, `lsq` and `pinhole`, all given the true directions. Errors are those on the test
 Suns, run times those of answering 20,000 rows of features; of the two sensors the geometric mean is
 taken. Tables of other intervals show what size costs and brings: entries are what a table stores.
 """

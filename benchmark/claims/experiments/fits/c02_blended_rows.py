@@ -3,7 +3,7 @@
 The quadrant sensor of `qpd-single-aperture` is given the study's field of +-64 degrees: its
 aperture comes down from 1 mm to 0.45 mm, so that the balance is not saturated before 65.8 degrees,
 and its quadrants grow to hold the light. It is calibrated at every whole degree, as the study's
-table is, and told the true directions, so that a node of the table is a pose, or nearly. The plain
+table is, and given the true directions, so that a node of the table is a pose, or nearly. The plain
 table is `lut`, which interpolates between the four nodes around; the other is `lut-polynomial` with
 the study's 8th degree. Both choose their smoothing by the same calibration samples, as they ship. A
 third line shows the table without smoothing: every node as it was measured.

@@ -2,7 +2,7 @@
 
 The calibration poses of `qpd-single-aperture` within a cone are fitted by `linear` and tested on
 the test Suns within the same cone; the widest holds the whole field, corners too. Over all of it
-stands `polynomial-1d` beside, which is told as much. A denser grid of poses than the data set's
+stands `polynomial-1d` beside, which is given as much. A denser grid of poses than the data set's
 (2 degrees) and more test Suns fill the small cones; nothing else is changed. The line answers a
 Sun of the cone wherever it is, so that no edge is left out.
 """
@@ -43,7 +43,7 @@ def trial(number: int) -> Trial:
 
 def _error(seen: ConditionView, half_deg: float, model: LinearFit | AxisPolynomial) -> float:
     known, asked = (
-        Poses.of(seen, VoltageBalance, split).chosen(seen.incidence_deg(split) <= half_deg)
+        Poses.of(seen, VoltageBalance, split).select(seen.incidence_deg(split) <= half_deg)
         for split in ("calibration", "test")
     )
     return rms(errors(model, known, asked))

@@ -3,7 +3,7 @@
 `polynomial-1d` of order 15 beside the same model at the order that cross-validation chooses from
 the calibration poses alone, which may be 15 too. Once with all poses of each data set, as a
 calibration has them; once with 64 drawn ones, four a coefficient of the highest order. Each trial
-is another unit, told the true directions, with `DRAWS` draws of poses; of two sensors and all
+is another unit, given the true directions, with `DRAWS` draws of poses; of two sensors and all
 draws geometric means are taken. Test Suns outside the poses' convex hull have no answer, of either
 order.
 """
@@ -57,7 +57,7 @@ def _sensor(preset: Preset, unit: int) -> tuple[float, float, list[list[float]]]
     seen = ConditionView(with_true_directions(preset), unit=unit)
     known, asked = (Poses.of(seen, VoltageBalance, split) for split in ("calibration", "test"))
     rng, rows = generator("claims", "C05", preset.name, unit), np.arange(len(known.sun))
-    few = [known.chosen(draw(rows, FEW, rng)) for _ in range(DRAWS)]
+    few = [known.select(draw(rows, FEW, rng)) for _ in range(DRAWS)]
     return (
         worse(known, asked),
         geometric([worse(poses, asked) for poses in few]),

@@ -3,7 +3,7 @@
 To the balances of a quadrant photodiode and a position-sensitive device a wave is added, along each
 axis with a phase of its own: 0.005 high, which is some tenths of a degree, and one to four waves
 over the field, drawn for each unit. `fourier-balance` and `polynomial-1d` each choose their size
-from the calibration samples, which are told the true directions. The error that the wave adds, in
+from the calibration samples, which are given the true directions. The error that the wave adds, in
 the mean square, is compared with what it adds to a Fourier series that was calibrated without it;
 the share that is gone was captured. Lines show that share by the number of waves, the phases as
 drawn. Of both sensors means are taken; run times are those of 20,000 rows.
@@ -74,7 +74,7 @@ def capture(waved: float, plain: float, unknowing: float) -> float:
 
 
 class _Sensor:
-    """One unit, told the true directions, and the wave drawn for it."""
+    """One unit, given the true directions, and the wave drawn for it."""
 
     def __init__(self, preset: Preset, unit: int) -> None:
         rng = generator("claims", "C07", preset.name, unit)
@@ -89,7 +89,7 @@ class _Sensor:
     def measured(self, waves: float, timed: bool = False) -> WaveResult:
         """Measure both models under so many waves over the field; run times where timed."""
         known, asked = (
-            poses.moved(self._wave(poses.features, waves)) for poses in (self.known, self.asked)
+            poses.shift(self._wave(poses.features, waves)) for poses in (self.known, self.asked)
         )
         unknowing = rms(errors(FourierBalance(extrapolation=0.1), self.known, asked))
         fourier, polynomial = FourierBalance(), AxisPolynomial()

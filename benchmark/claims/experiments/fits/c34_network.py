@@ -34,7 +34,7 @@ def trial(number: int) -> Trial:
 
     def bent(poses: Poses, height: float) -> Poses:
         turns = 2.0 * np.pi * (poses.features - low) / (high - low)
-        return poses.moved(height * _wave(turns, phases))
+        return poses.shift(height * _wave(turns, phases))
 
     model = LeastSquaresGeometry.for_sensor(seen.preset.geometry, MultipleCentroids.about.kind)
     networks, pinholes = (

@@ -1,7 +1,7 @@
 """C35: a network shown only Suns whose spots are all in sight, or all Suns (Rufino2009b).
 
 Frames of `cmos-multi-aperture` are read by MCAM, which finds every aperture's spot. In S-FOV mode
-calibration (told the true directions) and test are those frames that show all 100 spots, in X-FOV
+calibration (given the true directions) and test are those frames that show all 100 spots, in X-FOV
 mode all frames. Both train `ann` on the displacement of the whole pattern, averaged over the spots
 there are. The third line is X-FOV with the plain mean of the spots in sight as the network's input,
 as the study has it, which jumps by half a pitch where a row of spots leaves. Field is the share of
@@ -53,7 +53,7 @@ def trial(number: int) -> Trial:
     known, asked = (_read(seen, split) for split in ("calibration", "test"))
     narrow = np.full(len(asked.whole), math.nan)
     narrow[asked.whole] = errors(
-        AxisNetworks(), known.displaced.chosen(known.whole), asked.displaced.chosen(asked.whole)
+        AxisNetworks(), known.displaced.select(known.whole), asked.displaced.select(asked.whole)
     )
     wide = errors(AxisNetworks(), known.displaced, asked.displaced)
     plain = errors(AxisNetworks(), known.averaged, asked.averaged)

@@ -27,11 +27,11 @@ class Poses:
         """Return a split as this extractor reads it."""
         return cls(seen.features(extractor, split), seen.samples(split).sun)
 
-    def chosen(self, rows: NDArray[Any]) -> Self:
+    def select(self, rows: NDArray[Any]) -> Self:
         """Return some of them, by mask or by number."""
         return replace(self, features=self.features[rows], sun=self.sun[rows])
 
-    def moved(self, by: Floats) -> Self:
+    def shift(self, by: Floats) -> Self:
         """Return them with other features: (N, F) is added."""
         return replace(self, features=self.features + by)
 

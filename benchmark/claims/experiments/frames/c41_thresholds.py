@@ -1,6 +1,6 @@
 """C41: error and time of the multiple threshold centroid against the number of thresholds.
 
-Gaussian spots of sigma 3 px with 1 % noise. The method is told an accuracy dx and takes as many
+Gaussian spots of sigma 3 px with 1 % noise. The method is given an accuracy dx and takes as many
 thresholds as sigma sqrt(e) / dx asks for, so dx is set for each number. "Enough" compares the
 number that the shipped dx of 0.01 px asks for with four times it. Ranks are correlated from 4 to 64
 thresholds; the line goes on to where noise is all that is left.

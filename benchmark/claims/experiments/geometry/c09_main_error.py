@@ -5,7 +5,7 @@ squared error that its misalignment adds (tilts, rotation, offsets of the mask) 
 its focal length adds and beside all that is left without either. On the same unit without
 misalignment, which would hide it, a table fitted to the model's errors says whether one is needed,
 and 80 deg C whether temperature has to be compensated: dark current, and a spacer of aluminium that
-lengthens. The model is the drawing's and needs no calibration; the table is told true directions.
+lengthens. The model is the drawing's and needs no calibration; the table is given true directions.
 """
 
 from __future__ import annotations

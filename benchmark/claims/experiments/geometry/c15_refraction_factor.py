@@ -2,7 +2,7 @@
 
 Under cover glass `n-slit` is calibrated with K held at 1 and with K fitted; the line's place and
 turns are fitted both times. As the equations are printed K stands for refraction alone, so that
-both are told of no glass. The plot has the model beside it that knows the glass and applies Snell's
+both know of no glass. The plot has the model beside it that knows the glass and applies Snell's
 law, which no statistic uses.
 """
 

@@ -1,13 +1,13 @@
 """C21: what a temperature coefficient of every face is worth from -40 to 80 deg C (Lu2017a).
 
 Each calibration sample and the whole test split are taken at temperatures of the sensor that are
-told with them. `temperature` learns a coefficient a face there; the model behind it, which takes a
+given with them. `temperature` learns a coefficient a face there; the model behind it, which takes a
 signal for a cosine, reads the same signals with and without. It is `basic`, which needs the faces
 of a cube: pva-maskless-panels has them, and so has pd-maskless-cube, the arrangement of the study.
 On pd-maskless-pyramid its counterpart `pyramidal` stands in. The statistic is the geometric mean of
 the three ratios at 80 deg C.
 
-Panels are as their data set has them: all of one coefficient, each as much warmer than told as it
+Panels are as their data set has them: all of one coefficient, each as much warmer than stated as it
 is lit. Photodiodes on the ground do not change with temperature in their data sets; here they do
 as those that fly (pd-orbit): each with a coefficient of its own. Their dark current doubles every
 7 K, as everywhere. The plot, and no statistic, has the cube without dark current beside them, read
@@ -76,16 +76,16 @@ def _errors(
     preset: Preset, bench: Preset, unit: int, read: Reading, model: type[Model]
 ) -> tuple[Sequence[float], Sequence[float]]:
     """RMS errors by temperature without the coefficients and with them."""
-    told = bench.for_unit(unit).generate("nominal", "calibration").sun
+    sun = bench.for_unit(unit).generate("nominal", "calibration").sun
     rng = generator("claims", "C21", preset.name, unit)
-    mixed = rng.choice(TEMPERATURES_K, size=len(told))
+    mixed = rng.choice(TEMPERATURES_K, size=len(sun))
     take = partial(_signals, preset.for_unit(unit), read)
     known = take("calibration", mixed)
     tested = preset.scene("nominal", "test", _TESTED).sun
     kinds = model, Chain((TemperatureDrift,), model)
     fitted = [one.for_sensor(preset.geometry, FeatureKind.SIGNALS) for one in kinds]
     for one in fitted:
-        one.fit(known, told, {"temperature_K": mixed})
+        one.fit(known, sun, {"temperature_K": mixed})
     errors: list[list[float]] = [[], []]
     for kelvin in TEMPERATURES_K:
         same = np.full(len(tested), kelvin)

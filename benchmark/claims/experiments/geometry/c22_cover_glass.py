@@ -1,7 +1,7 @@
 """C22: whether refraction in the cover glass is undone by iteration (Wei2011).
 
 The same unit is seen with and without half a millimetre of glass; `spm` reads both, `optical + spm`
-the spots under glass, told of the drawn plate. Iterations are counted of Newton's method on
+the spots under glass, given the drawn plate. Iterations are counted of Newton's method on
 eq:refcomp3 from the paraxial ray, as the compensation takes it, until the ray is within 1e-9 rad
 of its limit at every test spot. The second method casts each ray through the plate by Snell's law
 in closed form, onto the detector of the same unit, without pixels and noise; and finds it again

@@ -3,7 +3,7 @@
 The lower face stays where it is and the drawing's h counts to it, as in eq:shadcomp: light passes
 the lower and the upper rim, and its middle moves out by half a thickness more. How much farther out
 the balance places it, in the mean over the field, than under a foil is the shift. `shadow + spm` is
-told of thickness and aperture. The thickest mask is a tenth of the aperture: balances of a thicker
+given thickness and aperture. The thickest mask is a tenth of the aperture: balances of a thicker
 one saturate within the field. Of both sensors' correlations the mean is taken, of their ratios the
 geometric mean.
 """

@@ -4,7 +4,7 @@ The image, 0.2 mm wide with edges blurred by 0.7 design pixels (12.5 um), falls 
 same length with pixels a quarter to four times as large. The light is the same: an image gives
 10,000 electrons to a pixel of the design, to others by their size, and the background 20; every
 pixel is read with 10 electrons of noise, whatever its size. Errors are geometric means of
-`linear-phase` and `eigen-analysis`, which both are told the pitch. The second method is the
+`linear-phase` and `eigen-analysis`, which both are given the pitch. The second method is the
 Cramer-Rao bound of the same profiles: what the pixels still tell, whoever reads them.
 """
 

@@ -1,6 +1,6 @@
 """Images of slits on two arrays of pixels, in closed form, and the errors of who reads them.
 
-Everything is told in pixels of the design, 12.5 um: an image is 16 of them wide, its edges are
+Lengths are in pixels of the design, 12.5 um: an image is 16 of them wide, its edges are
 blurred by 0.7 (one standard deviation), an array has 128. Brightness is 1 within an image.
 """
 

@@ -20,13 +20,13 @@ def reply(
     status: int = 200, body: bytes = b"{}", length: int | None = None, **headers: str
 ) -> bytes:
     """Return an answer; `length` where it is not that of the body."""
-    told = {
+    sent = {
         "Content-Type": "application/json",
         "Content-Length": str(len(body) if length is None else length),
         **{name.replace("_", "-"): value for name, value in headers.items()},
         "Connection": "close",
     }
-    lines = [f"HTTP/1.1 {status} Whatever", *(f"{n}: {v}" for n, v in told.items() if v)]
+    lines = [f"HTTP/1.1 {status} Whatever", *(f"{n}: {v}" for n, v in sent.items() if v)]
     return "\r\n".join(lines).encode("latin-1") + b"\r\n\r\n" + body
 
 

@@ -70,7 +70,7 @@ class StandIn:
         self.asked: list[Asked] = []
         self.faults: list[Fault] = []
         self.lock = threading.RLock()
-        #: Set by answers whose checksum is to be told wrong.
+        #: Set by answers whose checksum is to be sent wrong.
         self.wrong_checksum = False
 
     def answer(self, method: str, path: str, kind: str, body: bytes) -> tuple[int, Any]:
@@ -135,7 +135,7 @@ class _Handler(BaseHTTPRequestHandler):
             self._say(302, {}, fault.headers)
             return
         if isinstance(kind, int):
-            self._say(kind, {"status": kind, "message": f"as told, {self._echo()}"}, fault.headers)
+            self._say(kind, {"status": kind, "message": f"as sent, {self._echo()}"}, fault.headers)
             return
         with archive.lock:
             archive.wrong_checksum = kind == "wrong checksum"

@@ -1,4 +1,4 @@
-"""Mask layouts tell where the Sun is; manufacture changes them as it is told to."""
+"""Mask layouts tell where the Sun is; manufacture changes them as specified."""
 
 from __future__ import annotations
 

@@ -310,7 +310,7 @@ def test_models_of_other_layouts_are_left_out_with_the_reason() -> None:
         faces = len(datasets.get(name).geometry.face_normals or ())
         cube = datasets.get(name).geometry.face_normals == CUBE
         planned = {(c.extractor, c.model) for c in plan.cells(name)}
-        reasons = {(r.extractor, r.model): r.reason for r in plan.incompatible(name)}
+        reasons = {(r.extractor, r.model): r.reason for r in plan.list_exclusions(name)}
         assert (("direct", "basic") in planned) == cube
         if not cube:
             assert "needs six face normals" in reasons["direct", "basic"]

@@ -58,9 +58,9 @@ def test_whole_counts_tell_what_their_chances_do(part: float, deviation: float) 
     here = chances(7.0 + part)
     slope = (chances(7.0 + part + step) - chances(7.0 + part - step)) / (2.0 * step)
     seen = here > 1e-9
-    told = np.sum(slope[seen] ** 2 / here[seen])
+    information = np.sum(slope[seen] ** 2 / here[seen])
     found = counts_variance(np.array([7.0 + part]), np.array([deviation]))
-    assert found == pytest.approx([1.0 / told], rel=5e-3)
+    assert found == pytest.approx([1.0 / information], rel=5e-3)
 
 
 def test_without_other_noise_a_count_is_a_coin_and_with_much_a_measurement() -> None:

@@ -119,7 +119,8 @@ def test_turning_or_transposing_the_frame_does_so_with_the_answer():
     turned = MirrorRegistration().extract(frames[:, ::-1, ::-1])
     np.testing.assert_allclose(turned, SIZE - 1 - found, atol=1e-6)
     swapped = MirrorRegistration().extract(frames.transpose(0, 2, 1))
-    # Noise, and so the weights, are told by neighbours along the rows: a tenth of an error's size.
+    # Noise, and so the weights, are estimated from neighbours along the rows: a tenth of an error's
+    # size.
     np.testing.assert_allclose(swapped, found[:, ::-1], atol=1e-3)
 
 
@@ -163,7 +164,7 @@ def test_two_lights_are_no_answer(second, apart):
     found = MirrorRegistration().measure(lights(second, apart, 37, 15))
     assert np.isnan(found.features).all()
     two = int(QualityFlag.SEVERAL_SPOTS | QualityFlag.NOT_SYMMETRIC | QualityFlag.CUT)
-    assert (found.doubts & two != 0).all()
+    assert (found.flags & two != 0).all()
 
 
 def test_a_weaker_light_upon_a_spot_without_outlines_makes_it_skew():
@@ -177,7 +178,7 @@ def test_a_weaker_light_upon_a_spot_without_outlines_makes_it_skew():
     ]
     found = register(noisy(np.stack(light), rng))
     assert np.isnan(found.features).all()
-    assert (found.doubts & int(QualityFlag.NOT_SYMMETRIC) != 0).mean() > 0.9
+    assert (found.flags & int(QualityFlag.NOT_SYMMETRIC) != 0).mean() > 0.9
 
 
 def test_what_the_weighting_and_the_slopes_have_in_common_is_known_at_every_displacement():
@@ -214,7 +215,7 @@ def test_every_missing_answer_says_why():
         [one, 0 * one, one + PEAK * render(disc, (12.0, 12.0)), PEAK * render(disc, (2.0, 30.0))]
     )
     found = MirrorRegistration().measure(noisy(light, rng))
-    assert [QualityFlag(d) for d in found.doubts] == [
+    assert [QualityFlag(d) for d in found.flags] == [
         0,
         QualityFlag.NO_SPOT,
         QualityFlag.SEVERAL_SPOTS,
@@ -223,7 +224,7 @@ def test_every_missing_answer_says_why():
     half = np.where(np.arange(SIZE)[:, None] > 30, one, 0.0)
     half[31:40] *= np.linspace(0.4, 1.0, SIZE)
     found = MirrorRegistration().measure(noisy(DARK + half, rng))
-    assert found.doubts[0] & int(QualityFlag.NOT_SYMMETRIC | QualityFlag.SEVERAL_SPOTS)
+    assert found.flags[0] & int(QualityFlag.NOT_SYMMETRIC | QualityFlag.SEVERAL_SPOTS)
 
 
 @pytest.mark.parametrize("value", [4095, 0])
@@ -258,7 +259,7 @@ def test_windows_of_a_frame_are_registered_like_frames():
     windows = frames[:, 8:56, 10:58]
     found = register(windows)
     np.testing.assert_allclose(found.features + np.array([10, 8]), centres, atol=0.05)
-    assert (found.doubts == 0).all()
+    assert (found.flags == 0).all()
 
 
 @pytest.mark.parametrize("masked", [False, True])
@@ -277,10 +278,10 @@ def test_a_frame_has_the_same_answer_alone_and_in_any_company(dtype, masked):
     frames = frames.astype(dtype) + dtype(0 if dtype is np.uint16 else 0.25)
     bad = rng.uniform(size=(SIZE, SIZE)) < 0.01 if masked else None
     together = register(frames, bad)
-    assert len(set(together.doubts.tolist())) > 3, "several kinds of answers"
+    assert len(set(together.flags.tolist())) > 3, "several kinds of answers"
     for step in (1, 7):
         apart = [register(frames[k : k + step], bad) for k in range(0, len(frames), step)]
-        for name in ("features", "covariance", "doubts"):
+        for name in ("features", "covariance", "flags"):
             parts = np.concatenate([getattr(part, name) for part in apart])
             np.testing.assert_array_equal(parts, getattr(together, name))
 
@@ -320,7 +321,7 @@ def test_saturation_leaves_a_symmetric_spot_where_it_is_and_is_said():
     assert (frames == 4095).sum(axis=(1, 2)).min() > 20
     found = MirrorRegistration().measure(frames)
     assert rms(found.features, centres) < 0.02
-    assert (found.doubts == int(QualityFlag.SATURATED)).all()
+    assert (found.flags == int(QualityFlag.SATURATED)).all()
 
 
 def test_frames_too_small_for_a_spot_are_no_answer():

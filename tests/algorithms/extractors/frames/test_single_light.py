@@ -99,9 +99,9 @@ def test_an_answer_to_something_else_than_the_light_is_none():
     frames, centres = scenes("one", 4, np.random.default_rng(773))
     centres[1] += 0.8
     centres[2] = np.nan
-    doubts = judge(frames, centres).doubts
-    assert doubts.tolist() == [0, int(QualityFlag.NO_SPOT), int(QualityFlag.NO_SPOT), 0]
-    assert refused_flags(doubts).tolist() == [False, True, True, False]
+    flags = judge(frames, centres).flags
+    assert flags.tolist() == [0, int(QualityFlag.NO_SPOT), int(QualityFlag.NO_SPOT), 0]
+    assert refused_flags(flags).tolist() == [False, True, True, False]
 
 
 def test_designs_without_a_hole_take_any_light_but_no_hot_pixel():
@@ -150,7 +150,7 @@ def test_the_covariance_is_about_that_of_the_errors(name, own):
 @pytest.mark.parametrize("dark", [0.0, 50.0])
 @pytest.mark.parametrize("name", ["gaussian-fit", "mirror"])
 def test_frames_without_noise_are_answered(name, dark):
-    """Nothing scatters that an error could be told by: no covariance, or next to none."""
+    """Nothing scatters that an error could be determined by: no covariance, or next to none."""
     line = np.exp(-((np.arange(SIZE) - 31.4) ** 2) / 18.0)
     for light, centre in ((disc(30.3, 31.6), [30.3, 31.6]), (np.outer(line, line), [31.4, 31.4])):
         found = METHODS[name].measure(dark + 900.0 * light)

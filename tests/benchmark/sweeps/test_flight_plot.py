@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmark.sweeps import flight_picture
+from benchmark.sweeps import flight_plot
 
 
 @pytest.mark.slow
 def test_errors_along_a_flight_end_with_the_light_for_single_samples_alone() -> None:
-    found = flight_picture.along(*flight_picture.PANELS[0])
+    found = flight_plot.along(*flight_plot.PANELS[0])
     assert {len(column) for column in found.values()} == {1740}
     eclipse = found["eclipse"] > 0
     assert np.isnan(found["single"][eclipse]).all()
@@ -23,7 +23,7 @@ def test_errors_along_a_flight_end_with_the_light_for_single_samples_alone() -> 
 
 @pytest.mark.slow
 def test_the_picture_has_a_panel_for_each_flight() -> None:
-    text = flight_picture.picture()
-    for dataset, _, single, filtered in flight_picture.PANELS:
+    text = flight_plot.picture()
+    for dataset, _, single, filtered in flight_plot.PANELS:
         for said in (f"{dataset}, nominal", single, filtered):
             assert said in text

@@ -89,10 +89,10 @@ def _several(form: Form, noise: float) -> bool:
 
 
 @compiled
-def _form_doubts(light: Light, state: State, form: Form, centre: Floats, saturated: bool) -> int:
-    """Doubts that departures from symmetry raise."""
+def _form_flags(light: Light, state: State, form: Form, centre: Floats, saturated: bool) -> int:
+    """Return the flags for departures from symmetry."""
     area, departing = form.area, form.lenient
-    doubts = 0
+    flags = 0
     crooked = form.clusters > _CLUSTERS or form.alike > _ALIKE
     for axis in range(2):
         far = abs(centre[axis] - light.middle[axis])
@@ -100,12 +100,12 @@ def _form_doubts(light: Light, state: State, form: Form, centre: Floats, saturat
     if area > 0.0 and not saturated:
         crooked = crooked or departing > _SCATTER + _SCATTER_FEW / area
         if departing > _SCATTER_GHOST + _GHOST_FEW / area:
-            doubts |= _GHOST
+            flags |= _GHOST
     if crooked:
-        doubts |= _NOT_SYMMETRIC
+        flags |= _NOT_SYMMETRIC
     if max(state.xx, state.yy) * form.scatter > _UNSURE * _UNSURE:
-        doubts |= _NO_SPOT
-    return doubts
+        flags |= _NO_SPOT
+    return flags
 
 
 @compiled
@@ -120,10 +120,10 @@ def conclude(  # noqa: PLR0917 - Numba takes no keyword-only ones
     forms: Records,
     features: Floats,
     covariance: Floats,
-    doubts: NDArray[np.int64],
+    flags: NDArray[np.int64],
     noise: Floats,
 ) -> None:
-    """Write centres, covariances, doubts and noise of the frames `seen` to the last four.
+    """Write centres, covariances, flags and noise of the frames `seen` to the last four.
 
     Outlines up to `longest_px` are of one spot, whatever their shape: what is no longer than one
     has fringes, and oblique ones are skew.
@@ -138,13 +138,13 @@ def conclude(  # noqa: PLR0917 - Numba takes no keyword-only ones
         if boxes[k].columns == 0:
             found |= _CUT
         if np.isfinite(state.xx):
-            found |= _form_doubts(light, state, form, centre, saturated)
+            found |= _form_flags(light, state, form, centre, saturated)
             if not 2.0 * math.sqrt(max(form.major, 0.0)) <= longest_px:
                 found |= _NOT_SYMMETRIC if form.skew and not saturated else 0
                 found |= _SEVERAL if _several(form, math.sqrt(state.dark)) else 0
         else:
             found |= _NO_SPOT
-        doubts[at] = found
+        flags[at] = found
         noise[at, 0], noise[at, 1] = state.dark * light.peak**2, state.gain * light.peak
         if found & ~(_SATURATED | _GHOST) == 0:
             features[at] = centre

@@ -26,7 +26,7 @@ def test_what_is_not_known_leaves_a_gap_in_the_line_and_its_band(nothing: float 
     assert drawn.count('class="band ') == 2
     assert drawn.count('class="dot ') == 4
     assert line.at(3.0) is None
-    assert not LineChart([Line("none", [(1.0, nothing)])], "x", "y", "nothing").drawn
+    assert not LineChart([Line("none", [(1.0, nothing)])], "x", "y", "nothing").has_points
 
 
 def test_no_claim_draws_what_was_not_measured(atlas: Client) -> None:
@@ -38,10 +38,10 @@ def test_no_claim_draws_what_was_not_measured(atlas: Client) -> None:
 
 
 def test_what_is_told_of_a_claim_that_holds_is_no_excuse(atlas: Client) -> None:
-    told = {claim["id"]: claim for claim in atlas.get("/v1/claims").json()["items"]}
+    by_id = {claim["id"]: claim for claim in atlas.get("/v1/claims").json()["items"]}
     headings = {
         verdict: atlas.get(f"/claims/{key}", accept="text/html").text
-        for key, claim in told.items()
+        for key, claim in by_id.items()
         for verdict in [claim["verdict"]]
         if claim["explanation"]
     }

@@ -1,6 +1,6 @@
 """Picture of errors along a flight: single samples, and filters of the same readings.
 
-``python -m benchmark.sweeps.flight_picture docs/filters-in-orbit.svg`` draws it anew.
+``python -m benchmark.sweeps.flight_plot docs/filters-in-orbit.svg`` draws it anew.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def along(dataset: str, extractor: str, single: str, filtered: str) -> dict[str,
     context: Any = test.context
     eclipse = np.asarray(context["eclipse"], dtype=np.float64)
     alone = separation_deg(still.predict(features[1], test.context), test.sun)
-    alone[eclipse > 0] = np.nan  # of the dark nothing can be told from one sample
+    alone[eclipse > 0] = np.nan  # of the dark nothing can be distinguished from one sample
     return {
         "minutes": (context["time_s"] - context["time_s"][0]) / 60.0,
         "eclipse": eclipse,
