@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.memory import memory
+from benchmark.simulator.light.stray_slope import slope
 from benchmark.simulator.masks.slits import SlitErrors
 from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
 from benchmark.simulator.optics.diffraction_tables import layers
@@ -29,7 +30,6 @@ from benchmark.simulator.readout.references import (
 )
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
-from benchmark.simulator.sensors.stray_slope import slope
 
 LineAxis = Literal["x", "y"]
 #: Lines along an array on which ghosts of slits are worked out that slant by more than this sine.

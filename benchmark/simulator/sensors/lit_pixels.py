@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.light.memory import digest_of, memory
+from benchmark.simulator.light.stray_slope import UnevenScene
 from benchmark.simulator.readout.column_noise import CommonNoise, column_noise
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
-from benchmark.simulator.sensors.stray_slope import UnevenScene
 
 #: Largest step of the differences that bounds are made of, radians.
 STEP_RAD = 5e-4

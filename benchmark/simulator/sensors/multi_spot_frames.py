@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.memory import Runs, digest_of, memory
+from benchmark.simulator.light.stray_slope import slope_nodes
 from benchmark.simulator.masks.errors import MaskErrors
 from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
 from benchmark.simulator.optics.earthlight import add_between
@@ -30,7 +31,6 @@ from benchmark.simulator.readout.references import (
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.frames import FrameSensor
-from benchmark.simulator.sensors.stray_slope import slope_nodes
 
 Integers = NDArray[np.int64]
 
