@@ -325,32 +325,6 @@ def require_fitted(model: object, attribute: str) -> None:
         )
 
 
-def require_positive(by: str, **parameters: float) -> None:
-    """Refuse parameters that are not positive and finite.
-
-    Parameters
-    ----------
-    by : str
-        Whose parameters they are, for the message.
-    **parameters : float
-        By name.
-
-    Raises
-    ------
-    ValueError
-        Naming the first of them that is not.
-
-    Examples
-    --------
-    >>> require_positive("spm", focal_length_mm=2.0, unit_mm=0.0)
-    Traceback (most recent call last):
-    ValueError: spm: unit_mm must be positive and finite; got 0.0
-    """
-    for name, value in parameters.items():
-        if not (np.isfinite(value) and value > 0):
-            raise ValueError(f"{by}: {name} must be positive and finite; got {value!r}")
-
-
 def _numbers(values: ArrayLike, what: str, ndim: int, shape: str) -> NDArray[Any]:
     if isinstance(values, np.ma.MaskedArray):
         raise ValueError(  # noqa: TRY004 - the contract: wrong input is a ValueError

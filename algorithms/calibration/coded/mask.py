@@ -24,7 +24,8 @@ from algorithms.contract import (
     UnsuitableDesignError,
     UnusableDataError,
 )
-from algorithms.inputs import as_features, require_positive
+from algorithms.inputs import as_features
+from algorithms.parameters import require_positive, require_within
 from algorithms.spot_lists import SPOT_COLUMNS, detector_size_px, list_length
 
 if TYPE_CHECKING:
@@ -168,8 +169,7 @@ class CodedMask(ForwardModel):
                 raise ValueError(f"{by}: {name} must be 3 or more; got {getattr(self, name)!r}")
         if self.half_fov_deg is not None and not 0.0 < self.half_fov_deg < 90.0:
             raise ValueError(f"{by}: half_fov_deg must be in (0, 90); got {self.half_fov_deg!r}")
-        if not 0.0 < self.share <= 1.0:
-            raise ValueError(f"{by}: share must be in (0, 1]; got {self.share!r}")
+        require_within(by, "(0, 1]", share=self.share)
         if not 1.0 <= self.odds < math.inf:
             raise ValueError(f"{by}: odds must be finite and at least 1; got {self.odds!r}")
         if self.size_tolerance is not None:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
 from algorithms.documented import documented
 from algorithms.inputs import as_frames
+from algorithms.parameters import require_at_least
 
 
 @documented
@@ -75,8 +76,7 @@ class DoubleBalance(Extractor):
     moves: int = 10
 
     def __post_init__(self) -> None:
-        if self.moves < 0:
-            raise ValueError(f"{self.about.name}: moves must be at least 0; got {self.moves!r}")
+        require_at_least(self.about.name, 0, moves=self.moves)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""

@@ -13,10 +13,10 @@ from algorithms.documented import documented
 from algorithms.extractors.frames.background import (
     Background,
     background_level,
-    require_background,
 )
 from algorithms.extractors.frames.windows import Windows, follow_spot, require_window
 from algorithms.inputs import as_frames
+from algorithms.parameters import require_choice
 from algorithms.row_arithmetic import quotient_rows
 
 #: Standard deviations of the dark pixels that light must exceed: none of a million does by noise.
@@ -74,7 +74,7 @@ class BasicCentroid(Extractor):
     window_px: int | None = None
 
     def __post_init__(self) -> None:
-        require_background(self.background, self.about.name)
+        require_choice(self.about.name, Background, background=self.background)
         require_window(self.window_px, self.about.name)
 
     def extract(self, observations: ArrayLike) -> Floats:
@@ -147,7 +147,7 @@ class ThresholdedCentroid(Extractor):
             raise ValueError(
                 f"{self.about.name}: threshold must be None or in [0, 1); got {self.threshold!r}"
             )
-        require_background(self.background, self.about.name)
+        require_choice(self.about.name, Background, background=self.background)
         require_window(self.window_px, self.about.name)
 
     def extract(self, observations: ArrayLike) -> Floats:
@@ -246,7 +246,7 @@ class FilteredCentroid(Extractor):
     window_px: int | None = None
 
     def __post_init__(self) -> None:
-        require_background(self.background, self.about.name)
+        require_choice(self.about.name, Background, background=self.background)
         require_window(self.window_px, self.about.name)
 
     def extract(self, observations: ArrayLike) -> Floats:

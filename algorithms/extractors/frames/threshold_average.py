@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal, get_args
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
 from algorithms.documented import documented
 from algorithms.inputs import as_frames
+from algorithms.parameters import require_choice
 from algorithms.row_arithmetic import medians
 
 Crossing = Literal["pixel", "linear"]
@@ -86,11 +87,7 @@ class MultipleThresholdCentroid(Extractor):
                 f"{self.about.name}: lowest and highest must rise within [0, 1]; "
                 f"got {self.lowest!r} and {self.highest!r}"
             )
-        if self.crossing not in get_args(Crossing):
-            raise ValueError(
-                f"{self.about.name}: crossing must be one of {', '.join(get_args(Crossing))}; "
-                f"got {self.crossing!r}"
-            )
+        require_choice(self.about.name, Crossing, crossing=self.crossing)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""

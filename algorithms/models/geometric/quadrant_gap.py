@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Literal, Self, get_args
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.forward import ForwardModel
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
 from algorithms.documented import documented
-from algorithms.inputs import require_positive
+from algorithms.parameters import require_choice, require_positive
 
 Shape = Literal["round", "square"]
 
@@ -98,11 +98,7 @@ class QuadrantGap(ForwardModel):
         require_positive(
             by, focal_length_mm=self.focal_length_mm, aperture_width_mm=self.aperture_width_mm
         )
-        if self.aperture_shape not in get_args(Shape):
-            raise ValueError(
-                f"{by}: aperture_shape must be one of {', '.join(get_args(Shape))}; "
-                f"got {self.aperture_shape!r}"
-            )
+        require_choice(by, Shape, aperture_shape=self.aperture_shape)
         if not 0 <= self.gap_mm < self.aperture_width_mm:
             raise ValueError(
                 f"{by}: gap_mm must be in [0, {self.aperture_width_mm}); got {self.gap_mm!r}"

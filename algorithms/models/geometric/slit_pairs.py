@@ -13,8 +13,8 @@ from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.forward import ForwardModel
 from algorithms.calibration.slit_sensor import require_crossed_slits
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
-from algorithms.inputs import require_positive
 from algorithms.models.geometric.single_slit import deflect
+from algorithms.parameters import require_positive
 
 _DIAGONAL = math.sqrt(0.5)  # sine and cosine of 45 deg
 

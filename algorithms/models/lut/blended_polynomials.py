@@ -22,7 +22,7 @@ from algorithms.contract import (
     UnusableDataError,
 )
 from algorithms.documented import documented
-from algorithms.inputs import require_positive, require_samples
+from algorithms.inputs import require_samples
 from algorithms.models.lut.error_tables import (
     MAX_NODES,
     SMOOTHINGS,
@@ -39,6 +39,7 @@ from algorithms.models.nominal_projection import (
     nominal_tangents,
 )
 from algorithms.models.non_physical.regression_axes import sun_from_target
+from algorithms.parameters import require_order, require_positive
 
 MAX_DEGREE = 15
 
@@ -131,11 +132,7 @@ class BlendedPolynomials(ProjectionModel):
         super().__post_init__()
         smoothing = 1.0 if self.smoothing is None else self.smoothing
         require_positive(self.about.name, interval_deg=self.interval_deg, smoothing=smoothing)
-        if self.degree is not None and not 1 <= self.degree <= MAX_DEGREE:
-            raise ValueError(
-                f"{self.about.name}: degree must be from 1 to {MAX_DEGREE}, or None; "
-                f"got {self.degree!r}"
-            )
+        require_order(self.about.name, MAX_DEGREE, degree=self.degree)
 
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Solve for all rows' coefficients."""

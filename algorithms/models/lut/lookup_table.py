@@ -16,7 +16,6 @@ from algorithms.calibration.projection import ProjectionModel
 from algorithms.calibration.quality import Setting
 from algorithms.contract import AboutModel, Floats
 from algorithms.documented import documented
-from algorithms.inputs import require_positive
 from algorithms.models.lut.error_tables import (
     MAX_BAND,
     SMOOTHINGS,
@@ -33,6 +32,7 @@ from algorithms.models.nominal_projection import (
     nominal_tangents,
 )
 from algorithms.models.non_physical.regression_axes import sun_from_target
+from algorithms.parameters import require_positive
 
 
 @documented

@@ -26,6 +26,7 @@ from algorithms.contract import (
 from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.non_physical.regression_axes import solve_regression
+from algorithms.parameters import require_order
 from algorithms.row_arithmetic import normalise
 
 MAX_SIGNALS = 8
@@ -128,11 +129,7 @@ class SignalPolynomial(FacesModel):
             raise UnsuitableDesignError(
                 f"{self.about.name} reads 2 to {MAX_SIGNALS} signals; got {self.signals!r}"
             )
-        if self.degree is not None and not 1 <= self.degree <= MAX_DEGREE:
-            raise ValueError(
-                f"{self.about.name}: degree must be from 1 to {MAX_DEGREE}, or None; "
-                f"got {self.degree!r}"
-            )
+        require_order(self.about.name, MAX_DEGREE, degree=self.degree)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:

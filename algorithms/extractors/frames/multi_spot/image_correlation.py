@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import KW_ONLY, dataclass
 from functools import lru_cache
-from typing import Any, ClassVar, Literal, Self, get_args
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,6 +31,7 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
 )
 from algorithms.extractors.frames.multi_spot.mask_spots import MaskSpots
 from algorithms.inputs import Frames, as_frames
+from algorithms.parameters import require_choice, require_within
 
 Shape = Literal["round", "square"]
 
@@ -113,20 +114,13 @@ class ImageCorrelation(MaskSpots, Extractor):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.shape not in get_args(Shape):
-            raise ValueError(
-                f"{self.about.name}: shape must be one of {', '.join(get_args(Shape))}; "
-                f"got {self.shape!r}"
-            )
+        require_choice(self.about.name, Shape, shape=self.shape)
         if self.correlations < 2 or self.correlations % 2:
             raise ValueError(
                 f"{self.about.name}: correlations must be even and at least 2; got "
                 f"{self.correlations!r}"
             )
-        if not 0.0 < self.presence < 1.0:
-            raise ValueError(
-                f"{self.about.name}: presence must be in (0, 1); got {self.presence!r}"
-            )
+        require_within(self.about.name, "(0, 1)", presence=self.presence)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:

@@ -27,7 +27,8 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     nearest_distance,
 )
 from algorithms.extractors.frames.multi_spot.mask_spots import MaskSpots
-from algorithms.inputs import Frames, as_frames, require_positive
+from algorithms.inputs import Frames, as_frames
+from algorithms.parameters import require_positive, require_within
 
 
 @documented
@@ -121,10 +122,7 @@ class MeanShift(MaskSpots, Extractor):
         )
         if not 3 <= self.bins <= 256:
             raise ValueError(f"{self.about.name}: bins must be from 3 to 256; got {self.bins!r}")
-        if not 0.0 < self.similarity < 1.0:
-            raise ValueError(
-                f"{self.about.name}: similarity must be in (0, 1); got {self.similarity!r}"
-            )
+        require_within(self.about.name, "(0, 1)", similarity=self.similarity)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
