@@ -170,7 +170,7 @@ class ThresholdedCentroid(Extractor):
             else:
                 base = background_level(frames, self.background)
                 cut = base + self.threshold * (peak - base)
-            usable = _usable(frames) & (peak > cut)
+            usable = ~moments.unusable_frames(frames) & (peak > cut)
         cut[~usable] = 0.0
         # Integer frames are summed above the whole part of the threshold, exactly; the rest is
         # taken off the sums.
@@ -279,16 +279,7 @@ def _box_centroids(
         moments.row_maxima(frames, maxima)
         start = moments.first_brightest(frames, maxima)
         found = follow_spot(start, window_px, frames.shape[1:], centroid)
-    return _inside(found, _usable(frames), frames.shape[1:])
-
-
-def _usable(frames: NDArray[Any]) -> NDArray[np.bool_]:
-    """Frames (N,) with some contrast and only finite pixels."""
-    from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at the first frame only
-
-    unusable = np.empty(len(frames), dtype=np.bool_)
-    moments.unusable(frames, frames.dtype.kind == "f", unusable)
-    return ~unusable
+    return _inside(found, ~moments.unusable_frames(frames), frames.shape[1:])
 
 
 def _inside(found: Floats, usable: NDArray[np.bool_], shape: tuple[int, int]) -> Floats:

@@ -139,8 +139,7 @@ class AdaptiveEnergyFilter(Extractor):
         from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
 
         frames = as_frames(observations)
-        unusable = np.empty(len(frames), dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        unusable = moments.unusable_frames(frames)
         found = np.empty((len(frames), 2))
         lengths = np.empty(len(frames), dtype=np.int64)
         energy_filter_kernel.filter_sequence(

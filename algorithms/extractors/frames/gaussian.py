@@ -161,8 +161,7 @@ class GaussianFit(Extractor):
         from algorithms.extractors.frames import gaussian_kernel  # noqa: PLC0415 - Numba, at first use
         from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
 
-        unusable = np.empty(len(frames), dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        unusable = moments.unusable_frames(frames)
         fitted = np.full((len(frames), 6), np.nan)
         usable = frames[~unusable] if unusable.any() else frames
         fits = np.empty((len(usable), 6))

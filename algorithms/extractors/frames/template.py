@@ -153,8 +153,7 @@ class TemplateMatch(Extractor):
         maxima = np.empty(frames.shape[:2], dtype=frames.dtype)
         moments.row_maxima(frames, maxima)
         peak = maxima.max(axis=1).astype(np.float64)
-        unusable = np.empty(len(frames), dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        unusable = moments.unusable_frames(frames)
         unusable |= ~(peak > base)
         with np.errstate(invalid="ignore"):  # an infinite peak: the frame is unusable
             levels = base + self.threshold * (peak - base)

@@ -94,14 +94,10 @@ class MultipleThresholdCentroid(Extractor):
         from algorithms.kernels import crossings, moments  # noqa: PLC0415 - Numba, at first use
 
         frames = as_frames(observations)
-        count, height, width = frames.shape
-        columns = np.empty((count, width), dtype=moments.zero_of(frames).dtype)
-        rows = np.empty((count, height), dtype=columns.dtype)
-        moments.profiles(frames, moments.zero_of(frames), rows, columns)
-        unusable = np.empty(count, dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        columns, rows = moments.axis_sums(frames)
+        unusable = moments.unusable_frames(frames)
         unusable |= ~((columns.max(axis=1) > 0) & (rows.max(axis=1) > 0))
-        found = np.empty((2, count))
+        found = np.empty((2, len(frames)))
         for middle, profile in zip(found, (columns, rows), strict=True):
             usable = np.where(unusable[:, None], 0.0, profile)
             crossings.threshold_midpoints(

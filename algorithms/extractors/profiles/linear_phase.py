@@ -196,12 +196,8 @@ class FrameLinearPhase(Extractor):
         from algorithms.kernels import moments, window_sums  # noqa: PLC0415 - Numba, at first use
 
         frames = as_frames(observations)
-        count, height, width = frames.shape
-        columns = np.empty((count, width), dtype=moments.zero_of(frames).dtype)
-        rows = np.empty((count, height), dtype=columns.dtype)
-        moments.profiles(frames, moments.zero_of(frames), rows, columns)
-        unusable = np.empty(count, dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        count, (columns, rows) = len(frames), moments.axis_sums(frames)
+        unusable = moments.unusable_frames(frames)
         columns[unusable] = 0
         rows[unusable] = 0
         half = math.ceil(self.width_px / 2.0 + self.margin_px)

@@ -157,8 +157,7 @@ class FramePeak(Extractor):
         moments.row_maxima(frames, maxima)
         boxes = np.empty((len(frames), 4), dtype=np.int64)
         window_sums.boxes_of_maxima(frames, maxima, boxes)
-        unusable = np.empty(len(frames), dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        unusable = moments.unusable_frames(frames)
         found = (boxes[:, :2] + boxes[:, 2:]) / 2.0
         if self.width_px is not None:
             unusable |= ((boxes[:, 2:] - boxes[:, :2]) > self.width_px).any(axis=1)

@@ -258,14 +258,9 @@ class FramePeakPositionEstimate(Extractor):
         from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at the first frame only
 
         frames = as_frames(observations)
-        count, height, width = frames.shape
-        zero = moments.zero_of(frames)
-        rows = np.empty((count, height), dtype=zero.dtype)
-        columns = np.empty((count, width), dtype=zero.dtype)
-        unusable = np.empty(count, dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
-        moments.profiles(frames, zero, rows, columns)
-        found = np.empty((count, 2))
+        unusable = moments.unusable_frames(frames)
+        columns, rows = moments.axis_sums(frames)
+        found = np.empty((len(frames), 2))
         for axis, sums in enumerate((columns, rows)):
             profile = sums.astype(np.float64)
             profile[unusable] = 0.0

@@ -130,8 +130,7 @@ class BlackSunCentroid(Extractor):
         from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
 
         frames = as_frames(observations)
-        unusable = np.empty(len(frames), dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        unusable = moments.unusable_frames(frames)
         reach = np.ceil(_REACH * self.blur_px)
         taps = np.exp(-0.5 * (np.arange(-reach, reach + 1) / self.blur_px) ** 2)
         steps = np.arange(self.loops) + 0.5

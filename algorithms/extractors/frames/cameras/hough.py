@@ -135,8 +135,10 @@ class HoughLines(Extractor):
         return self._found(observations)[:, :5].copy()
 
     def _found(self, observations: ArrayLike) -> Floats:
+        from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at the first frame only
+
         frames = as_frames(observations)
-        usable = _usable(frames)
+        usable = ~moments.unusable_frames(frames)
         found = self._steep(frames, usable, 0.0, min(self.tilt_deg, 45.0))
         if self.tilt_deg > 45.0:
             turned = np.ascontiguousarray(frames.transpose(0, 2, 1))
@@ -277,13 +279,14 @@ class HoughCircle(Extractor):
     def circles(self, observations: ArrayLike) -> Floats:
         """Circles (N, 3), centre ``x, y`` and radius, px; NaN rows without one."""
         from algorithms.extractors.frames.cameras import circles_kernel  # noqa: PLC0415 - Numba, at the first frame only
+        from algorithms.kernels import moments  # noqa: PLC0415 - as above
 
         frames = as_frames(observations)
         largest = self.largest_px or 0.5 * min(frames.shape[1:])
         found = np.empty((len(frames), 3))
         circles_kernel.best_circles(
             frames,
-            _usable(frames),
+            ~moments.unusable_frames(frames),
             self.edge,
             self.smallest_px,
             largest,
@@ -293,12 +296,3 @@ class HoughCircle(Extractor):
             found,
         )
         return found
-
-
-def _usable(frames: NDArray[Any]) -> NDArray[np.bool_]:
-    """Frames (N,) with some contrast and only finite pixels."""
-    from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at the first frame only
-
-    unusable = np.empty(len(frames), dtype=np.bool_)
-    moments.unusable(frames, frames.dtype.kind == "f", unusable)
-    return ~unusable
