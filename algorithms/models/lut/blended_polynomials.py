@@ -36,7 +36,6 @@ from algorithms.models.lut.error_tables import (
 )
 from algorithms.models.nominal_projection import (
     POSITIONS,
-    nominal_tangents,
 )
 from algorithms.models.non_physical.regression_axes import sun_from_target
 from algorithms.parameters import require_order, require_positive
@@ -137,7 +136,7 @@ class BlendedPolynomials(ProjectionModel):
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Solve for all rows' coefficients."""
         del context
-        nominal = self._nominal_deg(features)
+        nominal = self.nominal_deg(features)
         errors = angles_from_sun(sun) - nominal
         degree, smoothing, self.validated_deg_ = self.degree, self.smoothing, None
         if degree is None or smoothing is None:
@@ -157,7 +156,7 @@ class BlendedPolynomials(ProjectionModel):
         angles = np.empty((len(features), 2), order="F")
         first = (float(self.alpha_axis_.start), float(self.alpha_axis_.interval))
         scaling = (float(self.beta_middle_deg_), float(self.beta_half_range_deg_))
-        nominal = self._nominal_deg(features)
+        nominal = self.nominal_deg(features)
         corrected_along_rows(nominal, self.coefficients_deg_, first, scaling, angles)
         return sun_from_target(angles, "angle")
 
@@ -209,10 +208,6 @@ class BlendedPolynomials(ProjectionModel):
         self.alpha_axis_ = alpha
         self.beta_middle_deg_, self.beta_half_range_deg_ = _scale(nominal)
         self.coefficients_deg_ = solution.reshape(alpha.nodes, terms, 2)
-
-    def _nominal_deg(self, features: Floats) -> Floats:
-        tangents = nominal_tangents(features, self.focal_length_mm, self.unit_mm, self.centre)
-        return np.degrees(np.arctan(tangents))
 
 
 def _rows(nominal: Floats, interval: float) -> GridAxis:
