@@ -13,6 +13,7 @@ from api.cli.measuring import (
     ManyWorkersOption,
     SchedulerOption,
     StoreOption,
+    say_sources,
     score_cells,
 )
 from api.cli.options import Asked, asked_by
@@ -26,14 +27,7 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = (
     *("dataset", "condition", "extractor", "model", "rms_deg", "bound_deg", "over_bound"),
-    *(
-        "bound_unit_deg",
-        "over_bound_unit",
-        "availability",
-        "false_sun",
-        "latency_us",
-        "status",
-    ),
+    *("bound_unit_deg", "over_bound_unit", "availability", "false_sun", "latency_us", "status"),
 )
 
 
@@ -84,11 +78,7 @@ def benchmark(
     emit(result.rows, columns, form, document=document, title=f"{len(result.rows)} scores")
     for warning in result.warnings:
         typer.echo(f"warning: {warning}", err=True)
-    typer.echo(
-        f"{result.published} published, {result.kept} measured before, {result.measured} measured "
-        f"now; new results are kept in {result.directory}",
-        err=True,
-    )
+    say_sources(result.published, result.kept, result.measured, result.directory)
 
 
 def _on_own_data(data: Path, config: Path | None, models: list[str] | None, form: Format) -> None:
