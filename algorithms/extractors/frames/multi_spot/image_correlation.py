@@ -86,11 +86,8 @@ class ImageCorrelation(MaskSpots, Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> holes = ((-8, -6, 5), (8, -5, 5), (-7, 7, 5), (9, 6, 5))
-    >>> y, x = np.mgrid[:40, :46]
-    >>> away = [np.maximum(abs(x - 23.4 - u), abs(y - 18.8 - v)) for u, v, _ in holes]
-    >>> frames = 200 * np.clip(3.0 - np.array(away), 0, 1).sum(axis=0)[None]
+    >>> from algorithms.examples import mask_frame
+    >>> frames, holes = mask_frame(23.4, 18.8)
     >>> ImageCorrelation(holes, shape="square", correlations=4).extract(frames).round(1)
     array([[23.4, 18.8]])
     """
@@ -144,13 +141,6 @@ class ImageCorrelation(MaskSpots, Extractor):
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
         return self._read(as_frames(observations))[0][0]
-
-    def spots(self, observations: ArrayLike) -> Floats:
-        """Positions (N, A, 2) of each aperture's spot in frames (N, H, W), px; NaN for none.
-
-        Each from its own correlation. ValueError on wrong input.
-        """
-        return self._read(as_frames(observations))[0][1]
 
     def track(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in successive frames (N, H, W) of one sequence.

@@ -24,7 +24,7 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
 )
 from algorithms.extractors.frames.multi_spot.pattern_flags import without_covariance
 from algorithms.extractors.frames.single_light import frames_to_measure
-from algorithms.inputs import Frames
+from algorithms.inputs import Frames, as_frames
 from algorithms.measurement import Measurement
 from algorithms.parameters import require_positive, require_within
 
@@ -89,6 +89,14 @@ class MaskSpots:
         frames = frames_to_measure(observations, bad, self.about.name)
         (found, *_), pattern = self._read(frames)
         return without_covariance(found, pattern)
+
+    def spots(self, observations: ArrayLike) -> Floats:
+        """Positions (N, A, 2) of each aperture's spot in frames (N, H, W), px.
+
+        NaN where a spot is missing, cut or disagrees with the others, and for the whole of a frame
+        in which the pattern is not found. ValueError on wrong input.
+        """
+        return self._read(as_frames(observations))[0][1]
 
     def _read(self, frames: Frames) -> tuple[tuple[Floats, ...], Pattern]:
         """Find positions (N, 2), what else `_locate` finds, and the pattern of frames."""

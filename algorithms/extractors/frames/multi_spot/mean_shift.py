@@ -88,11 +88,8 @@ class MeanShift(MaskSpots, Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> holes = ((-8, -6, 5), (8, -5, 5), (-7, 7, 5), (9, 6, 5))
-    >>> y, x = np.mgrid[:40, :46]
-    >>> away = [np.maximum(abs(x - 23.4 - u), abs(y - 18.8 - v)) for u, v, _ in holes]
-    >>> frames = 200 * np.clip(3.0 - np.array(away), 0, 1).sum(axis=0)[None]
+    >>> from algorithms.examples import mask_frame
+    >>> frames, holes = mask_frame(23.4, 18.8)
     >>> MeanShift(holes, bandwidth_px=6.0).extract(frames).round(1)
     array([[23.4, 19. ]])
     """
@@ -140,13 +137,6 @@ class MeanShift(MaskSpots, Extractor):
     def extract(self, observations: ArrayLike) -> Floats:
         """Averaged positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
         return self._read(as_frames(observations))[0][0]
-
-    def spots(self, observations: ArrayLike) -> Floats:
-        """Positions (N, A, 2) of each aperture's spot in frames (N, H, W), px; NaN for none.
-
-        ValueError on wrong input.
-        """
-        return self._read(as_frames(observations))[0][1]
 
     def weights(self, observations: ArrayLike) -> Floats:
         """Similarity (N, A) of each aperture's spot to the goal, over that of the goal's own.
