@@ -54,6 +54,14 @@ def disc_frame(x_px: float, y_px: float, height: int = 31, width: int = 33) -> F
     return np.asarray(_PEAK * np.clip(_DISC - away, 0, 1))[None]
 
 
+def mask_frame(x_px: float, y_px: float) -> tuple[Floats, tuple[tuple[float, float, float], ...]]:
+    """Frame (1, 40, 46) with the spots of four square holes about a place, and the holes, px."""
+    holes = ((-8.0, -6.0, 5.0), (8.0, -5.0, 5.0), (-7.0, 7.0, 5.0), (9.0, 6.0, 5.0))
+    y, x = np.mgrid[:40, :46]
+    away = [np.maximum(abs(x - x_px - u), abs(y - y_px - v)) for u, v, _ in holes]
+    return _PEAK * np.clip(3.0 - np.array(away), 0, 1).sum(axis=0)[None], holes
+
+
 def slit_profiles(x_px: float, y_px: float) -> tuple[Floats, dict[str, Any]]:
     """Profile (1, 160) of two lines behind a slit of 6 px, and the extractor's design."""
     places = np.arange(80) - np.array([[x_px], [y_px]])

@@ -165,49 +165,10 @@ def as_feature_rows(features: ArrayLike, columns: int, by: str) -> NDArray[Any]:
     return array
 
 
-def as_calibration(
-    features: ArrayLike, sun: ArrayLike, columns: int, by: str
-) -> tuple[Floats, Floats]:
-    """Paired features and Sun unit vectors, rows without features left out.
-
-    Parameters
-    ----------
-    features : array_like, shape (N, columns)
-        Real numbers.
-    sun : array_like, shape (N, 3)
-        Unit vectors.
-    columns : int
-        Features of a sample.
-    by : str
-        Who reads them, for the message.
-
-    Returns
-    -------
-    features : ndarray, shape (n, columns)
-        Those that are finite.
-    sun : ndarray, shape (n, 3)
-        Of the same samples.
-
-    Raises
-    ------
-    ValueError
-        If either shape is wrong, their lengths differ, or a Sun vector is not finite and of unit
-        length within `UNIT_TOLERANCE`.
-
-    Examples
-    --------
-    >>> found, sun = as_calibration([[1, 2], [np.nan, 2]], [[0, 0, 1], [0, 1, 0]], 2, "spm")
-    >>> found, sun
-    (array([[1., 2.]]), array([[0., 0., 1.]]))
-    """
-    found, vectors, _ = as_calibration_rows(features, sun, columns, by)
-    return found, vectors
-
-
 def as_calibration_rows(
     features: ArrayLike, sun: ArrayLike, columns: int, by: str, *, frontal: bool = False
 ) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-    """`as_calibration`, and which rows are left.
+    """Paired features and Sun unit vectors, rows without features left out, and which are left.
 
     Parameters
     ----------
@@ -236,7 +197,8 @@ def as_calibration_rows(
     UnusableDataError
         If `frontal` and a row with features has its Sun at ``s_z <= 0``.
     ValueError
-        As `as_calibration`.
+        If either shape is wrong, their lengths differ, or a Sun vector is not finite and of unit
+        length within `UNIT_TOLERANCE`.
 
     Examples
     --------
@@ -323,32 +285,6 @@ def require_fitted(model: object, attribute: str) -> None:
         raise NotFittedError(
             f"this {type(model).__name__} is not fitted yet; call fit(features, sun) first"
         )
-
-
-def require_positive(by: str, **parameters: float) -> None:
-    """Refuse parameters that are not positive and finite.
-
-    Parameters
-    ----------
-    by : str
-        Whose parameters they are, for the message.
-    **parameters : float
-        By name.
-
-    Raises
-    ------
-    ValueError
-        Naming the first of them that is not.
-
-    Examples
-    --------
-    >>> require_positive("spm", focal_length_mm=2.0, unit_mm=0.0)
-    Traceback (most recent call last):
-    ValueError: spm: unit_mm must be positive and finite; got 0.0
-    """
-    for name, value in parameters.items():
-        if not (np.isfinite(value) and value > 0):
-            raise ValueError(f"{by}: {name} must be positive and finite; got {value!r}")
 
 
 def _numbers(values: ArrayLike, what: str, ndim: int, shape: str) -> NDArray[Any]:

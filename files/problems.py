@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
+
+from files.json_data import JsonData
 
 
 @dataclass(frozen=True, order=True)
-class Problem:
+class Problem(JsonData):
     """One thing wrong with the data.
 
     Parameters
@@ -33,7 +35,3 @@ class Problem:
         if self.column is not None:
             place += f", column {self.column}"
         return f"{place}: {self.message}"
-
-    def to_dict(self) -> dict[str, str | int | None]:
-        """Return the problem as plain JSON data."""
-        return asdict(self)

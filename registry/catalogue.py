@@ -104,11 +104,6 @@ class Catalogue:
         self.taxonomy.require("extractor", value)
         return tuple(self.extractors[name] for name in self._extractors_for.get(value, ()))
 
-    def models_for(self, value: str) -> tuple[Scored, ...]:
-        """Return the models implementing a taxonomy value, by name; empty if none does."""
-        self.taxonomy.require("model", value)
-        return tuple(self.models[name] for name in self._models_for.get(value, ()))
-
     def implementations(self, role: Role | None = None) -> tuple[Implementation, ...]:
         """Every implementation, extractors first, each by taxonomy order and name."""
         found = [

@@ -15,6 +15,7 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import Literal
 
+from files.json_data import JsonData
 from registry import studies as registered
 from registry.studies import Facts, Study
 from registry.taxonomy import InvalidValueError, Taxonomy, attribute_of, unknown_name
@@ -41,7 +42,7 @@ _GROUPED = {"model": "model_category", "extractor": "extractor_family"}
 
 
 @dataclass(frozen=True)
-class Node:
+class Node(JsonData):
     """A value at a level. ``count`` is its studies' number, or their weight if fractional."""
 
     id: str
@@ -51,20 +52,9 @@ class Node:
     count: float
     studies: tuple[str, ...]
 
-    def to_dict(self) -> dict[str, object]:
-        """As in the HTTP answer."""
-        return {
-            "id": self.id,
-            "level": self.level,
-            "value": self.value,
-            "name": self.name,
-            "count": self.count,
-            "studies": list(self.studies),
-        }
-
 
 @dataclass(frozen=True)
-class Link:
+class Link(JsonData):
     """The studies that have both values; ``source`` and ``target`` are node ids."""
 
     source: str
@@ -72,18 +62,9 @@ class Link:
     value: float
     studies: tuple[str, ...]
 
-    def to_dict(self) -> dict[str, object]:
-        """As in the HTTP answer."""
-        return {
-            "source": self.source,
-            "target": self.target,
-            "value": self.value,
-            "studies": list(self.studies),
-        }
-
 
 @dataclass(frozen=True)
-class LeftOut:
+class LeftOut(JsonData):
     """The studies without a value at a level: missing from its links, not from the count."""
 
     level: str
@@ -95,7 +76,7 @@ class LeftOut:
 
 
 @dataclass(frozen=True)
-class Flows:
+class Flows(JsonData):
     """Nodes and links of a chain of levels.
 
     ``studies`` are all that met the filter; those of them without a value at some level stand in
@@ -112,16 +93,8 @@ class Flows:
     left_out: tuple[LeftOut, ...]
 
     def to_dict(self) -> dict[str, object]:
-        """As in the HTTP answer."""
-        return {
-            "chart": self.chart,
-            "levels": list(self.levels),
-            "counting": self.counting,
-            "studies": len(self.studies),
-            "nodes": [node.to_dict() for node in self.nodes],
-            "links": [link.to_dict() for link in self.links],
-            "left_out": [left.to_dict() for left in self.left_out],
-        }
+        """Return it as JSON data, with the number of studies."""
+        return {**super().to_dict(), "studies": len(self.studies)}
 
 
 def chart(

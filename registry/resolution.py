@@ -233,7 +233,7 @@ def _pipeline(
         datasets=one.datasets,
         settings=at,
         basis=MappingProxyType({a: part.basis for a, part in parts.items()}),
-        assumptions=MappingProxyType({a: part.rule for a, part in parts.items() if part.rule}),
+        assumed=MappingProxyType({a: part.rule for a, part in parts.items() if part.rule}),
     )
 
 
@@ -270,7 +270,7 @@ def _empty_cells(study: Study, pipelines: Sequence[RunnablePipeline]) -> list[Ga
     for attribute in ESSENTIAL:
         if study.of(attribute):
             continue
-        known = [p.assumptions for p in pipelines if attribute in p.assumptions]
+        known = [p.assumed for p in pipelines if attribute in p.assumed]
         rules = dict.fromkeys(rule[attribute] for rule in known)
         filled = f"; filled: {' and '.join(rules)}" if rules else ""
         gaps.append(Gap(attribute, "", f"the mapping states no value{filled}"))

@@ -7,10 +7,11 @@ studies stand in tables of the same columns in `extension/`; the edition ``all``
 from __future__ import annotations
 
 import hashlib
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
+from files.json_data import JsonData
 from survey_data.descriptor import (
     DATA_DIRECTORY,
     descriptor,
@@ -35,7 +36,7 @@ EXTENSION_TABLES = tuple(name for name in table_names() if file_name(name).start
 
 
 @dataclass(frozen=True)
-class Edition:
+class Edition(JsonData):
     """An edition as it is cited.
 
     ``version`` is that of the data package, then the number of studies and the first digits of the
@@ -46,10 +47,6 @@ class Edition:
     title: str
     studies: int
     version: str
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the edition as plain JSON data."""
-        return asdict(self)
 
 
 def editions(directory: Path = DATA_DIRECTORY) -> tuple[Edition, Edition]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from algorithms.calibration.calibrated import Columns
-from algorithms.calibration.parametric import ParametricModel
+from algorithms.calibration.parametric import RADIAN_DEG, FreeParameter, ParametricModel
 from algorithms.contract import Floats
 from algorithms.row_arithmetic import normalise
 
@@ -25,14 +25,19 @@ _DIFFERENCE = 1e-7
 _UNDEFINED_RAD = 4.0
 
 
+#: Free parameters of a head that is turned against the outer frame.
+TILTS = FreeParameter("tilt_x", "deg", RADIAN_DEG), FreeParameter("tilt_y", "deg", RADIAN_DEG)
+TURNS = (FreeParameter("rotation", "deg", RADIAN_DEG), *TILTS)
+
+
 @dataclass
 class ForwardModel(ParametricModel):
     """Features as a function of the Sun in the head's frame, which is turned against the outer one.
 
-    A subclass writes `names`, `scales`, `starts`, `cast`, `turns` and `drawing`. Directions are
-    found by Newton's method on `cast`, which starts from the drawing; a fit needs no inversion, as
-    the Suns are known there. Its residuals are the features' errors, brought to angles across the
-    true direction by the drawing.
+    A subclass writes `free_parameters`, `cast` and `drawing`. Directions are found by Newton's
+    method on `cast`, which starts from the drawing; a fit needs no inversion, as the Suns are known
+    there. Its residuals are the features' errors, brought to angles across the true direction by
+    the drawing.
     """
 
     @abstractmethod
@@ -41,14 +46,18 @@ class ForwardModel(ParametricModel):
         ...
 
     @abstractmethod
-    def turns(self, vector: Floats) -> tuple[float, float, float]:
-        """Rotation about the boresight and tilts about x and y of the head, degrees."""
-        ...
-
-    @abstractmethod
     def drawing(self) -> tuple[float, tuple[float, float]]:
         """Tangent for one unit of feature, and the feature (x, y) on the boresight."""
         ...
+
+    def turns(self, vector: Floats) -> tuple[float, float, float]:
+        """Rotation about the boresight and tilts about x and y of the head, deg; 0 if not free."""
+        found = {
+            one.name: float(value)
+            for one, value in zip(self.free_parameters(), vector, strict=True)
+        }
+        rotation, tilt_x, tilt_y = (found.get(turn.name, 0.0) for turn in TURNS)
+        return rotation, tilt_x, tilt_y
 
     def slopes(self, sun: Floats) -> Floats | float:
         """Tangents for a unit of each feature at directions (N, 3); the drawing's by default."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from algorithms.calibration.quality import Parameter
 from algorithms.calibration.residual_noise import parameter_covariance
 from algorithms.contract import Floats, UnusableDataError
 from algorithms.inputs import require_samples
+
+RADIAN_DEG = math.degrees(1.0)
+"""Scale of angles in degrees."""
 
 TOLERANCE = 1e-15
 """Relative change of cost, step and gradient at which a fit stops: machine precision."""
@@ -28,18 +32,37 @@ _UNDEFINED_RAD = 4.0
 _STEP = 6e-6
 
 
+class FreeParameter(NamedTuple):
+    """A number that a fit settles.
+
+    Attributes
+    ----------
+    name, unit : str
+        Of the parameter.
+    scale : float
+        Change of it that shifts directions by some tenths of a radian.
+    drawn : float
+        Value in the sensor's drawing.
+    """
+
+    name: str
+    unit: str
+    scale: float
+    drawn: float = 0.0
+
+
 @dataclass
 class ParametricModel(CalibratedModel):
     """Directions as a function of features and a vector of parameters, all fitted together.
 
-    A subclass writes `names`, `starts`, `scales` and `directions`. Residuals are the two
-    components of each direction's error across the true one, so that a fit is as good where the
-    Sun is far off the boresight as where it is near.
+    A subclass writes `free_parameters` and `directions`, and `starts` if the drawing is not where
+    to start. Residuals are the two components of each direction's error across the true one, so
+    that a fit is as good where the Sun is far off the boresight as where it is near.
 
     Attributes
     ----------
     vector_ : ndarray, shape (P,)
-        Fitted parameters, in the units that `names` says.
+        Fitted parameters, in the units that `free_parameters` says.
     covariance_ : ndarray, shape (P, P)
         Of their errors, from the residuals: of a turntable and of features (`residual_noise`).
     condition_ : float
@@ -51,19 +74,14 @@ class ParametricModel(CalibratedModel):
     condition_: float = field(init=False, repr=False, compare=False)
 
     @abstractmethod
-    def names(self) -> Sequence[tuple[str, str]]:
-        """Name and unit of each parameter."""
+    def free_parameters(self) -> Sequence[FreeParameter]:
+        """Numbers that a fit settles, in the order of its vector."""
         ...
 
-    @abstractmethod
-    def scales(self) -> Sequence[float]:
-        """Change of each parameter that shifts directions by some tenths of a radian."""
-        ...
-
-    @abstractmethod
     def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
-        """Vectors to start from, the drawing first; the best solution is kept."""
-        ...
+        """Vectors to start from, by default the drawing; the best solution is kept."""
+        del features, sun, context
+        return ([one.drawn for one in self.free_parameters()],)
 
     @abstractmethod
     def directions(self, vector: Floats, features: Floats, context: Columns) -> Floats:
@@ -85,7 +103,8 @@ class ParametricModel(CalibratedModel):
         """Fit all parameters to samples (n, F) of Suns (n, 3)."""
         from scipy.optimize import least_squares  # noqa: PLC0415 - SciPy, at the first fit only
 
-        by, scales = self.about.name, np.asarray(self.scales(), dtype=np.float64)
+        by, free = self.about.name, self.free_parameters()
+        scales = np.array([one.scale for one in free], dtype=np.float64)
         count = len(scales)
         require_samples(len(features), count // 2 + 1, by, f"{count} parameters, two angles each")
         axes = tangent_axes(sun)
@@ -131,7 +150,7 @@ class ParametricModel(CalibratedModel):
         if not values[-1] * WORST_SOLUTION > values[0]:
             raise UnusableDataError(
                 f"{by}: the calibration samples do not settle the {count} parameters "
-                f"({', '.join(name for name, _ in self.names())}); they must spread over the field "
+                f"({', '.join(one.name for one in free)}); they must spread over the field "
                 "of view"
             )
         moved = self._move(best.x * scales, features, sun, axes, context)
@@ -170,9 +189,9 @@ class ParametricModel(CalibratedModel):
         """Every parameter with its standard error."""
         deviations = np.sqrt(np.diag(self.covariance_))
         return tuple(
-            Parameter(name, float(value), float(deviation), unit)
-            for (name, unit), value, deviation in zip(
-                self.names(), self.vector_, deviations, strict=True
+            Parameter(one.name, float(value), float(deviation), one.unit)
+            for one, value, deviation in zip(
+                self.free_parameters(), self.vector_, deviations, strict=True
             )
         )
 

@@ -5,9 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Self
 
+import numpy as np
+
 from algorithms.calibration.calibrated import CalibratedModel
-from algorithms.contract import FeatureKind, SensorGeometry
-from algorithms.models.nominal_projection import nominal_projection, require_projection
+from algorithms.contract import FeatureKind, Floats, SensorGeometry
+from algorithms.models.nominal_projection import (
+    nominal_projection,
+    nominal_tangents,
+    require_projection,
+)
 
 
 @dataclass
@@ -26,3 +32,8 @@ class ProjectionModel(CalibratedModel):
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
         """Return the model that starts from the sensor's drawing."""
         return cls(**nominal_projection(geometry, kind, cls.about))
+
+    def nominal_deg(self, features: Floats) -> Floats:
+        """Angles (N, 2), alpha and beta in degrees, of features (N, 2) by the drawing."""
+        tangents = nominal_tangents(features, self.focal_length_mm, self.unit_mm, self.centre)
+        return np.degrees(np.arctan(tangents))

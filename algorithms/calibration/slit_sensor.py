@@ -41,7 +41,7 @@ NEEDS = ("focal_length_mm", "pixel_pitch_mm", "centre_px", "line_axes", "slits")
 class SlitModel(ForwardModel):
     """A model of lines of pixels behind slits, which casts the shifts of their spots.
 
-    A subclass writes `names`, `scales`, `starts`, `turns`, `require_slits` and `shifts`.
+    A subclass writes `free_parameters`, `require_slits` and `shifts`.
 
     Parameters
     ----------

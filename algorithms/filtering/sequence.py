@@ -17,14 +17,9 @@ from algorithms.contract import FeatureKind, Floats, Model, SensorGeometry, Unus
 from algorithms.filtering.drift import GAINS, HEAD_SHIFTS, LEVEL, MOTION, Drift, Gyroscope
 from algorithms.filtering.reading_noise import correlated_steps, estimate_noise
 from algorithms.filtering.track import Track
-from algorithms.inputs import (
-    as_calibration_rows,
-    as_features,
-    require_fitted,
-    require_positive,
-    require_samples,
-)
+from algorithms.inputs import as_calibration_rows, as_features, require_fitted, require_samples
 from algorithms.models.geometric.detector_faces import Normals, require_normals
+from algorithms.parameters import require_positive
 
 if TYPE_CHECKING:
     from algorithms.filtering.filters import Belief, Filter

@@ -58,7 +58,7 @@ def _real_row_maxima(frames: NDArray[Any], out: NDArray[Any]) -> None:
 
 
 @compiled
-def unusable(frames: NDArray[Any], real: bool, out: NDArray[np.bool_]) -> None:
+def _mark_unusable(frames: NDArray[Any], real: bool, out: NDArray[np.bool_]) -> None:
     """Mark in `out` (N,) the frames without any contrast, and those with NaN or infinity."""
     count, height, width = frames.shape
     for k in range(count):
@@ -282,12 +282,22 @@ def dark_levels(frames: NDArray[Any], deviations: float) -> Floats:
     return levels
 
 
-def profiles(frames: NDArray[Any], zero: Any, rows: Sums, columns: Sums) -> None:
-    """Write the sums of each row to `rows` (N, H) and of each column to `columns` (N, W)."""
+def axis_sums(frames: NDArray[Any]) -> tuple[Sums, Sums]:
+    """Return the sums of each column (N, W) and of each row (N, H)."""
+    (count, height, width), zero = frames.shape, zero_of(frames)
+    columns, rows = np.empty((count, width), zero.dtype), np.empty((count, height), zero.dtype)
     if narrow_moments.narrow(frames):
         narrow_moments.profiles(frames, rows, columns)
     else:
         _wide_profiles(frames, zero, rows, columns)
+    return columns, rows
+
+
+def unusable_frames(frames: NDArray[Any]) -> NDArray[np.bool_]:
+    """Say which frames (N,) are without any contrast, or hold a NaN or infinity."""
+    found = np.empty(len(frames), dtype=np.bool_)
+    _mark_unusable(frames, frames.dtype.kind == "f", found)
+    return found
 
 
 def zero_of(frames: NDArray[Any]) -> Any:

@@ -11,7 +11,7 @@ from algorithms.contract import AboutModel, FeatureKind
 from algorithms.documented import documented
 from algorithms.filtering.drift import EARTH, GAINS, HEAD_SHIFTS, HEAD_TURNS, Drift, random_walk
 from algorithms.filtering.sequence import CONTEXT, SunFilter
-from algorithms.inputs import require_positive
+from algorithms.parameters import require_positive
 
 if TYPE_CHECKING:
     from algorithms.filtering.filters import Filter

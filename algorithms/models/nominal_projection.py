@@ -11,7 +11,7 @@ from typing import TypedDict
 import numpy as np
 
 from algorithms.contract import AboutCompensation, AboutModel, FeatureKind, Floats, SensorGeometry
-from algorithms.inputs import require_positive
+from algorithms.parameters import require_positive
 
 POSITIONS = frozenset({FeatureKind.SPOT, FeatureKind.BALANCE})
 """The kinds of features that place one spot on a plane."""

@@ -147,6 +147,15 @@ def score_cells(
     )
 
 
+def say_sources(published: int, kept: int, measured: int, directory: Path) -> None:
+    """Say on stderr where scores come from, and where new ones are kept."""
+    typer.echo(
+        f"{published} published, {kept} measured before, {measured} measured now; new results are "
+        f"kept in {directory}",
+        err=True,
+    )
+
+
 def _rows(store: Store, cells: set[Cell]) -> dict[Cell, Row]:
     if not cells:
         return {}

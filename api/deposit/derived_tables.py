@@ -33,7 +33,7 @@ def resolution() -> list[Mapping[str, Any]]:
             "dataset": setting.dataset,
             "condition": setting.condition,
             **{f"{name}_basis": pipeline.basis[name] for name in ESSENTIAL},
-            "assumed": [f"{name}: {rule}" for name, rule in pipeline.assumptions.items()],
+            "assumed": [f"{name}: {rule}" for name, rule in pipeline.assumed.items()],
         }
         for key, found in resolved.items()
         for pipeline in found.pipelines

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from benchmark import datasets
+from files.json_data import JsonData
 from registry.studies import Facts, facts
 
 Pair = tuple[str, str]  # (detector, mask)
@@ -25,7 +26,7 @@ class CoverageError(ValueError):
 
 
 @dataclass(frozen=True)
-class PairCoverage:
+class PairCoverage(JsonData):
     """A pair of the taxonomy, the studies that use it and the datasets that simulate it.
 
     Exactly one of `datasets` and `reason` is there; a pair without studies has datasets.
@@ -37,19 +38,9 @@ class PairCoverage:
     datasets: tuple[str, ...]
     reason: str
 
-    def to_dict(self) -> dict[str, object]:
-        """As printed."""
-        return {
-            "detector": self.detector,
-            "mask": self.mask,
-            "studies": list(self.studies),
-            "datasets": list(self.datasets),
-            "reason": self.reason,
-        }
-
 
 @dataclass(frozen=True)
-class Coverage:
+class Coverage(JsonData):
     """What the datasets cover of the taxonomy and of the mapped studies.
 
     Attributes
@@ -60,9 +51,9 @@ class Coverage:
         By value of the taxonomy, the datasets that have it.
     """
 
-    pairs: tuple[PairCoverage, ...]
     detectors: Mapping[str, tuple[str, ...]]
     masks: Mapping[str, tuple[str, ...]]
+    pairs: tuple[PairCoverage, ...]
 
     @property
     def used(self) -> tuple[PairCoverage, ...]:
@@ -79,14 +70,6 @@ class Coverage:
             f"simulated, and {len(simulated)} of the {len(used)} detector-mask pairs that the "
             f"mapped studies use; {beyond} simulated pairs are used by no mapped study."
         )
-
-    def to_dict(self) -> dict[str, object]:
-        """As printed."""
-        return {
-            "detectors": {value: list(names) for value, names in self.detectors.items()},
-            "masks": {value: list(names) for value, names in self.masks.items()},
-            "pairs": [pair.to_dict() for pair in self.pairs],
-        }
 
 
 def coverage(
@@ -125,6 +108,8 @@ def coverage(
     _check(using.keys(), simulating.keys(), reasons)
     detectors, masks = mapped.taxonomy.values("detector"), mapped.taxonomy.values("mask")
     return Coverage(
+        {value: _studies_with(value, 0, architectures) for value in detectors},
+        {value: _studies_with(value, 1, architectures) for value in masks},
         tuple(
             PairCoverage(
                 *pair,
@@ -135,8 +120,6 @@ def coverage(
             for pair in ((detector, mask) for detector in detectors for mask in masks)
             if pair in using or pair in simulating
         ),
-        {value: _studies_with(value, 0, architectures) for value in detectors},
-        {value: _studies_with(value, 1, architectures) for value in masks},
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from benchmark.leaderboard.overview import ROLES, WITHIN, suffix
+from benchmark.leaderboard.overview import WITHIN
 
 Row = Mapping[str, Any]
 
@@ -48,26 +48,6 @@ def tally(rows: Sequence[Row]) -> str:
     return f"Of {len(rows)} architectures, {', '.join(near)} times the bound; {ties} are ties."
 
 
-def overview_tables(document: Mapping[str, Any]) -> str:
-    """Write `benchmark.leaderboard.overview.overview` as a table a role; what it says stands above.
-
-    Shares come with the number of boards that they are of.
-    """
-    headings = {
-        "boards": "---:",
-        **{f"within {limit:g}": "---:" for limit in WITHIN},
-        "median × bound": "---:",
-        "leads": "---:",
-        f"{WITHIN[-1]:g} in reach": "---:",
-    }
-    parts = [document["says"]]
-    for role in ROLES:
-        rows = [part for part in document["parts"] if part["role"] == role]
-        if rows:
-            parts += [f"### By {role}", _table({role: "---", **headings}, map(_part, rows))]
-    return "\n\n".join(parts)
-
-
 def _architecture(row: Row) -> Sequence[str]:
     if row["extractor"] is None:
         return f"{row['detector']}, {row['mask']}", "none has an error", *["-"] * 7
@@ -94,20 +74,6 @@ def _finer(row: Row) -> str:
     return (
         f" ({row['finer_extractor']} + {row['finer_model']}: {digits(row['finer_rms_deg'])} deg at "
         f"{100 * row['finer_availability']:.0f} % availability)"
-    )
-
-
-def _part(part: Row) -> Sequence[str]:
-    return (
-        f"`{part['part']}`",
-        str(part["boards"]),
-        *(
-            f"{100 * part[f'share_{suffix(limit)}']:.0f} % ({part[f'within_{suffix(limit)}']})"
-            for limit in WITHIN
-        ),
-        digits(part["median_over_bound"]),
-        str(part["leads"]),
-        str(part["reachable_10"]),
     )
 
 

@@ -6,7 +6,7 @@ entered anywhere.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
@@ -94,8 +94,3 @@ def suite(name: str) -> Suite:
     if name not in SUITES:
         raise UnknownNameError("suite", name, SUITES)
     return SUITES[name]
-
-
-def parts_of_cells(cells: Collection[Cell]) -> tuple[frozenset[str], frozenset[str]]:
-    """Return the extractors and the models that cells are of."""
-    return frozenset(cell.extractor for cell in cells), frozenset(cell.model for cell in cells)

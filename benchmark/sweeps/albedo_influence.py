@@ -118,9 +118,7 @@ def on_cube(name: str = "pd-maskless-cube", samples: int | None = None) -> Influ
     NoInfluenceError
         When the dataset's sensor is no cube of photodiodes, or never sees the Earth.
     """
-    preset = datasets.get(name)
-    if "albedo" not in preset.conditions:
-        raise NoInfluenceError(f"dataset {name} has no condition 'albedo'")
+    preset = _with_albedo(name)
     sensor = preset.condition("albedo").sensor
     if not isinstance(sensor, FaceSensor) or not _is_cube(sensor):
         raise NoInfluenceError(f"dataset {name} has no cube of photodiodes")
@@ -149,9 +147,7 @@ def on_balance(name: str = "qpd-single-aperture", samples: int | None = None) ->
     NoInfluenceError
         When the dataset has no four currents to balance, or never sees the Earth.
     """
-    preset = datasets.get(name)
-    if "albedo" not in preset.conditions:
-        raise NoInfluenceError(f"dataset {name} has no condition 'albedo'")
+    preset = _with_albedo(name)
     sensor, pattern = preset.condition("albedo").sensor, preset.fixed_pattern("albedo")
     ground = preset.scene("albedo", "calibration")
     currents = sensor.expected(ground, pattern)
@@ -167,6 +163,13 @@ def on_balance(name: str = "qpd-single-aperture", samples: int | None = None) ->
     )
     bound = preset.bound("albedo", "test", samples).angle_deg
     return Influence(separation_deg(with_earth, without), bound)
+
+
+def _with_albedo(name: str) -> datasets.Preset:
+    preset = datasets.get(name)
+    if "albedo" not in preset.conditions:
+        raise NoInfluenceError(f"dataset {name} has no condition 'albedo'")
+    return preset
 
 
 def _is_cube(sensor: FaceSensor) -> bool:

@@ -23,6 +23,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
+from files.json_data import JsonData
 from registry.fidelity.particulars import Purpose
 from registry.fidelity.purposes import PURPOSES
 from registry.fidelity.runnable import RunnablePipeline, strongest
@@ -54,7 +55,7 @@ Part = Literal["sensor", "condition", "extractor", "model", "compensation"]
 
 
 @dataclass(frozen=True)
-class Departure:
+class Departure(JsonData):
     """A part of a study's run that is not the study's own.
 
     ``text`` says what departs, as a clause; ``settled_by`` what would make the part the study's.
@@ -65,33 +66,15 @@ class Departure:
     text: str
     settled_by: str
 
-    def to_dict(self) -> dict[str, str]:
-        """As in the HTTP answer."""
-        return {
-            "part": self.part,
-            "value": self.value,
-            "text": self.text,
-            "settled_by": self.settled_by,
-        }
-
 
 @dataclass(frozen=True)
-class Fidelity:
+class Fidelity(JsonData):
     """The grade of a study's run, in one sentence and by its departures."""
 
     grade: Grade
     sentence: str
     departures: tuple[Departure, ...] = ()
     purposes: Mapping[Purpose, str] = field(default_factory=dict, hash=False)
-
-    def to_dict(self) -> dict[str, object]:
-        """As in the HTTP answer."""
-        return {
-            "grade": self.grade,
-            "sentence": self.sentence,
-            "departures": [departure.to_dict() for departure in self.departures],
-            "purposes": dict(self.purposes),
-        }
 
 
 def tally(grades: Iterable[Grade]) -> dict[Grade, int]:
@@ -148,7 +131,7 @@ def _sensor(study: Study, pipelines: Sequence[RunnablePipeline]) -> list[Departu
         basis = max((best.basis[a] for a in weak), key=BASES.index)
         said = "recalled" if basis == "recalled" else "chosen"
         what = " and ".join(f"{a} ({getattr(best, a)})" for a in weak)
-        reasons = "; ".join(dict.fromkeys(best.assumptions[a] for a in weak))
+        reasons = "; ".join(dict.fromkeys(best.assumed[a] for a in weak))
         return [
             Departure(
                 "sensor",

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from files.json_data import JsonData
 from registry.fidelity.particulars import Conditions, Purpose
 from registry.studies import Facts, Study
 
@@ -52,20 +53,12 @@ class DataSet:
 
 
 @dataclass(frozen=True)
-class DatasetCondition:
+class DatasetCondition(JsonData):
     """A data set under a condition, and the purposes of the study that it shows."""
 
     dataset: str
     condition: str
     purposes: tuple[Purpose, ...] = ()
-
-    def to_dict(self) -> dict[str, object]:
-        """As in the HTTP answer."""
-        return {
-            "dataset": self.dataset,
-            "condition": self.condition,
-            "purposes": list(self.purposes),
-        }
 
 
 def purposes(study: Study, facts: Facts) -> Mapping[Purpose, str]:

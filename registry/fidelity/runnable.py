@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from files.json_data import JsonData
 from registry.fidelity.purposes import DatasetCondition
 from registry.sensors import BASES, SENSOR, Basis
 
@@ -13,11 +14,11 @@ ESSENTIAL = (*SENSOR, "extractor", "model")
 
 
 @dataclass(frozen=True)
-class RunnablePipeline:
+class RunnablePipeline(JsonData):
     """An extractor and a model, by name, on a sensor of the study, with what each rests on.
 
     ``stages`` are the model's by their taxonomy values: compensations, and the model itself last.
-    ``basis`` says of detector, mask, extractor and model what they rest on, ``assumptions`` of
+    ``basis`` says of detector, mask, extractor and model what they rest on, ``assumed`` of
     those that are not stated by what rule they stand there. ``datasets`` are all that it can be
     scored on; ``settings`` those of them that stand for the study, each under a condition, the one
     that tells most first.
@@ -30,35 +31,19 @@ class RunnablePipeline:
     extractor_taxonomy: str
     model_taxonomy: str
     stages: tuple[str, ...]
+    basis: Mapping[str, Basis] = field(hash=False)
+    assumed: Mapping[str, str] = field(hash=False)
     datasets: tuple[str, ...]
     settings: tuple[DatasetCondition, ...]
-    basis: Mapping[str, Basis] = field(hash=False)
-    assumptions: Mapping[str, str] = field(hash=False)
 
     @property
     def strength(self) -> list[int]:
         """What its parts rest on as ranks, the weakest first: smaller is better."""
         return sorted((BASES.index(basis) for basis in self.basis.values()), reverse=True)
 
-    def to_dict(self) -> dict[str, object]:
-        """As in the HTTP answer."""
-        return {
-            "detector": self.detector,
-            "mask": self.mask,
-            "extractor": self.extractor,
-            "model": self.model,
-            "extractor_taxonomy": self.extractor_taxonomy,
-            "model_taxonomy": self.model_taxonomy,
-            "stages": list(self.stages),
-            "basis": dict(self.basis),
-            "assumed": dict(self.assumptions),
-            "datasets": list(self.datasets),
-            "settings": [setting.to_dict() for setting in self.settings],
-        }
-
 
 @dataclass(frozen=True)
-class Gap:
+class Gap(JsonData):
     """Something of a study that does not run as it is, and why.
 
     ``attribute`` is one of the study's (value "" if its cell is empty), or "architecture" with
@@ -68,10 +53,6 @@ class Gap:
     attribute: str
     value: str
     reason: str
-
-    def to_dict(self) -> dict[str, str]:
-        """As in the HTTP answer."""
-        return {"attribute": self.attribute, "value": self.value, "reason": self.reason}
 
 
 def strongest(pipelines: Sequence[RunnablePipeline]) -> list[RunnablePipeline]:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from functools import cached_property
 
+from files.json_data import JsonData
 from registry.taxonomy import NUMERIC_ATTRIBUTES, unknown_name
 from survey_data.editions import SURVEY
 from survey_data.reported import KIND_OF, Quantity, ReportedAccuracy, reported_accuracies
@@ -49,17 +50,13 @@ class NameInStudy:
 
 
 @dataclass(frozen=True)
-class Verification:
+class Verification(JsonData):
     """Who confirmed what of a study, on which day, and where that can be seen."""
 
     name: str
     date: str
     confirms: str
     source: str
-
-    def to_dict(self) -> dict[str, str]:
-        """Return the confirmation as plain JSON data."""
-        return asdict(self)
 
 
 @dataclass(frozen=True)

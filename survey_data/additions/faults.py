@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
+from files.json_data import JsonData
 from files.reading import LARGEST, FileRefusedError, read_bytes
 from survey_data.nearest import nearest_name
 from survey_data.problems import SurveyImportError
@@ -15,15 +15,11 @@ _MOST_LISTED = 12
 
 
 @dataclass(frozen=True)
-class Fault:
+class Fault(JsonData):
     """One fault; ``line`` is None where no line is at fault."""
 
     line: int | None
     message: str
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the fault as plain JSON data."""
-        return asdict(self)
 
 
 class FaultsError(SurveyImportError):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 
-from survey_data.additions.addition_reader import Addition, Row
+from survey_data.additions.addition_reader import Row
 from survey_data.additions.vocabulary import Definition, Vocabulary
 from survey_data.descriptor import column_types
 
@@ -73,38 +73,6 @@ def empty_template(vocabulary: Vocabulary, publication: Row | None = None) -> st
     for definition in vocabulary.definitions.values():
         lines += [*_of_attribute(definition), ""]
     return "\n".join([*lines, _SENSORS])
-
-
-def filled_template(addition: Addition) -> str:
-    """Return a template that is read into exactly these rows."""
-    study = addition.study
-    lines = [
-        f"{column} = {_format_value(column, study[column])}" for column in study if study[column]
-    ]
-    roles, names = (_by_value(addition.rows[table]) for table in ("roles", "names"))
-    for row in addition.rows["attributes"]:
-        attribute, at = row["attribute"], (row["attribute"], row["value"])
-        if not any(row[column] for column in ("value", "source", "note")):
-            continue  # unknown, which is said best by saying nothing
-        lines += ["", f"[[{attribute}]]"]
-        lines += [f"{c} = {_text(v)}" for c, v in row.items() if v and c not in _PLACE]
-        if at in names:
-            lines.append(f"name = {_text(names[at]['name'])}")
-            lines += ["nearest = true"] * (names[at]["nearest"] == "true")
-        if at in roles:
-            lines.append(f"role = {_text(roles[at]['role'])}")
-            lines.append(f"role_note = {_text(roles[at]['note'])}")
-    for row in addition.rows["architectures"]:
-        lines += ["", "[[architecture]]"]
-        lines += [f"{c} = {_text(v)}" for c, v in row.items() if v and c != "study"]
-    return "\n".join(lines) + "\n"
-
-
-_PLACE = ("study", "attribute")
-
-
-def _by_value(rows: Sequence[Row]) -> dict[tuple[str, str], Mapping[str, str]]:
-    return {(row["attribute"], row["value"]): row for row in rows}
 
 
 def _of_attribute(definition: Definition) -> Iterator[str]:

@@ -28,11 +28,12 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import pandas as pd
 
+from files.json_data import JsonData
 from survey_data import labels
 from survey_data.findings.evidence import NO_MAJORITY, OCCURRING, Tally, settled_by
 
@@ -44,7 +45,6 @@ KINDS = (
     *("top", "top-set", "order", "bottom", "bottom-set", "among", "spread", "top-centroid"),
     NO_MAJORITY,
 )
-_COUNTS = ("ranking", "named")
 _CENTROID_FAMILY = "Centroid detection"
 _INCLUDES = {("detector", "PD"): frozenset({"PD", "QPD"})}
 _CATEGORY_OF = {"model_category": "model", "extractor_family": "extractor"}
@@ -71,7 +71,7 @@ class Clause:
 
 
 @dataclass(frozen=True)
-class ClauseVerdict:
+class ClauseVerdict(JsonData):
     """A clause's verdict and the counts behind it.
 
     `matching` studies pass the filter, `counted` of them have a known value of the ranked
@@ -91,11 +91,6 @@ class ClauseVerdict:
     ranking: tuple[tuple[str, int], ...]
     named: tuple[tuple[str, int], ...]
     settled_by: str
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the verdict as plain JSON data."""
-        counts = {name: [list(pair) for pair in getattr(self, name)] for name in _COUNTS}
-        return asdict(self) | counts
 
 
 @dataclass(frozen=True)

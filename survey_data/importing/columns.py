@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 import pandas as pd
 
+from files.json_data import JsonData
 from survey_data.importing.text_similarity import normalise, similarity
 from survey_data.importing.values import UnreadableValueError, ValueReader, column_unit
 from survey_data.nearest import nearest_name
@@ -44,7 +44,7 @@ class ColumnMatch:
 
 
 @dataclass(frozen=True)
-class ColumnMapping:
+class ColumnMapping(JsonData):
     """Every column taken, in the order of the table, and the columns left aside."""
 
     matches: tuple[ColumnMatch, ...]
@@ -59,13 +59,6 @@ class ColumnMapping:
         """Return the attributes that have a column, in the order of the table."""
         targets = (match.target for match in self.matches)
         return tuple(dict.fromkeys(name for name in targets if name not in _IDENTIFICATION))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the mapping as plain JSON data."""
-        return {
-            "matches": [asdict(match) for match in self.matches],
-            "ignored": list(self.ignored),
-        }
 
 
 def targets(tables: SurveyTables) -> tuple[str, ...]:

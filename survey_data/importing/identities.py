@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
 import pandas as pd
 
 from files.csv_writing import csv_text
+from files.json_data import JsonData
 from files.strict_csv import read_records
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.importing.bibliography import Entry, read_bibliography
@@ -31,7 +32,7 @@ Kind = Literal["new", "changed", "conflict"]
 
 
 @dataclass(frozen=True)
-class IdentityDifference:
+class IdentityDifference(JsonData):
     """A cell of a study that the bibliography says otherwise.
 
     ``new``: ours is empty. ``changed``: the identity was not confirmed, or the study was named to
@@ -47,13 +48,9 @@ class IdentityDifference:
     identity: str
     line: int
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the difference as plain JSON data."""
-        return asdict(self)
-
 
 @dataclass(frozen=True)
-class BibliographyPlan:
+class BibliographyPlan(JsonData):
     """What a bibliography changes in the table of studies.
 
     ``settled`` are the studies whose identity it confirms; ``left_aside`` its keys that are no
@@ -79,16 +76,9 @@ class BibliographyPlan:
         return tuple(dict.fromkeys(d.study for d in self.differences if d.kind == "conflict"))
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the plan as plain JSON data."""
-        return {
-            "source": self.source,
-            "entries": self.entries,
-            "differences": [difference.to_dict() for difference in self.differences],
-            "settled": list(self.settled),
-            "left_aside": [{"key": key, "reason": reason} for key, reason in self.left_aside],
-            "missing": list(self.missing),
-            "written": self.written,
-        }
+        """Return it as JSON data."""
+        aside = [{"key": key, "reason": reason} for key, reason in self.left_aside]
+        return {**super().to_dict(), "left_aside": aside}
 
 
 def import_bibliography(

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import pandas as pd
 
+from files.json_data import JsonData
 from files.problems import Problem
 from survey_data.importing.columns import ColumnMapping
 from survey_data.importing.studies import StudyFinder, StudyNotFoundError, cell_text
@@ -29,7 +30,7 @@ Kind = Literal["new", "changed", "confirmed", "conflict"]
 
 
 @dataclass(frozen=True)
-class Difference:
+class Difference(JsonData):
     """A cell (study, attribute) that another table states otherwise, or on better evidence.
 
     `basis` is ours, the strongest of the cell. `kind`: ``new`` (ours is unknown), ``changed``,
@@ -45,10 +46,6 @@ class Difference:
     kind: Kind
     row: int
     column: str
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the difference as plain JSON data."""
-        return asdict(self) | {"ours": list(self.ours), "theirs": list(self.theirs)}
 
 
 @dataclass(frozen=True)
@@ -70,7 +67,7 @@ class Withdrawn:
 
 
 @dataclass(frozen=True)
-class ImportPlan:
+class ImportPlan(JsonData):
     """What an import would do.
 
     `differences` holds new, changed and conflicting cells, `confirmed` the cells whose basis
@@ -101,19 +98,9 @@ class ImportPlan:
         return replace(self, written=len(self.edits))
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the plan as plain JSON data."""
-        return {
-            "source": self.source,
-            "mapping": self.mapping.to_dict(),
-            "matched": [{"row": row, "study": study} for row, study in self.matched],
-            "unmatched": [asdict(entry) for entry in self.unmatched],
-            "differences": [entry.to_dict() for entry in self.differences],
-            "confirmed": [entry.to_dict() for entry in self.confirmed],
-            "guesses": [asdict(entry) for entry in self.guesses],
-            "errors": [entry.to_dict() for entry in self.errors],
-            "withdrawn": [asdict(entry) for entry in self.withdrawn],
-            "written": self.written,
-        }
+        """Return it as JSON data."""
+        matched = [{"row": row, "study": study} for row, study in self.matched]
+        return {**super().to_dict(), "matched": matched}
 
 
 @dataclass(frozen=True)

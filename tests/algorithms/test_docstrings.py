@@ -31,6 +31,7 @@ PUBLIC = (
     "design",
     "inputs",
     "measurement",
+    "parameters",
     "pipeline",
 )
 SECTIONS = ("Notes", "References", "Examples")

@@ -19,6 +19,7 @@ from stand_ins import (
     implementation,
     planned,
     stand_ins,
+    study_of,
 )
 
 from benchmark.plan.combinations import scorable_plan
@@ -34,15 +35,6 @@ Build = Callable[[list[Mapping[str, list[str]]]], Facts]
 OPENED = ("", "survey-text", "model:x", "so it says")
 ALBEDO = PurposeRule("U01", (("error", "Interference"),), (("task", "Cost"),), "albedo", "s", "r")
 FLIGHT = PurposeRule("U02", (("model", "ACM"),), (), "flight", "s", "in operation")
-
-
-def row(**values: list[str]) -> dict[str, list[str]]:
-    return {
-        "detector": ["CMOS"],
-        "mask": ["Slit"],
-        "extractor": ["BCTM"],
-        "model": ["SPM"],
-    } | values
 
 
 def resolved(
@@ -70,7 +62,7 @@ def recalled(facts: Facts, attribute: str) -> Facts:
 
 
 def test_a_study_that_runs_as_it_states_is_faithful(facts_of: Build) -> None:
-    found = resolved(facts_of([row(model=["SPM", "LUT"])]))
+    found = resolved(facts_of([study_of(model=["SPM", "LUT"])]))
     assert (found.fidelity.grade, parts(found)) == ("faithful", [])
     assert found.fidelity.sentence == (
         "Its standard projection model, look-up table and basic centroid threshold method run as "
@@ -93,7 +85,7 @@ def test_a_study_that_runs_as_it_states_is_faithful(facts_of: Build) -> None:
 def test_each_value_that_does_not_run_or_was_chosen_departs(
     facts_of: Build, values: dict[str, list[str]], departs: list[str]
 ) -> None:
-    found = resolved(facts_of([row(**values)]))
+    found = resolved(facts_of([study_of(**values)]))
     assert sorted(parts(found)) == departs
     assert found.fidelity.grade == ("close" if len(departs) == 1 else "stand-in")
     for departure in found.fidelity.departures:
@@ -102,7 +94,7 @@ def test_each_value_that_does_not_run_or_was_chosen_departs(
 
 
 def test_what_is_recalled_departs_and_what_is_inferred_does_not(facts_of: Build) -> None:
-    facts = facts_of([row()])
+    facts = facts_of([study_of()])
     assert parts(resolved(recalled(facts, "detector"))) == ["sensor"]
     both = recalled(recalled(facts, "detector"), "mask")
     assert parts(resolved(both)) == ["sensor"]  # one sensor, one part
@@ -117,7 +109,7 @@ def test_what_is_recalled_departs_and_what_is_inferred_does_not(facts_of: Build)
 
 
 def test_an_implied_cell_is_the_studys_and_a_chosen_one_is_not(facts_of: Build) -> None:
-    facts = facts_of([row(mask=[])])
+    facts = facts_of([study_of(mask=[])])
     rule = Default("D01", "mask", (("extractor", "BCTM"),), "Slit", "fe:bctm", "one line, one slit")
     implied = dataclasses.replace(facts, defaults=(rule,))
     assert resolved(implied).fidelity.grade == "faithful"
@@ -128,7 +120,7 @@ def test_an_implied_cell_is_the_studys_and_a_chosen_one_is_not(facts_of: Build) 
 def test_a_kind_that_is_not_stated_is_chosen_unless_a_model_is_known_to_do_it(
     facts_of: Build,
 ) -> None:
-    facts = facts_of([row(detector=["PD"], extractor=["Direct"], model=["Basic", "ECM"])])
+    facts = facts_of([study_of(detector=["PD"], extractor=["Direct"], model=["Basic", "ECM"])])
     on = (("PD", "Slit"),)
     assert parts(resolved(facts, on=on)) == ["compensation"]
     known = CompensatedModel("S0", "ECM", "Basic", "within", *OPENED[1:])
@@ -138,7 +130,7 @@ def test_a_kind_that_is_not_stated_is_chosen_unless_a_model_is_known_to_do_it(
 
 def test_a_compensation_runs_ahead_of_the_model_of_its_equation(facts_of: Build) -> None:
     models = [*MODELS, chain(GLASS, SPM), chain(GLASS, LUT)]
-    facts = facts_of([row(model=["OCM"])])
+    facts = facts_of([study_of(model=["OCM"])])
     bare = resolved(facts, models=models)
     assert ([p.model for p in bare.pipelines], parts(bare)) == (["glass + spm"], ["model"])
     known = CompensatedModel("S0", "OCM", "LUT", "ahead", *OPENED[1:])
@@ -150,7 +142,7 @@ def test_a_compensation_runs_ahead_of_the_model_of_its_equation(facts_of: Build)
 def test_another_variant_than_the_studys_departs(facts_of: Build) -> None:
     balanced = implementation("balanced", "DNN", None, frozenset({BALANCE}))
     raw = implementation("raw", "DNN", None, frozenset({SIGNALS}))
-    facts = facts_of([row(detector=["PD"], extractor=["Voltage balance"], model=["DNN"])])
+    facts = facts_of([study_of(detector=["PD"], extractor=["Voltage balance"], model=["DNN"])])
     variant = MethodVariant("S0", "DNN", "DNN", "Direct", *OPENED)
     facts = dataclasses.replace(facts, variants=(variant,))
     on = (("PD", "Slit"),)
@@ -164,7 +156,7 @@ def test_another_variant_than_the_studys_departs(facts_of: Build) -> None:
 
 
 def test_a_study_stands_where_its_purpose_is_shown(facts_of: Build) -> None:
-    facts = dataclasses.replace(facts_of([row(error=["Interference"])]), purposes=(ALBEDO,))
+    facts = dataclasses.replace(facts_of([study_of(error=["Interference"])]), purposes=(ALBEDO,))
     lit = DataSet("CMOS-Slit", ("nominal", "albedo"))
     found = resolved(facts, lit)
     assert found.fidelity.grade == "faithful"
@@ -173,14 +165,14 @@ def test_a_study_stands_where_its_purpose_is_shown(facts_of: Build) -> None:
     assert parts(dark) == ["condition"]
     assert dark.pipelines[0].settings == (DatasetCondition("CMOS-Slit", "nominal"),)
     # a study that the rule leaves out is shown as any other
-    facts = facts_of([row(error=["Interference"], task=["Cost"])])
+    facts = facts_of([study_of(error=["Interference"], task=["Cost"])])
     facts = dataclasses.replace(facts, purposes=(ALBEDO,))
     assert resolved(facts, lit).pipelines[0].settings == (DatasetCondition("CMOS-Slit", "nominal"),)
 
 
 def test_where_its_own_sensor_does_not_fly_the_nearest_that_does_stands_in(facts_of: Build) -> None:
     drift = implementation("drift", "ACM", None, frozenset({SIGNALS}))
-    values = row(detector=["PD"], mask=["Slit"], extractor=["Direct"], model=["ACM"])
+    values = study_of(detector=["PD"], mask=["Slit"], extractor=["Direct"], model=["ACM"])
     facts = dataclasses.replace(facts_of([values]), purposes=(FLIGHT,))
     aloft = DataSet("PD-Lens", ("nominal", "hot"), frozenset({"time_s"}))
     on = (("PD", "Slit"), ("PD", "Lens"), ("CMOS", "Slit"))
@@ -189,7 +181,7 @@ def test_where_its_own_sensor_does_not_fly_the_nearest_that_does_stands_in(facts
     assert parts(found) == ["condition"]
     assert found.pipelines[0].settings == (DatasetCondition("PD-Slit", "nominal"),)
     # where the sensor is not known at all it is
-    facts = facts_of([row(detector=[], mask=[], extractor=["Direct"], model=["ACM"])])
+    facts = facts_of([study_of(detector=[], mask=[], extractor=["Direct"], model=["ACM"])])
     facts = dataclasses.replace(facts, purposes=(FLIGHT,))
     found = resolved(facts, aloft, on=on, models=[drift])
     assert parts(found) == ["sensor"]
@@ -197,7 +189,7 @@ def test_where_its_own_sensor_does_not_fly_the_nearest_that_does_stands_in(facts
 
 
 def test_nothing_runs_of_a_study_without_a_simulated_sensor(facts_of: Build) -> None:
-    found = resolved(facts_of([row()]), on=())
+    found = resolved(facts_of([study_of()]), on=())
     assert (found.fidelity.grade, found.state, found.best_pipeline) == ("none", "none", None)
 
 

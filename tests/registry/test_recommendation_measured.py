@@ -4,20 +4,13 @@ import math
 from collections.abc import Callable, Mapping
 
 import pytest
-from scores import pipeline
+from scores import STUDY, pipeline
 
 from registry.measured_pipelines import Measurements, Score
 from registry.recommendation import Architecture, Recommendation, recommend
 from registry.studies import Facts
 
 Rows = list[Mapping[str, list[str]]]
-STUDY = {
-    "task": ["Cost"],
-    "detector": ["CMOS"],
-    "mask": ["Slit"],
-    "model": ["SPM"],
-    "extractor": ["BCTM"],
-}
 
 
 def one_study(facts_of: Callable[[Rows], Facts], **numbers: str) -> Facts:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 
 import pytest
-from scores import pipeline
+from scores import STUDY, pipeline
 
 from benchmark.assessment.regret import drawn_requirements
 from registry.answer_json import answer_digest, answer_json
@@ -12,13 +12,6 @@ from registry.recommendation import answer, recommend
 from registry.studies import Facts
 
 Rows = list[Mapping[str, list[str]]]
-STUDY = {
-    "task": ["Cost"],
-    "detector": ["CMOS"],
-    "mask": ["Slit"],
-    "model": ["SPM"],
-    "extractor": ["BCTM"],
-}
 
 
 def test_what_was_judged_for_one_question_does_not_tell_for_another(

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 
 import pytest
-from scores import pipeline
+from scores import STUDY, pipeline
 
 from registry.measured_pipelines import Score
 from registry.recommendation import Recommendation, recommend
@@ -11,13 +11,6 @@ from registry.relaxation import MOST_CHANGES, BlockingConstraint
 from registry.studies import Facts
 
 Rows = list[Mapping[str, list[str]]]
-STUDY = {
-    "task": ["Cost"],
-    "detector": ["CMOS"],
-    "mask": ["Slit"],
-    "model": ["SPM"],
-    "extractor": ["BCTM"],
-}
 
 
 def test_a_limit_nothing_tells_of_says_so(survey: Facts) -> None:

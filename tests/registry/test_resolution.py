@@ -19,6 +19,7 @@ from stand_ins import (
     implementation,
     planned,
     stand_ins,
+    study_of,
 )
 
 from registry.fitting import KIN, SIMPLEST
@@ -30,15 +31,6 @@ Rows = list[Mapping[str, list[str]]]
 Build = Callable[[Rows], Facts]
 
 EVERYWHERE = [(d, m) for d in READOUTS for m in ("Slit", "Lens")]
-
-
-def study(**values: list[str]) -> Mapping[str, list[str]]:
-    return {
-        "detector": ["CMOS"],
-        "mask": ["Slit"],
-        "extractor": ["BCTM"],
-        "model": ["SPM"],
-    } | values
 
 
 def resolved(
@@ -67,26 +59,26 @@ def gaps(found: Resolution) -> list[tuple[str, str]]:
 
 
 def test_a_study_whose_parts_are_all_planned_is_complete(facts_of: Build) -> None:
-    found = resolved(facts_of, study(model=["SPM", "LUT"], mask=["Slit", "Lens"]))
+    found = resolved(facts_of, study_of(model=["SPM", "LUT"], mask=["Slit", "Lens"]))
     assert found.state == "complete"
     assert names(found) == [
         ("CMOS", mask, "bctm", model) for mask in ("Slit", "Lens") for model in ("spm", "lut")
     ]
     for pipeline in found.pipelines:
-        assert not pipeline.assumptions
+        assert not pipeline.assumed
         assert set(pipeline.basis.values()) == {"stated"}
         assert pipeline.datasets == (f"CMOS-{pipeline.mask}",)
 
 
 def test_what_the_plan_leaves_out_is_not_announced(facts_of: Build) -> None:
-    found = resolved(facts_of, study(model=["SPM", "LUT"]), without=("lut",))
+    found = resolved(facts_of, study_of(model=["SPM", "LUT"]), without=("lut",))
     assert models_of(found) == ["spm"]
     assert (found.state, gaps(found)) == ("partial", [("model", "LUT")])
-    assert resolved(facts_of, study(), architectures=[]).state == "none"
+    assert resolved(facts_of, study_of(), architectures=[]).state == "none"
 
 
 def test_a_value_without_implementation_is_a_gap(facts_of: Build) -> None:
-    found = resolved(facts_of, study(model=["SPM", "LSQ"]))
+    found = resolved(facts_of, study_of(model=["SPM", "LSQ"]))
     assert found.state == "partial"
     assert [gap.to_dict() for gap in found.gaps] == [
         {"attribute": "model", "value": "LSQ", "reason": "no model implements LSQ"}
@@ -95,28 +87,30 @@ def test_a_value_without_implementation_is_a_gap(facts_of: Build) -> None:
 
 def test_the_nearest_stands_in_where_nothing_of_a_study_runs(facts_of: Build) -> None:
     # Of its category the simplest.
-    found = resolved(facts_of, study(model=["LSQ"]))
+    found = resolved(facts_of, study_of(model=["LSQ"]))
     (pipeline,) = found.pipelines
     assert (pipeline.model, pipeline.basis["model"]) == ("spm", "defaulted")
-    assert pipeline.assumptions == {
+    assert pipeline.assumed == {
         "model": "in place of LSQ, which does not run here: the nearest that fits"
     }
     assert [gap.reason for gap in found.gaps] == ["no model implements LSQ; spm in its place"]
     # A network learns a curve; where a polynomial is there, it is nearer than the projection.
     cubic = implementation("cubic", "Polynomial", None, frozenset({SPOT}))
-    assert models_of(resolved(facts_of, study(model=["ANN"]))) == ["spm"]
-    assert models_of(resolved(facts_of, study(model=["ANN"]), models=[*MODELS, cubic])) == ["cubic"]
+    assert models_of(resolved(facts_of, study_of(model=["ANN"]))) == ["spm"]
+    assert models_of(resolved(facts_of, study_of(model=["ANN"]), models=[*MODELS, cubic])) == [
+        "cubic"
+    ]
 
 
 def test_the_real_method_is_taken_as_soon_as_there_is_one(facts_of: Build) -> None:
     network = implementation("network", "ANN", None, frozenset({SPOT}))
-    found = resolved(facts_of, study(model=["ANN"]), models=[*MODELS, network])
+    found = resolved(facts_of, study_of(model=["ANN"]), models=[*MODELS, network])
     assert (models_of(found), found.state) == (["network"], "complete")
 
 
 def test_the_extractor_gives_way_before_the_model_does(facts_of: Build) -> None:
     # Balances are read by no fusion model, signals are: the model stays.
-    row = study(detector=["PD"], extractor=["Voltage balance"], model=["Basic"])
+    row = study_of(detector=["PD"], extractor=["Voltage balance"], model=["Basic"])
     found = resolved(facts_of, row)
     assert names(found) == [("PD", "Slit", "direct", "basic")]
     assert found.pipelines[0].basis["extractor"] == "defaulted"
@@ -125,19 +119,21 @@ def test_the_extractor_gives_way_before_the_model_does(facts_of: Build) -> None:
 
 @pytest.mark.parametrize("attribute", ["extractor", "model"])
 def test_methods_are_not_made_up(facts_of: Build, attribute: str) -> None:
-    found = resolved(facts_of, study(**{attribute: []}))
+    found = resolved(facts_of, study_of(**{attribute: []}))
     assert found.state == "none"
     assert (attribute, "") in gaps(found)
 
 
 def test_parts_that_do_not_fit_are_gaps_with_the_reason(facts_of: Build) -> None:
-    found = resolved(facts_of, study(extractor=["BCTM", "Direct"]))
+    found = resolved(facts_of, study_of(extractor=["BCTM", "Direct"]))
     assert names(found) == [("CMOS", "Slit", "bctm", "spm")]
     (gap,) = found.gaps
     assert (gap.attribute, gap.value) == ("extractor", "Direct")
     assert "reads currents; no data set of CMOS + Slit" in gap.reason
 
-    found = resolved(facts_of, study(detector=["PD"], extractor=["Direct"], model=["SPM", "Basic"]))
+    found = resolved(
+        facts_of, study_of(detector=["PD"], extractor=["Direct"], model=["SPM", "Basic"])
+    )
     assert names(found) == [("PD", "Slit", "direct", "basic")]
     (gap,) = found.gaps
     assert (gap.attribute, gap.value) == ("model", "SPM")
@@ -148,7 +144,7 @@ def test_a_combination_that_does_not_fit_is_no_gap_if_each_value_is_used(facts_o
     # Which extractor went with which model is not in the mapping: only what fits is run.
     found = resolved(
         facts_of,
-        study(detector=["CMOS", "PD"], extractor=["BCTM", "Direct"], model=["SPM", "Basic"]),
+        study_of(detector=["CMOS", "PD"], extractor=["BCTM", "Direct"], model=["SPM", "Basic"]),
     )
     assert found.state == "complete"
     assert names(found) == [
@@ -158,24 +154,24 @@ def test_a_combination_that_does_not_fit_is_no_gap_if_each_value_is_used(facts_o
 
 
 def test_a_parent_runs_as_each_kind(facts_of: Build) -> None:
-    found = resolved(facts_of, study(detector=["PD"], extractor=["Direct"], model=["ECM"]))
+    found = resolved(facts_of, study_of(detector=["PD"], extractor=["Direct"], model=["ECM"]))
     assert models_of(found) == ["noise", "kelly"]
     assert found.state == "complete"
-    found = resolved(facts_of, study(model=["SPM", "ICM"]))
+    found = resolved(facts_of, study_of(model=["SPM", "ICM"]))
     assert found.gaps[0].reason == "no model implements any of ICM, ICM/Albedo, ICM/Shadow"
 
 
 def test_no_method_runs_with_the_simplest_that_fits_and_says_so(facts_of: Build) -> None:
-    found = resolved(facts_of, study(model=["None"]))
+    found = resolved(facts_of, study_of(model=["None"]))
     (pipeline,) = found.pipelines
     assert (pipeline.model, found.state) == ("spm", "complete")
-    assert pipeline.assumptions == {"model": "the survey maps no model: the simplest that fits"}
-    found = resolved(facts_of, study(detector=["PD"], extractor=["Direct"], model=["None"]))
+    assert pipeline.assumed == {"model": "the survey maps no model: the simplest that fits"}
+    found = resolved(facts_of, study_of(detector=["PD"], extractor=["Direct"], model=["None"]))
     assert models_of(found) == ["basic"]
-    found = resolved(facts_of, study(extractor=["None"], model=["SPM", "LUT"]))
+    found = resolved(facts_of, study_of(extractor=["None"], model=["SPM", "LUT"]))
     assert names(found) == [("CMOS", "Slit", "bcm", "spm"), ("CMOS", "Slit", "bcm", "lut")]
     assert {p.basis["extractor"] for p in found.pipelines} == {"defaulted"}
-    found = resolved(facts_of, study(extractor=["None"], model=["None"]))
+    found = resolved(facts_of, study_of(extractor=["None"], model=["None"]))
     assert names(found) == [("CMOS", "Slit", "bcm", "spm")]
 
 
@@ -183,33 +179,33 @@ GLASSED = [*MODELS, chain(GLASS, SPM), chain(GLASS, LUT), chain(SHADE, GLASS, SP
 
 
 def test_a_compensation_is_a_stage_and_the_bare_model_is_left_out(facts_of: Build) -> None:
-    found = resolved(facts_of, study(model=["LUT", "OCM"]), models=GLASSED)
+    found = resolved(facts_of, study_of(model=["LUT", "OCM"]), models=GLASSED)
     assert (models_of(found), found.state) == (["glass + lut"], "complete")
     assert found.pipelines[0].stages == ("OCM", "LUT")
     # Both compensations that are stated, where a chain has both; none that is not stated.
-    both = resolved(facts_of, study(model=["ICM/Shadow", "SPM", "OCM"]), models=GLASSED)
+    both = resolved(facts_of, study_of(model=["ICM/Shadow", "SPM", "OCM"]), models=GLASSED)
     assert models_of(both) == ["shade + glass + spm"]
-    assert models_of(resolved(facts_of, study(model=["SPM"]), models=GLASSED)) == ["spm"]
+    assert models_of(resolved(facts_of, study_of(model=["SPM"]), models=GLASSED)) == ["spm"]
 
 
 def test_a_compensation_alone_runs_ahead_of_the_simplest_model(facts_of: Build) -> None:
-    found = resolved(facts_of, study(model=["OCM"]), models=GLASSED)
+    found = resolved(facts_of, study_of(model=["OCM"]), models=GLASSED)
     (pipeline,) = found.pipelines
     assert (pipeline.model, found.state) == ("glass + spm", "complete")
-    assert pipeline.assumptions == {"model": "OCM ahead of the simplest model that fits"}
+    assert pipeline.assumed == {"model": "OCM ahead of the simplest model that fits"}
 
 
 def test_where_a_compensation_is_not_planned_its_model_runs_bare(facts_of: Build) -> None:
     bare = ("glass + spm", "glass + lut", "shade + glass + spm")
-    found = resolved(facts_of, study(model=["LUT", "OCM"]), models=GLASSED, without=bare)
+    found = resolved(facts_of, study_of(model=["LUT", "OCM"]), models=GLASSED, without=bare)
     assert (models_of(found), gaps(found)) == (["lut"], [("model", "OCM")])
-    found = resolved(facts_of, study(model=["OCM"]), models=GLASSED, without=bare)
+    found = resolved(facts_of, study_of(model=["OCM"]), models=GLASSED, without=bare)
     assert (models_of(found), gaps(found)) == (["spm"], [("model", "OCM")])
     assert found.gaps[0].reason.endswith("; spm in its place")
 
 
 def test_architectures_not_simulated_are_gaps(facts_of: Build) -> None:
-    row = study(mask=["Slit", "Lens"])
+    row = study_of(mask=["Slit", "Lens"])
     found = resolved(facts_of, row, architectures=[("CMOS", "Slit")])
     assert names(found) == [("CMOS", "Slit", "bctm", "spm")]
     assert (found.state, gaps(found)) == ("partial", [("architecture", "CMOS + Lens")])
@@ -255,7 +251,7 @@ def test_nothing_of_a_study_is_passed_over_in_silence(
         assert p.detector in row["detector"]
         assert p.mask in row["mask"]
         assert p.datasets == plan[p.detector, p.mask][p.extractor, p.model]
-        assert set(p.assumptions) == {a for a, basis in p.basis.items() if basis != "stated"}
+        assert set(p.assumed) == {a for a, basis in p.basis.items() if basis != "stated"}
         run["extractor"].add(p.extractor_taxonomy)
         run["model"].update(p.stages)
     for attribute, values in row.items():
@@ -270,7 +266,7 @@ def test_nothing_of_a_study_is_passed_over_in_silence(
 
 
 def test_an_answer_is_plain_data(facts_of: Build) -> None:
-    answer = resolved(facts_of, study(model=["None", "LSQ"])).to_dict()
+    answer = resolved(facts_of, study_of(model=["None", "LSQ"])).to_dict()
     assert answer == {
         "key": "S0",
         "grade": "stand-in",

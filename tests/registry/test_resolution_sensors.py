@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 import pytest
-from stand_ins import EXTRACTORS, MODELS, planned, stand_ins
+from stand_ins import EXTRACTORS, MODELS, planned, stand_ins, study_of
 
 from benchmark.plan.combinations import cells, scorable_plan
 from benchmark.plan.parts import installed_parts
@@ -26,15 +26,6 @@ def resolved(facts: Facts, key: str = "S0") -> Resolution:
     return resolve(key, PLAN, catalogue=known, facts=facts)
 
 
-def row(**values: list[str]) -> Mapping[str, list[str]]:
-    return {
-        "detector": ["CMOS"],
-        "mask": ["Slit"],
-        "extractor": ["BCTM"],
-        "model": ["SPM"],
-    } | values
-
-
 @pytest.mark.parametrize(
     ("basis", "note", "expected", "rule"),
     [
@@ -47,28 +38,28 @@ def row(**values: list[str]) -> Mapping[str, list[str]]:
 def test_a_cell_of_the_mapping_carries_its_basis(
     facts_of: Build, basis: str, note: str, expected: str, rule: str | None
 ) -> None:
-    facts = facts_of([row()])
+    facts = facts_of([study_of()])
     study = facts.studies["S0"]
     cell = AttributeValue("Slit", basis, "", note)
     values = MappingProxyType({**study.values, "mask": (cell,)})
     facts = Facts({"S0": dataclasses.replace(study, values=values)}, facts.taxonomy)
     (pipeline,) = resolved(facts).pipelines
     assert pipeline.basis["mask"] == expected
-    assert pipeline.assumptions.get("mask") == rule
+    assert pipeline.assumed.get("mask") == rule
 
 
 def test_a_rule_fills_an_empty_cell_of_a_study_that_meets_it(facts_of: Build) -> None:
     rules = (dataclasses.replace(RULE, kind="chosen"),)
-    chosen = resolved(dataclasses.replace(facts_of([row(mask=[])]), defaults=rules))
+    chosen = resolved(dataclasses.replace(facts_of([study_of(mask=[])]), defaults=rules))
     assert {p.basis["mask"] for p in chosen.pipelines} == {"defaulted"}
-    facts = dataclasses.replace(facts_of([row(mask=[])]), defaults=(RULE,))
+    facts = dataclasses.replace(facts_of([study_of(mask=[])]), defaults=(RULE,))
     found = resolved(facts)
     (pipeline,) = found.pipelines
     assert (pipeline.detector, pipeline.mask, pipeline.basis["mask"]) == (
         *("CMOS", "Lens"),
         "implied",
     )
-    assert pipeline.assumptions == {"mask": "D01: one spot, one lens"}
+    assert pipeline.assumed == {"mask": "D01: one spot, one lens"}
     assert found.state == "partial"
     assert found.gaps[0].to_dict() == {
         "attribute": "mask",
@@ -81,37 +72,41 @@ def test_the_first_rule_whose_every_condition_is_met_is_taken(facts_of: Build) -
     narrow = dataclasses.replace(
         RULE, id="D00", conditions=(("extractor", "BCTM"), ("model", "LUT")), value="Slit"
     )
-    facts = dataclasses.replace(facts_of([row(mask=[])]), defaults=(narrow, RULE))
+    facts = dataclasses.replace(facts_of([study_of(mask=[])]), defaults=(narrow, RULE))
     assert {p.mask for p in resolved(facts).pipelines} == {"Lens"}
-    facts = dataclasses.replace(facts_of([row(mask=[], model=["LUT"])]), defaults=(narrow, RULE))
+    facts = dataclasses.replace(
+        facts_of([study_of(mask=[], model=["LUT"])]), defaults=(narrow, RULE)
+    )
     assert {p.mask for p in resolved(facts).pipelines} == {"Slit"}
     # a cell that is not empty is not filled
-    facts = dataclasses.replace(facts_of([row()]), defaults=(RULE,))
+    facts = dataclasses.replace(facts_of([study_of()]), defaults=(RULE,))
     assert {p.mask for p in resolved(facts).pipelines} == {"Slit"}
 
 
 def test_without_a_rule_a_study_runs_where_its_nearest_relatives_do(facts_of: Build) -> None:
     facts = facts_of(
         [
-            row(detector=[], mask=[], error=["Alignment"]),
-            row(mask=["Lens"]),  # the same methods: 2 of 3 in common
-            row(detector=["CCD"], error=["Alignment"]),  # 3 of 3
-            row(detector=["PD"], mask=["Maskless"], extractor=["Direct"], model=["Basic"]),
+            study_of(detector=[], mask=[], error=["Alignment"]),
+            study_of(mask=["Lens"]),  # the same methods: 2 of 3 in common
+            study_of(detector=["CCD"], error=["Alignment"]),  # 3 of 3
+            study_of(detector=["PD"], mask=["Maskless"], extractor=["Direct"], model=["Basic"]),
         ]
     )
     (pipeline,) = resolved(facts).pipelines
     assert (pipeline.detector, pipeline.mask) == ("CCD", "Slit")
     assert {pipeline.basis[a] for a in ("detector", "mask")} == {"defaulted"}
-    assert "nearest relative S2 " in pipeline.assumptions["mask"]
+    assert "nearest relative S2 " in pipeline.assumed["mask"]
 
 
 def test_relatives_lend_only_what_is_empty_and_what_runs(facts_of: Build) -> None:
     facts = facts_of(
         [
-            row(mask=[], detector=["CMOS"]),
-            row(detector=["CCD"]),  # nearest, but of another detector
-            row(mask=["Lens"], model=["SPM", "LUT"]),
-            row(detector=["PD"], mask=["Maskless"], model=["SPM"]),  # as near: nothing runs there
+            study_of(mask=[], detector=["CMOS"]),
+            study_of(detector=["CCD"]),  # nearest, but of another detector
+            study_of(mask=["Lens"], model=["SPM", "LUT"]),
+            study_of(
+                detector=["PD"], mask=["Maskless"], model=["SPM"]
+            ),  # as near: nothing runs there
         ]
     )
     (pipeline,) = resolved(facts).pipelines
@@ -120,12 +115,12 @@ def test_relatives_lend_only_what_is_empty_and_what_runs(facts_of: Build) -> Non
 
 
 def test_a_stranger_without_relatives_runs_nowhere(facts_of: Build) -> None:
-    found = resolved(facts_of([row(mask=[]), row(extractor=["Direct"], model=["Basic"])]))
+    found = resolved(facts_of([study_of(mask=[]), study_of(extractor=["Direct"], model=["Basic"])]))
     assert (found.state, found.gaps[0].reason) == ("none", "the mapping states no value")
 
 
 def test_detectors_and_masks_go_together_only_as_the_study_combined_them(facts_of: Build) -> None:
-    facts = facts_of([row(detector=["CMOS", "CCD"], mask=["Lens", "Slit"])])
+    facts = facts_of([study_of(detector=["CMOS", "CCD"], mask=["Lens", "Slit"])])
     assert len(facts.studies["S0"].architectures) == 4
     study = dataclasses.replace(
         facts.studies["S0"], combinations=(("CMOS", "Lens"), ("CCD", "Slit"))
@@ -168,8 +163,8 @@ def test_all_129_studies_resolve_each_with_a_cell(
             assert p.datasets == plan[p.detector, p.mask][p.extractor, p.model]
             assert set(p.basis) == set(ESSENTIAL)
             assert set(p.basis.values()) <= set(BASES)
-            assert set(p.assumptions) == {a for a, basis in p.basis.items() if basis != "stated"}
-            assert all(p.assumptions.values())
+            assert set(p.assumed) == {a for a, basis in p.basis.items() if basis != "stated"}
+            assert all(p.assumed.values())
             for attribute in ("detector", "mask"):
                 stated = study.of(attribute)
                 rests_on_it = p.basis[attribute] not in ("implied", "defaulted")
@@ -204,7 +199,7 @@ def test_empty_cells_are_filled_by_the_rules_of_the_data(
     assert {(p.detector, p.mask) for p in found.pipelines} == {(detector, mask)}
     (empty,) = {gap.attribute for gap in found.gaps if not gap.value}
     assert {p.basis[empty] for p in found.pipelines} <= {"implied", "defaulted"}
-    assert {p.assumptions[empty][:2] for p in found.pipelines} == {"D0"}
+    assert {p.assumed[empty][:2] for p in found.pipelines} == {"D0"}
 
 
 @pytest.mark.parametrize(("key", "relative"), [("Duan2006", "Radan2019")])
@@ -216,5 +211,5 @@ def test_a_study_runs_where_a_relative_with_the_same_compensation_does(
     assert "ACM" in near.of("model")
     assert {(p.detector, p.mask) for p in found.pipelines} <= set(near.architectures)
     for p in found.pipelines:
-        assert relative in p.assumptions["detector"]
-        assert relative in p.assumptions["mask"]
+        assert relative in p.assumed["detector"]
+        assert relative in p.assumed["mask"]

@@ -16,7 +16,8 @@ from algorithms.angles import tangents_from_sun
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.coded.places import offsets_of, turn_of
 from algorithms.calibration.coded.reading import CodeReading, MaskDrawing
-from algorithms.calibration.forward import ForwardModel
+from algorithms.calibration.forward import TURNS, ForwardModel
+from algorithms.calibration.parametric import FreeParameter
 from algorithms.contract import (
     FeatureKind,
     Floats,
@@ -24,7 +25,8 @@ from algorithms.contract import (
     UnsuitableDesignError,
     UnusableDataError,
 )
-from algorithms.inputs import as_features, require_positive
+from algorithms.inputs import as_features
+from algorithms.parameters import require_positive, require_within
 from algorithms.spot_lists import SPOT_COLUMNS, detector_size_px, list_length
 
 if TYPE_CHECKING:
@@ -168,8 +170,7 @@ class CodedMask(ForwardModel):
                 raise ValueError(f"{by}: {name} must be 3 or more; got {getattr(self, name)!r}")
         if self.half_fov_deg is not None and not 0.0 < self.half_fov_deg < 90.0:
             raise ValueError(f"{by}: half_fov_deg must be in (0, 90); got {self.half_fov_deg!r}")
-        if not 0.0 < self.share <= 1.0:
-            raise ValueError(f"{by}: share must be in (0, 1]; got {self.share!r}")
+        require_within(by, "(0, 1]", share=self.share)
         if not 1.0 <= self.odds < math.inf:
             raise ValueError(f"{by}: odds must be finite and at least 1; got {self.odds!r}")
         if self.size_tolerance is not None:
@@ -247,21 +248,16 @@ class CodedMask(ForwardModel):
         """(N,) variance of a tangent axis that the assembly's errors make, rad^2."""
         return super().variance(self._read(features, self._places()).displacement, context)
 
-    def names(self) -> Sequence[tuple[str, str]]:
-        """Name and unit of each parameter."""
+    def free_parameters(self) -> Sequence[FreeParameter]:
+        """Of the drawing: where a fit starts."""
+        focal, reach = self.focal_length_mm, self.focal_length_mm / self.pixel_pitch_mm
+        x, y = self.centre_px
         return (
-            ("focal_length", "mm"),
-            ("rotation", "deg"),
-            ("tilt_x", "deg"),
-            ("tilt_y", "deg"),
-            ("centre_x", "px"),
-            ("centre_y", "px"),
+            FreeParameter("focal_length", "mm", focal, focal),
+            *TURNS,
+            FreeParameter("centre_x", "px", reach, x),
+            FreeParameter("centre_y", "px", reach, y),
         )
-
-    def scales(self) -> Sequence[float]:
-        """One focal length, one radian, and the displacement that is one focal length."""
-        radian, reach = math.degrees(1.0), self.focal_length_mm / self.pixel_pitch_mm
-        return (self.focal_length_mm, radian, radian, radian, reach, reach)
 
     def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
         """As drawn, turned as the displacements (n, 2) are against the Sun's."""
@@ -270,10 +266,6 @@ class CodedMask(ForwardModel):
         beta, alpha = (tangents_from_sun(sun)[:, ::-1] - tangents_from_sun(sun)[:, ::-1].mean(0)).T
         turn = math.degrees(math.atan2(x @ alpha - y @ beta, x @ beta + y @ alpha))
         return ((self.focal_length_mm, turn, 0.0, 0.0, *self.centre_px),)
-
-    def turns(self, vector: Floats) -> tuple[float, float, float]:
-        """Rotation about the boresight and tilts about x and y, degrees."""
-        return (float(vector[1]), float(vector[2]), float(vector[3]))
 
     def drawing(self) -> tuple[float, tuple[float, float]]:
         """Tangent for one pixel, and where the boresight meets the detector."""

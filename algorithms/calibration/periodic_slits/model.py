@@ -10,8 +10,8 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.periodic_slits.pattern_fit import Raster, raster, spots_of
 from algorithms.contract import Floats
-from algorithms.inputs import require_positive
 from algorithms.models.geometric.single_slit import DeflectedSlits
+from algorithms.parameters import require_positive, require_within
 
 
 @dataclass
@@ -42,11 +42,7 @@ class PeriodicSlitModel(DeflectedSlits):
     def __post_init__(self) -> None:
         super().__post_init__()
         require_positive(self.about.name, line_pixels=self.line_pixels)
-        if not 0.0 <= self.smallest_contrast < 1.0:
-            raise ValueError(
-                f"{self.about.name}: smallest_contrast must be in [0, 1); "
-                f"got {self.smallest_contrast!r}"
-            )
+        require_within(self.about.name, "[0, 1)", smallest_contrast=self.smallest_contrast)
 
     @abstractmethod
     def read(self, lines: Floats, found: Raster, middle: float, shifts: Floats) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal, get_args
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from algorithms.contract import (
 from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import Normals, require_normals
 from algorithms.models.physics_informed.assembled_faces import invert
+from algorithms.parameters import require_choice
 
 Response = Literal["kelly", "fitted"]
 
@@ -108,11 +109,7 @@ class AngularLoss(CalibratedCompensation):
 
     def __post_init__(self) -> None:
         require_normals(self.face_normals, self.about.name)
-        if self.response not in get_args(Response):
-            raise ValueError(
-                f"{self.about.name}: response must be one of {', '.join(get_args(Response))}; "
-                f"got {self.response!r}"
-            )
+        require_choice(self.about.name, Response, response=self.response)
 
     def columns(self) -> int:
         """One a face."""

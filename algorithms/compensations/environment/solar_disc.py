@@ -15,6 +15,7 @@ from algorithms.models.nominal_projection import (
     nominal_projection,
     require_projection,
 )
+from algorithms.parameters import require_within
 
 ITERATIONS = 4
 """Fixed-point steps; each leaves the square of the disc's radius of what was left."""
@@ -78,10 +79,7 @@ class SolarDiscBias(CalibratedCompensation):
 
     def __post_init__(self) -> None:
         require_projection(self.about.name, self.focal_length_mm, self.unit_mm, self.centre)
-        if not 0 < self.disc_deg < 10:
-            raise ValueError(
-                f"{self.about.name}: disc_deg must be in (0, 10); got {self.disc_deg!r}"
-            )
+        require_within(self.about.name, "(0, 10)", disc_deg=self.disc_deg)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:

@@ -19,8 +19,9 @@ from algorithms.contract import (
     UnusableDataError,
 )
 from algorithms.documented import documented
-from algorithms.inputs import require_positive, require_samples
+from algorithms.inputs import require_samples
 from algorithms.models.nominal_projection import nominal_projection, require_projection
+from algorithms.parameters import require_positive, require_within
 
 ITERATIONS = 6
 """Fixed-point steps; each leaves a thousandth of what was left, for masks that are no tubes."""
@@ -119,8 +120,7 @@ class PinholeShadow(CalibratedCompensation):
                 f"{by}: thickness_mm must be less than twice focal_length_mm "
                 f"{self.focal_length_mm!r}; got {self.thickness_mm!r}"
             )
-        if not 0 < self.disc_deg < 10:
-            raise ValueError(f"{by}: disc_deg must be in (0, 10); got {self.disc_deg!r}")
+        require_within(by, "(0, 10)", disc_deg=self.disc_deg)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:

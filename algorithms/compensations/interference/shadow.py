@@ -17,12 +17,12 @@ from algorithms.contract import (
     UnsuitableDesignError,
 )
 from algorithms.documented import documented
-from algorithms.inputs import require_positive
 from algorithms.models.nominal_projection import (
     POSITIONS,
     nominal_projection,
     require_projection,
 )
+from algorithms.parameters import require_positive
 
 
 @documented

@@ -18,7 +18,7 @@ from algorithms.contract import (
     UnsuitableDesignError,
 )
 from algorithms.documented import documented
-from algorithms.inputs import require_positive
+from algorithms.parameters import require_positive
 
 
 @documented

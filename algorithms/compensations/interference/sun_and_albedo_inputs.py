@@ -13,6 +13,7 @@ from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.cube_currents import CubeCurrents
 from algorithms.contract import AboutCompensation, FeatureKind, Floats
 from algorithms.documented import documented
+from algorithms.parameters import require_within
 from algorithms.row_arithmetic import normalise
 
 #: Ways to give each of three pairs' plus face to the Sun (+1) or to the Earth (-1).
@@ -80,10 +81,7 @@ class SunAndAlbedoInputs(CubeCurrents):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not 0 < self.tolerance < 0.5:
-            raise ValueError(
-                f"{self.about.name}: tolerance must be in (0, 0.5); got {self.tolerance!r}"
-            )
+        require_within(self.about.name, "(0, 0.5)", tolerance=self.tolerance)
 
     def apply(self, features: Floats, context: Columns) -> Floats:
         """Signals (N, 6) of the Sun alone."""

@@ -17,6 +17,7 @@ from algorithms.contract import (
 )
 from algorithms.documented import documented
 from algorithms.extractors.currents.photodiode import DirectSignals
+from algorithms.parameters import require_at_least
 
 FINE_TRACKS = 4
 """F1 to F4 of eq:fourier, after the coarse tracks of each dial."""
@@ -78,8 +79,7 @@ class DialTracks(Extractor):
     saturation: float | None = None
 
     def __post_init__(self) -> None:
-        if self.bits < 1:
-            raise ValueError(f"{self.about.name}: bits must be at least 1; got {self.bits!r}")
+        require_at_least(self.about.name, 1, bits=self.bits)
         if not self.axes or len(set(self.axes)) < len(self.axes) or set(self.axes) - {"x", "y"}:
             raise ValueError(
                 f"{self.about.name}: axes must be 'x' or 'y', each once; got {self.axes!r}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal, Self, get_args
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,6 +19,7 @@ from algorithms.contract import (
 )
 from algorithms.documented import documented
 from algorithms.inputs import as_currents
+from algorithms.parameters import require_at_least, require_choice
 from algorithms.row_arithmetic import quotient_rows
 
 Normalisation = Literal["none", "sum", "maximum", "length"]
@@ -85,15 +86,8 @@ class DirectSignals(Extractor):
     saturation: float | None = None
 
     def __post_init__(self) -> None:
-        if self.elements < 1:
-            raise ValueError(
-                f"{self.about.name}: elements must be at least 1; got {self.elements!r}"
-            )
-        if self.normalisation not in get_args(Normalisation):
-            raise ValueError(
-                f"{self.about.name}: normalisation must be one of "
-                f"{', '.join(get_args(Normalisation))}; got {self.normalisation!r}"
-            )
+        require_at_least(self.about.name, 1, elements=self.elements)
+        require_choice(self.about.name, Normalisation, normalisation=self.normalisation)
         _require_calibration(self.about.name, self.elements, self.dark, self.gain)
 
     @property

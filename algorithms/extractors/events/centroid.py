@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal, Self, get_args
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,7 +18,8 @@ from algorithms.contract import (
     UnsuitableDesignError,
 )
 from algorithms.documented import documented
-from algorithms.inputs import as_frames, require_positive
+from algorithms.inputs import as_frames
+from algorithms.parameters import require_at_least, require_choice, require_positive
 
 Layout = Literal["l-slit", "spot"]
 """``l-slit``: a line along y tells x, one along x tells y. ``spot``: one spot tells both."""
@@ -190,8 +191,7 @@ class EventWinner(Extractor):
     offset_px: float = 0.0
 
     def __post_init__(self) -> None:
-        if self.winners < 1:
-            raise ValueError(f"{self.about.name}: winners must be at least 1; got {self.winners!r}")
+        require_at_least(self.about.name, 1, winners=self.winners)
         _require_design(self.about.name, 1.0, "spot", self.offset_px)
 
     @classmethod
@@ -232,10 +232,7 @@ def _events(observations: ArrayLike, by: str) -> Floats:
 
 def _require_design(by: str, width_px: float, layout: str, offset_px: float) -> None:
     require_positive(by, width_px=width_px)
-    if layout not in get_args(Layout):
-        raise ValueError(
-            f"{by}: layout must be one of {', '.join(get_args(Layout))}; got {layout!r}"
-        )
+    require_choice(by, Layout, layout=layout)
     if not np.isfinite(offset_px):
         raise ValueError(f"{by}: offset_px must be finite; got {offset_px!r}")
 

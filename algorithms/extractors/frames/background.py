@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,14 +13,6 @@ from algorithms.row_arithmetic import medians
 Background = Literal["none", "border", "median"]
 """``none``: zero. ``border``: median of the outermost pixels, right while the spot keeps off the
 edge. ``median``: median of all pixels, right while the spot covers less than half of them."""
-
-
-def require_background(background: str, by: str) -> None:
-    """Raise ValueError unless `background` names a way to estimate it."""
-    if background not in get_args(Background):
-        raise ValueError(
-            f"{by}: background must be one of {', '.join(get_args(Background))}; got {background!r}"
-        )
 
 
 def background_level(frames: NDArray[Any], background: Background) -> Floats:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
 from algorithms.documented import documented
 from algorithms.inputs import as_frames
+from algorithms.parameters import require_at_least
 
 
 @documented
@@ -75,8 +76,7 @@ class DoubleBalance(Extractor):
     moves: int = 10
 
     def __post_init__(self) -> None:
-        if self.moves < 0:
-            raise ValueError(f"{self.about.name}: moves must be at least 0; got {self.moves!r}")
+        require_at_least(self.about.name, 0, moves=self.moves)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
@@ -86,8 +86,7 @@ class DoubleBalance(Extractor):
         frames = as_frames(observations)
         maxima = np.empty(frames.shape[:2], dtype=frames.dtype)
         moments.row_maxima(frames, maxima)
-        unusable = np.empty(len(frames), dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        unusable = moments.unusable_frames(frames)
         found = np.empty((len(frames), 2))
         start = moments.first_brightest(frames, maxima)
         balance_kernel.five_areas(frames, start, self.moves, found)

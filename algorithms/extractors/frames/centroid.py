@@ -13,10 +13,10 @@ from algorithms.documented import documented
 from algorithms.extractors.frames.background import (
     Background,
     background_level,
-    require_background,
 )
 from algorithms.extractors.frames.windows import Windows, follow_spot, require_window
 from algorithms.inputs import as_frames
+from algorithms.parameters import require_choice
 from algorithms.row_arithmetic import quotient_rows
 
 #: Standard deviations of the dark pixels that light must exceed: none of a million does by noise.
@@ -74,7 +74,7 @@ class BasicCentroid(Extractor):
     window_px: int | None = None
 
     def __post_init__(self) -> None:
-        require_background(self.background, self.about.name)
+        require_choice(self.about.name, Background, background=self.background)
         require_window(self.window_px, self.about.name)
 
     def extract(self, observations: ArrayLike) -> Floats:
@@ -147,7 +147,7 @@ class ThresholdedCentroid(Extractor):
             raise ValueError(
                 f"{self.about.name}: threshold must be None or in [0, 1); got {self.threshold!r}"
             )
-        require_background(self.background, self.about.name)
+        require_choice(self.about.name, Background, background=self.background)
         require_window(self.window_px, self.about.name)
 
     def extract(self, observations: ArrayLike) -> Floats:
@@ -170,7 +170,7 @@ class ThresholdedCentroid(Extractor):
             else:
                 base = background_level(frames, self.background)
                 cut = base + self.threshold * (peak - base)
-            usable = _usable(frames) & (peak > cut)
+            usable = ~moments.unusable_frames(frames) & (peak > cut)
         cut[~usable] = 0.0
         # Integer frames are summed above the whole part of the threshold, exactly; the rest is
         # taken off the sums.
@@ -246,7 +246,7 @@ class FilteredCentroid(Extractor):
     window_px: int | None = None
 
     def __post_init__(self) -> None:
-        require_background(self.background, self.about.name)
+        require_choice(self.about.name, Background, background=self.background)
         require_window(self.window_px, self.about.name)
 
     def extract(self, observations: ArrayLike) -> Floats:
@@ -279,16 +279,7 @@ def _box_centroids(
         moments.row_maxima(frames, maxima)
         start = moments.first_brightest(frames, maxima)
         found = follow_spot(start, window_px, frames.shape[1:], centroid)
-    return _inside(found, _usable(frames), frames.shape[1:])
-
-
-def _usable(frames: NDArray[Any]) -> NDArray[np.bool_]:
-    """Frames (N,) with some contrast and only finite pixels."""
-    from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at the first frame only
-
-    unusable = np.empty(len(frames), dtype=np.bool_)
-    moments.unusable(frames, frames.dtype.kind == "f", unusable)
-    return ~unusable
+    return _inside(found, ~moments.unusable_frames(frames), frames.shape[1:])
 
 
 def _inside(found: Floats, usable: NDArray[np.bool_], shape: tuple[int, int]) -> Floats:

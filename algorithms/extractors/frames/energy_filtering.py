@@ -26,7 +26,8 @@ from algorithms.extractors.frames.single_light import (
     require_light,
 )
 from algorithms.extractors.profiles.single_spot import require_one_spot
-from algorithms.inputs import as_frames, require_positive
+from algorithms.inputs import as_frames
+from algorithms.parameters import require_at_least, require_positive, require_within
 
 #: Area of the ellipse of the lit pixels' second moments, over theirs, above which they are not one
 #: spot: one for a filled ellipse, this for two discs 3.2 radii apart.
@@ -109,12 +110,8 @@ class AdaptiveEnergyFilter(Extractor):
 
     def __post_init__(self) -> None:
         require_positive(self.about.name, significance=self.significance)
-        if not 0.0 <= self.fraction < 1.0:
-            raise ValueError(
-                f"{self.about.name}: fraction must be in [0, 1); got {self.fraction!r}"
-            )
-        if self.memory < 1:
-            raise ValueError(f"{self.about.name}: memory must be at least 1; got {self.memory!r}")
+        require_within(self.about.name, "[0, 1)", fraction=self.fraction)
+        require_at_least(self.about.name, 1, memory=self.memory)
         require_light(self.about.name, self.light, self.longest_px)
 
     @classmethod
@@ -142,8 +139,7 @@ class AdaptiveEnergyFilter(Extractor):
         from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
 
         frames = as_frames(observations)
-        unusable = np.empty(len(frames), dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        unusable = moments.unusable_frames(frames)
         found = np.empty((len(frames), 2))
         lengths = np.empty(len(frames), dtype=np.int64)
         energy_filter_kernel.filter_sequence(

@@ -28,8 +28,9 @@ from algorithms.extractors.frames.single_light import (
     require_light,
 )
 from algorithms.extractors.profiles.single_spot import require_one_spot
-from algorithms.inputs import Frames, as_frames, require_positive
+from algorithms.inputs import Frames, as_frames
 from algorithms.measurement import Measurement
+from algorithms.parameters import require_at_least, require_positive
 
 #: Mean square of what lit pixels depart from a shape by, over their variance, above which the spot
 #: is of another shape: by how much the answer is off then, noise does not tell.
@@ -108,10 +109,7 @@ class GaussianFit(Extractor):
 
     def __post_init__(self) -> None:
         require_positive(self.about.name, tolerance_px=self.tolerance_px)
-        if self.iterations < 1:
-            raise ValueError(
-                f"{self.about.name}: iterations must be at least 1; got {self.iterations!r}"
-            )
+        require_at_least(self.about.name, 1, iterations=self.iterations)
         require_light(self.about.name, self.light, self.longest_px)
 
     @classmethod
@@ -163,8 +161,7 @@ class GaussianFit(Extractor):
         from algorithms.extractors.frames import gaussian_kernel  # noqa: PLC0415 - Numba, at first use
         from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
 
-        unusable = np.empty(len(frames), dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        unusable = moments.unusable_frames(frames)
         fitted = np.full((len(frames), 6), np.nan)
         usable = frames[~unusable] if unusable.any() else frames
         fits = np.empty((len(usable), 6))

@@ -59,13 +59,8 @@ class PixelMax(Extractor):
         from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at the first frame only
 
         frames = as_frames(observations)
-        count, height, width = frames.shape
-        zero = moments.zero_of(frames)
-        rows = np.empty((count, height), dtype=zero.dtype)
-        columns = np.empty((count, width), dtype=zero.dtype)
-        moments.profiles(frames, zero, rows, columns)
-        unusable = np.empty(count, dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        columns, rows = moments.axis_sums(frames)
+        unusable = moments.unusable_frames(frames)
         found = np.column_stack([columns.argmax(axis=1), rows.argmax(axis=1)]).astype(np.float64)
         lit = (columns.max(axis=1) > 0) & (rows.max(axis=1) > 0)
         found[unusable | ~lit] = np.nan

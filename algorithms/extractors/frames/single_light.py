@@ -8,15 +8,16 @@ and says where the spot is: an answer elsewhere is none.
 from __future__ import annotations
 
 import math
-from typing import Literal, NamedTuple, get_args
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import Floats, SensorGeometry
 from algorithms.extractors.frames.mirror.records import LIGHT
-from algorithms.inputs import Frames, as_frames, require_positive
+from algorithms.inputs import Frames, as_frames
 from algorithms.measurement import QualityFlag, as_batch, without_bad
+from algorithms.parameters import require_choice, require_positive
 
 Light = Literal["spot", "any"]
 """What a design's light looks like. ``spot``: compact, symmetric and whole. ``any``: streaks, rings
@@ -35,8 +36,7 @@ _ROOM = 1.15
 
 def require_light(by: str, light: str, longest_px: float | None) -> None:
     """Raise ValueError unless `light` is one of `Light` and `longest_px` None or positive."""
-    if light not in get_args(Light):
-        raise ValueError(f"{by}: light must be one of {', '.join(get_args(Light))}; got {light!r}")
+    require_choice(by, Light, light=light)
     if longest_px is not None:
         require_positive(by, longest_px=longest_px)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal, Self, get_args
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,9 +20,9 @@ from algorithms.documented import documented
 from algorithms.extractors.frames.background import (
     Background,
     background_level,
-    require_background,
 )
-from algorithms.inputs import as_frames, require_positive
+from algorithms.inputs import as_frames
+from algorithms.parameters import require_choice, require_positive, require_within
 
 Shape = Literal["round", "square"]
 
@@ -123,21 +123,10 @@ class TemplateMatch(Extractor):
         require_positive(self.about.name, width_px=self.width_px)
         if self.most_different is not None:
             require_positive(self.about.name, most_different=self.most_different)
-        if self.candidates not in get_args(Candidates):
-            raise ValueError(
-                f"{self.about.name}: candidates must be one of {', '.join(get_args(Candidates))}; "
-                f"got {self.candidates!r}"
-            )
-        if self.shape not in get_args(Shape):
-            raise ValueError(
-                f"{self.about.name}: shape must be one of {', '.join(get_args(Shape))}; "
-                f"got {self.shape!r}"
-            )
-        if not 0.0 < self.threshold < 1.0:
-            raise ValueError(
-                f"{self.about.name}: threshold must be in (0, 1); got {self.threshold!r}"
-            )
-        require_background(self.background, self.about.name)
+        require_choice(self.about.name, Candidates, candidates=self.candidates)
+        require_choice(self.about.name, Shape, shape=self.shape)
+        require_within(self.about.name, "(0, 1)", threshold=self.threshold)
+        require_choice(self.about.name, Background, background=self.background)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -164,8 +153,7 @@ class TemplateMatch(Extractor):
         maxima = np.empty(frames.shape[:2], dtype=frames.dtype)
         moments.row_maxima(frames, maxima)
         peak = maxima.max(axis=1).astype(np.float64)
-        unusable = np.empty(len(frames), dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        unusable = moments.unusable_frames(frames)
         unusable |= ~(peak > base)
         with np.errstate(invalid="ignore"):  # an infinite peak: the frame is unusable
             levels = base + self.threshold * (peak - base)

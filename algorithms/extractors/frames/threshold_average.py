@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal, get_args
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
 from algorithms.documented import documented
 from algorithms.inputs import as_frames
+from algorithms.parameters import require_choice
 from algorithms.row_arithmetic import medians
 
 Crossing = Literal["pixel", "linear"]
@@ -86,25 +87,17 @@ class MultipleThresholdCentroid(Extractor):
                 f"{self.about.name}: lowest and highest must rise within [0, 1]; "
                 f"got {self.lowest!r} and {self.highest!r}"
             )
-        if self.crossing not in get_args(Crossing):
-            raise ValueError(
-                f"{self.about.name}: crossing must be one of {', '.join(get_args(Crossing))}; "
-                f"got {self.crossing!r}"
-            )
+        require_choice(self.about.name, Crossing, crossing=self.crossing)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
         from algorithms.kernels import crossings, moments  # noqa: PLC0415 - Numba, at first use
 
         frames = as_frames(observations)
-        count, height, width = frames.shape
-        columns = np.empty((count, width), dtype=moments.zero_of(frames).dtype)
-        rows = np.empty((count, height), dtype=columns.dtype)
-        moments.profiles(frames, moments.zero_of(frames), rows, columns)
-        unusable = np.empty(count, dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        columns, rows = moments.axis_sums(frames)
+        unusable = moments.unusable_frames(frames)
         unusable |= ~((columns.max(axis=1) > 0) & (rows.max(axis=1) > 0))
-        found = np.empty((2, count))
+        found = np.empty((2, len(frames)))
         for middle, profile in zip(found, (columns, rows), strict=True):
             usable = np.where(unusable[:, None], 0.0, profile)
             crossings.threshold_midpoints(

@@ -14,6 +14,7 @@ from algorithms.documented import documented
 from algorithms.extractors.frames.centroid import BasicCentroid, ThresholdedCentroid
 from algorithms.extractors.frames.threshold_average import Crossing, MultipleThresholdCentroid
 from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, dark_level
+from algorithms.parameters import require_within
 
 Middles = Callable[[Floats, Floats], Floats]
 
@@ -134,10 +135,7 @@ class ProfileThresholdedCentroid(SlitLines):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not 0.0 <= self.threshold < 1.0:
-            raise ValueError(
-                f"{self.about.name}: threshold must be in [0, 1); got {self.threshold!r}"
-            )
+        require_within(self.about.name, "[0, 1)", threshold=self.threshold)
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Centroids (N, 2) of profiles (N, A L); ValueError on wrong input."""

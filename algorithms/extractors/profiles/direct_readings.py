@@ -17,7 +17,8 @@ from algorithms.contract import (
 )
 from algorithms.documented import documented
 from algorithms.extractors.profiles.slit_lines import dark_level
-from algorithms.inputs import as_currents, require_positive
+from algorithms.inputs import as_currents
+from algorithms.parameters import require_positive, require_within
 
 _NEEDS = ("line_axes", "line_pixels", "slits")
 
@@ -126,10 +127,7 @@ class ThresholdProfile(Extractor):
 
     def __post_init__(self) -> None:
         _require_lines(self.about.name, self.line_axes, self.line_pixels)
-        if not 0.0 < self.threshold < 1.0:
-            raise ValueError(
-                f"{self.about.name}: threshold must be in (0, 1); got {self.threshold!r}"
-            )
+        require_within(self.about.name, "(0, 1)", threshold=self.threshold)
 
     @property
     def features(self) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar, Literal, Self, get_args
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,7 +22,8 @@ from algorithms.documented import documented
 from algorithms.extractors.profiles.single_spot import require_one_spot, spot_size_px
 from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, box_means, dark_level
 from algorithms.extractors.profiles.spot_spectra import SpotSpectra, require_frequencies
-from algorithms.inputs import as_frames, require_positive
+from algorithms.inputs import as_frames
+from algorithms.parameters import require_choice, require_positive
 
 Shape = Literal["round", "square"]
 
@@ -171,11 +172,7 @@ class FrameLinearPhase(Extractor):
     def __post_init__(self) -> None:
         require_positive(self.about.name, width_px=self.width_px, margin_px=self.margin_px)
         require_frequencies(self.frequencies, self.about.name)
-        if self.shape not in get_args(Shape):
-            raise ValueError(
-                f"{self.about.name}: shape must be one of {', '.join(get_args(Shape))}; "
-                f"got {self.shape!r}"
-            )
+        require_choice(self.about.name, Shape, shape=self.shape)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -199,12 +196,8 @@ class FrameLinearPhase(Extractor):
         from algorithms.kernels import moments, window_sums  # noqa: PLC0415 - Numba, at first use
 
         frames = as_frames(observations)
-        count, height, width = frames.shape
-        columns = np.empty((count, width), dtype=moments.zero_of(frames).dtype)
-        rows = np.empty((count, height), dtype=columns.dtype)
-        moments.profiles(frames, moments.zero_of(frames), rows, columns)
-        unusable = np.empty(count, dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        count, (columns, rows) = len(frames), moments.axis_sums(frames)
+        unusable = moments.unusable_frames(frames)
         columns[unusable] = 0
         rows[unusable] = 0
         half = math.ceil(self.width_px / 2.0 + self.margin_px)

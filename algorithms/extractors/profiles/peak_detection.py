@@ -19,7 +19,8 @@ from algorithms.contract import (
 from algorithms.documented import documented
 from algorithms.extractors.profiles.single_spot import require_one_spot, spot_size_px
 from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, dark_level
-from algorithms.inputs import as_frames, require_positive
+from algorithms.inputs import as_frames
+from algorithms.parameters import require_positive
 
 
 @documented
@@ -156,8 +157,7 @@ class FramePeak(Extractor):
         moments.row_maxima(frames, maxima)
         boxes = np.empty((len(frames), 4), dtype=np.int64)
         window_sums.boxes_of_maxima(frames, maxima, boxes)
-        unusable = np.empty(len(frames), dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        unusable = moments.unusable_frames(frames)
         found = (boxes[:, :2] + boxes[:, 2:]) / 2.0
         if self.width_px is not None:
             unusable |= ((boxes[:, 2:] - boxes[:, :2]) > self.width_px).any(axis=1)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.kernels.cholesky import solve
 
 Counts = NDArray[np.int64]
 
@@ -52,34 +53,6 @@ def image_of(u: float, kind: int, c: Floats) -> tuple[float, float]:
         return 1.0 - x * x / 3.0, -2.0 * x / 3.0 * _HALF_SINC
     sinc = math.sin(x) / x
     return sinc * sinc, 2.0 * sinc * (math.cos(x) - sinc) / x * _HALF_SINC
-
-
-@compiled
-def solve(matrix: Floats, right: Floats, size: int) -> bool:
-    """Solve ``matrix x = right`` in place by Cholesky; False where it is not positive definite."""
-    for i in range(size):
-        for j in range(i + 1):
-            total = matrix[i, j]
-            for k in range(j):
-                total -= matrix[i, k] * matrix[j, k]
-            if i == j:
-                if not total > _DEPENDENT * matrix[i, i]:
-                    return False
-                matrix[i, i] = math.sqrt(total)
-            else:
-                matrix[i, j] = total / matrix[j, j]
-    for i in range(size):
-        total = right[i]
-        for k in range(i):
-            total -= matrix[i, k] * right[k]
-        right[i] = total / matrix[i, i]
-    for m in range(size):
-        i = size - 1 - m
-        total = right[i]
-        for k in range(i + 1, size):
-            total -= matrix[k, i] * right[k]
-        right[i] = total / matrix[i, i]
-    return True
 
 
 @compiled
@@ -236,7 +209,7 @@ def _iterate(  # noqa: PLR0917 - Numba takes no keyword-only ones
         normal_equations(
             row, floor, places, groups, halves, column, kind, c, around, found, matrix, right
         )
-        if not solve(matrix, right, size):
+        if not solve(matrix[:size, :size], right[:size], _DEPENDENT):
             return False
         along = 0.0
         square = 0.0

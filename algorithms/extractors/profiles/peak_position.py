@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, Self, get_args
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,7 +20,8 @@ from algorithms.contract import (
 from algorithms.documented import documented
 from algorithms.extractors.profiles.single_spot import require_one_spot
 from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, box_means, dark_level
-from algorithms.inputs import as_frames, require_positive
+from algorithms.inputs import as_frames
+from algorithms.parameters import require_at_least, require_choice, require_positive
 
 Image = Literal["rational", "gaussian", "diffraction"]
 Coefficients = tuple[float, float, float, float, float, float]
@@ -257,14 +258,9 @@ class FramePeakPositionEstimate(Extractor):
         from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at the first frame only
 
         frames = as_frames(observations)
-        count, height, width = frames.shape
-        zero = moments.zero_of(frames)
-        rows = np.empty((count, height), dtype=zero.dtype)
-        columns = np.empty((count, width), dtype=zero.dtype)
-        unusable = np.empty(count, dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
-        moments.profiles(frames, zero, rows, columns)
-        found = np.empty((count, 2))
+        unusable = moments.unusable_frames(frames)
+        columns, rows = moments.axis_sums(frames)
+        found = np.empty((len(frames), 2))
         for axis, sums in enumerate((columns, rows)):
             profile = sums.astype(np.float64)
             profile[unusable] = 0.0
@@ -340,8 +336,7 @@ def _fit(
 
 def _require_image(by: str, image: str, coefficients: Any) -> None:
     """Raise ValueError unless there is such an image, and the rational one is finite anywhere."""
-    if image not in get_args(Image):
-        raise ValueError(f"{by}: image must be one of {', '.join(get_args(Image))}; got {image!r}")
+    require_choice(by, Image, image=image)
     if len(coefficients) != 6 or not np.isfinite(coefficients).all():
         raise ValueError(f"{by}: coefficients must be six finite numbers; got {coefficients!r}")
     roots = np.roots(coefficients[3:])
@@ -353,5 +348,4 @@ def _require_image(by: str, image: str, coefficients: Any) -> None:
 
 def _require_limits(by: str, tolerance: float, iterations: int) -> None:
     require_positive(by, tolerance=tolerance)
-    if iterations < 1:
-        raise ValueError(f"{by}: iterations must be at least 1; got {iterations!r}")
+    require_at_least(by, 1, iterations=iterations)

@@ -21,7 +21,7 @@ from algorithms.contract import (
 from algorithms.documented import documented
 from algorithms.extractors.profiles.linear_phase import LinearPhase
 from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines
-from algorithms.inputs import require_positive
+from algorithms.parameters import require_positive
 
 #: Sunlight on silicon: wavelengths mm and their shares of the photons of a black body of 5772 K
 #: that a front-illuminated pixel detects.

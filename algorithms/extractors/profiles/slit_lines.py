@@ -22,8 +22,9 @@ from algorithms.contract import (
     SensorGeometry,
     UnsuitableDesignError,
 )
-from algorithms.inputs import as_currents, require_positive
+from algorithms.inputs import as_currents
 from algorithms.measurement import Measurement, measurement_of
+from algorithms.parameters import require_positive
 from algorithms.row_arithmetic import medians
 
 LineAxis = Literal["x", "y"]

@@ -10,6 +10,7 @@ import numpy as np
 
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.forward import ForwardModel
+from algorithms.calibration.parametric import FreeParameter
 from algorithms.calibration.projection import ProjectionModel
 from algorithms.contract import AboutModel, FeatureKind, Floats
 from algorithms.documented import documented
@@ -63,14 +64,10 @@ class BareDetector(ProjectionModel, ForwardModel):
         accepts=frozenset({FeatureKind.SPOT}),
     )
 
-    def names(self) -> Sequence[tuple[str, str]]:
-        """Name and unit of each parameter."""
+    def free_parameters(self) -> Sequence[FreeParameter]:
+        """In focal lengths and tangents, the head's turns among them."""
         elements = ("h11", "h12", "h13", "h21", "h22", "h23", "h31", "h32")
-        return tuple((name, "") for name in (*elements, "k1", "k2"))
-
-    def scales(self) -> Sequence[float]:
-        """One each: all are in focal lengths and tangents."""
-        return (1.0,) * 10
+        return tuple(FreeParameter(name, "", 1.0) for name in (*elements, "k1", "k2"))
 
     def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
         """Give the affine map that fits best."""
@@ -83,11 +80,6 @@ class BareDetector(ProjectionModel, ForwardModel):
     def drawing(self) -> tuple[float, tuple[float, float]]:
         """Tangent of a pixel, and the spot on the boresight."""
         return self.unit_mm / self.focal_length_mm, self.centre
-
-    def turns(self, vector: Floats) -> tuple[float, float, float]:
-        """None: the homography has them."""
-        del vector
-        return 0.0, 0.0, 0.0
 
     def cast(self, vector: Floats, tangents: Floats) -> Floats:
         """(N, 2) places in px of tangents (N, 2); NaN where the detector does not reach."""

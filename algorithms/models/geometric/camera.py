@@ -8,8 +8,8 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from algorithms.calibration.calibrated import Columns
-from algorithms.calibration.forward import ForwardModel
+from algorithms.calibration.forward import TURNS, ForwardModel
+from algorithms.calibration.parametric import FreeParameter
 from algorithms.calibration.projection import ProjectionModel
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
 from algorithms.documented import documented
@@ -93,41 +93,25 @@ class LensCamera(ProjectionModel, ForwardModel):
             distortion=geometry.lens_distortion or (0.0, 0.0),
         )
 
-    def names(self) -> Sequence[tuple[str, str]]:
-        """Name and unit of each parameter."""
+    def free_parameters(self) -> Sequence[FreeParameter]:
+        """Of the drawing: where a fit starts."""
+        focal, reach = self.focal_length_mm, self.focal_length_mm / self.unit_mm
+        (x, y), (k1, k2) = self.centre, self.distortion
         return (
-            ("focal_length_x", "mm"),
-            ("focal_length_y", "mm"),
-            ("principal_x", "px"),
-            ("principal_y", "px"),
-            ("k1", ""),
-            ("k2", ""),
-            ("p1", ""),
-            ("p2", ""),
-            ("rotation", "deg"),
-            ("tilt_x", "deg"),
-            ("tilt_y", "deg"),
+            FreeParameter("focal_length_x", "mm", focal, focal),
+            FreeParameter("focal_length_y", "mm", focal, focal),
+            FreeParameter("principal_x", "px", reach, x),
+            FreeParameter("principal_y", "px", reach, y),
+            FreeParameter("k1", "", 1.0, k1),
+            FreeParameter("k2", "", 1.0, k2),
+            FreeParameter("p1", "", 1.0),
+            FreeParameter("p2", "", 1.0),
+            *TURNS,
         )
-
-    def scales(self) -> Sequence[float]:
-        """One focal length, the displacement that is one, one, one radian."""
-        focal, radian = self.focal_length_mm, float(np.degrees(1.0))
-        reach = focal / self.unit_mm
-        return (focal, focal, reach, reach, *(1.0,) * 4, radian, radian, radian)
-
-    def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
-        """Give the drawing."""
-        del features, sun, context
-        focal = self.focal_length_mm
-        return ((focal, focal, *self.centre, *self.distortion, *(0.0,) * 5),)
 
     def drawing(self) -> tuple[float, tuple[float, float]]:
         """Tangent of a pixel, and the spot on the boresight."""
         return self.unit_mm / self.focal_length_mm, self.centre
-
-    def turns(self, vector: Floats) -> tuple[float, float, float]:
-        """Rotation and tilts of the camera."""
-        return float(vector[8]), float(vector[9]), float(vector[10])
 
     def cast(self, vector: Floats, tangents: Floats) -> Floats:
         """(N, 2) places in px of tangents (N, 2)."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from algorithms.angles import rotations_from_sun
 from algorithms.calibration.calibrated import Columns
-from algorithms.calibration.parametric import ParametricModel
+from algorithms.calibration.parametric import RADIAN_DEG, FreeParameter, ParametricModel
 from algorithms.calibration.projection import ProjectionModel
 from algorithms.contract import AboutModel, Floats
 from algorithms.documented import documented
@@ -88,25 +88,17 @@ class LeastSquaresGeometry(ProjectionModel, ParametricModel):
         accepts=POSITIONS,
     )
 
-    def names(self) -> Sequence[tuple[str, str]]:
-        """Name and unit of each parameter."""
+    def free_parameters(self) -> Sequence[FreeParameter]:
+        """Of the drawing: where a fit starts."""
+        focal, reach = self.focal_length_mm, self.focal_length_mm / self.unit_mm
+        x, y = self.centre
         return (
-            ("focal_length_error", "mm"),
-            ("alpha_0", "deg"),
-            ("beta_0", "deg"),
-            ("x_zp", ""),
-            ("y_zp", ""),
+            FreeParameter("focal_length_error", "mm", focal),
+            FreeParameter("alpha_0", "deg", RADIAN_DEG),
+            FreeParameter("beta_0", "deg", RADIAN_DEG),
+            FreeParameter("x_zp", "", reach, x),
+            FreeParameter("y_zp", "", reach, y),
         )
-
-    def scales(self) -> Sequence[float]:
-        """One focal length, one radian, and the displacement that is one focal length."""
-        radian, reach = float(np.degrees(1.0)), self.focal_length_mm / self.unit_mm
-        return (self.focal_length_mm, radian, radian, reach, reach)
-
-    def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
-        """Give the drawing."""
-        del features, sun, context
-        return ((0.0, 0.0, 0.0, *self.centre),)
 
     def residuals(
         self,

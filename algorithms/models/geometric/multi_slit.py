@@ -8,7 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.forward import TURNS
+from algorithms.calibration.parametric import FreeParameter
 from algorithms.calibration.slit_sensor import NEEDS, SlitModel
 from algorithms.contract import AboutModel, FeatureKind, Floats, UnsuitableDesignError
 from algorithms.documented import documented
@@ -79,32 +80,17 @@ class MultiSlit(SlitModel):
                 f"{self.about.name} needs several slits of each slant; got slits {self.slits!r}"
             )
 
-    def names(self) -> Sequence[tuple[str, str]]:
-        """Name and unit of each parameter."""
+    def free_parameters(self) -> Sequence[FreeParameter]:
+        """Of the drawing: where a fit starts."""
+        focal = self.focal_length_mm
         return (
-            ("focal_length_1", "mm"),
-            ("zero_1", "mm"),
-            ("focal_length_2", "mm"),
-            ("zero_2", "mm"),
-            ("sides_differ", "mm"),
-            ("rotation", "deg"),
-            ("tilt_x", "deg"),
-            ("tilt_y", "deg"),
+            FreeParameter("focal_length_1", "mm", focal, focal),
+            FreeParameter("zero_1", "mm", focal),
+            FreeParameter("focal_length_2", "mm", focal, focal),
+            FreeParameter("zero_2", "mm", focal),
+            FreeParameter("sides_differ", "mm", focal),
+            *TURNS,
         )
-
-    def scales(self) -> Sequence[float]:
-        """One focal length, one radian."""
-        radian = float(np.degrees(1.0))
-        return (*(self.focal_length_mm,) * 5, radian, radian, radian)
-
-    def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
-        """Give the drawing."""
-        del features, sun, context
-        return ((*(self.focal_length_mm, 0.0) * 2, *(0.0,) * 4),)
-
-    def turns(self, vector: Floats) -> tuple[float, float, float]:
-        """Rotation and tilts of the head."""
-        return float(vector[5]), float(vector[6]), float(vector[7])
 
     def shifts(self, vector: Floats, tangents: Floats) -> Floats:
         """(N, 2) shifts, mm, of tangents (N, 2), by line and slant."""

@@ -8,7 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.forward import TURNS
+from algorithms.calibration.parametric import RADIAN_DEG, FreeParameter
 from algorithms.calibration.slit_sensor import NEEDS, SlitModel, shadow
 from algorithms.contract import AboutModel, FeatureKind, Floats, UnsuitableDesignError
 from algorithms.documented import documented
@@ -93,33 +94,18 @@ class NSlit(SlitModel):
                 f"slant; got lines {self.line_axes!r} and slits {self.slits!r}"
             )
 
-    def names(self) -> Sequence[tuple[str, str]]:
-        """Name and unit of each parameter."""
+    def free_parameters(self) -> Sequence[FreeParameter]:
+        """Of the drawing: where a fit starts."""
+        focal = self.focal_length_mm
         return (
-            ("K", ""),
-            ("shift_along", "mm"),
-            ("shift_across", "mm"),
-            ("slant", "deg"),
-            ("deflection", "deg"),
-            ("slope", "deg"),
-            ("rotation", "deg"),
-            ("tilt_x", "deg"),
-            ("tilt_y", "deg"),
+            FreeParameter("K", "", 1.0, 1.0),
+            FreeParameter("shift_along", "mm", focal),
+            FreeParameter("shift_across", "mm", focal),
+            FreeParameter("slant", "deg", RADIAN_DEG, self.slits[0][1]),
+            FreeParameter("deflection", "deg", RADIAN_DEG),
+            FreeParameter("slope", "deg", RADIAN_DEG),
+            *TURNS,
         )
-
-    def scales(self) -> Sequence[float]:
-        """One, one focal length, one radian."""
-        focal, radian = self.focal_length_mm, float(np.degrees(1.0))
-        return (1.0, focal, focal, *(radian,) * 6)
-
-    def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
-        """Give the drawing."""
-        del features, sun, context
-        return ((1.0, 0.0, 0.0, self.slits[0][1], *(0.0,) * 5),)
-
-    def turns(self, vector: Floats) -> tuple[float, float, float]:
-        """Rotation and tilts of the head."""
-        return float(vector[6]), float(vector[7]), float(vector[8])
 
     def shifts(self, vector: Floats, tangents: Floats) -> Floats:
         """(N, 2) shifts, mm, of tangents (N, 2): of the outer spots' mean and the middle one."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal, Self, get_args
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from algorithms.contract import (
 from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.geometric.detector_faces import Normals, directions, require_normals
+from algorithms.parameters import require_choice, require_within
 from algorithms.row_arithmetic import normalise
 
 Weighting = Literal["signal", "equal"]
@@ -101,16 +102,8 @@ class WeightedCells(FacesModel):
     def __post_init__(self) -> None:
         super().__post_init__()
         require_normals(self.face_normals, self.about.name)
-        if self.weighting not in get_args(Weighting):
-            raise ValueError(
-                f"{self.about.name}: weighting must be one of {', '.join(get_args(Weighting))}; "
-                f"got {self.weighting!r}"
-            )
-        if not 0 < self.largest_incidence_deg < 90:
-            raise ValueError(
-                f"{self.about.name}: largest_incidence_deg must be in (0, 90); "
-                f"got {self.largest_incidence_deg!r}"
-            )
+        require_choice(self.about.name, Weighting, weighting=self.weighting)
+        require_within(self.about.name, "(0, 90)", largest_incidence_deg=self.largest_incidence_deg)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:

@@ -10,7 +10,8 @@ import numpy as np
 
 from algorithms.angles import tangents_from_sun
 from algorithms.calibration.calibrated import Columns
-from algorithms.calibration.parametric import ParametricModel
+from algorithms.calibration.forward import TURNS
+from algorithms.calibration.parametric import FreeParameter, ParametricModel
 from algorithms.calibration.projection import ProjectionModel
 from algorithms.contract import AboutModel, Floats
 from algorithms.documented import documented
@@ -70,23 +71,17 @@ class BuiltPinhole(ProjectionModel, ParametricModel):
 
     mirrored_: bool = field(init=False, repr=False, compare=False)
 
-    def names(self) -> Sequence[tuple[str, str]]:
-        """Name and unit of each parameter."""
+    def free_parameters(self) -> Sequence[FreeParameter]:
+        """Of the drawing: where a fit starts."""
+        focal, reach = self.focal_length_mm, self.focal_length_mm / self.unit_mm
+        x, y = self.centre
         return (
-            ("focal_length_x", "mm"),
-            ("focal_length_y", "mm"),
-            ("rotation", "deg"),
-            ("tilt_x", "deg"),
-            ("tilt_y", "deg"),
-            ("centre_x", ""),
-            ("centre_y", ""),
+            FreeParameter("focal_length_x", "mm", focal, focal),
+            FreeParameter("focal_length_y", "mm", focal, focal),
+            *TURNS,
+            FreeParameter("centre_x", "", reach, x),
+            FreeParameter("centre_y", "", reach, y),
         )
-
-    def scales(self) -> Sequence[float]:
-        """One focal length, one radian, and the displacement that is one focal length."""
-        focal, radian = self.focal_length_mm, float(np.degrees(1.0))
-        reach = focal / self.unit_mm
-        return (focal, focal, radian, radian, radian, reach, reach)
 
     def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
         """Read turn and mirror off the plane that fits the tangents best."""

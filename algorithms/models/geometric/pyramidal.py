@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal, get_args
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ from algorithms.models.geometric.detector_faces import (
     require_normals,
     row_sums,
 )
+from algorithms.parameters import require_choice, require_within
 from algorithms.row_arithmetic import normalise
 
 Coefficient = Literal["common", "each"]
@@ -105,15 +106,8 @@ class RegularPyramid(FacesModel):
     def __post_init__(self) -> None:
         super().__post_init__()
         self._normals()
-        if self.coefficient not in get_args(Coefficient):
-            raise ValueError(
-                f"{self.about.name}: coefficient must be one of "
-                f"{', '.join(get_args(Coefficient))}; got {self.coefficient!r}"
-            )
-        if not 0 <= self.dark_fraction < 1:
-            raise ValueError(
-                f"{self.about.name}: dark_fraction must be in [0, 1); got {self.dark_fraction!r}"
-            )
+        require_choice(self.about.name, Coefficient, coefficient=self.coefficient)
+        require_within(self.about.name, "[0, 1)", dark_fraction=self.dark_fraction)
 
     def columns(self) -> int:
         """One a face."""

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Literal, Self, get_args
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 
-from algorithms.calibration.calibrated import Columns
-from algorithms.calibration.forward import ForwardModel
+from algorithms.calibration.forward import TURNS, ForwardModel
+from algorithms.calibration.parametric import FreeParameter
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
 from algorithms.documented import documented
-from algorithms.inputs import require_positive
+from algorithms.parameters import require_choice, require_positive
 
 Shape = Literal["round", "square"]
 
@@ -98,11 +98,7 @@ class QuadrantGap(ForwardModel):
         require_positive(
             by, focal_length_mm=self.focal_length_mm, aperture_width_mm=self.aperture_width_mm
         )
-        if self.aperture_shape not in get_args(Shape):
-            raise ValueError(
-                f"{by}: aperture_shape must be one of {', '.join(get_args(Shape))}; "
-                f"got {self.aperture_shape!r}"
-            )
+        require_choice(by, Shape, aperture_shape=self.aperture_shape)
         if not 0 <= self.gap_mm < self.aperture_width_mm:
             raise ValueError(
                 f"{by}: gap_mm must be in [0, {self.aperture_width_mm}); got {self.gap_mm!r}"
@@ -120,29 +116,19 @@ class QuadrantGap(ForwardModel):
             gap_mm=geometry.gap_mm or 0.0,
         )
 
-    def names(self) -> Sequence[tuple[str, str]]:
-        """Name and unit of each parameter."""
+    def free_parameters(self) -> Sequence[FreeParameter]:
+        """Of the drawing; the gap of a square spot is not told from the focal length."""
+        focal = self.focal_length_mm
+        gap: tuple[FreeParameter, ...] = ()
+        if self.aperture_shape == "round":
+            gap = (FreeParameter("gap", "mm", self.aperture_width_mm, self.gap_mm),)
         return (
-            ("focal_length", "mm"),
-            ("centre_x", "mm"),
-            ("centre_y", "mm"),
-            ("rotation", "deg"),
-            ("tilt_x", "deg"),
-            ("tilt_y", "deg"),
-            *((("gap", "mm"),) if self.aperture_shape == "round" else ()),
+            FreeParameter("focal_length", "mm", focal, focal),
+            FreeParameter("centre_x", "mm", focal),
+            FreeParameter("centre_y", "mm", focal),
+            *TURNS,
+            *gap,
         )
-
-    def scales(self) -> Sequence[float]:
-        """One focal length, one radian, the aperture."""
-        focal, radian = self.focal_length_mm, float(np.degrees(1.0))
-        gap = (self.aperture_width_mm,) if self.aperture_shape == "round" else ()
-        return (focal, focal, focal, radian, radian, radian, *gap)
-
-    def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
-        """Give the drawing."""
-        del features, sun, context
-        gap = (self.gap_mm,) if self.aperture_shape == "round" else ()
-        return ((self.focal_length_mm, *(0.0,) * 5, *gap),)
 
     def drawing(self) -> tuple[float, tuple[float, float]]:
         """Tangent of a balance of 1 by the straight line, and no balance."""
@@ -156,10 +142,6 @@ class QuadrantGap(ForwardModel):
             return straight
         places = sun[:, :2] / sun[:, 2:] * (2.0 * self.focal_length_mm / self.aperture_width_mm)
         return np.asarray(straight * np.pi / 4.0 / np.sqrt(np.maximum(1.0 - places**2, _FLATTEST)))
-
-    def turns(self, vector: Floats) -> tuple[float, float, float]:
-        """Rotation and tilts of the head."""
-        return float(vector[3]), float(vector[4]), float(vector[5])
 
     def cast(self, vector: Floats, tangents: Floats) -> Floats:
         """(N, 2) balances of tangents (N, 2); NaN where all light is on one half."""

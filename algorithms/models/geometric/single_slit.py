@@ -8,7 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.forward import TILTS
+from algorithms.calibration.parametric import RADIAN_DEG, FreeParameter
 from algorithms.calibration.slit_sensor import NEEDS, SlitModel
 from algorithms.contract import AboutModel, FeatureKind, Floats, UnsuitableDesignError
 from algorithms.documented import documented
@@ -82,39 +83,25 @@ class DeflectedSlits(SlitModel):
                 f"got lines {self.line_axes!r} and slits {self.slits!r}"
             )
 
-    def names(self) -> Sequence[tuple[str, str]]:
-        """Name and unit of each parameter."""
+    def free_parameters(self) -> Sequence[FreeParameter]:
+        """Of the drawing: where a fit starts."""
+        focal = self.focal_length_mm
         lines = (
-            (f"{what}_{axis}", unit)
+            FreeParameter(f"{what}_{axis}", unit, scale, drawn)
             for axis in self.line_axes
-            for what, unit in (
-                ("focal_length", "mm"),
-                ("deflection", "deg"),
-                ("inclination", "deg"),
+            for what, unit, scale, drawn in (
+                ("focal_length", "mm", focal, focal),
+                ("deflection", "deg", RADIAN_DEG, 0.0),
+                ("inclination", "deg", RADIAN_DEG, 0.0),
             )
         )
-        return (
-            *lines,
-            ("centre_x", "px"),
-            ("centre_y", "px"),
-            ("tilt_x", "deg"),
-            ("tilt_y", "deg"),
-        )
-
-    def scales(self) -> Sequence[float]:
-        """One focal length, one radian, and the displacement that is one focal length."""
-        focal, radian = self.focal_length_mm, float(np.degrees(1.0))
         reach = focal / self.pixel_pitch_mm
-        return (*(focal, radian, radian) * 2, reach, reach, radian, radian)
-
-    def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
-        """Give the drawing."""
-        del features, sun, context
-        return ((*(self.focal_length_mm, 0.0, 0.0) * 2, *self.centre_px, 0.0, 0.0),)
-
-    def turns(self, vector: Floats) -> tuple[float, float, float]:
-        """Tilts; both deflections are the rotation."""
-        return 0.0, float(vector[8]), float(vector[9])
+        x, y = self.centre_px
+        centre = (
+            FreeParameter("centre_x", "px", reach, x),
+            FreeParameter("centre_y", "px", reach, y),
+        )
+        return (*lines, *centre, *TILTS)
 
     def shifts(self, vector: Floats, tangents: Floats) -> Floats:
         """(N, 2) shifts, mm, of tangents (N, 2): ``f tan(u')`` of both lines, with their zeros."""

@@ -9,12 +9,12 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from algorithms.calibration.calibrated import Columns
-from algorithms.calibration.forward import ForwardModel
+from algorithms.calibration.forward import TILTS, ForwardModel
+from algorithms.calibration.parametric import RADIAN_DEG, FreeParameter
 from algorithms.calibration.slit_sensor import require_crossed_slits
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry
-from algorithms.inputs import require_positive
 from algorithms.models.geometric.single_slit import deflect
+from algorithms.parameters import require_positive
 
 _DIAGONAL = math.sqrt(0.5)  # sine and cosine of 45 deg
 
@@ -123,37 +123,24 @@ class DeflectedSlitPairs(ForwardModel):
             unit_mm=(geometry.aperture_width_mm or 0.0) / 2.0,
         )
 
-    def names(self) -> Sequence[tuple[str, str]]:
-        """Name and unit of each parameter."""
-        pairs = (
-            (f"{what}_{pair}", unit)
-            for pair in "uv"
-            for what, unit in (
-                ("focal_length", "mm"),
-                ("deflection", "deg"),
-                ("inclination", "deg"),
-            )
-        )
-        return (*pairs, ("centre_a", ""), ("centre_b", ""), ("tilt_x", "deg"), ("tilt_y", "deg"))
-
-    def scales(self) -> Sequence[float]:
-        """One focal length, one radian, and the balance that is one focal length."""
-        focal, radian = self.focal_length_mm, float(np.degrees(1.0))
-        reach = focal / self.unit_mm
-        return (*(focal, radian, radian) * 2, reach, reach, radian, radian)
-
-    def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
-        """Give the drawing."""
-        del features, sun, context
-        return ((*(self.focal_length_mm, 0.0, 0.0) * 2, *(0.0,) * 4),)
-
-    def turns(self, vector: Floats) -> tuple[float, float, float]:
-        """Tilts; both deflections are the rotation."""
-        return 0.0, float(vector[8]), float(vector[9])
-
     def drawing(self) -> tuple[float, tuple[float, float]]:
         """Tangent of a unit of balance, and the balance on the boresight."""
         return self.unit_mm / self.focal_length_mm, (0.0, 0.0)
+
+    def free_parameters(self) -> Sequence[FreeParameter]:
+        """Of the drawing: where a fit starts."""
+        focal = self.focal_length_mm
+        pairs = (
+            FreeParameter(f"{what}_{pair}", unit, scale, drawn)
+            for pair in "uv"
+            for what, unit, scale, drawn in (
+                ("focal_length", "mm", focal, focal),
+                ("deflection", "deg", RADIAN_DEG, 0.0),
+                ("inclination", "deg", RADIAN_DEG, 0.0),
+            )
+        )
+        centres = (FreeParameter(f"centre_{of}", "", focal / self.unit_mm) for of in "ab")
+        return (*pairs, *centres, *TILTS)
 
     def cast(self, vector: Floats, tangents: Floats) -> Floats:
         """(N, 2) balances of tangents (N, 2)."""

@@ -8,7 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from algorithms.calibration.calibrated import Columns
+from algorithms.calibration.forward import TURNS
+from algorithms.calibration.parametric import RADIAN_DEG, FreeParameter
 from algorithms.calibration.slit_sensor import NEEDS, SlitModel, refraction_height_mm, shadow
 from algorithms.contract import AboutModel, FeatureKind, Floats, UnsuitableDesignError
 from algorithms.documented import documented
@@ -85,39 +86,26 @@ class VSlit(SlitModel):
                 f"got lines {self.line_axes!r} and slits {self.slits!r}"
             )
 
-    def names(self) -> Sequence[tuple[str, str]]:
-        """Name and unit of each parameter."""
-        glass = (("glass_thickness", "mm"), ("glass_index", "")) if self.cover_glass else ()
-        return (
-            ("focal_length", "mm"),
-            ("shift_along", "mm"),
-            ("shift_across", "mm"),
-            ("deflection", "deg"),
-            ("slope", "deg"),
-            ("rotation", "deg"),
-            ("tilt_x", "deg"),
-            ("tilt_y", "deg"),
-            *glass,
-        )
-
-    def scales(self) -> Sequence[float]:
-        """One focal length, one radian, all of the glass."""
-        focal, radian = self.focal_length_mm, float(np.degrees(1.0))
-        glass = (focal, 1.0) if self.cover_glass else ()
-        return (focal, focal, focal, *(radian,) * 5, *glass)
-
-    def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
-        """Give the drawing."""
-        del features, sun, context
-        glass: tuple[float, ...] = ()
+    def free_parameters(self) -> Sequence[FreeParameter]:
+        """Of the drawing: where a fit starts."""
+        focal = self.focal_length_mm
+        glass: tuple[FreeParameter, ...] = ()
         if self.cover_glass:
             thickness = sum(plate[0] for plate in self.cover_glass)
-            glass = (thickness, sum(t * n for t, n in self.cover_glass) / thickness)
-        return ((self.focal_length_mm, *(0.0,) * 7, *glass),)
-
-    def turns(self, vector: Floats) -> tuple[float, float, float]:
-        """Rotation and tilts of the head."""
-        return float(vector[5]), float(vector[6]), float(vector[7])
+            index = sum(t * n for t, n in self.cover_glass) / thickness
+            glass = (
+                FreeParameter("glass_thickness", "mm", focal, thickness),
+                FreeParameter("glass_index", "", 1.0, index),
+            )
+        return (
+            FreeParameter("focal_length", "mm", focal, focal),
+            FreeParameter("shift_along", "mm", focal),
+            FreeParameter("shift_across", "mm", focal),
+            FreeParameter("deflection", "deg", RADIAN_DEG),
+            FreeParameter("slope", "deg", RADIAN_DEG),
+            *TURNS,
+            *glass,
+        )
 
     def shifts(self, vector: Floats, tangents: Floats) -> Floats:
         """(N, 2) shifts, mm, of tangents (N, 2) by slant, in the order of the slits."""

@@ -22,7 +22,7 @@ from algorithms.contract import (
     UnusableDataError,
 )
 from algorithms.documented import documented
-from algorithms.inputs import require_positive, require_samples
+from algorithms.inputs import require_samples
 from algorithms.models.lut.error_tables import (
     MAX_NODES,
     SMOOTHINGS,
@@ -36,9 +36,9 @@ from algorithms.models.lut.error_tables import (
 )
 from algorithms.models.nominal_projection import (
     POSITIONS,
-    nominal_tangents,
 )
 from algorithms.models.non_physical.regression_axes import sun_from_target
+from algorithms.parameters import require_order, require_positive
 
 MAX_DEGREE = 15
 
@@ -131,16 +131,12 @@ class BlendedPolynomials(ProjectionModel):
         super().__post_init__()
         smoothing = 1.0 if self.smoothing is None else self.smoothing
         require_positive(self.about.name, interval_deg=self.interval_deg, smoothing=smoothing)
-        if self.degree is not None and not 1 <= self.degree <= MAX_DEGREE:
-            raise ValueError(
-                f"{self.about.name}: degree must be from 1 to {MAX_DEGREE}, or None; "
-                f"got {self.degree!r}"
-            )
+        require_order(self.about.name, MAX_DEGREE, degree=self.degree)
 
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Solve for all rows' coefficients."""
         del context
-        nominal = self._nominal_deg(features)
+        nominal = self.nominal_deg(features)
         errors = angles_from_sun(sun) - nominal
         degree, smoothing, self.validated_deg_ = self.degree, self.smoothing, None
         if degree is None or smoothing is None:
@@ -160,7 +156,7 @@ class BlendedPolynomials(ProjectionModel):
         angles = np.empty((len(features), 2), order="F")
         first = (float(self.alpha_axis_.start), float(self.alpha_axis_.interval))
         scaling = (float(self.beta_middle_deg_), float(self.beta_half_range_deg_))
-        nominal = self._nominal_deg(features)
+        nominal = self.nominal_deg(features)
         corrected_along_rows(nominal, self.coefficients_deg_, first, scaling, angles)
         return sun_from_target(angles, "angle")
 
@@ -212,10 +208,6 @@ class BlendedPolynomials(ProjectionModel):
         self.alpha_axis_ = alpha
         self.beta_middle_deg_, self.beta_half_range_deg_ = _scale(nominal)
         self.coefficients_deg_ = solution.reshape(alpha.nodes, terms, 2)
-
-    def _nominal_deg(self, features: Floats) -> Floats:
-        tangents = nominal_tangents(features, self.focal_length_mm, self.unit_mm, self.centre)
-        return np.degrees(np.arctan(tangents))
 
 
 def _rows(nominal: Floats, interval: float) -> GridAxis:

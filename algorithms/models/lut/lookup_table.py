@@ -16,7 +16,6 @@ from algorithms.calibration.projection import ProjectionModel
 from algorithms.calibration.quality import Setting
 from algorithms.contract import AboutModel, Floats
 from algorithms.documented import documented
-from algorithms.inputs import require_positive
 from algorithms.models.lut.error_tables import (
     MAX_BAND,
     SMOOTHINGS,
@@ -30,9 +29,9 @@ from algorithms.models.lut.error_tables import (
 )
 from algorithms.models.nominal_projection import (
     POSITIONS,
-    nominal_tangents,
 )
 from algorithms.models.non_physical.regression_axes import sun_from_target
+from algorithms.parameters import require_positive
 
 
 @documented
@@ -116,7 +115,7 @@ class ErrorTable(ProjectionModel):
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Solve for the table's nodes."""
         del context
-        nominal = self._nominal_deg(features)
+        nominal = self.nominal_deg(features)
         errors = angles_from_sun(sun) - nominal
         chosen, self.validated_deg_ = self.smoothing, None
         if chosen is None:
@@ -136,7 +135,7 @@ class ErrorTable(ProjectionModel):
         angles = np.empty((len(features), 2), order="F")
         alpha, beta = self.alpha_axis_, self.beta_axis_
         starts = (float(alpha.start), float(beta.start))
-        nominal = self._nominal_deg(features)
+        nominal = self.nominal_deg(features)
         correct(nominal, self.table_deg_, starts, float(alpha.interval), angles)
         return sun_from_target(angles, "angle")
 
@@ -166,10 +165,6 @@ class ErrorTable(ProjectionModel):
         nodes = solve_table(design, roughness, smoothing, errors, self.about.name)
         self.alpha_axis_, self.beta_axis_ = alpha, beta
         self.table_deg_ = nodes.reshape(alpha.nodes, beta.nodes, 2)
-
-    def _nominal_deg(self, features: Floats) -> Floats:
-        tangents = nominal_tangents(features, self.focal_length_mm, self.unit_mm, self.centre)
-        return np.degrees(np.arctan(tangents))
 
 
 def _axes(nominal: Floats, interval: float) -> tuple[GridAxis, GridAxis]:

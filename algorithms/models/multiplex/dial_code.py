@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from algorithms.angles import sun_from_tangents, tangents_from_sun
 from algorithms.contract import AboutModel, FeatureKind, Floats, SensorGeometry, UnusableDataError
-from algorithms.inputs import require_positive
+from algorithms.parameters import require_positive, require_within
 
 FINE_TRACKS = 4
 
@@ -80,8 +80,7 @@ class DialCode:
             period_mm=self.period_mm,
             focal_length_mm=self.focal_length_mm,
         )
-        if not 1 <= self.bits <= 16:
-            raise ValueError(f"{by}: bits must be in [1, 16]; got {self.bits!r}")
+        require_within(by, "[1, 16]", bits=self.bits)
         if not self.cell_mm < self.period_mm:
             raise ValueError(
                 f"{by}: cell_mm must be below period_mm, or a cell does not tell the period; "
@@ -89,10 +88,7 @@ class DialCode:
             )
         if sorted(self.axes) != ["x", "y"]:
             raise ValueError(f"{by}: axes must be 'x' and 'y' in either order; got {self.axes!r}")
-        if not 0 <= self.smallest_contrast < 1:
-            raise ValueError(
-                f"{by}: smallest_contrast must be in [0, 1); got {self.smallest_contrast!r}"
-            )
+        require_within(by, "[0, 1)", smallest_contrast=self.smallest_contrast)
 
     @property
     def columns(self) -> int:

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
 from algorithms.calibration.calibrated import Columns
-from algorithms.calibration.faces_model import FacesModel
+from algorithms.calibration.faces_model import SignalsModel
 from algorithms.contract import (
     AboutModel,
     FeatureKind,
     Floats,
-    SensorGeometry,
-    UnsuitableDesignError,
     UnusableDataError,
 )
 from algorithms.documented import documented
@@ -22,29 +20,20 @@ from algorithms.models.neural_network.direction_errors import (
     Corrected,
     Correction,
     combine,
-    learn_correction,
     least_squares,
 )
 from algorithms.models.neural_network.training import on_grid, require_training
 from algorithms.row_arithmetic import normalise
 
-MAX_SIGNALS = 8
-"""Every signal has a unit of the first layer that sees all others."""
-
 
 @documented
 @dataclass
-class DeepSignals(Corrected, FacesModel):
+class DeepSignals(Corrected, SignalsModel):
     """Sun direction linear in all signals, corrected by a deep network.
 
     From the signals the network learns the error of the direction: by Earthlight, by responses
     that are not a cosine, by unlit faces. No model of any of these is needed, only samples that
     show them.
-
-    Parameters
-    ----------
-    signals : int
-        Detectors K, 2 to 8.
 
     Attributes
     ----------
@@ -98,12 +87,9 @@ class DeepSignals(Corrected, FacesModel):
         accepts=frozenset({FeatureKind.SIGNALS}),
     )
 
-    signals: int
     hidden: int = 8
     restarts: int = 3
     seed: int = 0
-
-    fewest: ClassVar[int] = 4
 
     middle_: Floats = field(init=False, repr=False, compare=False)
     half_range_: Floats = field(init=False, repr=False, compare=False)
@@ -112,22 +98,7 @@ class DeepSignals(Corrected, FacesModel):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not 2 <= self.signals <= MAX_SIGNALS:
-            raise UnsuitableDesignError(
-                f"{self.about.name} reads 2 to {MAX_SIGNALS} signals; got {self.signals!r}"
-            )
         require_training(self.about.name, self.hidden, self.restarts, self.seed)
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model of the sensor's detectors; UnsuitableDesignError past eight."""
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(signals=len(geometry.face_normals or ()))
-
-    def columns(self) -> int:
-        """One a detector."""
-        return self.signals
 
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Fit the direction, then train on what it leaves, samples (n, K) of Suns (n, 3)."""
@@ -142,16 +113,7 @@ class DeepSignals(Corrected, FacesModel):
         inputs = self._scaled(features)
         design = np.column_stack([np.ones(len(inputs)), inputs])
         self.coefficients_ = least_squares(design, sun, by)
-        base = self._base(inputs)
-        self.correction_ = learn_correction(
-            base,
-            inputs,
-            sun,
-            hidden=self.hidden,
-            restarts=self.restarts,
-            seed=self.seed,
-            by=by,
-        )
+        self._train(by, inputs, sun)
 
     def _base(self, inputs: Floats) -> Floats:
         """Directions (N, 3) before they are corrected."""

@@ -14,7 +14,6 @@ from algorithms.models.neural_network.direction_errors import (
     Corrected,
     Correction,
     combine,
-    learn_correction,
     least_squares,
 )
 from algorithms.models.neural_network.training import on_grid, require_training
@@ -100,16 +99,7 @@ class DeepSurface(Corrected, CalibratedModel):
         inputs = self._scaled(features)
         tangents = sun[:, :2] / sun[:, 2:]
         self.coefficients_ = least_squares(np.column_stack(_terms(inputs)), tangents, by)
-        base = self._base(inputs)
-        self.correction_ = learn_correction(
-            base,
-            inputs,
-            sun,
-            hidden=self.hidden,
-            restarts=self.restarts,
-            seed=self.seed,
-            by=by,
-        )
+        self._train(by, inputs, sun)
 
     def _base(self, inputs: Floats) -> Floats:
         """Directions (N, 3) of the surfaces."""

@@ -74,6 +74,8 @@ class Corrected:
     """
 
     hidden: int
+    restarts: int
+    seed: int
     middle_: Floats
     half_range_: Floats
     correction_: Correction
@@ -91,6 +93,18 @@ class Corrected:
         del context
         inputs = self._scaled(features)
         return self.correction_.correct(self._base(inputs), inputs)
+
+    def _train(self, by: str, inputs: Floats, sun: Floats) -> None:
+        """Learn the correction of `_base`, of scaled features (n, F) and Suns (n, 3)."""
+        self.correction_ = learn_correction(
+            self._base(inputs),
+            inputs,
+            sun,
+            hidden=self.hidden,
+            restarts=self.restarts,
+            seed=self.seed,
+            by=by,
+        )
 
     @abstractmethod
     def _base(self, inputs: Floats) -> Floats:

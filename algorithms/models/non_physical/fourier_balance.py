@@ -16,9 +16,9 @@ from algorithms.inputs import require_samples
 from algorithms.models.non_physical.axis_regression import AXES, fit_axes
 from algorithms.models.non_physical.regression_axes import (
     Target,
-    require_target,
     sun_from_target,
 )
+from algorithms.parameters import require_choice, require_order
 
 MAX_HARMONICS = 8
 """Past it, waves of twice the range's period are hardly distinguished from sums of each other."""
@@ -103,12 +103,8 @@ class FourierBalance(CalibratedModel):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.harmonics is not None and not 1 <= self.harmonics <= MAX_HARMONICS:
-            raise ValueError(
-                f"{self.about.name}: harmonics must be from 1 to {MAX_HARMONICS}, or None; "
-                f"got {self.harmonics!r}"
-            )
-        require_target(self.target, self.about.name)
+        require_order(self.about.name, MAX_HARMONICS, harmonics=self.harmonics)
+        require_choice(self.about.name, Target, target=self.target)
 
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Fit one series an axis to samples (n, 2) of Suns (n, 3)."""

@@ -15,11 +15,11 @@ from algorithms.models.nominal_projection import POSITIONS
 from algorithms.models.non_physical.regression_axes import (
     Target,
     feature_scaling,
-    require_target,
     solve_regression,
     sun_from_target,
     target_from_sun,
 )
+from algorithms.parameters import require_choice
 
 
 @documented
@@ -87,7 +87,7 @@ class LinearFit(CalibratedModel):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_target(self.target, self.about.name)
+        require_choice(self.about.name, Target, target=self.target)
 
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Fit one line an axis to samples (n, 2) of Suns (n, 3)."""

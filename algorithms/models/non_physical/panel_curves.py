@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from algorithms.calibration.calibrated import Columns
-from algorithms.calibration.faces_model import FacesModel
+from algorithms.calibration.faces_model import FEWEST_LIT, SquarePanelsModel
 from algorithms.calibration.quality import Parameter
 from algorithms.contract import (
     AboutModel,
@@ -18,28 +18,21 @@ from algorithms.contract import (
 )
 from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import (
-    Normals,
     opposite_pairs,
     require_square_pairs,
 )
 from algorithms.models.non_physical.regression_axes import solve_regression
-from algorithms.models.non_physical.trigonometric import FEWEST_LIT, SMALLEST_COSINE
+from algorithms.models.non_physical.trigonometric import SMALLEST_COSINE
 from algorithms.row_arithmetic import normalise
 
 
 @documented
 @dataclass
-class AveragedPanelCurves(FacesModel):
+class AveragedPanelCurves(SquarePanelsModel):
     """One trigonometric curve for both panels of a pair; the lit panel gives angle and sign.
 
     Averaging opposite panels leaves only three curves to invert, but does not correct differences
     between panels. The lit panels determine the quadrant.
-
-    Parameters
-    ----------
-    face_normals : tuple of six vectors
-        Unit normals of the panels in the order of the features: three pairs of opposite ones,
-        the pairs square to each other, in any order and turned any way.
 
     Attributes
     ----------
@@ -92,20 +85,8 @@ class AveragedPanelCurves(FacesModel):
         accepts=frozenset({FeatureKind.SIGNALS}),
     )
 
-    face_normals: Normals
-
-    fewest: ClassVar[int] = FEWEST_LIT
-
     curves_: Floats = field(init=False, repr=False, compare=False)
     deviations_: Floats = field(init=False, repr=False, compare=False)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_square_pairs(self.face_normals, self.about.name)
-
-    def columns(self) -> int:
-        """Six panels."""
-        return 6
 
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Fit a curve a pair to the samples that light one of its panels."""

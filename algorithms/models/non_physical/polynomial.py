@@ -22,11 +22,11 @@ from algorithms.models.non_physical.regression_axes import (
     Target,
     feature_scaling,
     in_degrees,
-    require_target,
     solve_regression,
     sun_from_target,
     target_from_sun,
 )
+from algorithms.parameters import require_choice, require_order
 
 MAX_DEGREE = 15
 """Past the 11th degree nothing is gained (Chang2006); past this, rounding and overfitting rule."""
@@ -55,11 +55,8 @@ class _Polynomial(CalibratedModel):
     def __post_init__(self) -> None:
         super().__post_init__()
         by, degree = self.about.name, self.degree
-        if degree is not None and not 1 <= degree <= MAX_DEGREE:
-            raise ValueError(
-                f"{by}: degree must be from 1 to {MAX_DEGREE}, or None; got {degree!r}"
-            )
-        require_target(self.target, by)
+        require_order(by, MAX_DEGREE, degree=degree)
+        require_choice(by, Target, target=self.target)
 
 
 @documented

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 
@@ -14,14 +14,6 @@ Target = Literal["angle", "tangent"]
 
 #: What `numpy.radians` multiplies by, one number at a time.
 _RADIAN = np.pi / 180.0
-
-
-def require_target(target: str, by: str) -> None:
-    """Raise ValueError unless `target` is one of the quantities a regression can learn."""
-    if target not in get_args(Target):
-        raise ValueError(
-            f"{by}: target must be one of {', '.join(get_args(Target))}; got {target!r}"
-        )
 
 
 def target_from_sun(sun: Floats, target: Target) -> Floats:

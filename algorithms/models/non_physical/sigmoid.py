@@ -10,7 +10,7 @@ import numpy as np
 
 from algorithms.angles import angles_from_sun, sun_from_tangents
 from algorithms.calibration.calibrated import Columns
-from algorithms.calibration.parametric import ParametricModel
+from algorithms.calibration.parametric import FreeParameter, ParametricModel
 from algorithms.contract import AboutModel, FeatureKind, Floats, UnusableDataError
 from algorithms.documented import documented
 from algorithms.inputs import require_samples
@@ -104,10 +104,10 @@ class SigmoidBalance(ParametricModel):
 
     calibrated_deg_: Floats = field(init=False, repr=False, compare=False)
 
-    def names(self) -> Sequence[tuple[str, str]]:
-        """Name and unit of each parameter."""
+    def free_parameters(self) -> Sequence[FreeParameter]:
+        """Balances, and what they are of a radian."""
         return [
-            (f"{name}_{axis}", unit)
+            FreeParameter(f"{name}_{axis}", unit, 1.0)
             for axis, _ in _BALANCES
             for name, unit in (
                 ("slope", "1/rad"),
@@ -118,10 +118,6 @@ class SigmoidBalance(ParametricModel):
                 ("offset", ""),
             )
         ]
-
-    def scales(self) -> Sequence[float]:
-        """Ones: balances, and what they are of a radian."""
-        return (1.0,) * (2 * _AXIS)
 
     def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
         """Give, of each axis, the best of curves with a few bends."""

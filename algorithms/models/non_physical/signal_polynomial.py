@@ -5,31 +5,27 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import combinations_with_replacement
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.calibration.blocks import folds
 from algorithms.calibration.calibrated import Columns
-from algorithms.calibration.faces_model import FacesModel
+from algorithms.calibration.faces_model import SignalsModel
 from algorithms.calibration.orders import choose_order, errors_of_orders
 from algorithms.calibration.quality import Setting
 from algorithms.contract import (
     AboutModel,
     FeatureKind,
     Floats,
-    SensorGeometry,
-    UnsuitableDesignError,
     UnusableDataError,
 )
 from algorithms.documented import documented
 from algorithms.inputs import require_samples
 from algorithms.models.non_physical.regression_axes import solve_regression
+from algorithms.parameters import require_order
 from algorithms.row_arithmetic import normalise
-
-MAX_SIGNALS = 8
-"""More have too many products: a hundred and sixty-five of ten signals are of the third degree."""
 
 MAX_DEGREE = 6
 
@@ -42,7 +38,7 @@ _DEPENDENT = 1e-4
 
 @documented
 @dataclass
-class SignalPolynomial(FacesModel):
+class SignalPolynomial(SignalsModel):
     """Each component of the Sun vector as a polynomial of all detectors' signals.
 
     No geometry of the cells is needed: angular responses, gains and mounting are compensated as
@@ -50,8 +46,6 @@ class SignalPolynomial(FacesModel):
 
     Parameters
     ----------
-    signals : int
-        Detectors K, 2 to 8.
     degree : int, optional
         Total degree n, 1 to 6. None: chosen from the calibration samples by cross-validation.
     extrapolation : float
@@ -110,10 +104,7 @@ class SignalPolynomial(FacesModel):
         accepts=frozenset({FeatureKind.SIGNALS}),
     )
 
-    signals: int
     degree: int | None = None
-
-    fewest: ClassVar[int] = 4
 
     middle_: Floats = field(init=False, repr=False, compare=False)
     half_range_: Floats = field(init=False, repr=False, compare=False)
@@ -124,26 +115,7 @@ class SignalPolynomial(FacesModel):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not 2 <= self.signals <= MAX_SIGNALS:
-            raise UnsuitableDesignError(
-                f"{self.about.name} reads 2 to {MAX_SIGNALS} signals; got {self.signals!r}"
-            )
-        if self.degree is not None and not 1 <= self.degree <= MAX_DEGREE:
-            raise ValueError(
-                f"{self.about.name}: degree must be from 1 to {MAX_DEGREE}, or None; "
-                f"got {self.degree!r}"
-            )
-
-    @classmethod
-    def for_sensor(cls, geometry: SensorGeometry, kind: FeatureKind) -> Self:
-        """Return the model of the sensor's detectors; UnsuitableDesignError past eight."""
-        cls.about.require_kind(kind)
-        geometry.require("face_normals", by=cls.about.name)
-        return cls(signals=len(geometry.face_normals or ()))
-
-    def columns(self) -> int:
-        """One a detector."""
-        return self.signals
+        require_order(self.about.name, MAX_DEGREE, degree=self.degree)
 
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Fit the components to samples (n, K) of Suns (n, 3)."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.conditioning import WORST_CONDITION
-from algorithms.calibration.faces_model import FacesModel
+from algorithms.calibration.faces_model import FEWEST_LIT, SquarePanelsModel
 from algorithms.calibration.quality import Parameter
 from algorithms.contract import (
     AboutModel,
@@ -19,7 +19,6 @@ from algorithms.contract import (
 )
 from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import (
-    Normals,
     opposite_pairs,
     require_square_pairs,
 )
@@ -29,23 +28,14 @@ from algorithms.row_arithmetic import normalise
 SMALLEST_COSINE = 0.02
 """Of the angle of incidence from which on a panel counts as lit in the calibration."""
 
-FEWEST_LIT = 8
-"""Samples that light a panel below which its opposite speaks for it."""
-
 
 @documented
 @dataclass
-class TrigonometricPanels(FacesModel):
+class TrigonometricPanels(SquarePanelsModel):
     """Each panel's signal as a cosine with amplitude, phase and offset; the Sun from lit panels.
 
     The fit gives sine and cosine of the slew angle, so the arc tangent has the right quadrant.
     Each panel has its own gain and mounting.
-
-    Parameters
-    ----------
-    face_normals : tuple of six vectors
-        Unit normals of the panels in the order of the features: three pairs of opposite ones,
-        the pairs square to each other, in any order and turned any way.
 
     Attributes
     ----------
@@ -99,21 +89,9 @@ class TrigonometricPanels(FacesModel):
         accepts=frozenset({FeatureKind.SIGNALS}),
     )
 
-    face_normals: Normals
-
-    fewest: ClassVar[int] = FEWEST_LIT
-
     offsets_: Floats = field(init=False, repr=False, compare=False)
     amplitudes_: Floats = field(init=False, repr=False, compare=False)
     deviations_: Floats = field(init=False, repr=False, compare=False)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_square_pairs(self.face_normals, self.about.name)
-
-    def columns(self) -> int:
-        """Six panels."""
-        return 6
 
     def learn(self, features: Floats, sun: Floats, context: Columns) -> None:
         """Fit every panel's cosine to the samples that light it."""

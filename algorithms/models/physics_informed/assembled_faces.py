@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal, get_args
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -12,9 +12,9 @@ from algorithms.calibration.faces_model import FacesModel
 from algorithms.calibration.quality import Parameter
 from algorithms.contract import AboutModel, FeatureKind, Floats
 from algorithms.documented import documented
-from algorithms.inputs import require_positive
 from algorithms.models.geometric.detector_faces import Normals, require_normals
 from algorithms.models.physics_informed.faces_fit import FEWEST_LIT, FacesFit
+from algorithms.parameters import require_choice, require_positive
 from algorithms.row_arithmetic import normalise
 
 Sharing = Literal["common", "each"]
@@ -130,11 +130,7 @@ class AssembledFaces(FacesModel):
         super().__post_init__()
         require_normals(self.face_normals, self.about.name)
         require_positive(self.about.name, level_spread=self.level_spread)
-        if self.response not in get_args(Sharing):
-            raise ValueError(
-                f"{self.about.name}: response must be one of {', '.join(get_args(Sharing))}; "
-                f"got {self.response!r}"
-            )
+        require_choice(self.about.name, Sharing, response=self.response)
 
     def columns(self) -> int:
         """One a face."""

@@ -13,6 +13,7 @@ from api.cli.measuring import (
     ManyWorkersOption,
     SchedulerOption,
     StoreOption,
+    say_sources,
     score_cells,
 )
 from api.cli.options import Asked, asked_by
@@ -26,14 +27,7 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = (
     *("dataset", "condition", "extractor", "model", "rms_deg", "bound_deg", "over_bound"),
-    *(
-        "bound_unit_deg",
-        "over_bound_unit",
-        "availability",
-        "false_sun",
-        "latency_us",
-        "status",
-    ),
+    *("bound_unit_deg", "over_bound_unit", "availability", "false_sun", "latency_us", "status"),
 )
 
 
@@ -84,10 +78,8 @@ def benchmark(
     emit(result.rows, columns, form, document=document, title=f"{len(result.rows)} scores")
     for warning in result.warnings:
         typer.echo(f"warning: {warning}", err=True)
-    typer.echo(
-        f"{result.published_count} published, {result.stored_count} measured before, "
-        f"{result.measured_count} measured now; new results are kept in {result.directory}",
-        err=True,
+    say_sources(
+        result.published_count, result.stored_count, result.measured_count, result.directory
     )
 
 

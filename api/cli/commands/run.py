@@ -17,6 +17,7 @@ from api.cli.measuring import (
     StoreOption,
     SuiteOption,
     WorkersOption,
+    say_sources,
     score_cells,
     stores_of,
 )
@@ -34,17 +35,7 @@ from registry.resolution import Resolution
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
-COLUMNS = (
-    *("dataset", "condition", "extractor", "model", "rms_deg", "bound_deg", "over_bound"),
-    *(
-        "bound_unit_deg",
-        "over_bound_unit",
-        "availability",
-        "false_sun",
-        "status",
-        "assumed",
-    ),
-)
+COLUMNS = (*(name for name in benchmark.COLUMNS if name != "latency_us"), "assumed")
 CSV_COLUMNS = ("study", *columns_of(Score), "assumed")
 
 #: A suite may hold other units than the standard one.
@@ -117,11 +108,7 @@ def _run_suite(
     sources["measured"] = measured
     document = {"suite": name, "scores": result.rows, "sources": sources}
     emit(result.rows, columns, form, document=document, title=f"{name}: {len(result.rows)} scores")
-    typer.echo(
-        f"{result.published_count} published, {sources['kept']} measured before, {measured} "
-        f"measured now; new results are kept in {result.directory}",
-        err=True,
-    )
+    say_sources(result.published_count, sources["kept"], measured, result.directory)
 
 
 def _plan(resolution: Resolution, conditions: Sequence[str] | None) -> dict[Cell, list[str]]:
@@ -135,7 +122,7 @@ def _plan(resolution: Resolution, conditions: Sequence[str] | None) -> dict[Cell
     wanted = set(conditions or known)
     planned: dict[Cell, list[str]] = {}
     for pipeline in resolution.pipelines:
-        assumed = [f"{attribute}: {rule}" for attribute, rule in pipeline.assumptions.items()]
+        assumed = [f"{attribute}: {rule}" for attribute, rule in pipeline.assumed.items()]
         for cell in everything:
             ours = cell.dataset in pipeline.datasets and cell.condition in wanted
             if ours and (cell.extractor, cell.model) == (pipeline.extractor, pipeline.model):

@@ -132,7 +132,7 @@ def _row(study: Study, known: Knowledge) -> dict[str, Any]:
         "cells": sum(map(len, scored)),
         "scored": sum(score["status"] is not None for scores in scored for score in scores),
         "basis": {} if best is None else dict(best.basis),
-        "assumed": {} if best is None else dict(best.assumptions),
+        "assumed": {} if best is None else dict(best.assumed),
     }
     return {
         **summary,

@@ -11,6 +11,7 @@ from benchmark.datasets.conditions.propagation import LIGHT
 from benchmark.datasets.preset import Condition
 from benchmark.simulator.light.clouds import CloudyEarth
 from benchmark.simulator.light.environment import Earth, Irradiance
+from benchmark.simulator.light.stray_slope import UnevenIrradiance
 from benchmark.simulator.optics.ghosts import Ghost
 from benchmark.simulator.sensor import Sensor
 from benchmark.simulator.sensors.code_dial import CodeDialSensor
@@ -19,7 +20,6 @@ from benchmark.simulator.sensors.line_sensor import LineSensor
 from benchmark.simulator.sensors.position_sensitive import PositionSensor
 from benchmark.simulator.sensors.quadrants import QuadrantSensor
 from benchmark.simulator.sensors.slit_pairs import SlitPairSensor
-from benchmark.simulator.sensors.stray_slope import UnevenIrradiance
 
 Haunted = TypeVar(
     "Haunted",

@@ -8,8 +8,8 @@ from benchmark.datasets.fields import Split
 from benchmark.datasets.preset import Preset
 from benchmark.datasets.repeats import Rows
 from benchmark.seeds import generator
+from benchmark.simulator.light.stray_slope import UnevenIrradiance, UnevenScene
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensors.stray_slope import UnevenIrradiance, UnevenScene
 
 
 @dataclass(frozen=True)

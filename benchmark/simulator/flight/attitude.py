@@ -31,26 +31,6 @@ class Attitude(Protocol):
 
 
 @dataclass(frozen=True)
-class NadirPointing:
-    """x along the motion, y along the orbit's normal, z to the zenith."""
-
-    def matrices(
-        self, orbit: CircularOrbit, sun: Floats, time_s: Floats, turned_s: float = 0.0
-    ) -> Floats:
-        """(N, 3, 3); neither the Sun nor how long it has been so matters."""
-        del sun, turned_s
-        rows = np.empty((len(time_s), 3, 3))
-        rows[:, 0] = orbit.velocity(time_s)
-        rows[:, 1] = orbit.axes()[2]
-        rows[:, 2] = orbit.position(time_s)
-        return rows
-
-    def describe(self) -> str:
-        """In words."""
-        return "nadir-pointing, z to the zenith"
-
-
-@dataclass(frozen=True)
 class Tumble:
     """Free motion of a body with one axis of symmetry, its z axis: precession and spin.
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from algorithms.contract import Floats
+from benchmark.seeds import generator
 from benchmark.simulator.flight.orbit import CircularOrbit
 from benchmark.simulator.readout.detectors import DarkCurrent
 
@@ -82,6 +83,20 @@ class PhotodiodeDrift:
     gain_per_k_spread: float = 0.0
     loss_per_year: float = 0.0
     loss_per_year_spread: float = 0.0
+
+    def drawn(self, count: int, *names: str | int) -> dict[str, Floats]:
+        """``gain_per_k`` and ``loss_per_year`` (K,), those of the elements of one unit."""
+        spread = generator(*names, "drift").standard_normal((2, count))
+        return {
+            "gain_per_k": self.gain_per_k + self.gain_per_k_spread * spread[0],
+            "loss_per_year": self.loss_per_year + self.loss_per_year_spread * spread[1],
+        }
+
+    def variance(self, light: Floats, warmer_k: Floats, age_years: Floats) -> Floats:
+        """Squared part of `light` (N, K) that the spread of the elements' drifts adds."""
+        warmed = self.gain_per_k_spread * warmer_k
+        aged = self.loss_per_year_spread * age_years
+        return np.asarray(light**2 * (warmed**2 + aged**2))
 
     def factors(
         self, temperature_k: Floats, age_years: Floats, per_k: Floats, per_year: Floats

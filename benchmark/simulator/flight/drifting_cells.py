@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from algorithms.contract import Floats
-from benchmark.seeds import generator
 from benchmark.simulator.flight.drift import (
     REFERENCE_K,
     PhotodiodeDrift,
@@ -16,7 +15,7 @@ from benchmark.simulator.flight.drift import (
     dark_levels,
 )
 from benchmark.simulator.flight.time_series import with_times
-from benchmark.simulator.readout import currents as readout
+from benchmark.simulator.readout.currents import spread
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
@@ -37,13 +36,8 @@ class DriftingSolarCellSensor(SolarCellSensor):
 
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
         """As `SolarCellSensor`; with ``gain_per_k`` and ``loss_per_year`` (K,), the cells' own."""
-        spread = generator(*names, "drift").standard_normal((2, len(self.normals)))
-        drift = self.drift
-        return {
-            **super().fixed_pattern(*names),
-            "gain_per_k": drift.gain_per_k + drift.gain_per_k_spread * spread[0],
-            "loss_per_year": drift.loss_per_year + drift.loss_per_year_spread * spread[1],
-        }
+        drifts = self.drift.drawn(len(self.normals), *names)
+        return {**super().fixed_pattern(*names), **drifts}
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean microamperes; TypeError for a scene that is not a `TimedScene`."""
@@ -65,10 +59,8 @@ class DriftingSolarCellSensor(SolarCellSensor):
         at = with_times(scene, self)
         light = expected - dark_levels(self.readout.dark, at.temperature_k)[:, None]
         parts = self.readout.gain_mismatch, self.cells.mismatch, self.cells.loss_spread
-        spread = math.sqrt(math.fsum(part**2 for part in parts))
-        still = readout.spread(self.readout, spread, references)
+        deviation = math.sqrt(math.fsum(part**2 for part in parts))
+        still = spread(self.readout, deviation, references)
         received = light / self.readout.sunlit_ua
         warmer = at.temperature_k[:, None] + self.cells.heating_k * received - REFERENCE_K
-        warmed = self.drift.gain_per_k_spread * warmer
-        aged = self.drift.loss_per_year_spread * at.age_years[:, None]
-        return still.variance(light) + light**2 * (warmed**2 + aged**2)
+        return still.variance(light) + self.drift.variance(light, warmer, at.age_years[:, None])

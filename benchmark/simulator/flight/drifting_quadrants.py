@@ -7,19 +7,15 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from algorithms.contract import Floats
-from benchmark.seeds import generator
 from benchmark.simulator.flight.drift import (
-    REFERENCE_K,
     AssemblyDrift,
     PhotodiodeDrift,
     ThermalCycle,
-    dark_levels,
 )
 from benchmark.simulator.flight.moved_heads import moved_heads
-from benchmark.simulator.flight.time_series import with_times
+from benchmark.simulator.flight.time_series import drift_variance, drifted, with_times
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.optics.projection import ProjectedLight
-from benchmark.simulator.readout import currents as readout
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
@@ -56,13 +52,8 @@ class DriftingQuadrantSensor(QuadrantSensor):
 
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
         """As `QuadrantSensor`; with ``gain_per_k`` and ``loss_per_year`` (4,), each one's own."""
-        spread = generator(*names, "drift").standard_normal((2, 4))
-        drift = self.photodiodes
-        return {
-            **super().fixed_pattern(*names),
-            "gain_per_k": drift.gain_per_k + drift.gain_per_k_spread * spread[0],
-            "loss_per_year": drift.loss_per_year + drift.loss_per_year_spread * spread[1],
-        }
+        drifts = self.photodiodes.drawn(4, *names)
+        return {**super().fixed_pattern(*names), **drifts}
 
     def project(self, scene: Scene) -> ProjectedLight:
         """As `Camera.project`, every sample with its own assembly.
@@ -91,21 +82,10 @@ class DriftingQuadrantSensor(QuadrantSensor):
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, 4) mean microamperes; TypeError for a scene that is not a `TimedScene`."""
         at = with_times(scene, self)
-        factor = self.photodiodes.factors(
-            at.temperature_k, at.age_years, pattern["gain_per_k"], pattern["loss_per_year"]
-        )
-        light = self.receive(scene) * pattern["gain"] * factor
-        dark = dark_levels(self.readout.dark, at.temperature_k)
-        return np.asarray(self.readout.sunlit_ua * light + dark[:, None])
+        return drifted(self.readout, self.photodiodes, self.receive(scene), pattern, at)
 
     def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:
-        """Squared microamperes that unknown gains and the spread of their drifts add.
-
-        References are taken at 25 deg C before the flight: they tell nothing of the drifts.
-        """
-        at = with_times(scene, self)
-        light = expected - dark_levels(self.readout.dark, at.temperature_k)[:, None]
-        still = readout.spread(self.readout, self.readout.gain_mismatch, references)
-        warmed = self.photodiodes.gain_per_k_spread * (at.temperature_k - REFERENCE_K)
-        aged = self.photodiodes.loss_per_year_spread * at.age_years
-        return still.variance(light) + light**2 * (warmed**2 + aged**2)[:, None]
+        """Squared microamperes that unknown gains and the spread of their drifts add."""
+        return drift_variance(
+            self.readout, self.photodiodes, expected, with_times(scene, self), references
+        )

@@ -10,7 +10,6 @@ from typing import Protocol
 import numpy as np
 
 from algorithms.contract import Floats
-from benchmark.seeds import generator
 from benchmark.simulator.flight.drift import (
     REFERENCE_K,
     AssemblyDrift,
@@ -20,7 +19,8 @@ from benchmark.simulator.flight.drift import (
 )
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.projection import ProjectedLight
-from benchmark.simulator.readout import currents as readout
+from benchmark.simulator.readout.currents import spread
+from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.references import References, pixel_unit_variance
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern, Sensor
@@ -63,6 +63,39 @@ def with_times(scene: Scene, sensor: object) -> TimedScene:
     return scene
 
 
+def drifted(
+    readout: CurrentReadout,
+    drift: PhotodiodeDrift,
+    received: Floats,
+    pattern: FixedPattern,
+    at: TimedScene,
+) -> Floats:
+    """(N, K) mean microamperes of photodiodes that drift, for all light that they receive."""
+    factor = drift.factors(
+        at.temperature_k, at.age_years, pattern["gain_per_k"], pattern["loss_per_year"]
+    )
+    light = received * pattern["gain"] * factor
+    dark = dark_levels(readout.dark, at.temperature_k)
+    return np.asarray(readout.sunlit_ua * light + dark[:, None])
+
+
+def drift_variance(
+    readout: CurrentReadout,
+    drift: PhotodiodeDrift,
+    expected: Floats,
+    at: TimedScene,
+    references: References,
+) -> Floats:
+    """Squared microamperes that unknown gains and the spread of their drifts add to a mean (N, K).
+
+    References are taken at 25 deg C before the flight: they tell nothing of the drifts.
+    """
+    light = expected - dark_levels(readout.dark, at.temperature_k)[:, None]
+    still = spread(readout, readout.gain_mismatch, references)
+    warmer_k = (at.temperature_k - REFERENCE_K)[:, None]
+    return still.variance(light) + drift.variance(light, warmer_k, at.age_years[:, None])
+
+
 @dataclass(frozen=True)
 class DriftingFaceSensor(FaceSensor):
     """Photodiodes on faces whose gains and dark currents follow temperature and age.
@@ -75,35 +108,19 @@ class DriftingFaceSensor(FaceSensor):
 
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
         """As `FaceSensor`; with ``gain_per_k`` and ``loss_per_year`` (K,), the elements' own."""
-        spread = generator(*names, "drift").standard_normal((2, len(self.normals)))
-        drift = self.drift
-        return {
-            **super().fixed_pattern(*names),
-            "gain_per_k": drift.gain_per_k + drift.gain_per_k_spread * spread[0],
-            "loss_per_year": drift.loss_per_year + drift.loss_per_year_spread * spread[1],
-        }
+        drifts = self.drift.drawn(len(self.normals), *names)
+        return {**super().fixed_pattern(*names), **drifts}
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean microamperes; TypeError for a scene that is not a `TimedScene`."""
         at = with_times(scene, self)
-        factor = self.drift.factors(
-            at.temperature_k, at.age_years, pattern["gain_per_k"], pattern["loss_per_year"]
-        )
-        light = self.receive(scene, pattern) * pattern["gain"] * factor
-        dark = dark_levels(self.readout.dark, at.temperature_k)
-        return np.asarray(self.readout.sunlit_ua * light + dark[:, None])
+        return drifted(self.readout, self.drift, self.receive(scene, pattern), pattern, at)
 
     def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:
-        """Squared microamperes that unknown gains and the spread of their drifts add.
-
-        References are taken at 25 deg C before the flight: they tell nothing of the drifts.
-        """
-        at = with_times(scene, self)
-        light = expected - dark_levels(self.readout.dark, at.temperature_k)[:, None]
-        still = readout.spread(self.readout, self.readout.gain_mismatch, references)
-        warmed = self.drift.gain_per_k_spread * (at.temperature_k - REFERENCE_K)
-        aged = self.drift.loss_per_year_spread * at.age_years
-        return still.variance(light) + light**2 * (warmed**2 + aged**2)[:, None]
+        """Squared microamperes that unknown gains and the spread of their drifts add."""
+        return drift_variance(
+            self.readout, self.drift, expected, with_times(scene, self), references
+        )
 
 
 @dataclass(frozen=True)

@@ -64,45 +64,6 @@ def spacing_coded(
     return Mask(tuple(apertures), thickness_mm)
 
 
-def size_coded(
-    subfields: int,
-    *,
-    pitch_mm: float,
-    spacing_mm: float,
-    smallest_mm: float,
-    step_mm: float,
-    thickness_mm: float = 0.0,
-) -> Mask:
-    """Return groups of three round apertures whose diameters name the sub-field (Wang2015).
-
-    As `spacing_coded`, but all spacings are `spacing_mm` and the apertures in +x and +y of the
-    corner have the diameters ``smallest + (i + 1) step`` and ``smallest + (j + 1) step``; the
-    corner has the smallest, which no other aperture has.
-
-    Raises
-    ------
-    ValueError
-        When apertures of a group or of neighbouring groups could overlap.
-    """
-    largest = smallest_mm + subfields * step_mm
-    if not largest < spacing_mm < pitch_mm - largest:
-        raise ValueError(
-            f"spacing_mm must be between {largest:.4g} and {pitch_mm - largest:.4g}; "
-            f"got {spacing_mm}"
-        )
-    apertures = []
-    for j in range(subfields):
-        for i in range(subfields):
-            x = (i - (subfields - 1) / 2.0) * pitch_mm - spacing_mm / 2.0
-            y = (j - (subfields - 1) / 2.0) * pitch_mm - spacing_mm / 2.0
-            apertures += [
-                _hole(smallest_mm, x, y),
-                _hole(smallest_mm + (i + 1) * step_mm, x + spacing_mm, y),
-                _hole(smallest_mm + (j + 1) * step_mm, x, y + spacing_mm),
-            ]
-    return Mask(tuple(apertures), thickness_mm)
-
-
 def compound_eye(
     apertures: int,
     rings: int,

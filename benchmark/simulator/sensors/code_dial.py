@@ -18,10 +18,8 @@ from benchmark.simulator.optics.earthlight import EarthInView, on_elements
 from benchmark.simulator.optics.edge_light import REFERENCE_NM, light_across_edge
 from benchmark.simulator.optics.ghosts import Ghost
 from benchmark.simulator.optics.projection import Camera, ProjectedLight
-from benchmark.simulator.readout import currents as readout
+from benchmark.simulator.readout.currents import CurrentSensor, currents, element_gains
 from benchmark.simulator.readout.detectors import CurrentReadout
-from benchmark.simulator.readout.noise import NoiseStreams
-from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.line_sensor import LineAxis
@@ -101,7 +99,7 @@ class CodeDial:
 
 
 @dataclass(frozen=True)
-class CodeDialSensor:
+class CodeDialSensor(CurrentSensor):
     """One code dial an axis, each under its own slit.
 
     Attributes
@@ -145,12 +143,9 @@ class CodeDialSensor:
         count = self.dial.tracks * len(self.axes)
         shifts = generator(*names, "tracks").standard_normal(count)
         return {
-            "gain": readout.element_gains(self.readout, count, *names),
+            "gain": element_gains(self.readout, count, *names),
             "shift_mm": self.dial.track_error_mm * shifts,
         }
-
-    def origins(self, sun: Floats, generator: np.random.Generator) -> None:
-        """Nothing is windowed (the arguments are the protocol's)."""
 
     def lit(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) light behind the tracks in units of what the slit gives an open one at noon."""
@@ -237,22 +232,4 @@ class CodeDialSensor:
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean microamperes."""
-        return readout.currents(self.readout, self.receive(scene, pattern), pattern)
-
-    def variance(self, expected: Floats) -> Floats:
-        """Squared microamperes."""
-        return readout.variance(self.readout, expected)
-
-    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
-        """Squared microamperes that unknown gains of the photodiodes add."""
-        return readout.unit_variance(self.readout, expected, references)
-
-    def reference_readings(
-        self, pattern: FixedPattern, references: References, streams: NoiseStreams
-    ) -> dict[str, Floats]:
-        """``dark_ua`` and ``flat_ua`` (K,): mean readings of the photodiodes."""
-        return readout.mean_readings(self.readout, pattern["gain"], references, streams)
-
-    def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
-        """(N, K) microamperes."""
-        return readout.convert(self.readout, self.expected(scene, pattern), streams)
+        return currents(self.readout, self.receive(scene, pattern), pattern)

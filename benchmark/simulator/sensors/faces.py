@@ -12,10 +12,8 @@ from benchmark.seeds import generator
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.optics.assembly import Assembly
-from benchmark.simulator.readout import currents as readout
+from benchmark.simulator.readout.currents import CurrentSensor, currents, element_gains
 from benchmark.simulator.readout.detectors import RESPONSES, CurrentReadout, Response
-from benchmark.simulator.readout.noise import NoiseStreams
-from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 
@@ -79,7 +77,7 @@ class Faces:
 
 
 @dataclass(frozen=True)
-class FaceSensor(Faces):
+class FaceSensor(CurrentSensor, Faces):
     """K maskless photodiodes with outward normals and an angular response.
 
     Attributes
@@ -102,28 +100,10 @@ class FaceSensor(Faces):
     def fixed_pattern(self, *names: str | int) -> FixedPattern:
         """``gain`` (K,) and ``normals`` (K, 3): the unit's gains and built normals."""
         return {
-            "gain": readout.element_gains(self.readout, len(self.normals), *names),
+            "gain": element_gains(self.readout, len(self.normals), *names),
             "normals": self.built_normals(*names),
         }
 
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean microamperes."""
-        return readout.currents(self.readout, self.receive(scene, pattern), pattern)
-
-    def variance(self, expected: Floats) -> Floats:
-        """Squared microamperes."""
-        return readout.variance(self.readout, expected)
-
-    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
-        """Squared microamperes that unknown gains of the photodiodes add."""
-        return readout.unit_variance(self.readout, expected, references)
-
-    def reference_readings(
-        self, pattern: FixedPattern, references: References, streams: NoiseStreams
-    ) -> dict[str, Floats]:
-        """``dark_ua`` and ``flat_ua`` (K,): mean readings of the photodiodes."""
-        return readout.mean_readings(self.readout, pattern["gain"], references, streams)
-
-    def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
-        """(N, K) microamperes."""
-        return readout.convert(self.readout, self.expected(scene, pattern), streams)
+        return currents(self.readout, self.receive(scene, pattern), pattern)

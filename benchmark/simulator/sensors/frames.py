@@ -17,18 +17,16 @@ from benchmark.simulator.optics.projection import Camera, ProjectedLight
 from benchmark.simulator.readout.column_noise import CommonNoise, window_noise
 from benchmark.simulator.readout.detectors import PixelArray, tunnel_response
 from benchmark.simulator.readout.noise import NoiseStreams, draw_counts
-from benchmark.simulator.readout.quantisation import pixel_variance
+from benchmark.simulator.readout.pixels import PixelSensor
 from benchmark.simulator.readout.references import (
     References,
-    pixel_references,
-    pixel_unit_variance,
 )
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 
 
 @dataclass(frozen=True)
-class FrameSensor:
+class FrameSensor(PixelSensor):
     """A pixel array read out in windows around the expected spot.
 
     Attributes
@@ -191,25 +189,11 @@ class FrameSensor:
         numbers += detector.offset_dn
         return numbers
 
-    def variance(self, expected: Floats) -> Floats:
-        """Squared digital numbers: shot and read noise, and what rounding and clipping cost."""
-        return pixel_variance(self.detector, expected)
-
     def common_noise(
         self, shape: tuple[int, ...], references: References | None
     ) -> CommonNoise | None:
         """Digital numbers that the pixels of a column share."""
         return window_noise(self.detector, shape, references)
-
-    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
-        """Squared digital numbers that unknown gains and dark signals of the pixels add."""
-        return pixel_unit_variance(self.detector, expected, references)
-
-    def reference_readings(
-        self, pattern: FixedPattern, references: References, streams: NoiseStreams
-    ) -> dict[str, Floats]:
-        """``dark_dn`` and ``flat_dn``, (rows, columns): mean readings of the whole detector."""
-        return pixel_references(self.detector, pattern, references, streams)
 
     def observe(
         self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.memory import memory
+from benchmark.simulator.light.stray_slope import slope
 from benchmark.simulator.masks.slits import SlitErrors
 from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
 from benchmark.simulator.optics.diffraction_tables import layers
@@ -21,15 +22,9 @@ from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.optics.slit_diffraction import SlitProfiles
 from benchmark.simulator.readout.detectors import PixelArray, tunnel_response
 from benchmark.simulator.readout.noise import NoiseStreams, draw_counts
-from benchmark.simulator.readout.quantisation import pixel_variance
-from benchmark.simulator.readout.references import (
-    References,
-    pixel_references,
-    pixel_unit_variance,
-)
+from benchmark.simulator.readout.pixels import PixelSensor
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
-from benchmark.simulator.sensors.stray_slope import slope
 
 LineAxis = Literal["x", "y"]
 #: Lines along an array on which ghosts of slits are worked out that slant by more than this sine.
@@ -37,7 +32,7 @@ _LINES, _UPRIGHT = 8, 0.02
 
 
 @dataclass(frozen=True)
-class LineSensor:
+class LineSensor(PixelSensor):
     """One or two linear arrays, each behind slits of the same layout.
 
     Attributes
@@ -271,25 +266,6 @@ class LineSensor:
         electrons = np.minimum(self._electrons(scene, pattern), detector.full_well_e)
         electrons = self._amplify(electrons, pattern)
         return np.asarray(detector.offset_dn + electrons / detector.gain_e_per_dn)
-
-    def variance(self, expected: Floats) -> Floats:
-        """Squared digital numbers: shot and read noise, and what rounding and clipping cost."""
-        return pixel_variance(self.detector, expected)
-
-    def unit_variance(
-        self,
-        expected: Floats,
-        scene: Scene,  # noqa: ARG002 - the protocol's
-        references: References,
-    ) -> Floats | None:
-        """Squared digital numbers that unknown gains and dark signals of the pixels add."""
-        return pixel_unit_variance(self.detector, expected, references)
-
-    def reference_readings(
-        self, pattern: FixedPattern, references: References, streams: NoiseStreams
-    ) -> dict[str, Floats]:
-        """``dark_dn`` and ``flat_dn``, (W,): mean readings of the whole detector."""
-        return pixel_references(self.detector, pattern, references, streams)
 
     def observe(
         self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from benchmark.simulator.light.memory import digest_of, memory
+from benchmark.simulator.light.stray_slope import UnevenScene
 from benchmark.simulator.readout.column_noise import CommonNoise, column_noise
 from benchmark.simulator.readout.noise import NoiseStreams
-from benchmark.simulator.readout.references import References
+from benchmark.simulator.readout.references import References, pixel_unit_variance
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
-from benchmark.simulator.sensors.stray_slope import UnevenScene
 
 #: Largest step of the differences that bounds are made of, radians.
 STEP_RAD = 5e-4
@@ -196,9 +196,9 @@ class LitPixels:
         """Squared digital numbers; 1 where a row has no such pixel."""
         return self._of_mean(self.sensor.variance(expected))
 
-    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:
+    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
         """Squared digital numbers that the unknown unit adds; 1 where a row has no such pixel."""
-        return self._of_mean(self.sensor.unit_variance(expected, scene, references))
+        return self._of_mean(pixel_unit_variance(self.sensor.detector, expected, references))
 
     def _of_mean(self, variance: Floats) -> Floats:
         """Make pixels' variances those of the elements: the last one is a mean."""

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.light.memory import Runs, digest_of, memory
+from benchmark.simulator.light.stray_slope import slope_nodes
 from benchmark.simulator.masks.errors import MaskErrors
 from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, Spectrum
 from benchmark.simulator.optics.earthlight import add_between
@@ -21,16 +22,13 @@ from benchmark.simulator.optics.round_spots import RoundSpots
 from benchmark.simulator.readout.column_noise import CommonNoise, window_noise
 from benchmark.simulator.readout.detectors import PixelArray, tunnel_response
 from benchmark.simulator.readout.noise import NoiseStreams
-from benchmark.simulator.readout.quantisation import pixel_variance
+from benchmark.simulator.readout.pixels import PixelSensor
 from benchmark.simulator.readout.references import (
     References,
-    pixel_references,
-    pixel_unit_variance,
 )
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
 from benchmark.simulator.sensors.frames import FrameSensor
-from benchmark.simulator.sensors.stray_slope import slope_nodes
 
 Integers = NDArray[np.int64]
 
@@ -49,7 +47,7 @@ class Rendering(Protocol):
 
 
 @dataclass(frozen=True)
-class MultiSpotSensor:
+class MultiSpotSensor(PixelSensor):
     """A pixel array read out whole; light is rendered where it falls, aperture by aperture.
 
     Light is diffracted at every hole (`RoundSpots`); without a spectrum it casts shadows.
@@ -257,25 +255,11 @@ class MultiSpotSensor:
             electrons += pattern["column_e"]
         return np.asarray(detector.offset_dn + electrons / detector.gain_e_per_dn)
 
-    def variance(self, expected: Floats) -> Floats:
-        """Squared digital numbers: shot and read noise, and what rounding and clipping cost."""
-        return pixel_variance(self.detector, expected)
-
     def common_noise(
         self, shape: tuple[int, ...], references: References | None
     ) -> CommonNoise | None:
         """Digital numbers that the pixels of a column share."""
         return window_noise(self.detector, shape, references)
-
-    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
-        """Squared digital numbers that unknown gains and dark signals of the pixels add."""
-        return pixel_unit_variance(self.detector, expected, references)
-
-    def reference_readings(
-        self, pattern: FixedPattern, references: References, streams: NoiseStreams
-    ) -> dict[str, Floats]:
-        """``dark_dn`` and ``flat_dn``, (rows, columns): mean readings of the whole detector."""
-        return pixel_references(self.detector, pattern, references, streams)
 
     def observe(
         self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams

@@ -11,7 +11,7 @@ from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.optics.assembly import Assembly
-from benchmark.simulator.readout import currents as readout
+from benchmark.simulator.readout.currents import CurrentSensor, currents
 from benchmark.simulator.readout.detectors import CurrentReadout, Response
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
@@ -21,7 +21,7 @@ from benchmark.simulator.sensors.faces import Faces
 
 
 @dataclass(frozen=True)
-class OptoIsolatorSensor(Faces):
+class OptoIsolatorSensor(CurrentSensor, Faces):
     """K opto-isolators with outward normals, their phototransistors looking at the Sun.
 
     The light's current is the transistor's base current. Recombination in the junction takes its
@@ -61,15 +61,11 @@ class OptoIsolatorSensor(Faces):
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, K) mean microamperes."""
         light = collect(self.receive(scene, pattern), self.knee)
-        return readout.currents(self.readout, light / collect(np.ones(1), self.knee), pattern)
+        return currents(self.readout, light / collect(np.ones(1), self.knee), pattern)
 
-    def variance(self, expected: Floats) -> Floats:
-        """Squared microamperes."""
-        return readout.variance(self.readout, expected)
-
-    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
+    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:
         """Squared microamperes that unknown gains add; small spreads of their logarithm."""
-        return readout.unit_variance(self.readout, expected, _dim(references))
+        return super().unit_variance(expected, scene, _dim(references))
 
     def reference_readings(
         self, pattern: FixedPattern, references: References, streams: NoiseStreams
@@ -78,11 +74,7 @@ class OptoIsolatorSensor(Faces):
 
         Gains differ so much that one element in a hundred would end at full scale otherwise.
         """
-        return readout.mean_readings(self.readout, pattern["gain"], _dim(references), streams)
-
-    def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
-        """(N, K) microamperes."""
-        return readout.convert(self.readout, self.expected(scene, pattern), streams)
+        return super().reference_readings(pattern, _dim(references), streams)
 
 
 def _dim(references: References) -> References:

@@ -3,25 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import ClassVar
 
 import numpy as np
 
 from algorithms.contract import Floats
-from benchmark.simulator.light.environment import Earth
+from benchmark.simulator.light.stray_slope import slope
 from benchmark.simulator.masks.apertures import Aperture
-from benchmark.simulator.optics.earthlight import EarthInView, on_elements
 from benchmark.simulator.optics.ghosts import Ghost
-from benchmark.simulator.optics.projection import Camera, ProjectedLight
-from benchmark.simulator.readout import currents as readout
+from benchmark.simulator.optics.projection import ProjectedLight
 from benchmark.simulator.readout.detectors import CurrentReadout
-from benchmark.simulator.readout.noise import NoiseStreams
-from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensor import FixedPattern
-from benchmark.simulator.sensors.stray_slope import slope
+from benchmark.simulator.sensors.four_elements import QUADRANTS, FourElements
 
 
 @dataclass(frozen=True)
@@ -65,7 +59,7 @@ class LateralEffect:
 
 
 @dataclass(frozen=True)
-class PositionSensor:
+class PositionSensor(FourElements):
     """A position-sensitive device behind one or more sharp-edged apertures.
 
     The spot is a finite one: every point of the Sun casts the whole aperture. The mask must be
@@ -73,11 +67,9 @@ class PositionSensor:
     round aperture there may be a `ghost`.
     """
 
-    camera: Camera
     detector: LateralEffect
     readout: CurrentReadout
     ghost: Ghost | None = field(default=None, kw_only=True)
-    sees_slopes: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if self.camera.mask.thickness_mm != 0:
@@ -88,13 +80,6 @@ class PositionSensor:
         shapes = [aperture.shape for aperture in self.camera.mask.apertures]
         if self.ghost is not None and shapes != ["round"]:
             raise ValueError(f"ghosts are simulated of one round aperture; got {shapes}")
-
-    def fixed_pattern(self, *names: str | int) -> FixedPattern:
-        """``gain`` (4,): relative gains of the electrodes' amplifiers."""
-        return {"gain": readout.element_gains(self.readout, 4, *names)}
-
-    def origins(self, sun: Floats, generator: np.random.Generator) -> None:
-        """Nothing is windowed (the arguments are the protocol's)."""
 
     def lit(self, scene: Scene) -> Floats:
         """(N, 4) photocurrent of the electrodes in units of all apertures at normal incidence.
@@ -140,50 +125,10 @@ class PositionSensor:
                 collected += share * np.sum(light.light[..., None] * parts, axis=1)
         return collected
 
-    def receive(self, scene: Scene) -> Floats:
-        """(N, 4) all light: direct, stray and from the Earth; units as of `lit`."""
+    def stray(self, scene: Scene) -> Floats:
+        """(N, 4) a quarter of the stray light to each electrode."""
         # each electrode's share (1 +- u)(1 +- v) / 4 has its mean at a third of the way to it
-        thirds = np.array([(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)]) / 3.0
-        response = self.lit(scene) + slope(scene, thirds) / 4.0
-        if scene.albedo is not None:
-            response += scene.albedo
-        return np.asarray(response)
-
-    def earth_through(
-        self,
-        earth: Earth,
-        nadir: Floats,
-        scene: Scene,
-        pattern: FixedPattern,  # noqa: ARG002 - the protocol's
-    ) -> Floats:
-        """(N, 4) light of the Earth, as `lit` has that of the Sun; for nadir (N, 3)."""
-
-        def lit(camera: Camera, sky: Scene) -> Floats:
-            return replace(self, camera=camera).lit(sky)
-
-        return on_elements(self.camera, lit, EarthInView(earth, nadir, scene.sun))
-
-    def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
-        """(N, 4) mean microamperes; a quarter of the stray light to each electrode."""
-        return readout.currents(self.readout, self.receive(scene), pattern)
-
-    def variance(self, expected: Floats) -> Floats:
-        """Squared microamperes."""
-        return readout.variance(self.readout, expected)
-
-    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
-        """Squared microamperes that unknown gains of the electrodes add."""
-        return readout.unit_variance(self.readout, expected, references)
-
-    def reference_readings(
-        self, pattern: FixedPattern, references: References, streams: NoiseStreams
-    ) -> dict[str, Floats]:
-        """``dark_ua`` and ``flat_ua`` (4,): mean readings of the electrodes."""
-        return readout.mean_readings(self.readout, pattern["gain"], references, streams)
-
-    def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
-        """(N, 4) microamperes."""
-        return readout.convert(self.readout, self.expected(scene, pattern), streams)
+        return slope(scene, QUADRANTS / 3.0) / 4.0
 
 
 def aperture_rule(aperture: Aperture, radial: int = 2, turns: int = 8) -> tuple[Floats, Floats]:

@@ -3,23 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from typing import ClassVar
+from dataclasses import dataclass
 
 import numpy as np
 
 from algorithms.contract import Floats
-from benchmark.simulator.light.environment import Earth
-from benchmark.simulator.optics.earthlight import EarthInView, on_elements
+from benchmark.simulator.light.stray_slope import slope
 from benchmark.simulator.optics.ghosts import Ghost
-from benchmark.simulator.optics.projection import Camera, ProjectedLight
-from benchmark.simulator.readout import currents as readout
+from benchmark.simulator.optics.projection import ProjectedLight
 from benchmark.simulator.readout.detectors import CurrentReadout
-from benchmark.simulator.readout.noise import NoiseStreams
-from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensor import FixedPattern
-from benchmark.simulator.sensors.stray_slope import slope
+from benchmark.simulator.sensors.four_elements import QUADRANTS, FourElements
 
 _DIAGONAL = math.sqrt(0.5)  # sine and cosine of 45 deg
 
@@ -56,7 +50,7 @@ class DiodePair:
 
 
 @dataclass(frozen=True)
-class SlitPairSensor:
+class SlitPairSensor(FourElements):
     """Two equal slits at right angles, 45 deg to the sensor's axes, over a pair of diodes each.
 
     One pair measures along u = (x + y) / sqrt(2), the other along v = (y - x) / sqrt(2); a wall
@@ -70,11 +64,9 @@ class SlitPairSensor:
     `ghost`, each pair has its own.
     """
 
-    camera: Camera
     pair: DiodePair
     readout: CurrentReadout
     ghost: Ghost | None = None
-    sees_slopes: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         apertures = self.camera.mask.apertures
@@ -82,13 +74,6 @@ class SlitPairSensor:
             raise ValueError(
                 f"the mask must be the one slit that both pairs have; got {apertures!r}"
             )
-
-    def fixed_pattern(self, *names: str | int) -> FixedPattern:
-        """``gain`` (4,): relative gains of the photodiodes."""
-        return {"gain": readout.element_gains(self.readout, 4, *names)}
-
-    def origins(self, sun: Floats, generator: np.random.Generator) -> None:
-        """Nothing is windowed (the arguments are the protocol's)."""
 
     def lit(self, scene: Scene) -> Floats:
         """(N, 4) light on the diodes, in units of both whole slits at normal incidence."""
@@ -112,48 +97,7 @@ class SlitPairSensor:
             out[:, columns] = area
         return out
 
-    def receive(self, scene: Scene) -> Floats:
-        """(N, 4) all light: direct, stray and from the Earth; units as of `lit`."""
+    def stray(self, scene: Scene) -> Floats:
+        """(N, 4) stray light at the middles of the diodes."""
         near, far = self.pair.gap_mm / 2.0, self.pair.reach_mm
-        off = _DIAGONAL * (near + far) / 2.0 / far
-        middles = off * np.array([(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)])
-        response = self.lit(scene) + slope(scene, middles)
-        if scene.albedo is not None:
-            response += scene.albedo
-        return np.asarray(response)
-
-    def earth_through(
-        self,
-        earth: Earth,
-        nadir: Floats,
-        scene: Scene,
-        pattern: FixedPattern,  # noqa: ARG002 - the protocol's
-    ) -> Floats:
-        """(N, 4) light of the Earth, as `lit` has that of the Sun; for nadir (N, 3)."""
-
-        def lit(camera: Camera, sky: Scene) -> Floats:
-            return replace(self, camera=camera).lit(sky)
-
-        return on_elements(self.camera, lit, EarthInView(earth, nadir, scene.sun))
-
-    def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
-        """(N, 4) mean microamperes."""
-        return readout.currents(self.readout, self.receive(scene), pattern)
-
-    def variance(self, expected: Floats) -> Floats:
-        """Squared microamperes."""
-        return readout.variance(self.readout, expected)
-
-    def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
-        """Squared microamperes that unknown gains of the photodiodes add."""
-        return readout.unit_variance(self.readout, expected, references)
-
-    def reference_readings(
-        self, pattern: FixedPattern, references: References, streams: NoiseStreams
-    ) -> dict[str, Floats]:
-        """``dark_ua`` and ``flat_ua`` (4,): mean readings of the photodiodes."""
-        return readout.mean_readings(self.readout, pattern["gain"], references, streams)
-
-    def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
-        """(N, 4) microamperes."""
-        return readout.convert(self.readout, self.expected(scene, pattern), streams)
+        return slope(scene, _DIAGONAL * (near + far) / 2.0 / far * QUADRANTS)

@@ -11,7 +11,7 @@ from algorithms.contract import Floats
 from benchmark.seeds import generator
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.optics.assembly import Assembly
-from benchmark.simulator.readout import currents as readout
+from benchmark.simulator.readout.currents import CurrentSensor, currents, element_gains, spread
 from benchmark.simulator.readout.detectors import CurrentReadout, Response
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.references import References
@@ -69,7 +69,7 @@ class SolarCells:
 
 
 @dataclass(frozen=True)
-class SolarCellSensor(Faces):
+class SolarCellSensor(CurrentSensor, Faces):
     """K faces with a string of solar cells each, read as short-circuit currents.
 
     Response, normals and assembly as in `FaceSensor`; `readout.gain_mismatch` is that of the
@@ -94,7 +94,7 @@ class SolarCellSensor(Faces):
         lost = generator(*names, "ageing").standard_normal(shape)
         kept = 1.0 - np.clip(self.cells.loss + self.cells.loss_spread * lost, 0.0, 1.0)
         return {
-            "gain": readout.element_gains(self.readout, len(self.normals), *names),
+            "gain": element_gains(self.readout, len(self.normals), *names),
             "cells": np.maximum(current, 0.0) * kept,
             "normals": self.built_normals(*names),
         }
@@ -104,13 +104,7 @@ class SolarCellSensor(Faces):
         light = self.receive(scene, pattern)
         # all cells of a face get the same light, so the weakest is the same one in any of it
         string = light * np.min(pattern["cells"], axis=1)
-        return readout.currents(
-            self.readout, string * self.cells.temperature_factor(light), pattern
-        )
-
-    def variance(self, expected: Floats) -> Floats:
-        """Squared microamperes."""
-        return readout.variance(self.readout, expected)
+        return currents(self.readout, string * self.cells.temperature_factor(light), pattern)
 
     def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
         """Squared microamperes that unknown currents of the strings add.
@@ -118,8 +112,8 @@ class SolarCellSensor(Faces):
         A string's spread is taken as a single cell's; that of its weakest cell is less.
         """
         parts = self.readout.gain_mismatch, self.cells.mismatch, self.cells.loss_spread
-        spread = math.sqrt(math.fsum(part**2 for part in parts))
-        known = readout.spread(self.readout, spread, references)
+        deviation = math.sqrt(math.fsum(part**2 for part in parts))
+        known = spread(self.readout, deviation, references)
         return known.variance(expected - self.readout.dark.level())
 
     def reference_readings(
@@ -127,8 +121,4 @@ class SolarCellSensor(Faces):
     ) -> dict[str, Floats]:
         """``dark_ua`` and ``flat_ua`` (K,): mean readings of the strings."""
         strings = pattern["gain"] * np.min(pattern["cells"], axis=1)
-        return readout.mean_readings(self.readout, strings, references, streams)
-
-    def observe(self, scene: Scene, pattern: FixedPattern, streams: NoiseStreams) -> Floats:
-        """(N, K) microamperes."""
-        return readout.convert(self.readout, self.expected(scene, pattern), streams)
+        return super().reference_readings({"gain": strings}, references, streams)

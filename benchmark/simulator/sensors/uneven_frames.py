@@ -8,10 +8,10 @@ from typing import ClassVar
 import numpy as np
 
 from algorithms.contract import Floats
+from benchmark.simulator.light.stray_slope import UnevenIrradiance, UnevenScene
 from benchmark.simulator.readout.detectors import PixelArray
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.frames import FrameSensor
-from benchmark.simulator.sensors.stray_slope import UnevenIrradiance, UnevenScene
 
 __all__ = ["UnevenFrameSensor", "UnevenIrradiance", "UnevenScene", "add_slope"]
 

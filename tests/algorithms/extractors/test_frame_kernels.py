@@ -29,8 +29,8 @@ def test_maxima_profiles_and_brightest_are_numpys_at_every_width(width):
     maxima = np.empty((3, 4), dtype=np.uint16)
     moments.row_maxima(frames, maxima)
     np.testing.assert_array_equal(maxima, frames.max(axis=2))
-    rows, columns = np.empty((3, 4), dtype=np.int64), np.empty((3, width), dtype=np.int64)
-    moments.profiles(frames, np.int64(0), rows, columns)
+    columns, rows = moments.axis_sums(frames)
+    assert columns.dtype == rows.dtype == np.int64
     np.testing.assert_array_equal(rows, frames.sum(axis=2))
     np.testing.assert_array_equal(columns, frames.sum(axis=1))
     y, x = np.divmod(frames.reshape(3, -1).argmax(axis=1), width)
@@ -46,9 +46,7 @@ def test_frames_without_contrast_or_with_a_hole_are_unusable():
     frames[2, 0, 0] = 6.0
     frames[3, 2, 3] = np.nan
     frames[4, 1, 1] = np.inf
-    out = np.empty(5, dtype=bool)
-    moments.unusable(frames, True, out)
-    assert out.tolist() == [True, False, False, True, True]
+    assert moments.unusable_frames(frames).tolist() == [True, False, False, True, True]
 
 
 @pytest.mark.parametrize("window", [(0, 9, 0, 14), (2, 7, 3, 11), (0, 1, 13, 14), (8, 9, 0, 2)])

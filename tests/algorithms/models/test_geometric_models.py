@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from known_truths import rotation_about
 
 from algorithms.angles import separation_deg, sun_from_angles, sun_from_rotations
 from algorithms.contract import FeatureKind, SensorGeometry
@@ -20,15 +21,6 @@ FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 def turntable(limit_deg=50.0, steps=11):
     axis = np.linspace(-limit_deg, limit_deg, steps)
     return np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
-
-
-def rotation_about(axis, angle_deg):
-    c, s = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    matrix = np.eye(3)
-    matrix[i, i] = matrix[j, j] = c
-    matrix[i, j], matrix[j, i] = -s, s
-    return matrix
 
 
 def pinhole(head, focal_mm, pitch_mm, foot_px):

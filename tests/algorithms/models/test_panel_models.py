@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from known_truths import covered
 
 from algorithms.angles import (
     separation_deg,
@@ -20,24 +21,11 @@ from algorithms.models.non_physical.trigonometric import TrigonometricPanels
 
 CUBE = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 RAYS = np.array(CUBE, dtype=float)
-SEEDS = 200
 
 
 def sphere(count=500, seed=3):
     vectors = np.random.default_rng(seed).normal(size=(count, 3))
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
-
-
-def covered(model, truth, features, sun, *, noise, seeds=SEEDS):
-    """Share of 95 % intervals, over seeds and parameters, that hold the truth."""
-    rng = np.random.default_rng(17)
-    held = []
-    for _ in range(seeds):
-        model.fit(features + noise * rng.standard_normal(features.shape), sun)
-        for name, value in truth.items():
-            lowest, highest = model.quality_.parameter(name).interval()
-            held.append(lowest <= value <= highest)
-    return float(np.mean(held))
 
 
 # Trig ---------------------------------------------------------------------------------------------

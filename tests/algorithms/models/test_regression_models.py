@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from known_truths import SEEDS, covered
 
 from algorithms.angles import (
     angles_from_sun,
@@ -21,24 +22,10 @@ from algorithms.models.non_physical.polynomial import AxisPolynomial
 from algorithms.models.non_physical.regression_axes import sun_from_target
 from algorithms.models.non_physical.sigmoid import SigmoidBalance
 
-SEEDS = 200
-
 
 def grid(limit=50.0, steps=21):
     axis = np.linspace(-limit, limit, steps)
     return np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
-
-
-def covered(model, truth, features, sun, *, noise, seeds=SEEDS):
-    """Share of 95 % intervals, over seeds and parameters, that hold the truth."""
-    rng = np.random.default_rng(17)
-    held = []
-    for _ in range(seeds):
-        model.fit(features + noise * rng.standard_normal(features.shape), sun)
-        for name, value in truth.items():
-            lowest, highest = model.quality_.parameter(name).interval()
-            held.append(lowest <= value <= highest)
-    return float(np.mean(held))
 
 
 # What all share -----------------------------------------------------------------------------------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from known_truths import rotation_about
 
 from algorithms.angles import angles_from_sun, separation_deg, sun_from_angles
 from algorithms.calibration.forward import inward, outward, tangents_cast
@@ -60,15 +61,6 @@ def spots_of(name, sun):
     return model.cast(truth, inward(sun, model.turns(truth))), truth
 
 
-def turned(axis, angle_deg):
-    c, s = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    matrix = np.eye(3)
-    matrix[i, i] = matrix[j, j] = c
-    matrix[i, j], matrix[j, i] = -s, s
-    return matrix
-
-
 def met(head, slit, line, glass=()):
     """Place along a line of pixels where light of a slit meets it: one ray, three equations.
 
@@ -116,7 +108,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say(name, of_features, covera
 def test_one_line_under_slits_is_found_from_traced_rays(name, slits, height, glass):
     """The mask stands off the line, is turned against it, and all of it is turned as a head."""
     sun = field(50.0)
-    head = sun @ (turned(2, 0.5) @ turned(1, -0.7) @ turned(0, 1.0)).T
+    head = sun @ (rotation_about(2, 0.5) @ rotation_about(1, -0.7) @ rotation_about(0, 1.0)).T
     along = np.array([0.006, 1.0, -0.004])  # the line goes along y, askew both ways
     along /= np.linalg.norm(along)
     middle = np.array([0.03, -0.05, -height])
@@ -304,7 +296,7 @@ def test_a_fold_has_no_direction():
 def test_outward_is_the_inverse_of_inward():
     sun, turns = field(60.0, 5), (3.0, -2.0, 5.0)
     np.testing.assert_allclose(outward(inward(sun, turns), turns), sun, atol=1e-15)
-    matrix = turned(0, -2.0) @ turned(1, 5.0) @ turned(2, 3.0)
+    matrix = rotation_about(0, -2.0) @ rotation_about(1, 5.0) @ rotation_about(2, 3.0)
     head = sun @ matrix  # its transpose, row by row
     np.testing.assert_allclose(inward(sun, turns), head[:, :2] / head[:, 2:], atol=1e-14)
     assert np.isnan(inward(-sun, turns)).all()

@@ -12,8 +12,8 @@ from benchmark import datasets
 from benchmark.datasets.conditions.motion import TUMBLING
 from benchmark.seeds import generator
 from benchmark.simulator.flight.spin import Spin
+from benchmark.simulator.light.stray_slope import UnevenScene
 from benchmark.simulator.sensors.rolling_frames import RollingDiffractiveSensor
-from benchmark.simulator.sensors.stray_slope import UnevenScene
 
 #: By the time between rows, seconds.
 SETS = {

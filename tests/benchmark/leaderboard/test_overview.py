@@ -6,7 +6,6 @@ import pytest
 from benchmark import datasets
 from benchmark.leaderboard.board import board_of, build
 from benchmark.leaderboard.overview import SAYS, overview
-from benchmark.leaderboard.summaries import overview_tables
 from benchmark.metrics.score import METRICS
 from benchmark.results.store import PUBLISHED, Store
 
@@ -105,17 +104,3 @@ def test_a_part_is_judged_by_its_best_partner_and_silence_counts_as_far():
     assert counts("compensation", "glass") == (1, 1, 1, 1, 1, 1)
     assert parts["model", "bad"]["median_over_bound"] == 4.0
     assert parts["model", "bad"]["share_10"] == pytest.approx(2 / 3)
-
-
-def test_the_document_says_how_it_aggregates_above_a_table_a_role(found):
-    text = overview_tables(found)
-    assert text.startswith(SAYS)
-    rows = [line for line in text.splitlines() if line.startswith("| `")]
-    assert len(rows) == len(found["parts"])
-    for line, part in zip(rows, found["parts"], strict=True):
-        cells = [cell.strip() for cell in line.strip("|").split("|")]
-        assert cells[0] == f"`{part['part']}`"
-        assert cells[1] == str(part["boards"])
-        share, _, count = cells[3].partition(" % ")
-        assert abs(int(share) - 100 * part["within_3"] / part["boards"]) <= 0.51
-        assert count == f"({part['within_3']})"

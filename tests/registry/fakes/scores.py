@@ -4,6 +4,14 @@ from registry.measured_pipelines import MeasuredPipeline, Score
 
 _SCORE = {"rms_deg", "bound_deg", "over_bound", "repeatability_deg", "availability", "is_available"}
 
+STUDY = {
+    "task": ["Cost"],
+    "detector": ["CMOS"],
+    "mask": ["Slit"],
+    "model": ["SPM"],
+    "extractor": ["BCTM"],
+}
+
 
 def pipeline(**changed: object) -> MeasuredPipeline:
     """A pipeline on CMOS behind a slit that errs 0.1 deg over 120, with some of it changed."""

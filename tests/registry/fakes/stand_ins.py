@@ -113,3 +113,13 @@ def planned(
 
 def chain(*stages: type[Any]) -> Chain:
     return Chain(tuple(stages[:-1]), stages[-1])
+
+
+def study_of(**values: list[str]) -> dict[str, list[str]]:
+    """Values of a study, of these alone where nothing else is said."""
+    return {
+        "detector": ["CMOS"],
+        "mask": ["Slit"],
+        "extractor": ["BCTM"],
+        "model": ["SPM"],
+    } | values

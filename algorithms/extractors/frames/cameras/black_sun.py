@@ -17,7 +17,8 @@ from algorithms.contract import (
     SensorGeometry,
 )
 from algorithms.documented import documented
-from algorithms.inputs import as_frames, require_positive
+from algorithms.inputs import as_frames
+from algorithms.parameters import require_at_least, require_positive, require_within
 
 #: Standard deviations of the blur beyond which its taps are left out.
 _REACH = 3.0
@@ -106,12 +107,8 @@ class BlackSunCentroid(Extractor):
                 f"{self.about.name}: lowest and highest must rise within (0, 1); "
                 f"got {self.lowest!r} and {self.highest!r}"
             )
-        if self.loops < 1:
-            raise ValueError(f"{self.about.name}: loops must be at least 1; got {self.loops!r}")
-        if not 0.0 < self.survival <= 1.0:
-            raise ValueError(
-                f"{self.about.name}: survival must be in (0, 1]; got {self.survival!r}"
-            )
+        require_at_least(self.about.name, 1, loops=self.loops)
+        require_within(self.about.name, "(0, 1]", survival=self.survival)
         require_positive(
             self.about.name, moved_px=self.moved_px, radius_px=self.radius_px, blur_px=self.blur_px
         )
@@ -133,8 +130,7 @@ class BlackSunCentroid(Extractor):
         from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at first use
 
         frames = as_frames(observations)
-        unusable = np.empty(len(frames), dtype=np.bool_)
-        moments.unusable(frames, frames.dtype.kind == "f", unusable)
+        unusable = moments.unusable_frames(frames)
         reach = np.ceil(_REACH * self.blur_px)
         taps = np.exp(-0.5 * (np.arange(-reach, reach + 1) / self.blur_px) ** 2)
         steps = np.arange(self.loops) + 0.5

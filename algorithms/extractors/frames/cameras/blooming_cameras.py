@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import Floats, SensorGeometry
-from algorithms.inputs import require_positive
+from algorithms.parameters import require_positive
 from algorithms.row_arithmetic import normalise
 
 Matrix = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]

@@ -19,6 +19,7 @@ from algorithms.contract import (
 )
 from algorithms.documented import documented
 from algorithms.inputs import as_frames
+from algorithms.parameters import require_within
 
 #: Step between the angles tried, degrees.
 _TURN_DEG = 0.25
@@ -102,22 +103,13 @@ class HoughLines(Extractor):
     reach_px: float = 24.0
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.saturated < 1.0:
-            raise ValueError(
-                f"{self.about.name}: saturated must be in (0, 1); got {self.saturated!r}"
-            )
-        if not 0.0 <= self.tilt_deg <= 90.0:
-            raise ValueError(
-                f"{self.about.name}: tilt_deg must be in [0, 90]; got {self.tilt_deg!r}"
-            )
+        require_within(self.about.name, "(0, 1)", saturated=self.saturated)
+        require_within(self.about.name, "[0, 90]", tilt_deg=self.tilt_deg)
         if self.least_votes < 2:
             raise ValueError(
                 f"{self.about.name}: least_votes must be 2 or more; got {self.least_votes}"
             )
-        if not 1.0 <= self.reach_px <= 1e4:
-            raise ValueError(
-                f"{self.about.name}: reach_px must be in [1, 1e4]; got {self.reach_px!r}"
-            )
+        require_within(self.about.name, "[1, 1e4]", reach_px=self.reach_px)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -143,8 +135,10 @@ class HoughLines(Extractor):
         return self._found(observations)[:, :5].copy()
 
     def _found(self, observations: ArrayLike) -> Floats:
+        from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at the first frame only
+
         frames = as_frames(observations)
-        usable = _usable(frames)
+        usable = ~moments.unusable_frames(frames)
         found = self._steep(frames, usable, 0.0, min(self.tilt_deg, 45.0))
         if self.tilt_deg > 45.0:
             turned = np.ascontiguousarray(frames.transpose(0, 2, 1))
@@ -245,12 +239,8 @@ class HoughCircle(Extractor):
     sure: bool = False
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.edge < 1.0:
-            raise ValueError(f"{self.about.name}: edge must be in (0, 1); got {self.edge!r}")
-        if not 0.0 < self.threshold <= 1.0:
-            raise ValueError(
-                f"{self.about.name}: threshold must be in (0, 1]; got {self.threshold!r}"
-            )
+        require_within(self.about.name, "(0, 1)", edge=self.edge)
+        require_within(self.about.name, "(0, 1]", threshold=self.threshold)
         if not 1.0 <= self.smallest_px < np.inf:
             raise ValueError(
                 f"{self.about.name}: smallest_px must be 1 or more; got {self.smallest_px}"
@@ -289,13 +279,14 @@ class HoughCircle(Extractor):
     def circles(self, observations: ArrayLike) -> Floats:
         """Circles (N, 3), centre ``x, y`` and radius, px; NaN rows without one."""
         from algorithms.extractors.frames.cameras import circles_kernel  # noqa: PLC0415 - Numba, at the first frame only
+        from algorithms.kernels import moments  # noqa: PLC0415 - as above
 
         frames = as_frames(observations)
         largest = self.largest_px or 0.5 * min(frames.shape[1:])
         found = np.empty((len(frames), 3))
         circles_kernel.best_circles(
             frames,
-            _usable(frames),
+            ~moments.unusable_frames(frames),
             self.edge,
             self.smallest_px,
             largest,
@@ -305,12 +296,3 @@ class HoughCircle(Extractor):
             found,
         )
         return found
-
-
-def _usable(frames: NDArray[Any]) -> NDArray[np.bool_]:
-    """Frames (N,) with some contrast and only finite pixels."""
-    from algorithms.kernels import moments  # noqa: PLC0415 - Numba, at the first frame only
-
-    unusable = np.empty(len(frames), dtype=np.bool_)
-    moments.unusable(frames, frames.dtype.kind == "f", unusable)
-    return ~unusable

@@ -18,8 +18,9 @@ from algorithms.contract import (
 )
 from algorithms.extractors.frames.single_light import longest_px_of
 from algorithms.extractors.profiles.single_spot import require_one_spot
-from algorithms.inputs import as_frames, require_positive
+from algorithms.inputs import as_frames
 from algorithms.measurement import Measurement
+from algorithms.parameters import require_positive
 
 
 @dataclass(frozen=True)

@@ -132,8 +132,7 @@ def register_frames(
     if min(height, width) < 5:
         return result
     lights = np.empty(count, dtype=LIGHT)
-    unusable = np.empty(count, dtype=np.bool_)
-    kernels.moments.unusable(frames, frames.dtype.kind == "f", unusable)
+    unusable = kernels.moments.unusable_frames(frames)
     search.find_lights(frames, unusable, lights)
     why = lights["refusal"]
     found.flags[why == search.SEVERAL] = int(QualityFlag.SEVERAL_SPOTS)

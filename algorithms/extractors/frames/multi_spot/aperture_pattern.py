@@ -139,8 +139,7 @@ def frame_levels(frames: NDArray[Any], apertures_px: Apertures, threshold: float
     count, height, _ = frames.shape
     maxima = np.empty((count, height), dtype=frames.dtype)
     moments.row_maxima(frames, maxima)
-    unusable = np.empty(count, dtype=np.bool_)
-    moments.unusable(frames, frames.dtype.kind == "f", unusable)
+    unusable = moments.unusable_frames(frames)
     maxima[unusable] = 0
     floor, noise = _floor_and_noise(frames)
     narrowest = min(width for _, _, width in apertures_px)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import KW_ONLY, dataclass
 from functools import lru_cache
-from typing import Any, ClassVar, Literal, Self, get_args
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,6 +31,7 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
 )
 from algorithms.extractors.frames.multi_spot.mask_spots import MaskSpots
 from algorithms.inputs import Frames, as_frames
+from algorithms.parameters import require_choice, require_within
 
 Shape = Literal["round", "square"]
 
@@ -85,11 +86,8 @@ class ImageCorrelation(MaskSpots, Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> holes = ((-8, -6, 5), (8, -5, 5), (-7, 7, 5), (9, 6, 5))
-    >>> y, x = np.mgrid[:40, :46]
-    >>> away = [np.maximum(abs(x - 23.4 - u), abs(y - 18.8 - v)) for u, v, _ in holes]
-    >>> frames = 200 * np.clip(3.0 - np.array(away), 0, 1).sum(axis=0)[None]
+    >>> from algorithms.examples import mask_frame
+    >>> frames, holes = mask_frame(23.4, 18.8)
     >>> ImageCorrelation(holes, shape="square", correlations=4).extract(frames).round(1)
     array([[23.4, 18.8]])
     """
@@ -113,20 +111,13 @@ class ImageCorrelation(MaskSpots, Extractor):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.shape not in get_args(Shape):
-            raise ValueError(
-                f"{self.about.name}: shape must be one of {', '.join(get_args(Shape))}; "
-                f"got {self.shape!r}"
-            )
+        require_choice(self.about.name, Shape, shape=self.shape)
         if self.correlations < 2 or self.correlations % 2:
             raise ValueError(
                 f"{self.about.name}: correlations must be even and at least 2; got "
                 f"{self.correlations!r}"
             )
-        if not 0.0 < self.presence < 1.0:
-            raise ValueError(
-                f"{self.about.name}: presence must be in (0, 1); got {self.presence!r}"
-            )
+        require_within(self.about.name, "(0, 1)", presence=self.presence)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -150,13 +141,6 @@ class ImageCorrelation(MaskSpots, Extractor):
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
         return self._read(as_frames(observations))[0][0]
-
-    def spots(self, observations: ArrayLike) -> Floats:
-        """Positions (N, A, 2) of each aperture's spot in frames (N, H, W), px; NaN for none.
-
-        Each from its own correlation. ValueError on wrong input.
-        """
-        return self._read(as_frames(observations))[0][1]
 
     def track(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in successive frames (N, H, W) of one sequence.

@@ -24,8 +24,9 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
 )
 from algorithms.extractors.frames.multi_spot.pattern_flags import without_covariance
 from algorithms.extractors.frames.single_light import frames_to_measure
-from algorithms.inputs import Frames, require_positive
+from algorithms.inputs import Frames, as_frames
 from algorithms.measurement import Measurement
+from algorithms.parameters import require_positive, require_within
 
 
 @dataclass(frozen=True)
@@ -88,6 +89,14 @@ class MaskSpots:
         frames = frames_to_measure(observations, bad, self.about.name)
         (found, *_), pattern = self._read(frames)
         return without_covariance(found, pattern)
+
+    def spots(self, observations: ArrayLike) -> Floats:
+        """Positions (N, A, 2) of each aperture's spot in frames (N, H, W), px.
+
+        NaN where a spot is missing, cut or disagrees with the others, and for the whole of a frame
+        in which the pattern is not found. ValueError on wrong input.
+        """
+        return self._read(as_frames(observations))[0][1]
 
     def _read(self, frames: Frames) -> tuple[tuple[Floats, ...], Pattern]:
         """Find positions (N, 2), what else `_locate` finds, and the pattern of frames."""
@@ -168,8 +177,7 @@ def _require_pattern(search: MaskSpots) -> None:
         raise ValueError(f"{by}: widths in apertures_px must be positive; got {rows[:, 2].min()}")
     if not (math.isfinite(search.blur_px) and search.blur_px >= 0):
         raise ValueError(f"{by}: blur_px must be finite and not negative; got {search.blur_px!r}")
-    if not 0.0 < search.threshold < 1.0:
-        raise ValueError(f"{by}: threshold must be in (0, 1); got {search.threshold!r}")
+    require_within(by, "(0, 1)", threshold=search.threshold)
     require_positive(by, tolerance_px=tolerance_px)
     if search.faulty_lines < 0:
         raise ValueError(f"{by}: faulty_lines must not be negative; got {search.faulty_lines!r}")

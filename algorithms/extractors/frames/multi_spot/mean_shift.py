@@ -27,7 +27,8 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     nearest_distance,
 )
 from algorithms.extractors.frames.multi_spot.mask_spots import MaskSpots
-from algorithms.inputs import Frames, as_frames, require_positive
+from algorithms.inputs import Frames, as_frames
+from algorithms.parameters import require_positive, require_within
 
 
 @documented
@@ -87,11 +88,8 @@ class MeanShift(MaskSpots, Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> holes = ((-8, -6, 5), (8, -5, 5), (-7, 7, 5), (9, 6, 5))
-    >>> y, x = np.mgrid[:40, :46]
-    >>> away = [np.maximum(abs(x - 23.4 - u), abs(y - 18.8 - v)) for u, v, _ in holes]
-    >>> frames = 200 * np.clip(3.0 - np.array(away), 0, 1).sum(axis=0)[None]
+    >>> from algorithms.examples import mask_frame
+    >>> frames, holes = mask_frame(23.4, 18.8)
     >>> MeanShift(holes, bandwidth_px=6.0).extract(frames).round(1)
     array([[23.4, 19. ]])
     """
@@ -121,10 +119,7 @@ class MeanShift(MaskSpots, Extractor):
         )
         if not 3 <= self.bins <= 256:
             raise ValueError(f"{self.about.name}: bins must be from 3 to 256; got {self.bins!r}")
-        if not 0.0 < self.similarity < 1.0:
-            raise ValueError(
-                f"{self.about.name}: similarity must be in (0, 1); got {self.similarity!r}"
-            )
+        require_within(self.about.name, "(0, 1)", similarity=self.similarity)
 
     @classmethod
     def for_sensor(cls, geometry: SensorGeometry) -> Self:
@@ -142,13 +137,6 @@ class MeanShift(MaskSpots, Extractor):
     def extract(self, observations: ArrayLike) -> Floats:
         """Averaged positions (N, 2) in frames (N, H, W); ValueError on wrong input."""
         return self._read(as_frames(observations))[0][0]
-
-    def spots(self, observations: ArrayLike) -> Floats:
-        """Positions (N, A, 2) of each aperture's spot in frames (N, H, W), px; NaN for none.
-
-        ValueError on wrong input.
-        """
-        return self._read(as_frames(observations))[0][1]
 
     def weights(self, observations: ArrayLike) -> Floats:
         """Similarity (N, A) of each aperture's spot to the goal, over that of the goal's own.

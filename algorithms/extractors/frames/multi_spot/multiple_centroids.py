@@ -65,11 +65,8 @@ class MultipleCentroids(MaskSpots, Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> holes = ((-8, -6, 5), (8, -5, 5), (-7, 7, 5), (9, 6, 5))
-    >>> y, x = np.mgrid[:40, :46]
-    >>> away = [np.maximum(abs(x - 23.4 - u), abs(y - 18.8 - v)) for u, v, _ in holes]
-    >>> frames = 200 * np.clip(3.0 - np.array(away), 0, 1).sum(axis=0)[None]
+    >>> from algorithms.examples import mask_frame
+    >>> frames, holes = mask_frame(23.4, 18.8)
     >>> MultipleCentroids(holes).extract(frames).round(1)
     array([[23.3, 18.9]])
     """

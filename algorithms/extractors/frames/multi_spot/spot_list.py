@@ -26,7 +26,8 @@ from algorithms.extractors.frames.multi_spot.aperture_pattern import (
     frame_levels,
     room_for_spots,
 )
-from algorithms.inputs import as_frames, require_positive
+from algorithms.inputs import as_frames
+from algorithms.parameters import require_positive, require_within
 from algorithms.spot_lists import SPOT_COLUMNS, list_length, spot_columns
 
 #: Pixels of a spot above the threshold, over those of its aperture: the least of the smallest,
@@ -87,11 +88,8 @@ class SpotList(Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> holes = ((-8, -6, 5), (8, -5, 5), (-7, 7, 5), (9, 6, 5))
-    >>> y, x = np.mgrid[:40, :46]
-    >>> away = [np.maximum(abs(x - 23 - u), abs(y - 18 - v)) for u, v, _ in holes]
-    >>> frames = 200 * np.clip(3.0 - np.array(away), 0, 1).sum(axis=0)[None]
+    >>> from algorithms.examples import mask_frame
+    >>> frames, holes = mask_frame(23, 18)
     >>> SpotList(holes, spots=5).extract(frames).reshape(5, 3)[:, :2].round(1)
     array([[15., 12.],
            [31., 13.],
@@ -123,8 +121,7 @@ class SpotList(Extractor):
         require_positive(by, spots=self.spots, narrowest_aperture_px=float(rows[:, 2].min()))
         if not (math.isfinite(self.blur_px) and self.blur_px >= 0):
             raise ValueError(f"{by}: blur_px must be finite, not negative; got {self.blur_px!r}")
-        if not 0.0 < self.threshold < 1.0:
-            raise ValueError(f"{by}: threshold must be in (0, 1); got {self.threshold!r}")
+        require_within(by, "(0, 1)", threshold=self.threshold)
 
     @property
     def features(self) -> tuple[str, ...]:

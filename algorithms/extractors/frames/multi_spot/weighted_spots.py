@@ -83,11 +83,8 @@ class WeightedSpots(MaskSpots, Extractor):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> holes = ((-8, -6, 5), (8, -5, 5), (-7, 7, 5), (9, 6, 5))
-    >>> y, x = np.mgrid[:40, :46]
-    >>> away = [np.hypot(x - 23.4 - u, y - 18.8 - v) for u, v, _ in holes]
-    >>> frames = 200 * np.clip(3.0 - np.array(away), 0, 1).sum(axis=0)[None]
+    >>> from algorithms.examples import mask_frame
+    >>> frames, holes = mask_frame(23.4, 18.8)
     >>> WeightedSpots(holes).extract(frames).round(1)
     array([[23.4, 18.8]])
     """
@@ -136,14 +133,6 @@ class WeightedSpots(MaskSpots, Extractor):
         covariance[:, [0, 1], [0, 1]] = sure
         covariance[np.isnan(sure[:, 0]) | np.isnan(found[:, 0])] = np.nan
         return Measurement(found, covariance, find_pattern_flags(found, pattern))
-
-    def spots(self, observations: ArrayLike) -> Floats:
-        """Centres (N, A, 2) of each aperture's spot in frames (N, H, W), px.
-
-        NaN where a spot is missing, cut or disagrees with the others, and for the whole of a
-        frame in which the pattern is not found. ValueError on wrong input.
-        """
-        return self._read(as_frames(observations))[0][1]
 
     def _locate(
         self, frames: Frames, levels: Levels, pattern: Pattern

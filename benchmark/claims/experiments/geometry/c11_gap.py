@@ -51,7 +51,7 @@ def _errors(gap_mm: float, condition: str, unit: int) -> tuple[float, float]:
     seen = ConditionView(wide, condition, unit)
     kind = VoltageBalance.about.kind
     gapless = QuadrantGap.for_sensor(replace(drawn, gap_mm=0.0), kind)
-    others = tuple(name for name, _ in gapless.names() if name != "gap")
+    others = tuple(one.name for one in gapless.free_parameters() if one.name != "gap")
     return (
         rms(seen.errors(VoltageBalance, PartlyFixedModel(gapless, others))),
         rms(seen.errors(VoltageBalance, QuadrantGap.for_sensor(drawn, kind))),

@@ -26,7 +26,7 @@ def trial(number: int) -> Trial:
     incidence, kind = seen.incidence_deg(), EigenAnalysis.about.kind
     glass = seen.preset.geometry_for("glass")
     printed = NSlit.for_sensor(replace(glass, cover_glass=None), kind)
-    others = tuple(name for name, _ in printed.names() if name != "K")
+    others = tuple(one.name for one in printed.free_parameters() if one.name != "K")
     errors = {
         "K = 1": seen.errors(EigenAnalysis, PartlyFixedModel(printed, others)),
         "K fitted": seen.errors(EigenAnalysis, printed),

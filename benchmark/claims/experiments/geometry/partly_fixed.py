@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from algorithms.calibration.calibrated import Columns
-from algorithms.calibration.parametric import ParametricModel
+from algorithms.calibration.parametric import FreeParameter, ParametricModel
 from algorithms.contract import Floats
 
 
@@ -42,7 +42,7 @@ class PartlyFixedModel(ParametricModel):
     def __post_init__(self) -> None:
         vars(self)["about"] = self.model.about
         super().__post_init__()
-        known = [name for name, _ in self.model.names()]
+        known = [one.name for one in self.model.free_parameters()]
         if odd := sorted(set(self.free) - set(known)):
             raise ValueError(f"free must name parameters among {', '.join(known)}; got {odd}")
 
@@ -50,13 +50,9 @@ class PartlyFixedModel(ParametricModel):
         """As the model's."""
         return self.model.columns()
 
-    def names(self) -> Sequence[tuple[str, str]]:
-        """Name and unit of the free ones."""
-        return [one for one in self.model.names() if one[0] in self.free]
-
-    def scales(self) -> Sequence[float]:
-        """Scales of the free ones."""
-        return [scale for scale, at in zip(self.model.scales(), self._free(), strict=True) if at]
+    def free_parameters(self) -> Sequence[FreeParameter]:
+        """Those of the model that are free."""
+        return [one for one in self.model.free_parameters() if one.name in self.free]
 
     def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
         """Where the model starts."""
@@ -90,7 +86,7 @@ class PartlyFixedModel(ParametricModel):
         return self.model.directions(self._whole(vector), features, context)
 
     def _free(self) -> list[bool]:
-        return [name in self.free for name, _ in self.model.names()]
+        return [one.name in self.free for one in self.model.free_parameters()]
 
     def _whole(self, vector: Floats) -> Floats:
         whole = self.base_.copy()

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from benchmark.simulator.flight.attitude import NadirPointing, Tumble, rotate, turn_frame
+from benchmark.simulator.flight.attitude import Tumble, rotate
 from benchmark.simulator.flight.magnetic_field import TiltedDipole
 from benchmark.simulator.flight.orbit import CircularOrbit, sun_direction, sunlight
 
@@ -112,16 +112,6 @@ def test_the_sun_keeps_its_seasons() -> None:
 def test_impossible_orbits_are_refused(wrong: dict[str, float], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         CircularOrbit(**wrong)
-
-
-def test_nadir_pointing_keeps_earth_below() -> None:
-    orbit = CircularOrbit(inclination_deg=60.0)
-    time_s = np.linspace(0, 9000, 30)
-    turn = NadirPointing().matrices(orbit, sun_direction(10.0), time_s)
-    assert turn_frame(turn, -orbit.position(time_s)) == pytest.approx(
-        np.tile([0.0, 0.0, -1.0], (30, 1)), abs=1e-14
-    )
-    assert np.linalg.det(turn) == pytest.approx(1.0)
 
 
 TUMBLE = Tumble(70.0, 40.0, 0.5, 0.6, precession_phase_deg=20.0, spin_phase_deg=-35.0)

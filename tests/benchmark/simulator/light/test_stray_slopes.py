@@ -11,8 +11,8 @@ import pytest
 from bare_pixels import bare
 
 from benchmark import datasets
+from benchmark.simulator.light.stray_slope import UnevenScene, slope
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensors.stray_slope import UnevenScene, slope
 
 SLOPE = (0.003, -0.002)
 

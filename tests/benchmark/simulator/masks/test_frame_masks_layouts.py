@@ -14,7 +14,7 @@ from benchmark.datasets.standard.cmos_compound_eye import PRESET as EYE
 from benchmark.datasets.standard.cmos_encoded import PRESET as ENCODED
 from benchmark.simulator.light.sun_disc import from_angles
 from benchmark.simulator.masks.apertures import Aperture, Mask
-from benchmark.simulator.masks.coded import compound_eye, size_coded, spacing_coded
+from benchmark.simulator.masks.coded import compound_eye, spacing_coded
 from benchmark.simulator.masks.errors import MaskErrors
 from benchmark.simulator.masks.layouts import grid, slit
 from benchmark.simulator.scene import Scene
@@ -110,22 +110,6 @@ def test_codes_that_could_be_misread_are_refused() -> None:
         spacing_coded(13, **(good | {"pitch_mm": 2.2}))
     with pytest.raises(ValueError, match=r"must exceed the diameter of 0\.95 mm"):
         spacing_coded(13, **(good | {"diameter_mm": 0.95}))
-
-
-def test_sizes_name_the_sub_field() -> None:
-    mask = size_coded(13, pitch_mm=2.4, spacing_mm=1.2, smallest_mm=0.4, step_mm=0.02)
-    groups = np.array([a.width_mm for a in mask.apertures]).reshape(13, 13, 3)
-    assert (groups[..., 0] == 0.4).all()
-    codes = np.rint((groups[..., 1:] - 0.4) / 0.02).astype(int) - 1
-    for j in range(13):
-        for i in range(13):
-            assert tuple(codes[j, i]) == (i, j)
-    apart = np.linalg.norm(places(mask)[:, None] - places(mask)[None], axis=2)
-    np.fill_diagonal(apart, 9)
-    widths = groups.ravel()
-    assert (apart > (widths[:, None] + widths[None]) / 2).all()
-    with pytest.raises(ValueError, match="spacing_mm must be between"):
-        size_coded(13, pitch_mm=2.4, spacing_mm=0.5, smallest_mm=0.4, step_mm=0.02)
 
 
 def test_the_compound_eye_has_the_published_counts_and_no_overlaps() -> None:

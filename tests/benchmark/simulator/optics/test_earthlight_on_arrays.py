@@ -12,6 +12,7 @@ import pytest
 from benchmark import datasets
 from benchmark.datasets.conditions.flight import FlightPreset
 from benchmark.simulator.light.environment import Earth
+from benchmark.simulator.light.stray_slope import UnevenScene
 from benchmark.simulator.light.sun_disc import SolarDisc
 from benchmark.simulator.masks.apertures import Aperture
 from benchmark.simulator.masks.layouts import grid
@@ -23,7 +24,6 @@ from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import SeesEarth
 from benchmark.simulator.sensors.events import EventSensor
 from benchmark.simulator.sensors.lit_pixels import LitPixels
-from benchmark.simulator.sensors.stray_slope import UnevenScene
 
 POINT = SolarDisc(diameter_deg=0.0)
 #: A metre above the ground: it fills all there is below, and is lit alike as far as one can see.

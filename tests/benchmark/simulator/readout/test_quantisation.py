@@ -15,7 +15,6 @@ from scipy.stats import norm
 
 from benchmark import datasets
 from benchmark.seeds import generator
-from benchmark.simulator.readout.currents import variance
 from benchmark.simulator.readout.quantisation import (
     charge_variance,
     pixel_variance,
@@ -162,10 +161,11 @@ def test_charges_are_read_in_codes_from_dark_to_the_converter_s_end() -> None:
 
 
 def test_currents_are_read_in_codes_of_either_sign() -> None:
-    part = datasets.get("qpd-single-aperture").setups["nominal"].sensor.readout  # type: ignore[attr-defined]
-    part = replace(part, bits=6, noise_ua=0.0)
+    sensor = datasets.get("qpd-single-aperture").setups["nominal"].sensor
+    part = replace(sensor.readout, bits=6, noise_ua=0.0)  # type: ignore[attr-defined]
     mean = np.array([0.37, 0.5, 0.8]) * part.full_scale_ua
     sigma = np.sqrt(part.electron_ua * mean) / part.step_ua
-    for value, mu, s in zip(variance(part, mean), mean / part.step_ua, sigma, strict=True):
+    found = replace(sensor, readout=part).variance(mean)
+    for value, mu, s in zip(found, mean / part.step_ua, sigma, strict=True):
         exact = information(mu, s, (-32.0, 31.0)) / part.step_ua**2
         assert value == pytest.approx(1 / exact, rel=3e-4) if exact > 1e-6 else value > 1e6

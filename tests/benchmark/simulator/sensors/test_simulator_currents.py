@@ -176,9 +176,8 @@ def test_a_thick_square_mask_dims_by_the_overlap_of_its_rims() -> None:
 
 def test_converter_rounds_to_codes_and_clips() -> None:
     readout = CurrentReadout(100.0, 0.0, 0.0, full_scale_ua=8.0, bits=4)
-    from benchmark.simulator.readout.currents import convert
-
-    out = convert(readout, np.array([[-9.0, -0.4, 0.6, 3.4, 99.0]]), NoiseStreams.named("test"))
+    mean = np.array([[-9.0, -0.4, 0.6, 3.4, 99.0]])
+    out = FaceSensor(CUBE, readout).read(mean, NoiseStreams.named("test"))
     assert out.tolist() == [[-8.0, 0.0, 1.0, 3.0, 7.0]]
     assert not np.signbit(out[0, 1])
 
@@ -187,13 +186,11 @@ def test_photodiode_noise_is_shot_plus_amplifier() -> None:
     readout = CurrentReadout(
         100.0, 0.0, noise_ua=0.003, full_scale_ua=200.0, bits=30, integration_s=1e-12
     )
-    from benchmark.simulator.readout.currents import convert, variance
-
-    mean = np.full((100_000, 1), 50.0)
-    seen = convert(readout, mean, NoiseStreams.named("test", "currents"))
+    sensor, mean = FaceSensor(CUBE, readout), np.full((100_000, 1), 50.0)
+    seen = sensor.read(mean, NoiseStreams.named("test", "currents"))
     shot = 1.602176634e-19 * 50e-6 / 1e-12 * 1e12  # q I / T, square microamperes
     assert seen.var() == pytest.approx(shot + 0.003**2, rel=0.02)
-    assert variance(readout, mean)[0, 0] == pytest.approx(shot + 0.003**2, rel=1e-6)
+    assert sensor.variance(mean)[0, 0] == pytest.approx(shot + 0.003**2, rel=1e-6)
 
 
 @given(st.lists(st.floats(-1, 1), min_size=3, max_size=3).filter(lambda v: np.linalg.norm(v) > 0.1))
