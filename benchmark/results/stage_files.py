@@ -88,9 +88,13 @@ class StageFiles:
             os.utime(path)
         return found
 
+    def has(self, key: str) -> bool:
+        """Say whether a result is kept, damaged or not."""
+        return self._find(key) is not None
+
     def put(self, key: str, value: Any, seconds: float) -> None:
         """Keep a result that took so long to make; nothing where that cannot be done."""
-        if self.limit <= 0 or self._find(key) is not None:
+        if self.limit <= 0 or self.has(key):
             return
         try:
             content = _packed(value)

@@ -52,6 +52,10 @@ class KeptStages:
         """Return a stage of a cell; None where it is not kept."""
         return self.files.get(self.key(stage, cell))
 
+    def has(self, stage: str, cell: Cell) -> bool:
+        """Say whether a stage of a cell is kept."""
+        return self.files.has(self.key(stage, cell))
+
     def put(self, stage: str, cell: Cell, value: Any, seconds: float) -> None:
         """Keep a stage of a cell that took so long to make."""
         self.files.put(self.key(stage, cell), value, seconds)

@@ -158,9 +158,11 @@ def measure_missing(
             expected = Durations.read([record.store]).expected(missing)
             counted = _Count(report, len(missing), sum(expected.values()))
             for stage in filter(None, stages):
-                tasks = tasks_of(stage, parts, record.pins, kept)
+                tasks = tasks_of(stage, parts, record.pins)
                 durations = Durations.read([record.store])
-                results = outcomes(tasks, workers, scheduler, follow_ups or {}, durations)
+                results = outcomes(
+                    tasks, workers, scheduler, follow_ups or {}, durations, kept=kept
+                )
                 try:
                     _keep_all(results, record, components, counted, expected)
                 finally:
