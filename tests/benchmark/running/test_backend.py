@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -18,6 +19,8 @@ from benchmark.progress import silent
 from benchmark.results.store import Store
 from benchmark.running import backend, runner
 from benchmark.running.cluster import WorkerLostError
+from benchmark.running.durations import Durations
+from benchmark.running.schedule import bundles
 from benchmark.running.task import Task, TaskResult, measure
 
 
@@ -74,6 +77,21 @@ def test_one_worker_or_one_task_needs_no_other_process(
 ) -> None:
     some = tasks(count)
     assert [one.task for one in backend.outcomes(some, workers)] == some == here
+
+
+def test_what_a_preset_computes_when_it_is_measured_stays_with_the_worker(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def measured(task: Task, _: Any) -> TaskResult:
+        vars(task.preset)["computed"] = bytes(10_000)
+        return TaskResult(task, (), ())
+
+    monkeypatch.setattr(backend, "measure", measured)
+    some = tasks(2)
+    for bundle in bundles(some, Durations(), 1.0, apart=True):
+        done = backend.Work(bundle, Durations(), 1.0)()
+        assert len(pickle.dumps(done)) < 10_000
+        assert all(task is result.task for task, result, _ in done.timed)
 
 
 def test_two_tasks_of_two_workers_go_to_other_processes(

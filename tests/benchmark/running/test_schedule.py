@@ -26,7 +26,7 @@ from benchmark.running import backend
 from benchmark.running.backend import Done, Work, shared_out
 from benchmark.running.durations import Durations, Took
 from benchmark.running.schedule import Bundle, Waiting, bundles, cut, pieces, place_of
-from benchmark.running.task import Task
+from benchmark.running.task import Task, TaskResult
 
 MEASURED = Path(__file__).parent / "measured_durations.csv"
 #: Reading what is kept of data, as a share of making them: at most 0.11 on the nine data sets whose
@@ -108,7 +108,7 @@ class Workers:
     def process_time(self) -> float:
         return self._clock
 
-    def measure(self, task: Task, _: Any) -> Any:
+    def measure(self, task: Task, _: Any) -> TaskResult:
         place = place_of(task)
         if place not in self._seen:
             making = self._times.data[place]
@@ -120,7 +120,7 @@ class Workers:
                 self._kept[place] = self._clock
         self._seen.add(place)
         self._clock += self._times.tasks[task]
-        return task
+        return TaskResult(task, (), ())
 
     def has(self, _: str, cell: Cell) -> bool:
         return self._is_kept((cell.dataset, cell.unit, cell.condition))
@@ -133,11 +133,11 @@ def run(times: Times, durations: Durations, workers: int, *, kept: bool = True) 
     """Simulate measuring all from nothing: what follows of a data set is known after its first."""
     first = [task for task in times.tasks if task.condition == "nominal" and task.unit == 0]
 
-    def following(dataset: str) -> Callable[[Collection[Task]], list[Task]]:
+    def following(dataset: str) -> Callable[[Collection[TaskResult]], list[Task]]:
         mine = [task for task in times.tasks if task.preset.name == dataset]
         before = {task for task in mine if task in first}
         after = [task for task in mine if task not in before]
-        return lambda results: after if before <= set(results) else []
+        return lambda results: after if before <= {one.task for one in results} else []
 
     names = {one.preset.name for one in first}
     follow_ups: Any = {name: SimpleNamespace(tasks=following(name)) for name in names}
@@ -233,7 +233,9 @@ def test_what_follows_waits_for_all_first_tasks_of_a_data_set(
     first = [task("a", "quiet", extractor=name) for name in "xyz"]
     after = [task("a", "noisy")]
     times = Times(dict.fromkeys([*first, *after], 1.0), {place_of(t): 1.0 for t in first + after})
-    follow_up: Any = SimpleNamespace(tasks=lambda got: after if set(first) <= set(got) else [])
+    follow_up: Any = SimpleNamespace(
+        tasks=lambda results: after if set(first) <= {one.task for one in results} else []
+    )
     hands: Any = Workers(2, times)
     monkeypatch.setattr(backend, "measure", hands.measure)
     monkeypatch.setattr(backend, "time", hands)
