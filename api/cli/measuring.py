@@ -130,7 +130,7 @@ def score_cells(
     missing = stale(elsewhere, work)
     warnings: tuple[str, ...] = ()
     if missing:
-        warnings = run(missing, work, workers, scheduler=scheduler).warnings
+        warnings = run(missing, work, workers, scheduler=scheduler, others=[shipped]).warnings
     found = {**_rows(shipped, set(wanted) - set(elsewhere)), **_rows(work, set(elsewhere))}
     times = times_of_code(work.directory)
     for cell, row in found.items():

@@ -110,7 +110,7 @@ def rank(
         nonlocal measured
         missing = [cell for cell in wanted if cell not in kept]
         if missing:
-            summary = run(missing, work, workers, progress, parts=known)
+            summary = run(missing, work, workers, progress, parts=known, others=[record])
             measured += summary.computed
         there = work.scores()
         return {cell: published[cell] if cell in kept else there[cell] for cell in wanted}

@@ -21,7 +21,6 @@ from benchmark.results.csv_tables import Row
 from benchmark.results.record import open_record
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import experiment, pinning
-from benchmark.running.kept_stages import KeptStages
 from benchmark.running.planned import FollowUp
 from benchmark.running.runner import Summary, failures, kept_beside, measure_missing
 
@@ -85,7 +84,7 @@ def update(
                 kept=kept,
             )
 
-        computed = measured(first, _follow_ups(first, known, choose, kept))
+        computed = measured(first, _follow_ups(first, known, choose))
         followers = choose(record.scores, known)
         computed += measured(followers)
         pins = pinning.pin_missing(record, components, known, workers=workers, progress=progress)
@@ -119,7 +118,6 @@ def _follow_ups(
     first: Iterable[Cell],
     parts: Parts,
     choose: Callable[[Mapping[Cell, Row], Parts], list[Cell]],
-    kept: KeptStages | None,
 ) -> dict[str, FollowUp]:
     """Say by data set what a worker that has measured its first cells goes on with."""
     return {
@@ -127,7 +125,6 @@ def _follow_ups(
             Parts({name: parts.presets[name]}, parts.extractors, parts.models),
             frozenset(cells),
             choose,
-            kept,
         )
         for name, cells in groupby(first, key=lambda cell: cell.dataset)
     }

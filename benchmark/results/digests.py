@@ -74,7 +74,8 @@ def method_digest(method: type[Extractor] | Scored, sources: Sources | None = No
 def stage_digests(sources: Sources | None = None) -> dict[str, str]:
     """Digest of the code between data and numbers, by stage: how methods are run and judged.
 
-    What hands stages on, and keeps them, is not among it: it changes no number.
+    What hands stages on, keeps, times or stores them is not among it, as it changes no number: no
+    stage's function or argument names it (`tests/benchmark/results/test_what_moves_digests.py`).
     """
     known = sources or Sources()
     return {name: short_digest(known.digest(*entries)) for name, entries in STAGES.items()}

@@ -88,9 +88,13 @@ class StageFiles:
             os.utime(path)
         return found
 
+    def has(self, key: str) -> bool:
+        """Say whether a result is kept, damaged or not."""
+        return self._find(key) is not None
+
     def put(self, key: str, value: Any, seconds: float) -> None:
         """Keep a result that took so long to make; nothing where that cannot be done."""
-        if self.limit <= 0 or self._find(key) is not None:
+        if self.limit <= 0 or self.has(key):
             return
         try:
             content = _packed(value)
@@ -108,7 +112,14 @@ class StageFiles:
 
     def keys(self) -> set[str]:
         """Return the keys of all that is kept."""
-        return {entry.path.parent.name + entry.path.name.partition(".")[0] for entry in self._all()}
+        return set(self.costs())
+
+    def costs(self) -> dict[str, float]:
+        """Return the seconds that each result took to make, by key."""
+        return {
+            entry.path.parent.name + entry.path.name.partition(".")[0]: entry.cost_ms / 1000.0
+            for entry in self._all()
+        }
 
     def size(self) -> int:
         """Return the bytes that all files take."""
@@ -186,9 +197,14 @@ class _Pickler(pickle.Pickler):
 
 def _packed(value: Any) -> memoryview:
     """Return a value's pickle, compressed on the way: data may be half of what memory there is."""
-    from pyarrow import BufferOutputStream, CompressedOutputStream  # noqa: PLC0415 - slow to load
+    from pyarrow import (  # noqa: PLC0415 - slow to load
+        BufferOutputStream,
+        CompressedOutputStream,
+        system_memory_pool,
+    )
 
-    sink = BufferOutputStream()
+    # the default pool would hold on to it
+    sink = BufferOutputStream(system_memory_pool())
     with CompressedOutputStream(sink, "zstd") as stream:
         _Pickler(stream, protocol=5).dump(value)
     return memoryview(sink.getvalue())

@@ -5,13 +5,17 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from copy import deepcopy
+from dataclasses import dataclass, replace
+from itertools import chain
 from types import MappingProxyType
 from typing import Protocol
 
 from algorithms.extractors.frames.multi_spot.pattern_memory import shared_patterns
+from benchmark.contract import Cell
 from benchmark.running.cluster import connect
 from benchmark.running.durations import Durations, Took
+from benchmark.running.kept_stages import DATA, KeptStages
 from benchmark.running.planned import FollowUp
 from benchmark.running.schedule import (
     Bundle,
@@ -23,7 +27,7 @@ from benchmark.running.schedule import (
     total_seconds,
 )
 from benchmark.running.task import Task, TaskResult, measure
-from benchmark.running.workers import hands_of
+from benchmark.running.workers import hands_of, release_free_memory
 
 _Timed = tuple[Task, TaskResult, Took]
 
@@ -33,7 +37,7 @@ class Done:
     """What a worker hands back: results with their times, and what it leaves to others."""
 
     timed: list[_Timed]
-    left: list[tuple[Task, ...]]
+    left: list[Bundle]
 
 
 @dataclass(frozen=True)
@@ -48,11 +52,14 @@ class Work:
         Known ones of its data set.
     most
         Seconds that one worker may take with a bundle.
+    kept
+        Where stages are kept; nowhere for None.
     """
 
     bundle: Bundle
     durations: Durations
     most: float
+    kept: KeptStages | None = None
 
     @property
     def tasks(self) -> tuple[Task, ...]:
@@ -61,20 +68,27 @@ class Work:
 
     def __call__(self) -> Done:
         """Measure it all."""
-        left: list[tuple[Task, ...]] = []
+        left: list[Bundle] = []
         return Done(list(self.measure(left)), left)
 
-    def measure(self, left: list[tuple[Task, ...]]) -> Iterator[_Timed]:
+    def measure(self, left: list[Bundle]) -> Iterator[_Timed]:
         """Measure task by task; what is to be left to other workers is put into `left`."""
         results, places = [], set()
+        # what a preset computes on its way, 50 MB of some, is not to go from process to process
+        own = deepcopy(self.tasks[0].preset)
+        durations = Durations(dict(self.durations.known))
 
         def timed(task: Task) -> _Timed:
             place = place_of(task)
+            made = place not in places and not self._data_kept(task)
+            if place not in places:
+                release_free_memory()
             started = time.process_time()
-            result = measure(task)
+            result = replace(measure(replace(task, preset=own), self.kept), task=task)
             seconds = time.process_time() - started
-            took = Took(len(task.models), int(place not in places), round(seconds, 3))
+            took = Took(len(task.models), int(made), round(seconds, 3))
             places.add(place)
+            durations.learn(task, took)
             return task, result, took
 
         with shared_patterns():
@@ -82,13 +96,19 @@ class Work:
                 outcome = timed(task)
                 results.append(outcome[1])
                 yield outcome
-            if self.bundle.follow_up is None:
+            left += self.bundle.then
+            if self.bundle.follow_up is None or self.bundle.then:
                 return
             further = self.bundle.follow_up.tasks(results)
             # what shares data or light with the first tasks is gone on with, up to the limit
-            here, *others = cut([*self.tasks, *further], self.durations.seconds, self.most)
-            left += others
+            here, *others = cut([*self.tasks, *further], durations.seconds, self.most)
+            rest = list(chain.from_iterable(others))
+            left += bundles(rest, durations, self.most, apart=self.kept is not None)
             yield from map(timed, here[len(self.tasks) :])
+
+    def _data_kept(self, task: Task) -> bool:
+        dataset, unit, condition = place_of(task)
+        return self.kept is not None and self.kept.has(DATA, Cell(dataset, condition, "", "", unit))
 
 
 class Hands(Protocol):
@@ -113,6 +133,8 @@ def outcomes(
     scheduler: str | None = None,
     follow_ups: Mapping[str, FollowUp] = MappingProxyType({}),
     durations: Durations | None = None,
+    *,
+    kept: KeptStages | None = None,
 ) -> Iterator[TaskResult]:
     """Measure tasks and give each result as soon as it is there, in any order.
 
@@ -125,9 +147,11 @@ def outcomes(
     scheduler
         Address of a Dask scheduler, e.g. ``tcp://127.0.0.1:8786``; `workers` is not read then.
     follow_ups
-        By data set, what is measured besides where one bundle is all of the data set's tasks.
+        By data set, what is measured besides once all of the data set's tasks are.
     durations
         How long tasks took before, by which they are shared out; takes in how long they took now.
+    kept
+        Where stages are kept; nowhere for None.
 
     Raises
     ------
@@ -137,8 +161,11 @@ def outcomes(
         When worker processes were killed; of a cluster, one after another over the same tasks.
     """
     known = Durations() if durations is None else durations
-    for task, result, took in _timed(tasks, workers, scheduler, follow_ups, known):
-        known.add(task, took)
+    for task, result, took in _timed(tasks, workers, scheduler, follow_ups, known, kept=kept):
+        if result.reused:
+            known.learn(task, took)
+        else:
+            known.add(task, took)
         yield result
 
 
@@ -148,16 +175,20 @@ def _timed(
     scheduler: str | None,
     follow_ups: Mapping[str, FollowUp],
     durations: Durations,
+    *,
+    kept: KeptStages | None,
 ) -> Iterator[_Timed]:
     if scheduler is not None:
         with connect(scheduler) as cluster:
-            yield from shared_out(tasks, cluster, cluster.workers(), follow_ups, durations)
+            yield from shared_out(
+                tasks, cluster, cluster.workers(), follow_ups, durations, kept=kept
+            )
     elif workers == 1 or len(tasks) == 1:
         for bundle in bundles(tasks, durations, math.inf, follow_ups):
-            yield from Work(bundle, durations, math.inf).measure([])
+            yield from Work(bundle, durations, math.inf, kept).measure([])
     else:
         with hands_of(workers) as hands:
-            yield from shared_out(tasks, hands, workers, follow_ups, durations)
+            yield from shared_out(tasks, hands, workers, follow_ups, durations, kept=kept)
 
 
 def shared_out(
@@ -166,21 +197,37 @@ def shared_out(
     workers: int,
     follow_ups: Mapping[str, FollowUp],
     durations: Durations,
+    *,
+    kept: KeptStages | None = None,
 ) -> Iterator[_Timed]:
     """Hand bundles out, longest first, and what is left of them as it becomes known."""
     known = Durations(dict(durations.known))  # who gets results adds to the other
     most = longest_of(total_seconds(tasks, known, follow_ups), workers)
-    waiting = WaitingBundles(bundles(tasks, known, most, follow_ups))
+    apart = kept is not None
+    waiting = WaitingBundles(bundles(tasks, known, most, follow_ups, apart=apart))
+    #: Of data sets whose first tasks are in several bundles, results until something follows.
+    first: dict[str, list[TaskResult]] = {}
 
     def hand_out() -> None:
         while len(waiting) and hands.is_free():
             bundle = waiting.take()
-            hands.give(Work(bundle, known.of(bundle.tasks[0].preset.name), most))
+            if bundle.then and bundle.follow_up is not None:
+                first[bundle.dataset] = []
+            hands.give(Work(bundle, known.of(bundle.dataset), most, kept))
+
+    def followers(done: Done) -> Iterator[Bundle]:
+        for name in first.keys() & {task.preset.name for task, *_ in done.timed}:
+            first[name] += (one for task, one, _ in done.timed if task.preset.name == name)
+            if further := follow_ups[name].tasks(first[name]):
+                del first[name]
+                yield from bundles(further, known, most, apart=apart)
 
     hand_out()
     while hands.is_busy():
         done = hands.take()
-        for left in done.left:
-            waiting.add(Bundle(left, known.seconds(left)))
+        for task, _, took in done.timed:
+            known.learn(task, took)
+        for bundle in (*done.left, *followers(done)):
+            waiting.add(bundle)
         hand_out()  # before results are kept: no worker waits for that
         yield from done.timed

@@ -102,6 +102,10 @@ class Durations:
         """Take in how long a task took."""
         self.known[_name_of(task)] = took
 
+    def learn(self, task: Task, took: Took) -> None:
+        """Take in how long a task took where that is not known."""
+        self.known.setdefault(_name_of(task), took)
+
     def of(self, dataset: str) -> Durations:
         """Return what is known of one data set."""
         return Durations({task: took for task, took in self.known.items() if task[0] == dataset})
@@ -126,8 +130,14 @@ class Durations:
         return fmean(took.seconds for took in known or self.known.values() or [Took(0, 0, 1.0)])
 
     def seconds_of_rest(self, tasks: Sequence[Task]) -> float:
-        """Say how long what else is known of the data set of these tasks takes."""
+        """Say how long what else is known of the data set of these tasks takes.
+
+        Where nothing is, as long as all that is known of a mean data set.
+        """
         known = self.of(tasks[0].preset.name).known
+        if self.known and not known:
+            total = sum(took.seconds for took in self.known.values())
+            return total / len({task.dataset for task in self.known})
         given = {_name_of(task) for task in tasks}
         return sum(took.seconds for task, took in known.items() if task not in given)
 
@@ -196,7 +206,7 @@ def _of_dataset(
         if exact is not None and not exact.made_data:
             same = [exact]
         total += (
-            fmean(max(models[task] / took.models, 1.0) * took.seconds for took in same)
+            fmean(max(models[task] / max(took.models, 1), 1.0) * took.seconds for took in same)
             if (same)
             else usual
         )

@@ -23,22 +23,36 @@ FEATURES, PREDICTIONS = "features", "predictions"
 
 @dataclass(frozen=True)
 class KeptStages:
-    """Stages kept beside a store, by what they are made with.
+    """Stages kept beside stores, by what they are made with.
 
     Attributes
     ----------
     files
-        Where.
+        Where they are put.
     components
         Digests of the code and parameters as they are.
+    others
+        Where they are read, too.
     """
 
     files: StageFiles
     components: Components
+    others: tuple[StageFiles, ...] = ()
 
     @classmethod
-    def beside(cls, directory: Path, components: Components) -> KeptStages | None:
+    def beside(
+        cls, directory: Path, components: Components, others: Iterable[Path] = ()
+    ) -> KeptStages | None:
         """Return what is kept in a store's working directory; None where nothing is to be.
+
+        Parameters
+        ----------
+        directory
+            Of the store that is measured into.
+        components
+            As they are.
+        others
+            Working directories of stores that are looked at.
 
         Raises
         ------
@@ -46,15 +60,32 @@ class KeptStages:
             Where the limit is no number (`benchmark.results.stage_files.limit_bytes`).
         """
         limit = limit_bytes()
-        return cls(StageFiles(directory / "stages", limit), components) if limit else None
+        if not limit:
+            return None
+        files, *more = (StageFiles(one / "stages", limit) for one in (directory, *others))
+        return cls(files, components, tuple(more))
 
     def get(self, stage: str, cell: Cell) -> Any:
         """Return a stage of a cell; None where it is not kept."""
-        return self.files.get(self.key(stage, cell))
+        key = self.key(stage, cell)
+        found = (files.get(key) for files in self._all())
+        return next((one for one in found if one is not None), None)
+
+    def has(self, stage: str, cell: Cell) -> bool:
+        """Say whether a stage of a cell is kept."""
+        key = self.key(stage, cell)
+        return any(files.has(key) for files in self._all())
 
     def put(self, stage: str, cell: Cell, value: Any, seconds: float) -> None:
         """Keep a stage of a cell that took so long to make."""
         self.files.put(self.key(stage, cell), value, seconds)
+
+    def keys(self) -> set[str]:
+        """Return the keys of all that is kept."""
+        return set().union(*(files.keys() for files in self._all()))
+
+    def _all(self) -> tuple[StageFiles, ...]:
+        return (self.files, *self.others)
 
     def key(self, stage: str, cell: Cell) -> str:
         """Name all that a stage of a cell depends on, in one word."""
@@ -93,12 +124,19 @@ class StageCounts:
 
 def count_stages(
     cells: Iterable[Cell], components: Components, kept: KeptStages | None
-) -> StageCounts:
-    """Count what is to be done for cells of these components, with what is kept of them."""
-    there = set() if kept is None else kept.files.keys()
+) -> tuple[StageCounts, list[Cell]]:
+    """Count what is to be done for cells of these components, with what is kept of them.
+
+    Returns
+    -------
+    tuple of StageCounts and list of Cell
+        The cells are those whose models are to be fitted.
+    """
+    there = set() if kept is None else kept.keys()
     data: set[tuple[str, str, int]] = set()
     features: set[tuple[str, str, int, str]] = set()
-    predictions = scores = 0
+    fitted: list[Cell] = []
+    scores = 0
     for cell in cells:
         scores += 1
         read = components.condition_read(cell.dataset, cell.condition)
@@ -111,9 +149,9 @@ def count_stages(
             data.add(place)
         if has[PREDICTIONS]:
             continue
-        predictions += 1
+        fitted.append(cell)
         if not has[FEATURES]:
             features.add((*place, cell.extractor))
             if not has[DATA]:
                 data.add(place)
-    return StageCounts(len(data), len(features), predictions, scores)
+    return StageCounts(len(data), len(features), len(fitted), scores), fitted

@@ -17,7 +17,6 @@ from benchmark.metrics.score import METRICS
 from benchmark.plan.parts import Parts
 from benchmark.results.csv_tables import Row
 from benchmark.results.samples import CONDITION, Directions, SampleErrors
-from benchmark.running.kept_stages import KeptStages
 from benchmark.running.task import Task, TaskResult, data_condition
 
 
@@ -33,14 +32,11 @@ class FollowUp:
         Its first cells: nothing follows from a part of them.
     choose
         From the numbers of the first cells and `parts` to the cells that follow.
-    kept
-        Where stages are kept.
     """
 
     parts: Parts
     first: frozenset[Cell]
     choose: Callable[[Mapping[Cell, Row], Parts], Sequence[Cell]]
-    kept: KeptStages | None = None
 
     def tasks(self, results: Sequence[TaskResult]) -> list[Task]:
         """List the tasks that follow, other units last; none where first cells are missing."""
@@ -53,15 +49,10 @@ class FollowUp:
             return []
         following = [cell for cell in self.choose(scores, self.parts) if cell not in scores]
         pins = {pin.place: pin for result in results for pin in result.pins}
-        return tasks_of(following, self.parts, pins, self.kept)
+        return tasks_of(following, self.parts, pins)
 
 
-def tasks_of(
-    cells: Iterable[Cell],
-    parts: Parts,
-    pins: Mapping[Place, Pin],
-    kept: KeptStages | None = None,
-) -> list[Task]:
+def tasks_of(cells: Iterable[Cell], parts: Parts, pins: Mapping[Place, Pin]) -> list[Task]:
     """Put cells into tasks, those of one dataset, unit and condition in a row: they share samples.
 
     Parameters
@@ -72,8 +63,6 @@ def tasks_of(
         Data sets and implementations.
     pins
         What is known of the data already, by place.
-    kept
-        Where stages are kept; nowhere for None.
     """
     return [
         Task(
@@ -83,7 +72,6 @@ def tasks_of(
             tuple(parts.model(cell.model) for cell in group),
             unit,
             _all_observable(pins, dataset, data_condition(parts.preset(dataset), condition)),
-            kept,
         )
         for (dataset, unit, _, condition, extractor), group in groupby(
             sorted(cells, key=_order), key=lambda cell: _order(cell)[:5]

@@ -54,6 +54,7 @@ def run(
     scheduler: str | None = None,
     parts: Parts | None = None,
     keep_stages: bool = True,
+    others: Iterable[Store] = (),
 ) -> Summary:
     """Measure the cells that the store does not hold yet; what else it holds stays.
 
@@ -81,6 +82,8 @@ def run(
     keep_stages
         Whether data, features and predictions are kept beside the store and taken from there.
         The numbers are the same.
+    others
+        Stores beside which stages are looked for, too.
 
     Raises
     ------
@@ -111,7 +114,7 @@ def run(
             workers=workers,
             progress=progress,
             scheduler=scheduler,
-            kept=kept_beside(store, components, scheduler) if keep_stages else None,
+            kept=kept_beside(store, components, scheduler, others) if keep_stages else None,
         )
         record.write(components.only(wanted))
     return Summary(
@@ -158,9 +161,11 @@ def measure_missing(
             expected = Durations.read([record.store]).seconds_by_task(missing)
             counted = _Count(report, len(missing), sum(expected.values()))
             for stage in filter(None, stages):
-                tasks = tasks_of(stage, parts, record.pins, kept)
+                tasks = tasks_of(stage, parts, record.pins)
                 durations = Durations.read([record.store])
-                results = outcomes(tasks, workers, scheduler, follow_ups or {}, durations)
+                results = outcomes(
+                    tasks, workers, scheduler, follow_ups or {}, durations, kept=kept
+                )
                 try:
                     _keep_all(results, record, components, counted, expected)
                 finally:
@@ -170,10 +175,16 @@ def measure_missing(
 
 
 def kept_beside(
-    store: Store, components: Components, scheduler: str | None = None
+    store: Store,
+    components: Components,
+    scheduler: str | None = None,
+    others: Iterable[Store] = (),
 ) -> KeptStages | None:
-    """Return the stages kept beside a store; None on a cluster, whose disks are its own."""
-    return None if scheduler else KeptStages.beside(store.work_directory, components)
+    """Return the stages kept beside stores; None on a cluster, whose disks are its own."""
+    if scheduler:
+        return None
+    looked_at = [other.work_directory for other in others]
+    return KeptStages.beside(store.work_directory, components, looked_at)
 
 
 def failures(cells: Iterable[Cell], record: Record) -> tuple[tuple[Cell, str], ...]:

@@ -1,9 +1,10 @@
 """Which tasks go to a worker together, and in which order: longest first, data made once.
 
-Tasks that share data (one data set, condition and unit) are never distinguished, as making the data
-often costs more than all else. Conditions of a unit see the same light and units look it up in
-the same tables: these stay together, too, unless they would keep a worker for longer than the
-others.
+Making data often costs more than all else: tasks that share them (one data set, condition and
+unit) stay together. Where they would keep a worker for longer than the others, and stages are kept,
+one worker makes the data and some features; what is left goes on from the data as they are kept,
+each extractor in one place. Conditions of a unit see the same light and units look it up in the
+same tables: these stay together, too, unless that takes too long.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from heapq import heappop, heappush
 from itertools import count
+from types import MappingProxyType
 
 from benchmark.running.durations import Durations
 from benchmark.running.planned import FollowUp
@@ -37,11 +39,19 @@ class Bundle:
         How long they take and all that follows from them, as far as it is known.
     follow_up
         What is measured besides once they are.
+    then
+        Other tasks of the same data, which go on from them as they are kept.
     """
 
     tasks: tuple[Task, ...]
     seconds: float
     follow_up: FollowUp | None = None
+    then: tuple[Bundle, ...] = ()
+
+    @property
+    def dataset(self) -> str:
+        """Name of the data set."""
+        return self.tasks[0].preset.name
 
 
 class WaitingBundles:
@@ -98,28 +108,53 @@ def cut(tasks: Sequence[Task], seconds: Seconds, most: float) -> list[tuple[Task
     return [tuple(bundle) for bundle in found]
 
 
+def pieces(tasks: Sequence[Task], seconds: Seconds, most: float) -> list[tuple[Task, ...]]:
+    """Cut tasks that share data into pieces of whole extractors, at most so long if they can be.
+
+    Parameters as `cut`.
+    """
+    shared: dict[str, list[Task]] = {}
+    for task in tasks:
+        shared.setdefault(task.extractor.about.name, []).append(task)
+    found: list[list[Task]] = []
+    for together in shared.values():
+        if found and seconds([*found[-1], *together]) <= most:
+            found[-1] += together
+        else:
+            found.append(together)
+    return [tuple(piece) for piece in found]
+
+
 def longest_of(total: float, workers: int) -> float:
     """Return how many seconds a bundle may take, where all workers together take `total`."""
     return math.inf if workers == 1 else total / (_PARTS * workers)
 
 
 def bundles(
-    tasks: Sequence[Task], durations: Durations, most: float, follow_ups: Mapping[str, FollowUp]
+    tasks: Sequence[Task],
+    durations: Durations,
+    most: float,
+    follow_ups: Mapping[str, FollowUp] = MappingProxyType({}),
+    *,
+    apart: bool = False,
 ) -> list[Bundle]:
     """Cut tasks, as `cut` does, and say what each bundle takes with what follows from it.
 
     Parameters
     ----------
     follow_ups
-        By data set, what is measured besides where one bundle is all of the data set's tasks.
+        By data set, what is measured besides once all of the data set's tasks are.
+    apart
+        Whether tasks that share data may be told apart: data are kept.
     """
     found = []
     for bundle in cut(tasks, durations.seconds, most):
         follow_up = follow_ups.get(bundle[0].preset.name)
-        takes = durations.seconds(bundle)
-        if follow_up is not None:
-            takes += durations.seconds_of_rest(bundle)
-        found.append(Bundle(bundle, takes, follow_up))
+        after = 0.0 if follow_up is None else durations.seconds_of_rest(bundle)
+        one = apart and len(set(map(place_of, bundle))) == 1
+        first, *rest = pieces(bundle, durations.seconds, most) if one else [bundle]
+        then = tuple(Bundle(piece, durations.seconds(piece) + after) for piece in rest)
+        found.append(Bundle(first, durations.seconds(bundle) + after, follow_up, then))
     return found
 
 

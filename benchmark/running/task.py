@@ -1,7 +1,7 @@
 """What one worker does: generate a dataset's samples, extract once, fit and score every model.
 
-A task is a pure function of its specification: what it keeps of its stages for another time changes
-no number. An error of an implementation becomes an outcome with its reason.
+A task is a pure function of its specification: what is kept of its stages for another time changes
+no number, and is no part of it. An error of an implementation becomes an outcome with its reason.
 """
 
 from __future__ import annotations
@@ -43,8 +43,6 @@ class Task:
     all_observable
         Whether the direction is known to be observable from every test sample, so that another
         unit than the standard one needs no bound.
-    kept
-        Where stages are kept; None to make all of them, and keep none.
     """
 
     preset: Preset
@@ -53,7 +51,6 @@ class Task:
     models: tuple[Scored, ...]
     unit: int = 0
     all_observable: bool = False
-    kept: KeptStages | None = None
 
 
 @dataclass(frozen=True)
@@ -109,6 +106,8 @@ class _RefusedError(Exception):
 class TaskResult:
     """What a worker hands back; pins are of the standard unit only.
 
+    `reused` says whether features or predictions were read, so that it took less than all of it.
+
     `directions` are true ones (N, 3) of the test samples, which of them are observable and their
     bounds (N,), of the standard unit.
     """
@@ -117,23 +116,33 @@ class TaskResult:
     pins: tuple[Pin, ...]
     outcomes: tuple[Outcome, ...]
     directions: tuple[Floats, NDArray[np.bool_], Floats] | None = None
+    reused: bool = False
 
 
-def measure(task: Task) -> TaskResult:
-    """Score every model of a task; never raises for an implementation's error."""
+def measure(task: Task, kept: KeptStages | None = None) -> TaskResult:
+    """Score every model of a task; never raises for an implementation's error.
+
+    Parameters
+    ----------
+    task
+        What to measure.
+    kept
+        Where stages are kept; None to make all of them, and keep none.
+    """
     with one_thread():
         try:
-            data = _data(task, truth)
+            data = _data(task, truth, kept)
         except Exception as error:  # noqa: BLE001 - any error of a dataset is a row with its reason
             return _failed(task, error, "generating data")
-        answers = [_stored_answers(task, model) for model in task.models]
+        answers = [_stored_answers(task, model, kept) for model in task.models]
+        reused = answers != [None] * len(answers) or _seen_before(task, kept)
         if None in answers:
             try:
-                extractor, features = _extractor(task), _features(task)
+                extractor, features = _extractor(task), _features(task, kept)
             except Exception as error:  # noqa: BLE001 - likewise of an extractor
                 return _failed(task, error, "extracting", data.pins)
         outcomes = tuple(
-            measured_on(task, extractor, model, features, data)
+            measured_on(task, extractor, model, features, data, kept=kept)
             if known is None
             else _judged(task, model, known, data)
             for model, known in zip(task.models, answers, strict=True)
@@ -141,7 +150,7 @@ def measure(task: Task) -> TaskResult:
         directions = None
         if data.bound_deg is not None:
             directions = data.splits["test"].sun, data.observable, data.bound_deg
-        return TaskResult(task, data.pins, outcomes, directions)
+        return TaskResult(task, data.pins, outcomes, directions, reused)
 
 
 def data_condition(preset: Preset, condition: str) -> str:
@@ -155,6 +164,8 @@ def measured_on(
     model: Scored,
     features: dict[str, Floats],
     data: ConditionData,
+    *,
+    kept: KeptStages | None = None,
 ) -> Outcome:
     """Calibrate and score one pipeline on the features (N, F) its extractor found, by split."""
     started = time.process_time()
@@ -162,9 +173,9 @@ def measured_on(
         answers = fit_and_predict(task, extractor, model, features, data)
     except Exception as error:  # noqa: BLE001 - any error of a model is a row with its reason
         return Outcome(model.about.name, reason_of(error))
-    if task.kept is not None:
+    if kept is not None:
         seconds = time.process_time() - started
-        task.kept.put(PREDICTIONS, _cell(task, model), answers, seconds)
+        kept.put(PREDICTIONS, _cell(task, model), answers, seconds)
     return _judged(task, model, answers, data)
 
 
@@ -175,12 +186,10 @@ def _judged(task: Task, model: Scored, answers: Answers, data: ConditionData) ->
         return Outcome(model.about.name, reason_of(error))
 
 
-def _data(task: Task, look: Callable[..., ConditionData]) -> ConditionData:
+def _data(task: Task, look: Callable[..., ConditionData], kept: KeptStages | None) -> ConditionData:
     """Return the data of a task, by `generate` or `truth`."""
     condition = data_condition(task.preset, task.condition)
-    return look(
-        task.preset, condition, task.unit, all_observable=task.all_observable, kept=task.kept
-    )
+    return look(task.preset, condition, task.unit, all_observable=task.all_observable, kept=kept)
 
 
 def _extractor(task: Task) -> Extractor:
@@ -188,24 +197,29 @@ def _extractor(task: Task) -> Extractor:
     return task.extractor.for_sensor(task.preset.geometry_for(condition))
 
 
-def _features(task: Task) -> dict[str, Floats]:
+def _features(task: Task, kept: KeptStages | None) -> dict[str, Floats]:
     """Return what the extractor finds in every split, as it is kept or found now."""
     cell = _cell(task)
-    known: dict[str, Floats] | None = None if task.kept is None else task.kept.get(FEATURES, cell)
+    known: dict[str, Floats] | None = None if kept is None else kept.get(FEATURES, cell)
     if known is not None:
         return known
-    data, extractor = _data(task, generate), _extractor(task)
+    data, extractor = _data(task, generate, kept), _extractor(task)
     started = time.process_time()
     found = {split: found_features(data, extractor, split) for split in data.splits}
-    if task.kept is not None:
-        task.kept.put(FEATURES, cell, found, time.process_time() - started)
+    if kept is not None:
+        kept.put(FEATURES, cell, found, time.process_time() - started)
     return found
 
 
-def _stored_answers(task: Task, model: Scored) -> Answers | None:
+def _seen_before(task: Task, kept: KeptStages | None) -> bool:
+    """Say whether features are kept; on drawn benches they are those of the first condition."""
+    return task.condition != ON_BENCH and kept is not None and kept.has(FEATURES, _cell(task))
+
+
+def _stored_answers(task: Task, model: Scored, kept: KeptStages | None) -> Answers | None:
     found: Answers | None = None
-    if task.kept is not None:
-        found = task.kept.get(PREDICTIONS, _cell(task, model))
+    if kept is not None:
+        found = kept.get(PREDICTIONS, _cell(task, model))
     return found
 
 

@@ -45,8 +45,8 @@ _ONE_THREAD = dict.fromkeys(
 )
 
 
-#: Frames take tens of MB: within a piece of work the C library (glibc) keeps what is freed for the
-#: next ones, which costs less than to have the system clear pages for each.
+#: Frames take tens of MB: until other data are made, the C library (glibc) keeps what is freed for
+#: the next ones, which costs less than to have the system clear pages for each.
 _MEMORY = {
     "MALLOC_MMAP_THRESHOLD_": str(64 * 2**20),
     "MALLOC_TRIM_THRESHOLD_": str(256 * 2**20),
@@ -169,14 +169,19 @@ def _begin(coordinator: int, tables: Path) -> None:
     memory.share_tables(tables)
 
 
+def release_free_memory() -> None:
+    """Give memory that is free back to the system; nothing where that cannot be said."""
+    if sys.platform == "linux":
+        with suppress(AttributeError):  # another C library than glibc
+            ctypes.CDLL(None).malloc_trim(0)
+
+
 def _do(work: Callable[[], A]) -> A:
     """Do a piece of work; memory that is free after it goes back to the system."""
     try:
         return work()
     finally:
-        if sys.platform == "linux":
-            with suppress(AttributeError):  # another C library than glibc
-                ctypes.CDLL(None).malloc_trim(0)
+        release_free_memory()
 
 
 def _kill() -> None:

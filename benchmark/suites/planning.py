@@ -31,9 +31,9 @@ class CellPlan:
         Those that no store holds as code and data now are, in order, each with the reasons:
         ``new``, ``failed`` (before), or which of `benchmark.results.components.KEYED` changed.
     stages
-        How much of each stage that is, where what is kept beside the last store is used.
+        How much of each stage that is, where what is kept beside the stores is used.
     estimate
-        How long measuring these takes.
+        How long that takes; scoring what is predicted already takes next to nothing.
     """
 
     cells: tuple[Cell, ...]
@@ -72,9 +72,10 @@ def plan(cells: Iterable[Cell], stores: Sequence[Store], *, parts: Parts | None 
         if all(reasons):
             missing[cell] = next((r for r in reasons if r != (NEW,)), (NEW,))
     durations = Durations.read(stores)
-    kept = KeptStages.beside(stores[-1].work_directory, components)
-    counts = count_stages(missing, components, kept)
-    return CellPlan(tuple(wanted), missing, counts, durations.estimate(missing))
+    *others, into = (store.work_directory for store in stores)
+    kept = KeptStages.beside(into, components, others)
+    counts, fitted = count_stages(missing, components, kept)
+    return CellPlan(tuple(wanted), missing, counts, durations.estimate(fitted))
 
 
 def cells_of(suite: Suite, stores: Sequence[Store], *, parts: Parts | None = None) -> list[Cell]:

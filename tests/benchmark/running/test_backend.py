@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -18,7 +19,9 @@ from benchmark.progress import silent
 from benchmark.results.store import Store
 from benchmark.running import backend, runner
 from benchmark.running.cluster import WorkerLostError
-from benchmark.running.task import Task, measure
+from benchmark.running.durations import Durations
+from benchmark.running.schedule import bundles
+from benchmark.running.task import Task, TaskResult, measure
 
 
 def tasks(count: int, **named: Any) -> list[Task]:
@@ -58,7 +61,12 @@ class Hands:
 def here(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """What is measured in this process; other processes are not to be had."""
     measured: list[Any] = []
-    monkeypatch.setattr(backend, "measure", lambda task: measured.append(task) or task)
+
+    def measured_here(task: Task, _: Any) -> TaskResult:
+        measured.append(task)
+        return TaskResult(task, (), ())
+
+    monkeypatch.setattr(backend, "measure", measured_here)
     monkeypatch.setattr(backend, "hands_of", lambda *_: pytest.fail("other processes"))
     return measured
 
@@ -68,7 +76,22 @@ def test_one_worker_or_one_task_needs_no_other_process(
     here: list[Any], count: int, workers: int
 ) -> None:
     some = tasks(count)
-    assert list(backend.outcomes(some, workers)) == some == here
+    assert [one.task for one in backend.outcomes(some, workers)] == some == here
+
+
+def test_what_a_preset_computes_when_it_is_measured_stays_with_the_worker(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def measured(task: Task, _: Any) -> TaskResult:
+        vars(task.preset)["computed"] = bytes(10_000)
+        return TaskResult(task, (), ())
+
+    monkeypatch.setattr(backend, "measure", measured)
+    some = tasks(2)
+    for bundle in bundles(some, Durations(), 1.0, apart=True):
+        done = backend.Work(bundle, Durations(), 1.0)()
+        assert len(pickle.dumps(done)) < 10_000
+        assert all(task is result.task for task, result, _ in done.timed)
 
 
 def test_two_tasks_of_two_workers_go_to_other_processes(
@@ -84,7 +107,7 @@ def test_two_tasks_of_two_workers_go_to_other_processes(
 
     monkeypatch.setattr(backend, "hands_of", hands_of)
     some = [*tasks(5), *tasks(1, unit=1)]
-    assert list(backend.outcomes(some, 2)) == some == here
+    assert [one.task for one in backend.outcomes(some, 2)] == some == here
     assert hands.seen == [2, 5, 1, "left"]
 
 
@@ -101,7 +124,7 @@ def test_a_scheduler_is_asked_though_there_is_one_worker_and_one_task(
 
     monkeypatch.setattr(backend, "connect", connected)
     some = tasks(1)
-    assert list(backend.outcomes(some, 1, "tcp://somewhere:1")) == some == here
+    assert [one.task for one in backend.outcomes(some, 1, "tcp://somewhere:1")] == some == here
     assert hands.seen == ["tcp://somewhere:1", 1, "left"]
 
 

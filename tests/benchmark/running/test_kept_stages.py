@@ -185,6 +185,25 @@ def test_of_what_is_damaged_or_gone_the_stage_is_made_again(store, tmp_path, doi
     assert numbers(again) == before
 
 
+def test_what_is_kept_beside_another_store_is_read_and_left_alone(store, tmp_path, doings):
+    known = parts()
+    measured(store, known)
+    doings()
+    mine = Store(tmp_path / "mine")
+    cells = wanted(known)
+    nothing = StageCounts(data=0, features=0, predictions=0, scores=len(cells))
+    now = planned(cells, [Store(tmp_path / "no scores"), mine], parts=known)
+    assert now.stages.predictions == now.stages.scores == len(cells)
+    (store.directory / "scores").rename(tmp_path / "scores")
+    before = planned(cells, [store, mine], parts=known)
+    assert (before.stages, before.estimate.tasks) == (nothing, 0)
+    kept = {path: path.stat().st_size for path in store.directory.rglob("*.*")}
+    assert measured(mine, known, others=[store]).computed == len(cells)
+    assert doings() == set()
+    assert kept == {path: path.stat().st_size for path in store.directory.rglob("*.*")}
+    assert not (mine.work_directory / "stages").exists()
+
+
 def test_nothing_is_kept_where_the_limit_is_none(store, monkeypatch):
     monkeypatch.setenv(LIMIT_GB, "0")
     known = parts()
