@@ -315,7 +315,7 @@ def _method_gaps(
                 if getattr(one, attribute).stands_for == value
             )
             if instead:
-                reason += f"; {_join(instead)} in its place"
+                reason += f"; {_join(instead)} is used instead"
             gaps.append(Gap(attribute, value, reason))
     return gaps
 

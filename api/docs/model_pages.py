@@ -47,7 +47,7 @@ _FRAME = """\
 <!-- generated: measured -->
 <!-- end: measured -->
 
-## What they leave over the field
+## Remaining errors over the field
 
 <!-- generated: picture -->
 <!-- end: picture -->
@@ -161,8 +161,8 @@ def measure(category: str) -> str:
         )
     header = ("model", "data sets", "first on", "nearest its bound on", "behind")
     said = (
-        "Under the first condition of each data set, with whichever extractor serves best; "
-        f"pipelines that answer less than {AVAILABLE:.0%} are left out."
+        "Under the first condition of each data set, with the best extractor for each model; "
+        f"pipelines with less than {AVAILABLE:.0%} availability are left out."
     )
     return f"{said}\n\n" + table((*header, "rms error (deg)", "times the bound"), rows)
 
@@ -210,7 +210,7 @@ def picture(category: str) -> str:
     said += "as published"
     if "perfect" in errors:
         said += f", {errors['perfect']:.2g} deg with calibration, unit and readings perfect"
-        said += " ([what that means](../limits.md#what-is-made-perfect))"
+        said += " ([explanation](../limits.md#what-is-made-perfect))"
     name = Path(_picture_of(category)).name
     return f"![Residuals over the field]({name})\n\n{said}."
 
