@@ -64,9 +64,10 @@ class AngularLoss(CalibratedCompensation):
     Shapes: signals (N, K), in any common unit, to cosines (N, K) in [0, 1.2].
 
     Failure: a NaN row for a NaN feature row. fit raises UnusableDataError where fewer than 8
-    samples light a face, or a lit face's signal is not positive. Normals are taken as drawn.
+    samples light a face, or a lit face's signal is not positive. The normals of the drawing are
+    used.
 
-    Cost: 6 Newton's steps of 12 operations a face.
+    Cost: 6 Newton's steps of 12 operations per face.
 
     Examples
     --------

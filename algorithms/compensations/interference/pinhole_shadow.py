@@ -37,9 +37,9 @@ _SETTLED = 1e-3
 class PinholeShadow(CalibratedCompensation):
     """Spots of a thick round hole corrected for shadowing of the outline by its rims.
 
-    The lower rim ends the spot on its far side and the upper rim on its near side. Lit by one ray
-    their mean is the mask's middle, from which drawings count. The Sun is a disc: its outer limb
-    is the last to pass the lower rim, its inner limb the last to pass the upper one, so that the
+    The lower rim limits the spot on its far side, the upper rim on its near side. For a single ray
+    their mean is the middle of the mask, from which drawings measure the focal length. Because the
+    Sun is a disc, its outer limb passes the lower rim last and its inner limb the upper rim, so the
     middle of the outline lies nearer to the boresight.
 
     Parameters
@@ -74,7 +74,7 @@ class PinholeShadow(CalibratedCompensation):
     passes. fit raises UnusableDataError below 12 samples and where they do not tell the shift from
     a turned or shifted mask.
 
-    Cost: 60 operations a sample.
+    Cost: 60 operations per sample.
 
     Examples
     --------

@@ -24,8 +24,8 @@ _SIDES = tuple(product((1.0, -1.0), repeat=3))
 class SunAndAlbedoInputs(CubeCurrents):
     """Sunlight share of each face's current, in closed form from the known solar strength.
 
-    If both faces of a pair are lit, one is lit by the Sun and one by the Earth; if only one is
-    lit, both may light it. Unit length resolves one shared face; a magnetometer and the almanac
+    If both faces of a pair are lit, the Sun lights one and the Earth the other; if only one is lit,
+    it may receive both. Unit length resolves one shared face; a magnetometer and the almanac
     resolve two; three cannot be resolved.
 
     Parameters
@@ -50,7 +50,7 @@ class SunAndAlbedoInputs(CubeCurrents):
     Failure: a NaN row for a NaN row of features or context, for type 3 with albedo, and where no
     way or several different ones fit. fit raises UnusableDataError where no sample lights a face.
 
-    Cost: 8 sides of 40 operations a sample.
+    Cost: 8 sides of 40 operations per sample.
 
     Examples
     --------

@@ -36,8 +36,8 @@ FLATTEST = 1e-6
 class WeightedCells(FacesModel):
     """Sun vector by weighted least squares over the cosines of all lit cells.
 
-    Of cells spread over a sphere several are always lit; each is weighted by its illumination, and
-    those at grazing incidence are excluded.
+    Several cells on a sphere are always lit. Each is weighted by its illumination, and cells at
+    grazing incidence are excluded.
 
     Parameters
     ----------
@@ -63,11 +63,11 @@ class WeightedCells(FacesModel):
     others' mean. W is left open there, and the lit cells' choice is stated in words.
 
     Failure: a NaN row for a NaN feature row, and where fewer than three cells are lit or those lit
-    look along one plane. fit raises UnusableDataError where no sample lights a cell. Albedo is
-    taken for Sun. for_sensor refuses bodies that leave directions of their field unsolved, as
-    cubes do.
+    look along one plane. fit raises UnusableDataError where no sample lights a cell. Albedo is not
+    distinguished from sunlight. for_sensor refuses bodies that leave directions of their field
+    unsolved, as cubes do.
 
-    Cost: 21 operations a cell, 30 a sample.
+    Cost: 21 operations per cell, 30 per sample.
 
     Examples
     --------

@@ -62,9 +62,9 @@ class WarmCells(WeightedCells):
     Failure: a NaN row for a NaN feature row or temperature, outside the hull, where fewer than
     three cells are lit or those lit look along one plane, and where it is so warm that no current
     is left. fit raises UnusableDataError where no sample lights a cell, and where temperatures
-    hardly differ. Albedo is taken for Sun.
+    hardly differ. Albedo is not distinguished from sunlight.
 
-    Cost: 22 operations a cell, 32 a sample.
+    Cost: 22 operations per cell, 32 per sample.
 
     Examples
     --------

@@ -82,7 +82,7 @@ class MeanShift(MaskSpots, Extractor):
     Failure: a NaN row where the pattern is not found, as for MCAM, and where fewer than 0.3 of the
     spots that should be whole in the frame resemble the goal.
 
-    Cost: as MCAM, and 10 operations a pixel of a window of radius h, a spot and a step: three or
+    Cost: as MCAM, and 10 operations per pixel of a window of radius h, a spot and a step: three or
     four steps.
 
     Examples
