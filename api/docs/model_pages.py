@@ -16,6 +16,7 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
+from algorithms.display_names import display_name
 from api.docs import field_plots
 from api.docs.field_plots import PlottedPipeline
 from api.docs.knowledge import knowledge
@@ -120,11 +121,16 @@ def models(category: str) -> str:
         *ahead, _ = one.name.split(" + ")
         summary = one.summary.rpartition(" Then ")[0] if ahead else one.summary
         name = " + ".join(ahead) if ahead else one.name
-        row = (f"`{name}`", knowledge().taxonomy.name("model", one.taxonomy), summary)
+        row = (
+            f"`{name}`",
+            display_name(name),
+            knowledge().taxonomy.name("model", one.taxonomy),
+            summary,
+        )
         rows.setdefault(row, {}).update(dict.fromkeys(one.studies))
         chains.setdefault(row, []).append(f"`{one.name}`")
     return table(
-        ("name", "model of the survey", "what it does", "studies", "scored as"),
+        ("identifier", "name", "model of the survey", "what it does", "studies", "scored as"),
         [
             (*row, ", ".join(studies), ", ".join(chains[row]) if " + " in chains[row][0] else "")
             for row, studies in rows.items()

@@ -42,7 +42,7 @@ _RIM_PX = 2.0
 @documented
 @dataclass(frozen=True)
 class WeightedSpots(MaskSpots, Extractor):
-    """Mean of the centres of all whole spots, each by the image that all of them share.
+    """Mean of the centres of all whole spots, each located by the mean image of all spots.
 
     The pattern tells which aperture belongs to which spot. The radial profile is averaged over all
     spots, and each spot is located by its best fit to this profile; spots are weighted by their
