@@ -186,7 +186,7 @@ class TaskMeasure:
             return f"{self.task}: nothing {'published' if of else 'measured'}{of}"
         said = f"{self.task}: {self.value:.3g} {self.unit}"
         if not of:
-            return f"{said}, of the calibration that errs least"
+            return f"{said}, of the most accurate calibration"
         return f"{said}, {_WORDS[self.task]} {self.built} built sensor{'s' * (self.built > 1)}"
 
     def to_dict(self) -> dict[str, object]:
