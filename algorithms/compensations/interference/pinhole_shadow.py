@@ -59,14 +59,14 @@ class PinholeShadow(CalibratedCompensation):
 
     Notes
     -----
-    Implements: eq:shadcomp (model:shad, Antonello2018) under the limbs of model:solar. With
-    ``T+- = tan(theta +- rho)`` the outline goes from ``h T- + t max(T-, 0) - d / 2`` to ``h T+ +
-    d / 2``; its middle falls short of ``(h + t / 2) (T+ + T-) / 2`` by ``t / 4 min(T+ + T-, T+ -
-    T-)``. The survey's arcs have parallel light: then both rims' mean, ``(R_C0 + R_C1) / 2``, is
-    the mask's middle and nothing is left to correct in a drawing that counts from there. How much
-    of the shift a method shows depends on the height at which it cuts the spot; that share is
-    learnt (ours), by least squares beside offsets, turns and tilts of the head (third order in
-    the tangents). `solar-disc` behind takes ``(T+ + T-) / 2`` to ``tan(theta)``.
+    Implements: eq:shadcomp (model:shad, Antonello2018) under the limbs of model:solar. With ``T+- =
+    tan(theta +- rho)`` the outline goes from ``h T- + t max(T-, 0) - d / 2`` to ``h T+ + d / 2``;
+    its middle falls short of ``(h + t / 2) (T+ + T-) / 2`` by ``t / 4 min(T+ + T-, T+ - T-)``. The
+    survey's arcs have parallel light: then both rims' mean, ``(R_C0 + R_C1) / 2``, is the middle of
+    the mask, and a focal length measured from there needs no correction. How much of the shift a
+    method shows depends on the height at which it cuts the spot; that share is learnt (ours), by
+    least squares beside offsets, turns and tilts of the head (third order in the tangents).
+    `solar-disc` behind takes ``(T+ + T-) / 2`` to ``tan(theta)``.
 
     Shapes: features ``(x, y)`` (N, 2), in px, to the same.
 

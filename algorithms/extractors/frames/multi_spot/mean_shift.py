@@ -65,10 +65,10 @@ class MeanShift(MaskSpots, Extractor):
     Implements: alg:FMMS1, alg:FMMS2 (fe:fmms, You2011): ``q_u = C sum K_E delta[b(x_i) - u]``,
     ``p_u(y)`` alike with ``(y - x_i) / h``, ``rho = sum sqrt(p_u q_u)``, ``w_i = sqrt(q_u /
     p_u(y_0))`` for the pixel's bin u, ``y_1 = sum(x_i w_i g) / sum(w_i g)``, halved towards y_0
-    while rho falls. The survey prints the weights with p_u(y_1); corrected because y_1 is not
-    known yet. g is constant inside the window for the Epanechnikov kernel, whose profile ``1 -
-    r^2`` is meant where K_E is printed with a squared norm. The survey prints no end of the
-    halving; corrected because a maximum reached makes it endless: steps below epsilon end it.
+    while rho falls. The survey prints the weights with p_u(y_1); corrected because y_1 is not known
+    yet. g is constant inside the window for the Epanechnikov kernel, whose profile ``1 - r^2`` is
+    meant where K_E is printed with a squared norm. The printed halving does not end once a maximum
+    is reached; here it ends at steps below epsilon.
 
     The study's goal is a spot of an earlier frame; here it is the mean of the spots found whole
     in the same frame (in `track`, in the first one), with a kernel that ends at their rim and
