@@ -50,8 +50,8 @@ class CalibratedModel(Model):
     ----------
     extrapolation : float
         Allowed extrapolation beyond the calibrated region, as a share of its half width (for
-        signals: in radians), at least 0; infinity: unlimited. Half a step between poses is always
-        allowed.
+        signals: in radians), at least 0; infinity: unlimited. Half the distance between
+        neighbouring poses is always allowed.
 
     Attributes
     ----------

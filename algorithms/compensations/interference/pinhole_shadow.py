@@ -47,7 +47,7 @@ class PinholeShadow(CalibratedCompensation):
     focal_length_mm : float
         Distance from the mask's middle to the detector, ``h + t / 2``, positive.
     thickness_mm : float
-        Of the mask, t, positive, less than twice the focal length.
+        Thickness t of the mask, positive, less than twice the focal length.
     aperture_mm : float
         Its hole's diameter d, positive.
 

@@ -34,7 +34,7 @@ class SlitShadow(CalibratedCompensation):
     focal_length_mm : float
         Distance H from the mask's middle to the photodiodes, positive.
     thickness_mm : float
-        Of the mask, t, positive.
+        Thickness t of the mask, positive.
 
     Notes
     -----

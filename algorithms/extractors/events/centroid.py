@@ -148,8 +148,8 @@ class EventWinner(Extractor):
     Parameters
     ----------
     winners : int
-        Events that a column or row must gather, at least 1. Ours: along an L's line more than the
-        other line is wide, for a spot half of its width.
+        Number of events that a column or row must collect, at least 1. Ours: along an L's line more
+        than the other line is wide, for a spot half of its width.
     offset_px : float
         Where a line falls from the detector's middle when the Sun is on the boresight, px;
         subtracted from both coordinates.

@@ -115,7 +115,7 @@ class FrameLinearPhase(Extractor):
     shape : {"round", "square"}
         Its shape; a square's sides lie along the pixels.
     margin_px : float
-        What the spot is wider than that on each side.
+        Widening of the spot beyond that on each side.
     frequencies : int or None
         How many frequencies from the lowest on are fitted; None as in `LinearPhase`.
 

@@ -44,8 +44,9 @@ class WeightedCells(FacesModel):
     weighting : {"signal", "equal"}
         Weight of a lit cell: its signal over its reference current, or 1.
     largest_incidence_deg : float
-        In (0, 90); a cell counts as lit where its signal over its reference current reaches the
-        cosine. The default leaves four of sixteen evenly spread cells in every direction.
+        Largest angle of incidence, in (0, 90); a cell counts as lit if its signal over its
+        reference current is at least the cosine of this angle. The default leaves four of sixteen
+        evenly spread cells in every direction.
 
     Attributes
     ----------

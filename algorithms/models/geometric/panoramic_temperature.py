@@ -31,8 +31,8 @@ class WarmCells(WeightedCells):
     Parameters
     ----------
     largest_incidence_deg : float
-        In (0, 90); a cell counts as lit where its signal over its reference current reaches the
-        cosine.
+        Largest angle of incidence, in (0, 90); a cell counts as lit if its signal over its
+        reference current is at least the cosine of this angle.
     reference_temperature_K : float
         T_0, positive.
 

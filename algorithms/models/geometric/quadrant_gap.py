@@ -33,7 +33,7 @@ class QuadrantGap(ForwardModel):
     aperture_width_mm : float
         Diameter of a round aperture, side of a square one, positive.
     aperture_shape : {"round", "square"}
-        Of the aperture, and so of the spot.
+        Shape of the aperture, and so of the spot.
     gap_mm : float
         Between the photodiodes, at least 0 and less than the aperture; where the fit of a round
         spot's starts, and what a square spot's stays.

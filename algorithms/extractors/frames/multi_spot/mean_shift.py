@@ -57,8 +57,8 @@ class MeanShift(MaskSpots, Extractor):
     convergence_px : float
         Step epsilon that ends the shift, px, positive.
     similarity : float
-        Bhattacharyya coefficient, over that of the goal's own spots, below which a spot is
-        missing; in (0, 1).
+        Similarity (Bhattacharyya coefficient relative to that of the reference spots) below which a
+        spot counts as missing; in (0, 1).
 
     Notes
     -----
