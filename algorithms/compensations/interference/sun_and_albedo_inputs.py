@@ -39,8 +39,8 @@ class SunAndAlbedoInputs(CubeCurrents):
     Implements: eq:albedo3a, eq:albedo3b (model:albedo, Frezza2022). Type 0, no face shared: the
     Sun's are those of the lit faces whose squares add up to one. Type 1, one shared: its share is
     ``sqrt(1 - sum of the others' squares)``. Type 2, two shared: the Sun lies on a cone around the
-    field, ``s . b = s_i . b_i`` with the inertial vectors of almanac and field model; the circle
-    that the length leaves cuts it in two points, of which one must be possible. Type 3: no
+    field, ``s . b = s_i . b_i`` with the inertial vectors of almanac and field model. Unit length
+    leaves two points on this cone, of which one must be possible. Type 3: no
     solution, unless currents have length one: then nothing is the Earth's. The survey shows one
     example a type; sides are tried in turn here, and what two ways explain is no answer.
 
