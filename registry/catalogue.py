@@ -14,6 +14,7 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
+from algorithms.display_names import display_name
 from registry import studies as registered
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Taxonomy, unknown_name
 from survey_data import labels
@@ -42,10 +43,16 @@ class Implementation:
     version: int
     summary: str
 
+    @property
+    def title(self) -> str:
+        """Display name."""
+        return display_name(self.name)
+
     def to_dict(self) -> dict[str, object]:
         """As in the HTTP answer."""
         return {
             "name": self.name,
+            "title": self.title,
             "role": self.role,
             "taxonomy": self.taxonomy,
             "category": self.category,

@@ -186,7 +186,7 @@ class TaskMeasure:
             return f"{self.task}: nothing {'published' if of else 'measured'}{of}"
         said = f"{self.task}: {self.value:.3g} {self.unit}"
         if not of:
-            return f"{said}, of the calibration that errs least"
+            return f"{said}, of the most accurate calibration"
         plural = "s" * (self.sensor_count > 1)
         return f"{said}, {_WORDS[self.task]} {self.sensor_count} built sensor{plural}"
 

@@ -260,8 +260,8 @@ def _stand_in(attribute: str, chosen: ChosenMethod) -> str:
     if chosen.runs:
         return f"{', '.join(chosen.runs)} ahead of the simplest model that fits"
     if chosen.stands_for == NO_IMPLEMENTATION_STATED:
-        return f"the survey maps no {attribute}: the simplest that fits"
-    return f"in place of {chosen.stands_for}, which does not run here: the nearest that fits"
+        return f"the survey states no {attribute}; the simplest that fits the sensor is used"
+    return f"used instead of {chosen.stands_for}, which is not implemented for this sensor"
 
 
 def _empty_cells(study: Study, pipelines: Sequence[RunnablePipeline]) -> list[Gap]:
@@ -318,7 +318,7 @@ def _method_gaps(
                 if getattr(one, attribute).stands_for == value
             )
             if instead:
-                reason += f"; {_join(instead)} in its place"
+                reason += f"; {_join(instead)} is used instead"
             gaps.append(Gap(attribute, value, reason))
     return gaps
 

@@ -1,7 +1,9 @@
 """Find methods that have more than one name, over pages, docs and the help of commands.
 
 A pipeline is named ``extractor + model``, such as ``bctm + pinhole``. Another separator between the
-name of an extractor and the name of a model (``>``, an arrow) is a second name.
+name of an extractor and the name of a model (``>``, an arrow) is a second name. Each method has one
+display name (`algorithms.display_names`), which no other method has and which says whether the
+method is our variant of the survey's.
 """
 
 from __future__ import annotations
@@ -11,7 +13,8 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from registry.catalogue import catalogue
+from algorithms.display_names import DISPLAY_NAMES, VARIANT
+from registry.catalogue import Implementation, catalogue
 
 ROOT = Path(__file__).resolve().parents[1]
 #: Where readers meet names: templates, scripts of the page, commands, docs.
@@ -23,6 +26,8 @@ PLACES = (
     "api/cli/**/*.py",
     "registry/*.py",
 )
+#: Start of the summary of a method whose default differs from the survey's form.
+_OURS = "Our variant of "
 SEPARATORS = r"(?:>|→|-&gt;|->|&rarr;)"
 
 
@@ -51,6 +56,40 @@ def second_names(texts: Mapping[str, str], names: Iterable[str]) -> Iterator[tup
                 yield place, number, line.strip()
 
 
+def wrong_display_names(
+    implementations: Iterable[Implementation], shown: Mapping[str, str] = DISPLAY_NAMES
+) -> Iterator[str]:
+    """Give each fault of the display names.
+
+    Parameters
+    ----------
+    implementations : iterable of Implementation
+        Of the catalogue.
+    shown : mapping of str to str
+        Display names by identifier.
+
+    Yields
+    ------
+    str
+        Identifier with the fault: none, that of another method, or one that hides or invents that
+        the method is our variant of the survey's.
+    """
+    summaries: dict[str, str] = {}
+    for one in implementations:
+        for part in one.name.split(" + "):
+            summaries.setdefault(part, one.summary if part == one.name else "")
+    names = list(shown.values())
+    for name, summary in summaries.items():
+        display = shown.get(name)
+        if display is None:
+            yield f"{name}: no display name"
+        elif names.count(display) > 1:
+            yield f"{name}: {display} is the name of another method, too"
+        elif summary.startswith(_OURS) != display.endswith(VARIANT):
+            yield f"{name}: {display}: whether it is our variant differs from its summary"
+    yield from (f"{name}: no such method" for name in shown if name not in summaries)
+
+
 def texts(root: Path = ROOT) -> dict[str, str]:
     """Return what readers meet, by path."""
     found = {path for pattern in PLACES for path in root.glob(pattern)}
@@ -63,11 +102,13 @@ def names() -> set[str]:
 
 
 def main() -> int:
-    """Print second names; the exit code is 1 if there are any."""
+    """Print second and wrong names; the exit code is 1 if there are any."""
     found = list(second_names(texts(), names()))
     for place, number, line in found:
         sys.stdout.write(f"{place}:{number}: {line[:120]}\n")
-    return 1 if found else 0
+    wrong = list(wrong_display_names(catalogue().implementations(None)))
+    sys.stdout.writelines(f"{fault}\n" for fault in wrong)
+    return 1 if found or wrong else 0
 
 
 if __name__ == "__main__":

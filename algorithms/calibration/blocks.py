@@ -191,7 +191,7 @@ def best_candidate(
 
     Examples
     --------
-    >>> best([1, 2, 3], lambda order: (order - 2.2) ** 2, "test")[0]
+    >>> best_candidate([1, 2, 3], lambda order: (order - 2.2) ** 2, "test")[0]
     2
     """
     found: list[tuple[float, int]] = []

@@ -49,8 +49,9 @@ class CalibratedModel(Model):
     Parameters
     ----------
     extrapolation : float
-        Allowed extrapolation beyond the hull, as a share of its half width (signals: radians), at
-        least 0; infinity: unlimited. Half a step between poses is always allowed.
+        Allowed extrapolation beyond the calibrated region, as a share of its half width (for
+        signals: in radians), at least 0; infinity: unlimited. Half the distance between
+        neighbouring poses is always allowed.
 
     Attributes
     ----------

@@ -25,10 +25,10 @@ class DialModel(CalibratedModel):
     focal_length_mm : float
         Nominal distance from the slit to the dials, positive.
     axes : tuple of {"x", "y"}
-        Along which detector axis each dial lies, in the order of the features.
+        Detector axis along which each dial lies, in the order of the features.
     smallest_contrast : float
-        Amplitude of the fine rows over their mean, in [0, 1), below which they say nothing; a
-        slit of half a period gives 2/pi, light without a pattern 0.
+        Smallest contrast (amplitude over mean) of the fine rows that is accepted, in [0, 1). A slit
+        of half a period has a contrast of 2/pi, light without a pattern 0.
 
     Notes
     -----

@@ -48,7 +48,7 @@ class SlitModel(ForwardModel):
     focal_length_mm : float
         Nominal distance from the slits' middle to the lines, positive.
     pixel_pitch_mm : float
-        Distance of two pixels, positive.
+        Distance between pixels, positive.
     centre_px : tuple of two float
         Spot (x, y) when the Sun is on the boresight.
     line_axes : tuple of {"x", "y"}

@@ -181,7 +181,7 @@ class AdaptiveKalman(ExtendedKalman):
     considered : tuple of int
         As `ExtendedKalman`.
     window : float
-        Readings over which the noise is averaged, above 1.
+        Number of readings over which the noise is averaged, above 1.
     least : float
         Share of the space's own variance below which none falls.
     most : float
@@ -233,7 +233,7 @@ class RobustKalman(ExtendedKalman):
     considered : tuple of int
         As `ExtendedKalman`.
     limit : float
-        Standard deviations up to which a reading counts in full, positive.
+        Number of standard deviations up to which a reading has full weight, positive.
 
     Examples
     --------

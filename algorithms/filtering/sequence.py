@@ -64,19 +64,19 @@ class SunFilter(Model):
     face_normals : tuple of K vectors
         Nominal unit normals of faces in the order of the features; none for spots and balances.
     angle_walk_deg_sqrt_h : float
-        The gyroscope's angle random walk, positive.
+        Angle random walk of the gyroscope, positive.
     bias_deg_h : float
-        Standard deviation of its bias when switched on, positive.
+        Standard deviation of the gyroscope's bias at switch-on, positive.
     bias_walk_deg_h_sqrt_h : float
-        Of what its bias moves in an hour, positive.
+        Standard deviation of the change of the bias in an hour, positive.
     reference_deg : float
-        1-sigma, about each axis, of a fixed turn of the device that gave the calibration's
-        directions, positive.
+        Standard deviation, about each axis, of a constant rotation of the reference of the
+        calibration, positive.
     gain_ageing_per_year, shift_ageing_per_year : float
-        1-sigma of what a year changes, positive: a face's gain against the others', and a spot's
-        offsets over the focal length.
+        Standard deviation of the change in a year, positive: of a face's gain relative to the
+        others, and of a spot's offsets over the focal length.
     worst_deg : float
-        1-sigma of a direction beyond which it is not answered, positive.
+        Largest standard deviation of an answered direction, positive; above it the answer is NaN.
 
     Attributes
     ----------
@@ -100,18 +100,18 @@ class SunFilter(Model):
     -----
     State: the Sun's direction in the body frame, the gyroscope's bias and, before faces, the
     light's strength; ``s' = exp(-[(w - b) dt]) s``, ``z = h(s) + v`` with h as the calibration
-    found it, warmth and the Earth's light by nadir included. The turn of the calibration's
-    reference is considered, not estimated, and so is what ages.
+    found it, warmth and the Earth's light by nadir included. The rotation of the calibration's
+    reference and the ageing are considered, but not estimated.
 
     Shapes: signals (N, K), or spots or balances (N, 2), in the order of time, with the context's
     columns, to unit vectors (N, 3).
 
     Failure: a NaN row for a NaN feature row, in eclipse and in the dark, at the first reading of a
-    series, and where the 1-sigma is beyond `worst_deg`. A series ends where time does not go on by
-    a step. fit raises UnusableDataError for fewer than 60 samples in sunlight, or where these do
-    not determine how the sensor reads a Sun.
+    series, and where the 1-sigma is beyond `worst_deg`. A gap in time ends a series. fit raises
+    UnusableDataError for fewer than 60 samples in sunlight, or where these do not determine how the
+    sensor reads a Sun.
 
-    Cost: 40 us a step on the development machine.
+    Cost: 40 us per step on the development machine.
     """
 
     face_normals: Normals = ()

@@ -34,7 +34,7 @@ class ExtendedKalmanFilter(SunFilter):
     -----
     Implements: the online section's EKF, of the filters that model:mnc names.
 
-    Cost: 20 us a step on the development machine.
+    Cost: 20 us per step on the development machine.
 
     Examples
     --------
@@ -53,8 +53,9 @@ class ExtendedKalmanFilter(SunFilter):
 class CubatureKalmanFilter(SunFilter):
     """Cubature Kalman filter of the Sun direction in a rotating body.
 
-    Covariances go through dynamics and readings by the cubature rule of third degree: 2 n points
-    of equal weight, none in the middle. It has no tuning parameter and no negative weight.
+    Covariances are propagated through dynamics and measurements by the cubature rule of third
+    degree: 2 n points of equal weight, none in the centre. It has no tuning parameter and no
+    negative weight.
 
     Notes
     -----
@@ -83,8 +84,9 @@ class CubatureKalmanFilter(SunFilter):
 class UnscentedKalmanFilter(SunFilter):
     """Unscented Kalman filter of the Sun direction in a rotating body.
 
-    Covariances go through dynamics and readings by points on both sides of the estimate, so that
-    their curvature counts and no derivative is needed. Points of directions lie on the sphere.
+    Covariances are propagated through dynamics and measurements by points on both sides of the
+    estimate, which includes curvature and needs no derivatives. The points of directions lie on the
+    sphere.
 
     Parameters
     ----------
@@ -126,18 +128,18 @@ class RobustKalmanFilter(SunFilter):
     """Extended Kalman filter with bounded influence of outliers.
 
     An innovation beyond a number of standard deviations gets a proportionally larger variance
-    (Huber), so its influence is bounded. Readings within count in full.
+    (Huber), so its influence is bounded. Readings within this limit have full weight.
 
     Parameters
     ----------
     limit : float
-        Standard deviations up to which a reading counts in full, positive.
+        Number of standard deviations up to which a reading has full weight, positive.
 
     Notes
     -----
     Implements: the online section's RKF, of the filters that model:mnc names.
 
-    Cost: 30 us a step on the development machine.
+    Cost: 30 us per step on the development machine.
 
     Examples
     --------
@@ -169,12 +171,12 @@ class AdaptiveKalmanFilter(SunFilter):
     """Extended Kalman filter that estimates the measurement noise while running.
 
     The measurement noise of the next update is the running mean of squared residuals plus the
-    remaining uncertainty of the state. It is overconfident if errors last.
+    remaining uncertainty of the state. It is overconfident if errors are correlated in time.
 
     Parameters
     ----------
     window : float
-        Readings over which the noise is averaged, above 1.
+        Number of readings over which the noise is averaged, above 1.
 
     Notes
     -----
@@ -212,18 +214,19 @@ class MultipleModelEstimation(SunFilter):
     """Mixture of extended Kalman filters with different measurement noise.
 
     Each filter assumes another multiple of the calibration's noise and is weighted by the
-    likelihood of all readings so far. The direction is that of their mean.
+    likelihood of all readings so far. The answer is the weighted mean of their directions.
 
     Parameters
     ----------
     noise_scales : tuple of float
-        Standard deviation of readings, over the calibration's, that each filter expects; positive.
+        Standard deviation of the readings assumed by each filter, relative to that of the
+        calibration; positive.
 
     Notes
     -----
     Implements: the online section's MMAE, of the filters that model:mnc names: Magill's bank.
 
-    Cost: 50 us a step on the development machine.
+    Cost: 50 us per step on the development machine.
 
     Examples
     --------
@@ -257,18 +260,19 @@ class MultipleModelEstimation(SunFilter):
 class ConsiderKalmanFilter(SunFilter):
     """Extended Kalman filter that accounts for calibration errors without estimating them.
 
-    Gains and the Earth's brightness, or focal length and offsets behind a spot, are considered:
-    their covariance and correlation with the direction enter every gain, but they are not
-    estimated. So the stated covariance includes lasting errors.
+    Errors of gains and of the Earth's brightness (for spots: of focal length and offsets) are
+    considered: their covariance and their correlation with the direction enter every filter gain,
+    but they are not estimated. So the stated covariance includes errors that do not average out.
 
     Parameters
     ----------
     gain_deviation : float
-        Of what each face's gain is off, relative, positive.
+        Standard deviation of the relative gain error of each face, positive.
     albedo_deviation : float
-        Of what the Earth's light is off, over what the calibration found, positive.
+        Standard deviation of the albedo relative to the calibrated albedo, positive.
     shift_deviation : float
-        Of offsets, over the focal length, and of the focal length, relative, positive.
+        Standard deviation of the offsets over the focal length, and of the relative focal length,
+        positive.
 
     Notes
     -----
@@ -279,7 +283,7 @@ class ConsiderKalmanFilter(SunFilter):
     integral over the Earth (ours). ``K = P H' S^-1`` with the rows of what is considered set to
     nothing; Joseph's form.
 
-    Cost: 30 us a step on the development machine, for six faces.
+    Cost: 30 us per step on the development machine, for six faces.
 
     Examples
     --------
@@ -327,18 +331,21 @@ class ConsiderKalmanFilter(SunFilter):
 class AssemblyDriftFilter(SunFilter):
     """Extended Kalman filter of the Sun direction and of the sensor's assembly.
 
-    Gains and normals of faces, or turn, focal length and offsets of the head behind a spot, are in
-    the state beside the direction and explain what the measured rotation of the body does not.
-    Each is a random walk with the given deviation per day.
+    The state contains the direction and the assembly: gains and normals of faces, or, for spots,
+    rotation, focal length and offsets. The assembly explains the changes of the readings that the
+    measured rotation of the body does not explain. Each assembly parameter is a random walk with
+    the given standard deviation per day.
 
     Parameters
     ----------
     gain_deviation : float
-        Of what each face's gain is off, relative, positive; one a face.
+        Standard deviation of the relative gain error, positive; one per face.
     turn_deviation_deg : float
-        Of what each face's normal, or the head behind a spot, is turned by, an axis, positive.
+        Standard deviation of the rotation of each face's normal (for spots: of the head) about each
+        axis, positive.
     shift_deviation : float
-        Of offsets, over the focal length, and of the focal length, relative, positive.
+        Standard deviation of the offsets over the focal length, and of the relative focal length,
+        positive.
 
     Notes
     -----
@@ -346,7 +353,7 @@ class AssemblyDriftFilter(SunFilter):
     misalignment by EKF, from what the calibration on the ground found (assembled-faces is its half
     on the ground, for faces). The survey gives no equations since every sensor has its own (ours).
 
-    Cost: 40 us a step on the development machine, for six faces.
+    Cost: 40 us per step on the development machine, for six faces.
 
     Examples
     --------

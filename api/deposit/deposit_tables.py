@@ -201,7 +201,7 @@ def _claims(entries: Sequence[Entry]) -> list[MeasuredTable]:
             "claim_rules",
             DepositedRule,
             "Rules of the claims",
-            "What has to hold for each claim, and what the trials say of it.",
+            "Criteria of each claim, with the result of the trials.",
             claim_tables.rules(entries),
             primary=("claim", "rule"),
             foreign=claimed,

@@ -55,7 +55,8 @@ def counts() -> str:
     refused = sum(row["points"][0]["refused"] > 0 for row in rows)
     return (
         f"Of {len(lawful)} leaders that are calibrated on a bench, half of the draws come within "
-        f"10 % of the floor and answer 95 % of the test split: {said}. By error alone: {alone}. "
+        f"10 % of the floor and answer 95 % of the test split: {said}. Without the condition "
+        f"on answers: {alone}. "
         f"{refused} of {len(rows)} refuse the smallest subset in some draw. The floor is the "
         f"fitted law's for {fitted}, the error with all poses for "
         f"{sum(row['floor'] == 'all' for row in rows)}."

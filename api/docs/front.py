@@ -217,10 +217,10 @@ def _advice() -> str:
     alike = sum(ratio < _ALIKE for ratio in ratios)
     return (
         f"**The literature has a calibration as accurate as any on {alike} of {len(ratios)} "
-        "tasks.** For the architecture ranked first the best calibration that the survey advises "
-        "or a study used is there within 3 % of the best one measured, on the data set where it "
-        f"comes nearest; over all tasks its error is {min(ratios):.1f} to "
-        f"{max(ratios):.1f} times as large (`sunatlas recommend --task Volume`)."
+        "tasks.** On these tasks a calibration that the survey advises or a study used has an "
+        "error within 3 % of the best one measured (architecture ranked first, the data set "
+        f"with the smallest ratio). Over all tasks the ratio is {min(ratios):.1f} to "
+        f"{max(ratios):.1f} (`sunatlas recommend --task Volume`)."
     )
 
 

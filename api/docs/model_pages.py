@@ -16,6 +16,7 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
+from algorithms.display_names import display_name
 from api.docs import field_plots
 from api.docs.field_plots import PlottedPipeline
 from api.docs.knowledge import knowledge
@@ -47,7 +48,7 @@ _FRAME = """\
 <!-- generated: measured -->
 <!-- end: measured -->
 
-## What they leave over the field
+## Remaining errors over the field
 
 <!-- generated: picture -->
 <!-- end: picture -->
@@ -120,11 +121,16 @@ def models(category: str) -> str:
         *ahead, _ = one.name.split(" + ")
         summary = one.summary.rpartition(" Then ")[0] if ahead else one.summary
         name = " + ".join(ahead) if ahead else one.name
-        row = (f"`{name}`", knowledge().taxonomy.name("model", one.taxonomy), summary)
+        row = (
+            f"`{name}`",
+            display_name(name),
+            knowledge().taxonomy.name("model", one.taxonomy),
+            summary,
+        )
         rows.setdefault(row, {}).update(dict.fromkeys(one.studies))
         chains.setdefault(row, []).append(f"`{one.name}`")
     return table(
-        ("name", "model of the survey", "what it does", "studies", "scored as"),
+        ("identifier", "name", "model of the survey", "what it does", "studies", "scored as"),
         [
             (*row, ", ".join(studies), ", ".join(chains[row]) if " + " in chains[row][0] else "")
             for row, studies in rows.items()
@@ -161,8 +167,8 @@ def measure(category: str) -> str:
         )
     header = ("model", "data sets", "first on", "nearest its bound on", "behind")
     said = (
-        "Under the first condition of each data set, with whichever extractor serves best; "
-        f"pipelines that answer less than {AVAILABLE:.0%} are left out."
+        "Under the first condition of each data set, with the best extractor for each model; "
+        f"pipelines with less than {AVAILABLE:.0%} availability are left out."
     )
     return f"{said}\n\n" + table((*header, "rms error (deg)", "times the bound"), rows)
 
@@ -210,7 +216,7 @@ def picture(category: str) -> str:
     said += "as published"
     if "perfect" in errors:
         said += f", {errors['perfect']:.2g} deg with calibration, unit and readings perfect"
-        said += " ([what that means](../limits.md#what-is-made-perfect))"
+        said += " ([explanation](../limits.md#what-is-made-perfect))"
     name = Path(_picture_of(category)).name
     return f"![Residuals over the field]({name})\n\n{said}."
 

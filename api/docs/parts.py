@@ -38,6 +38,7 @@ def extractors() -> str:
     rows = [
         (
             f"`{i.name}`",
+            i.title,
             i.taxonomy,
             i.summary,
             f"{i.observation} → {i.kind}",
@@ -45,7 +46,9 @@ def extractors() -> str:
         )
         for i in knowledge().catalogue.implementations("extractor")
     ]
-    return _table(("name", "taxonomy", "what it does", "reads → gives", "studies"), rows)
+    return _table(
+        ("identifier", "name", "taxonomy", "what it does", "reads → gives", "studies"), rows
+    )
 
 
 def missing_implementations() -> str:

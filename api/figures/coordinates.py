@@ -19,8 +19,8 @@ from survey_data.reported import QUANTITIES, UNSPECIFIED, reported_accuracies
 NAME = "coordinates"
 TITLE = "Performance in parallel coordinates"
 CAPTION = (
-    "Each line is a sensor of a study: when, of what, how far it sees and how accurate it is "
-    "said to be, as an RMS error. Dashed: the accuracy is of unspecified kind, drawn as printed."
+    "Each line is the sensor of a study: year, detector, mask, field of view and stated accuracy, "
+    "as an RMS error. Dashed: the accuracy is of unspecified kind, drawn as printed."
 )
 NUMBERS = ("fov_deg", "accuracy_rms_deg")
 _COLOURS = {None: "c0", "CSS": "c4", "FSS": "c2", "VFSS": "c3", "UFSS": "c1"}

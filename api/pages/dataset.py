@@ -35,7 +35,7 @@ from survey_data.nearest import nearest_name
 router = PageRouter()
 
 EVERY = 500
-FIRST = 25  # rows of a board that are shown at first
+FIRST = 8  # rows of a board that are shown at first
 WARM = 20  # pipelines of the heat map
 BOARD_COLUMNS = (
     *("dataset", "condition", "rank", "group", "tied", "extractor", "model", "status", "own_deg"),

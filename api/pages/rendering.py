@@ -8,6 +8,7 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from algorithms.display_names import display_name
 from api.pages import addresses, numbers, terms
 from api.pages.methods import mark_up
 from api.pages.plots.sensors import sensor
@@ -41,7 +42,9 @@ def environment() -> Environment:
     made.globals.update(
         navigation=NAVIGATION, sensor=sensor, glossary=terms.glossary(), **vars_of(addresses.GIVEN)
     )
-    made.filters.update(mark_up=mark_up, **vars_of(numbers.GIVEN), **vars_of(terms.GIVEN))
+    made.filters.update(
+        mark_up=mark_up, display_name=display_name, **vars_of(numbers.GIVEN), **vars_of(terms.GIVEN)
+    )
     return made
 
 

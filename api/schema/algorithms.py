@@ -18,6 +18,7 @@ class Algorithm(Shape):
     """An implementation."""
 
     name: str
+    title: str = Field(description="Display name.")
     role: Role
     taxonomy: str
     category: str | None

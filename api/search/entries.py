@@ -76,7 +76,7 @@ def _algorithms(known: EntrySources) -> Iterator[Entry]:
         yield Entry(
             kind="algorithm",
             id=one.name,
-            title=f"{one.name} ({one.role})",
+            title=f"{one.title} ({one.name})",
             words=f"{one.taxonomy} {values.get(one.taxonomy, '')} {one.category or ''} "
             f"{' '.join(one.labels)} {' '.join(map(labels.name, one.labels))}",
             text=f"{one.summary} {'; '.join(one.studies)}".strip(),

@@ -137,8 +137,9 @@ _APPLIES = (
     "the data sets with {which}: whether a sensor built as the survey marks it works"
 )
 _RECORDED = (
-    "the table marks the {part} its case study used. Its 0 says that the study used another, which "
-    "no measurement contradicts: what the method reaches with this {part} is stated, not judged"
+    "the survey's table marks the {part} used in the case study of a method. A 0 means that the "
+    "study used another {part}, which no measurement can contradict; the measured value is given "
+    "for information"
 )
 
 
@@ -172,8 +173,8 @@ _ALL = (
     Definition(
         "No pre-processing",
         "",
-        "the table marks methods that are published without a step before extraction (the text: "
-        "BCM has none, BCTM thresholds, IFM filters, MCAM and DBCM threshold first). That is a "
+        "the survey's table marks methods that are published without pre-processing (its text: "
+        "BCM has none, BCTM thresholds, IFM filters, MCAM and DBCM threshold first), which is a "
         "property of the published steps. An outcome does not show which steps lie inside: a "
         "pedestal (sweep `pedestal`) spares methods that remove it themselves, which the table "
         "scores 0, and spoils a plain first moment, which it scores 2",
@@ -236,9 +237,9 @@ _ALL = (
         "smallest own error (rms) behind the best model, with 90 % found, in the nominal condition "
         "of `ccd-lens`, whose saturated pixels spill along their columns",
         "claimed",
-        "the table marks methods that take spilt charge as their feature (the text: BSCM and BHT "
-        "exploit blooming lines). Its 0 says that a method does not, which an answer in spite of "
-        "blooming does not contradict",
+        "the survey's table marks methods whose feature is spilt charge (its text: BSCM and BHT "
+        "use blooming lines). A 0 means that a method does not use it, which an answer in spite "
+        "of blooming does not contradict",
         unit="deg",
         full=0.5,
         partly=5.0,
@@ -278,11 +279,11 @@ _ALL = (
         "2 px of the middle (sweep `location`), with 90 % found of both; over the bound, because a "
         "sensor that tells less off its middle is not the method's doing",
         "failed",
-        "the table means performance independent of where the spot falls (the text, of BSCM), on "
-        "sensors whose spot changes its shape with the angle of incidence. The reference features "
-        "look alike wherever they fall: an error that grows here shows a method that depends on "
-        "the place, one that does not grow shows nothing. Rings of the scores hold the model, the "
-        "geometry and vignetting too",
+        "the survey's table means performance that does not depend on the position of the spot "
+        "(its text, of BSCM), on sensors whose spot changes its shape with the angle of "
+        "incidence. The reference features look alike wherever they fall: an error that grows "
+        "here shows a method that depends on the place, one that does not grow shows nothing. "
+        "Rings of the scores hold the model, the geometry and vignetting too",
         unit="times",
         full=1.5,
         partly=3.0,

@@ -57,7 +57,7 @@ def references_used(preset: Preset) -> str:
     """Say which references of the unit a data set's methods are given, in a few words."""
     sensor, offered = _sensor(preset, preset.conditions[0]), cast("Any", preset).offered
     if not isinstance(sensor, UnitSpread):
-        return "none: no reference readings are simulated for lens cameras and event arrays"
+        return "nothing (lens cameras and event arrays have no dark and flat readings)"
     pixels = getattr(getattr(sensor, "detector", None), "full_scale_dn", None) is not None
     also = ", bad-pixel map" if pixels else ""
     return f"mean of {offered.darks} dark and {offered.flats} flat readings{also}"

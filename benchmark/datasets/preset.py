@@ -194,7 +194,7 @@ class Preset:
 
     def with_ideal_calibration(self) -> Self:
         """Return the dataset with one condition more: the first one, perfectly calibrated."""
-        said = "As nominal, calibrated perfectly: true direction and light of the Sun."
+        said = "As nominal, but calibrated with true directions and an ideal lamp."
         shown = dataclasses.replace(next(iter(self.setups.values())), description=said, bench=None)
         return dataclasses.replace(self, setups={**self.setups, IDEAL: shown})
 

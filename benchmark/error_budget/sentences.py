@@ -1,4 +1,4 @@
-"""What a row of the table says in words: the part of the chain that holds a pipeline back.
+"""State the main error source of a pipeline, in a sentence.
 
 Errors of independent parts add as squares. What a part contributes is the root of the squares'
 difference between the chain as it is and the chain with that part perfect; of extractor, model
@@ -16,21 +16,21 @@ from benchmark.error_budget.variants import SINGLE
 
 Row = Mapping[str, Any]
 
-#: A pipeline whose own error is at most so many times its bound is not held back by anything.
+#: Ratio of own error to bound up to which no error source is named.
 NEAR = 2.0
 
 #: Every part, in the order of ties, with what it is called.
 PARTS: Mapping[str, str] = {
-    "lamp": "the calibration's lamp",
-    "calibration_noise": "noise of the calibration's readings",
+    "lamp": "the lamp of the calibration bench",
+    "calibration_noise": "noise of the calibration readings",
     "noise": "noise of the readings",
     "references": "noise of the dark and flat readings",
-    "fixed_pattern": "the fixed pattern of elements and mask",
+    "fixed_pattern": "the fixed pattern of detector elements and mask",
     "surroundings": "the orbit (Earth light, drift, ageing)",
     "poses": "the number of calibration poses",
     "extractor": "the extractor's bias",
-    "model": "the model's form",
-    "method": "the method itself (extractor and model are not distinguished)",
+    "model": "a model that does not describe the sensor fully",
+    "method": "extractor and model together",
 }
 _WITHOUT: Mapping[str, str] = {
     "lamp": "with an even, steady lamp",
@@ -44,7 +44,7 @@ _WITHOUT: Mapping[str, str] = {
 
 @dataclass(frozen=True)
 class Verdict:
-    """What holds one pipeline back.
+    """Main error source of a pipeline.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ def verdict(row: Row) -> Verdict:
     said += f"{degrees(row['rms_deg'])}, {times(ratio)} its bound"
     if ratio <= NEAR:
         return Verdict(True, parts, leading, f"{said}.")
-    said += f"{_judged(row)}; {_measured(row, leading)}: {_blame(row, parts, leading)}."
+    said += f"{_judged(row)}; {_measured(row, leading)}. {_blame(row, parts, leading)}."
     return Verdict(False, parts, leading, said)
 
 
@@ -131,9 +131,9 @@ def _measured(row: Row, part: str) -> str:
         return f"{_WITHOUT[part]} it is {_against(row, part)}"
     said = f"with calibration, unit and readings perfect it is {_against(row, 'perfect')}"
     if part == "extractor":
-        return f"{said}, with the spots' true positions {degrees(row['places_deg'])}"
+        return f"{said}, with the true spot positions {degrees(row['places_deg'])}"
     if row["places_deg"] is not None and part == "model":
-        return f"{said}, with the spots' true positions {_against(row, 'places')}"
+        return f"{said}, with the true spot positions {_against(row, 'places')}"
     if row["perfect_dense_deg"] is not None:
         return f"{said}, fitted to the test poses as well {degrees(row['perfect_dense_deg'])}"
     return said
@@ -150,7 +150,7 @@ def _blame(row: Row, parts: Mapping[str, float], part: str) -> str:
     name = PARTS[part]
     if part == "noise" and ratio > NEAR:
         name = f"noise, {times(ratio)} what the bound allows (the extractor does not use all light)"
-    return f"{name} holds it back" + ("" if most else " most")
+    return f"{'Main' if most else 'Largest'} error source: {name}"
 
 
 def _judged(row: Row) -> str:

@@ -62,18 +62,19 @@ def _lines(seed: int, found: Sequence[DrawnRequirement]) -> Iterator[str]:
     there = sum(one.first_deg["advice"] <= 1.2 * one.best_there_deg for one in met)
     spread = _spread([ratio for ratio in known if ratio > 1.0])
     yield f"{len(found)} requirement sets (seed {seed}): {len(met)} are met by a measured pipeline"
-    yield f"sort=measured: the first calibration named is the best one in {first} of {len(met)}"
+    yield f"sort=measured: the first calibration is the most accurate one in {first} of {len(met)}"
     yield (
-        f"sort=advice: the first calibration named is the best one in {known.count(1.0)}, is not "
-        f"measured or answers too seldom in {len(met) - len(known)}; the others err {spread}"
+        f"sort=advice: the first calibration is the most accurate one in {known.count(1.0)}, and "
+        f"is not measured or below 95 % availability in {len(met) - len(known)}; error ratio of "
+        f"the others: {spread}"
     )
     yield (
-        f"sort=advice: it errs at most 1.2 times the best one of its architecture in {there} "
-        f"of {len(met)}; by the measure of the tasks its architecture is within twice the best "
-        f"of those with advice or studies in {sum(one.own_ratio <= 2.0 for one in owned)} of "
-        f"the {len(owned)} where one of those has it"
+        "sort=advice: its error is at most 1.2 times that of the best calibration of its "
+        f"architecture in {there} of {len(met)}; by the measure of the tasks its architecture is "
+        "within twice the best advised or studied one in "
+        f"{sum(one.own_ratio <= 2.0 for one in owned)} of {len(owned)}"
     )
-    yield f"the answer tells another regret than brute force finds in {len(broken)} of {len(found)}"
+    yield f"the stated regret differs from that of brute force in {len(broken)} of {len(found)}"
     for one in broken:
         numbers = f"{one.first_deg}, best {one.best_deg}, stated {one.stated_ratio}"
         yield f"  {dict(one.requirements)}: {numbers}"

@@ -22,17 +22,14 @@ ROLES: tuple[Role, ...] = get_args(Role)
 WITHIN = (1.5, 3.0, 10.0)
 
 SAYS = (
-    "A board is a data set under its first condition. A part - an extractor, "
-    "a compensation, a model - ran on a board where any pipeline with it is scored there, refused "
-    "ones among them. It is judged there by the one of these pipelines that comes nearest to the "
-    "bound and answers at least 95 % of the observable samples, so its partners are at their best, "
-    "too; a chain such as optical + lut counts for each of its members. A share is the number of "
-    "boards on which that pipeline errs at most 1.5, 3 or 10 times the Cramer-Rao bound on the "
-    "standard unit, over "
-    "all boards with a bound on which the part ran: every board counts once, whatever its sensor, "
-    "and one without an answer counts as far. The median is over the boards where it has one. "
-    "Parts run on different boards, some of which nothing comes near; the last column is on how "
-    "many of a part's boards any pipeline comes within 10."
+    "A board is a data set under its first condition. A part is an extractor, a compensation or "
+    "a model. On each board a part is judged by its best pipeline: the one nearest to the "
+    "Cramer-Rao bound with at least 95 % availability. A chain such as optical + lut counts for "
+    "each of its members. Within 1.5×, 3×, 10×: share of the part's boards on which the error of "
+    "this pipeline is at most that many times the bound on the standard unit; a refused or "
+    "unavailable pipeline counts as not within. The median is over the boards with a result. "
+    "Parts run on different boards, and on some boards no pipeline is near the bound; the last "
+    "column counts the part's boards on which any pipeline is within 10 times the bound."
 )
 
 

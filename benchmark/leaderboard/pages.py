@@ -59,22 +59,20 @@ _BEST = (
 _RANKS = 3
 
 LEGEND = (
-    "Own error is the angle between the predicted and the true direction of the Sun, root mean "
-    "square, of a pipeline calibrated with true directions: what sensor and method are good for. "
-    "It is the geometric mean over units of the sensor and includes answers to samples whose "
-    "direction cannot be determined (false Suns cost what they err). Readings are corrected by the "
-    "unit's dark and flat readings. On a bench is the error expected when calibrated on the "
-    "standard bench: the root of the squares of own error and bench. Bound is the Cramer-Rao lower "
-    "bound over the same samples, ± the standard error of the ratio to it, with the unit known; "
-    "the second bound knows the unit by its dark and flat readings. Answered is the share of the "
-    "observable samples, false Suns that of the others that are answered all the same. "
-    "Repeatability is the standard deviation of answers to a pose held still. Pipelines that "
-    "answer less than 95 % rank behind all others. Under the first condition what errs at most "
-    f"{CLOSE:g} times as much as the first is scored on {UNITS} units, what errs at most "
-    f"{BEHIND:g} times as much on {UNITS_BEHIND}; those that a paired test over the units does not "
-    "tell apart share a rank, marked =. The best pipeline of each extractor stands first, the "
-    "others behind. Studies is the number of mapped studies that used a pipeline on such a sensor, "
-    "or for which it stands in where they do not state theirs."
+    "Own error: angle between the predicted and the true direction of the Sun, RMS, for a "
+    "pipeline calibrated with true directions. It is the geometric mean over sensor units and "
+    "includes the errors of false detections. Readings are corrected by the unit's dark and flat "
+    "readings. On a bench: error expected with the standard calibration bench, the root sum of "
+    "squares of own error and bench error. Bound: Cramer-Rao bound over the same samples for a "
+    "known sensor unit, ± the standard error of the ratio; the second bound is for a unit known "
+    "only through its dark and flat readings. Answered: share of the observable samples with an "
+    "answer; false Suns: share of the other samples with an answer. Repeatability: standard "
+    "deviation of the answers to a constant direction. Pipelines below 95 % availability rank "
+    f"last. Under the first condition, pipelines with at most {CLOSE:g} times the error of the "
+    f"first are scored on {UNITS} units, those with at most {BEHIND:g} times on {UNITS_BEHIND}; "
+    "pipelines that a paired test over the units cannot separate share a rank, marked =. The best "
+    "pipeline of each extractor comes first. Studies: number of mapped studies that used a "
+    "pipeline on such a sensor, or that it represents if they do not state theirs."
 )
 
 

@@ -96,30 +96,11 @@ def cramer_rao(  # noqa: PLR0917 - memory and time come last
     batch: int | None = None,
     references: References | None = None,
 ) -> Bound:
-    """Bounds of the direction with sunlight and stray light unknown.
+    """Return the Cramer-Rao bounds of the direction, with sunlight and stray light unknown.
 
-    Two of them: the unit known, and the unit known as far as `references` tell.
-
-    The Fisher matrix of (two tangent axes, irradiance, stray light) is ``J^T V^-1 J`` with J
-    from differences of `Sensor.expected` and V from `Sensor.variance`, with what elements share
-    (`SharesNoise`) off its diagonal. The two nuisances enter
-    with the spread they are drawn with (``1/spread^2`` on the diagonal: the hybrid bound,
-    exact for Gaussian nuisances). Fixed pattern, assembly and light from the Earth count as
-    known, so the bound holds for every estimator, however well it is calibrated.
-
-    Who does not know the unit has its elements' gains and dark signals for nuisances, too, with
-    the spread that is left after flat and dark readings. They are independent from element to
-    element, so that marginalising them adds to V what `UnitSpread.unit_variance` says, and columns'
-    offsets add to what a column's elements share; assembly
-    stays known, and which directions are observable is settled with the unit known. Both bounds
-    come of the same signals.
-
-    A direction is not observable where the matrix is singular, or where the bound is not a
-    statement about the neighbourhood it was computed in: moving the Sun by one standard
-    deviation along the weakest axis must change the signal by between half and twice of what
-    the derivatives promise (a photodiode about to go dark does not). Where a standard deviation
-    is less than the differences' step, the step itself must, along either tangent axis and to
-    either side: a test further out, whose signals are there already.
+    The first bound is for a known sensor unit, the second for a unit known only through its
+    `references`. Fixed pattern, assembly and albedo count as known in the first, so it holds for
+    every estimator, however well it is calibrated.
 
     Parameters
     ----------
@@ -137,6 +118,25 @@ def cramer_rao(  # noqa: PLR0917 - memory and time come last
     ValueError
         When irradiance or stray light are drawn without spread: a known nuisance is not one.
         When `step_rad` is not positive.
+
+    Notes
+    -----
+    The Fisher matrix of (two tangent axes, irradiance, stray light) is ``J^T V^-1 J`` with J
+    from differences of `Sensor.expected` and V from `Sensor.variance`, with noise that elements
+    share (`SharesNoise`) off its diagonal. The two nuisances enter with the spread they are drawn
+    with (``1/spread^2`` on the diagonal: the hybrid bound, exact for Gaussian nuisances).
+
+    In the second bound gains and dark signals of the elements are nuisances, too, with the spread
+    that remains after flat and dark readings. They are independent between elements, so
+    marginalising them adds `UnitSpread.unit_variance` to V, and offsets of columns add to the noise
+    that a column's elements share. The assembly stays known, and observability is decided with the
+    unit known.
+
+    A direction is not observable if the matrix is singular, or if the derivatives do not describe
+    the neighbourhood of the direction: moving the Sun by one standard deviation along the weakest
+    axis must change the signal by half to twice the change predicted by the derivatives (for a
+    photodiode about to go dark it does not). If a standard deviation is smaller than the step of
+    the differences, the step itself is tested, in both directions along either tangent axis.
     """
     if not step_rad > 0:
         raise ValueError(f"step_rad must be positive; got {step_rad}")

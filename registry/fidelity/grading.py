@@ -129,7 +129,7 @@ def _sensor(study: Study, pipelines: Sequence[RunnablePipeline]) -> list[Departu
     weak = [a for a in SENSOR if BASES.index(best.basis[a]) >= BASES.index("recalled")]
     if weak:
         basis = max((best.basis[a] for a in weak), key=BASES.index)
-        said = "recalled" if basis == "recalled" else "chosen"
+        said = "recalled" if basis == "recalled" else "assumed"
         what = " and ".join(f"{a} ({getattr(best, a)})" for a in weak)
         reasons = "; ".join(dict.fromkeys(best.assumed[a] for a in weak))
         return [
@@ -137,7 +137,7 @@ def _sensor(study: Study, pipelines: Sequence[RunnablePipeline]) -> list[Departu
                 "sensor",
                 f"{best.detector} + {best.mask}",
                 f"its {what} {'are' if len(weak) > 1 else 'is'} {said} ({reasons})",
-                f"what the study itself says of its {' and '.join(weak)}"
+                f"the study's own statement of its {' and '.join(weak)}"
                 + (f", and a data set of {_sensor_of(study)}" if _move(study, best) else ""),
             )
         ]
@@ -211,7 +211,7 @@ def _not_stated(
         who = "the survey" if study.edition == SURVEY else "its row"
         text = f"{who} states no {attribute}, so {_names(chosen)} is chosen"
         part: Part = "extractor" if attribute == "extractor" else "model"
-        yield Departure(part, "None", text, f"the study itself, if it has any {attribute}")
+        yield Departure(part, "None", text, f"the {attribute} that the study uses, if any")
 
 
 def _nearest_departure(
@@ -219,7 +219,7 @@ def _nearest_departure(
 ) -> Departure:
     """Return the departure of a method that the taxonomy has only the nearest value for."""
     running = _names([one for one in chosen if value in one.runs])
-    text = f"{name} is not built here" + (f", {running} in its place" if running else "")
+    text = f"{name} is not implemented" + (f"; {running} is used instead" if running else "")
     part: Part = "extractor" if attribute == "extractor" else "model"
     return Departure(part, value, text, f"an implementation of {name}")
 
@@ -238,8 +238,9 @@ def _stated_departures(
     missed = [variant for variant in variants if variant.model == value]
     if not running:
         instead = _names([one for one in chosen if one.stands_for == value])
-        text = f"its {name} is missing" + (f", {instead} in its place" if instead else "")
-        settled = f"an implementation of {value} for this sensor beside its other methods"
+        text = f"its {name} is not implemented"
+        text += f"; {instead} is used instead" if instead else ""
+        settled = f"an implementation of {value} for this sensor"
         yield Departure(part, value, text, settled)
     elif len(missed) == len(running):
         text = f"its {name} runs as another variant ({missed[0].note})"
@@ -271,12 +272,13 @@ def _sentence(
         for value in study.of(attribute)
         if value in running and not study.has_nearest(attribute, value)
     ]
-    methods = f"Its {_list_items(stated)} run{'s' * (len(stated) == 1)}" if stated else "It runs"
     at = best.settings[0]
     more = len(pipelines) - 1
-    lead = f"{methods} as {best.extractor} + {best.model} on {at.dataset} ({at.condition})"
+    lead = f"Implemented as {best.extractor} + {best.model} on {at.dataset} ({at.condition})"
     if more:
-        lead += f" and in {more} more pipeline{'s' * (more > 1)}"
+        lead += f" and {more} more pipeline{'s' * (more > 1)}"
+    if stated:
+        lead += f": {_list_items(stated)}"
     if departures:
         return f"{lead}; {'; '.join(departure.text for departure in departures)}."
     inferred = [a for a in SENSOR if best.basis[a] in ("inferred", "implied")]

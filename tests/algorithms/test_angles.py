@@ -102,5 +102,5 @@ def test_a_turntable_is_two_rotations_one_inside_the_other(inner):
 
 def test_an_axis_that_is_none_is_named():
     for call in (rotations_from_sun, sun_from_rotations):
-        with pytest.raises(ValueError, match="inner must be one of alpha, beta; got 'gamma'"):
+        with pytest.raises(ValueError, match=r"inner.*'gamma'"):
             call(np.ones((1, 3 if call is rotations_from_sun else 2)), "gamma")

@@ -64,9 +64,9 @@ def test_a_name_is_a_slug(name):
     ("wrong", "said"),
     [
         ({"taxonomy": ""}, "middle: taxonomy must not be empty"),
-        ({"origin": "theirs"}, "middle: origin must be survey or ours; got 'theirs'"),
-        ({"version": 0}, "middle: version must be at least 1; got 0"),
-        ({"needs": ("centre_px", "center")}, "needs must be fields of SensorGeometry; got center"),
+        ({"origin": "theirs"}, "middle.*'theirs'"),
+        ({"version": 0}, "middle.*1.*0"),
+        ({"needs": ("centre_px", "center")}, "SensorGeometry.*center"),
     ],
 )
 def test_what_cannot_be_is_named(wrong, said):

@@ -100,7 +100,7 @@ def test_a_row_is_found_or_not():
     [np.zeros((3, 2)), np.zeros((4, 3)), np.zeros(4), np.zeros((4, 2), dtype=np.float32)],
 )
 def test_an_extractor_that_breaks_its_contract_is_named(given):
-    with pytest.raises(ValueError, match=r"given must give float64 features of shape \(4, 2\)"):
+    with pytest.raises(ValueError, match=r"given.*float64.*\(4.*2\)"):
         extract_features(Given(given), np.zeros(4))
 
 
@@ -110,7 +110,7 @@ def test_origins_belong_to_spots_and_to_every_sample():
     np.testing.assert_array_equal(
         extract_features(Given(given), np.zeros(4), origins), given + origins
     )
-    with pytest.raises(ValueError, match=r"origin_px must have shape \(4, 2\); got \(3, 2\)"):
+    with pytest.raises(ValueError, match=r"origin_px.*\(4.*2\).*\(3.*2\)"):
         extract_features(Given(given), np.zeros(4), origins[:3])
 
     @dataclass(frozen=True)

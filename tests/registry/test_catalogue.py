@@ -15,6 +15,7 @@ def test_the_catalogue_lists_what_is_declared_and_what_lacks(survey: Facts) -> N
     assert [entry["taxonomy"] for entry in listed] == ["Direct", "Voltage balance", "BCM", "BCTM"]
     assert listed[-1] == {
         "name": "bctm",
+        "title": "Thresholded centroid (our variant)",
         "role": "extractor",
         "taxonomy": "BCTM",
         "category": "Centroid detection",

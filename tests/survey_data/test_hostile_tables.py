@@ -37,7 +37,7 @@ def test_a_stray_cell_at_the_far_corner_is_named_and_costs_nothing(tmp_path):
         sheet["XFD1048576"] = "x"
 
     said = refusal(workbook(tmp_path / "t.xlsx", far))
-    assert "XFD1048576: a table has at most 256 columns" in said
+    assert "XFD1048576" in said
 
 
 def test_empty_formatted_cells_and_merges_to_the_last_row_are_passed_over(tmp_path):
@@ -70,7 +70,7 @@ def test_formulas_without_values_are_refused_by_the_names_of_their_cells(tmp_pat
     path = workbook(
         tmp_path / "t.xlsx", rows=(("Alvi2014", "Slit", "=0.1*5"), ("Bao2020", "=A1", 1))
     )
-    assert "formulas without a value in C2, B3" in refusal(path)
+    assert "C2, B3" in refusal(path)
 
 
 @pytest.mark.parametrize(

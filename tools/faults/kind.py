@@ -9,16 +9,13 @@ from pathlib import Path
 from typing import Any
 
 #: Why a file that is not as it was may be taken.
-SAME = "reads as before: the damaged bytes have no meaning"
+SAME = "reads as before, because the damaged bytes have no meaning"
 OFFERED = (
-    "is another sound table: nobody knows what it should say, its plan shows every cell that "
-    "differs, and nothing is written unasked"
+    "the damaged table is valid: the plan shows every cell that differs, and nothing is written "
+    "without --apply"
 )
-OTHERS = (
-    "is another sound set of tables: one without a manifest has nothing to be held against, and "
-    "our own has one"
-)
-OWN = "is another sound file of this machine's own times, which are no part of what is published"
+OTHERS = "the damaged tables are valid, and there is no manifest to compare them with; ours has one"
+OWN = "the damaged file is valid; run times of this machine are not published"
 
 
 class RefusedError(ValueError):

@@ -27,7 +27,9 @@ _JINJA = re.compile(r"\{#.*?#\}|\{%.*?%\}|\{\{.*?\}\}", re.DOTALL)
 _INLINE = frozenset(("a", "abbr", "b", "em", "i", "small", "span", "strong", "sub", "sup", "time"))
 _SILENT = frozenset({"script", "style", "svg", "code", "math", "textarea"})
 _SENTENCE_END = re.compile(r"(?<=[.!?])[\"”)]?\s+(?=[\"“(A-Z`-])")
-_ABBREVIATION = re.compile(r"(?:\b(?:e\.g|i\.e|vol|no|pp|vs|approx|Eq|Fig|Sect|\b[A-Z])|^\d+)\.$")
+_ABBREVIATION = re.compile(
+    r"(?:\b(?:e\.g|i\.e|Ap|Proc|vol|no|pp|vs|approx|Eq|Fig|Sect|\b[A-Z])|^\d+)\.$"
+)
 
 
 @dataclass(frozen=True)

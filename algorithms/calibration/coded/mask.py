@@ -86,13 +86,13 @@ class CodedMask(ForwardModel):
     Parameters
     ----------
     apertures_px : tuple of (x, y, width)
-        The mask's apertures, px from its middle; four at least.
+        Positions of the apertures of the mask, px from its middle; at least four.
     spots : int
-        Length of the lists, at least 3.
+        Number of spots per list, at least 3.
     focal_length_mm, pixel_pitch_mm : float
-        Nominal distance from mask to detector, and of two pixels; positive.
+        Nominal distance from mask to detector, and distance between pixels; positive.
     centre_px : tuple of two float
-        Where the boresight meets the detector.
+        Point where the boresight meets the detector.
     size_px : tuple of two float
         Width and height of the detector, positive.
     layers : tuple of (thickness mm, index)
@@ -101,18 +101,18 @@ class CodedMask(ForwardModel):
         Largest distance of a spot from its aperture's place along an axis, positive; below half of
         what tells two spacings of the code apart.
     size_tolerance : float or None
-        Largest relative error of an aperture's width as estimated from its spot's light, positive;
-        None where sizes are no code.
+        Largest relative error of an aperture's width estimated from the light of its spot,
+        positive; None if sizes are not part of the code.
     half_fov_deg : float or None
-        Edge of the field of view, in (0, 90): a place more than 2 degrees beyond it along an axis
-        is no answer. None for no such edge.
+        Edge of the field of view, in (0, 90); directions more than 2 degrees beyond it along an
+        axis give NaN. None for no such edge.
     agreeing : int
-        Spots that must agree on a place, at least 3.
+        Number of spots that must agree on a position, at least 3.
     odds : float
-        By how much likelier than any other the place must make the spots, at least 1: where these
-        lie as far from their places as the code's steps are wide, none is.
+        Required ratio of the likelihood of the best position to that of any other, at least 1. If
+        spots are displaced by as much as the steps of the code, no position reaches it.
     share : float
-        Of the spots, and of the apertures in view, that must agree, in (0, 1].
+        Share of the spots, and of the apertures in view, that must agree, in (0, 1].
 
     Attributes
     ----------

@@ -21,8 +21,8 @@ class PeriodicSlitModel(DeflectedSlits):
     Parameters
     ----------
     smallest_contrast : float
-        Length of the phase over the light, in [0, 1), below which it says nothing; light without a
-        pattern has none.
+        Smallest contrast of the pattern that is accepted, in [0, 1); light without a pattern has a
+        contrast of 0.
 
     Attributes
     ----------

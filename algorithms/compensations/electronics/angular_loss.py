@@ -57,17 +57,18 @@ class AngularLoss(CalibratedCompensation):
 
     Notes
     -----
-    Implements: eq:kellycos (model:nonlin, Yousefian2017): ``I_i = alpha_s I_0,i (-0.369 c^3 +
-    0.637 c^2 + 0.750 c - 0.015) + eta_i``, solved for c; ``alpha_s I_0,i`` is learnt, a face each,
-    by least squares over samples that light it. The printed cubic is 1.003 at c = 1, and 0 within
-    1.1 degrees of grazing: darker signals give a cosine of 0. The fitted one is ours.
+    Implements: eq:kellycos (model:nonlin, Yousefian2017): ``I_i = alpha_s I_0,i (-0.369 c^3 + 0.637
+    c^2 + 0.750 c - 0.015) + eta_i``, solved for c; ``alpha_s I_0,i`` is learnt, a face each, by
+    least squares over samples that light it. The printed cubic is 1.003 at c = 1, and 0 within 1.1
+    degrees of grazing: darker signals give a cosine of 0. The survey has only the published cubic.
 
     Shapes: signals (N, K), in any common unit, to cosines (N, K) in [0, 1.2].
 
     Failure: a NaN row for a NaN feature row. fit raises UnusableDataError where fewer than 8
-    samples light a face, or a lit face's signal is not positive. Normals are taken as drawn.
+    samples light a face, or a lit face's signal is not positive. The normals of the drawing are
+    used.
 
-    Cost: 6 Newton's steps of 12 operations a face.
+    Cost: 6 Newton's steps of 12 operations per face.
 
     Examples
     --------

@@ -49,7 +49,7 @@ class SolarDiscBias(CalibratedCompensation):
 
     Failure: a NaN row for a NaN feature row.
 
-    Cost: 30 operations a sample.
+    Cost: 30 operations per sample.
 
     Examples
     --------

@@ -59,7 +59,7 @@ class TemperatureDrift(CalibratedCompensation):
     Failure: a NaN row for a NaN feature row or temperature. fit raises UnusableDataError where the
     temperature stays the same, or fewer than 12 samples light a face.
 
-    Cost: 3 operations a face.
+    Cost: 3 operations per face.
 
     Examples
     --------

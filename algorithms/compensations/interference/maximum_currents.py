@@ -18,8 +18,8 @@ from algorithms.documented import documented
 class MaximumCurrents(CubeCurrents):
     """Brighter face of each opposite pair; light on the darker face is attributed to the Earth.
 
-    Sunlight is stronger than albedo, and never reaches both faces of a pair. Earthlight on a
-    sunlit face remains.
+    Sunlight is stronger than albedo and never reaches both faces of a pair. Earthlight on a sunlit
+    face remains.
 
     Notes
     -----
@@ -31,7 +31,7 @@ class MaximumCurrents(CubeCurrents):
     Failure: a NaN row for a NaN feature row. fit raises UnusableDataError where no sample lights a
     face.
 
-    Cost: 5 operations a face.
+    Cost: 5 operations per face.
 
     Examples
     --------

@@ -38,9 +38,9 @@ _SETTLED = 1e-3
 class PinholeShadow(CalibratedCompensation):
     """Spots of a thick round hole corrected for shadowing of the outline by its rims.
 
-    The lower rim ends the spot on its far side and the upper rim on its near side. Lit by one ray
-    their mean is the mask's middle, from which drawings count. The Sun is a disc: its outer limb
-    is the last to pass the lower rim, its inner limb the last to pass the upper one, so that the
+    The lower rim limits the spot on its far side, the upper rim on its near side. For a single ray
+    their mean is the middle of the mask, from which drawings measure the focal length. Because the
+    Sun is a disc, its outer limb passes the lower rim last and its inner limb the upper rim, so the
     middle of the outline lies nearer to the boresight.
 
     Parameters
@@ -48,7 +48,7 @@ class PinholeShadow(CalibratedCompensation):
     focal_length_mm : float
         Distance from the mask's middle to the detector, ``h + t / 2``, positive.
     thickness_mm : float
-        Of the mask, t, positive, less than twice the focal length.
+        Thickness t of the mask, positive, less than twice the focal length.
     aperture_mm : float
         Its hole's diameter d, positive.
 
@@ -60,14 +60,14 @@ class PinholeShadow(CalibratedCompensation):
 
     Notes
     -----
-    Implements: eq:shadcomp (model:shad, Antonello2018) under the limbs of model:solar. With
-    ``T+- = tan(theta +- rho)`` the outline goes from ``h T- + t max(T-, 0) - d / 2`` to ``h T+ +
-    d / 2``; its middle falls short of ``(h + t / 2) (T+ + T-) / 2`` by ``t / 4 min(T+ + T-, T+ -
-    T-)``. The survey's arcs have parallel light: then both rims' mean, ``(R_C0 + R_C1) / 2``, is
-    the mask's middle and nothing is left to correct in a drawing that counts from there. How much
-    of the shift a method shows depends on the height at which it cuts the spot; that share is
-    learnt (ours), by least squares beside offsets, turns and tilts of the head (third order in
-    the tangents). `solar-disc` behind takes ``(T+ + T-) / 2`` to ``tan(theta)``.
+    Implements: eq:shadcomp (model:shad, Antonello2018) under the limbs of model:solar. With ``T+- =
+    tan(theta +- rho)`` the outline goes from ``h T- + t max(T-, 0) - d / 2`` to ``h T+ + d / 2``;
+    its middle falls short of ``(h + t / 2) (T+ + T-) / 2`` by ``t / 4 min(T+ + T-, T+ - T-)``. The
+    survey's arcs have parallel light: then both rims' mean, ``(R_C0 + R_C1) / 2``, is the middle of
+    the mask, and a focal length measured from there needs no correction. How much of the shift a
+    method shows depends on the height at which it cuts the spot; that share is learnt (ours), by
+    least squares beside offsets, turns and tilts of the head (third order in the tangents).
+    `solar-disc` behind takes ``(T+ + T-) / 2`` to ``tan(theta)``.
 
     Shapes: features ``(x, y)`` (N, 2), in px, to the same.
 
@@ -75,7 +75,7 @@ class PinholeShadow(CalibratedCompensation):
     passes. fit raises UnusableDataError below 12 samples and where they do not tell the shift from
     a turned or shifted mask.
 
-    Cost: 60 operations a sample.
+    Cost: 60 operations per sample.
 
     Examples
     --------

@@ -30,9 +30,9 @@ from algorithms.parameters import require_positive
 class MaskShadow(CalibratedCompensation):
     """Spots of a thick mask converted to those of a thin mask.
 
-    Light passes where the projections of the mask's two faces overlap; the middle of that lens is
-    the mean of both, so that the spot moves as if a thin aperture stood in the mask's middle.
-    Beyond the angle at which they part, nothing passes.
+    Light passes where the projections of the two faces of the mask overlap. The middle of the
+    overlap is the mean of both, so the spot moves as if a thin aperture were in the middle of the
+    mask. Beyond the angle at which they part, nothing passes.
 
     Parameters
     ----------
@@ -43,8 +43,8 @@ class MaskShadow(CalibratedCompensation):
     aperture_mm : float
         Its aperture's diameter d, positive.
     drawn_mm : float, optional
-        Distance that the model behind counts with, positive: the thin mask's whose spots come
-        out. The lower face's where None.
+        Focal length of the next model, positive: that of the thin mask to which the spots are
+        converted. The lower face's where None.
 
     Notes
     -----
@@ -61,7 +61,7 @@ class MaskShadow(CalibratedCompensation):
 
     Failure: a NaN row for a NaN feature row, and where ``t tan(theta)`` reaches d.
 
-    Cost: 10 operations a sample.
+    Cost: 10 operations per sample.
 
     Examples
     --------

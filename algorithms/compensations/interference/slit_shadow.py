@@ -26,15 +26,15 @@ from algorithms.parameters import require_positive
 class SlitShadow(CalibratedCompensation):
     """Balances of photodiode pairs behind thick slits, converted to those behind thin slits.
 
-    The walls of a thick slit narrow the strip of light without moving its middle. A balance is a
-    displacement over all light: the less light, the larger the balance.
+    The walls of a thick slit narrow the strip of light without moving its middle. A balance is the
+    displacement divided by the total light, so less light makes it larger.
 
     Parameters
     ----------
     focal_length_mm : float
         Distance H from the mask's middle to the photodiodes, positive.
     thickness_mm : float
-        Of the mask, t, positive.
+        Thickness t of the mask, positive.
 
     Notes
     -----
@@ -50,7 +50,7 @@ class SlitShadow(CalibratedCompensation):
 
     Failure: a NaN row for a NaN feature row.
 
-    Cost: 6 operations a sample.
+    Cost: 6 operations per sample.
 
     Examples
     --------

@@ -25,8 +25,8 @@ _SIDES = tuple(product((1.0, -1.0), repeat=3))
 class SunAndAlbedoInputs(CubeCurrents):
     """Sunlight share of each face's current, in closed form from the known solar strength.
 
-    If both faces of a pair are lit, one is lit by the Sun and one by the Earth; if only one is
-    lit, both may light it. Unit length resolves one shared face; a magnetometer and the almanac
+    If both faces of a pair are lit, the Sun lights one and the Earth the other; if only one is lit,
+    it may receive both. Unit length resolves one shared face; a magnetometer and the almanac
     resolve two; three cannot be resolved.
 
     Parameters
@@ -40,8 +40,8 @@ class SunAndAlbedoInputs(CubeCurrents):
     Implements: eq:albedo3a, eq:albedo3b (model:albedo, Frezza2022). Type 0, no face shared: the
     Sun's are those of the lit faces whose squares add up to one. Type 1, one shared: its share is
     ``sqrt(1 - sum of the others' squares)``. Type 2, two shared: the Sun lies on a cone around the
-    field, ``s . b = s_i . b_i`` with the inertial vectors of almanac and field model; the circle
-    that the length leaves cuts it in two points, of which one must be possible. Type 3: no
+    field, ``s . b = s_i . b_i`` with the inertial vectors of almanac and field model. Unit length
+    leaves two points on this cone, of which one must be possible. Type 3: no
     solution, unless currents have length one: then nothing is the Earth's. The survey shows one
     example a type; sides are tried in turn here, and what two ways explain is no answer.
 
@@ -51,7 +51,7 @@ class SunAndAlbedoInputs(CubeCurrents):
     Failure: a NaN row for a NaN row of features or context, for type 3 with albedo, and where no
     way or several different ones fit. fit raises UnusableDataError where no sample lights a face.
 
-    Cost: 8 sides of 40 operations a sample.
+    Cost: 8 sides of 40 operations per sample.
 
     Examples
     --------

@@ -47,7 +47,7 @@ class SunAndEarth(CubeCurrents):
     Failure: a NaN row for a NaN feature row or nadir. fit raises UnusableDataError where no sample
     lights a face. Clouds and coasts are not in the model.
 
-    Cost: 8 steps of 20 operations a sample.
+    Cost: 8 steps of 20 operations per sample.
 
     Examples
     --------

@@ -59,7 +59,7 @@ class Refraction(CalibratedCompensation):
     Failure: a NaN row for a NaN feature row, and for a spot farther out than any ray falls through
     plates that fill the whole distance.
 
-    Cost: five steps of 15 operations a layer and a sample.
+    Cost: five steps of 15 operations per layer and a sample.
 
     Examples
     --------

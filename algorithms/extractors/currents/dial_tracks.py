@@ -28,7 +28,7 @@ FINE_TRACKS = 4
 class DialTracks(Extractor):
     """Calibrated signals of all tracks of the code dials: dark reading subtracted, divided by gain.
 
-    The light behind a track measures the overlap of its pattern with the light of the slit. The
+    The light behind a track measures the overlap of its pattern with the light of the slit; the
     model interprets the pattern.
 
     Parameters
@@ -36,7 +36,7 @@ class DialTracks(Extractor):
     bits : int
         Coarse tracks of each dial, at least 1.
     axes : tuple of {"x", "y"}
-        Along which detector axis each dial lies, in the order of the readings.
+        Detector axis along which each dial lies, in the order of the readings.
     dark : float or tuple of float
         Reading without light, in the reading's unit: one for all tracks or one a track.
     gain : float or tuple of float
@@ -52,7 +52,7 @@ class DialTracks(Extractor):
     Failure: a NaN row where a reading is NaN, infinite or saturated, or where no signal is
     positive.
 
-    Cost: 2 operations a track.
+    Cost: 2 operations per track.
 
     Examples
     --------

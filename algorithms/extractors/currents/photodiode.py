@@ -30,8 +30,8 @@ Normalisation = Literal["none", "sum", "maximum", "length"]
 class DirectSignals(Extractor):
     """Calibrated signal of each photodiode: dark reading subtracted, divided by gain, normalised.
 
-    Each reading is proportional to the irradiance projected on its detector; the transimpedance
-    amplifier's offset and gain are undone, so that equal light gives equal signals.
+    Each reading is proportional to the irradiance projected on its detector. Offset and gain of the
+    transimpedance amplifier are removed, so equal light gives equal signals.
 
     Parameters
     ----------
@@ -43,8 +43,7 @@ class DirectSignals(Extractor):
         Reading per unit of signal, positive (the transimpedance in ohm for voltages, times the
         current at full Sun to have the signal in units of one Sun; a frequency's Hz per unit).
     normalisation : {"none", "sum", "maximum", "length"}
-        What each row's signals are divided by: nothing, their sum, the largest, or their
-        Euclidean length.
+        Divisor of the signals of each row: none, their sum, the largest, or their Euclidean length.
 
     Notes
     -----
@@ -55,10 +54,10 @@ class DirectSignals(Extractor):
     unless `normalisation` is "none" and `gain` carries a unit.
 
     Failure: a NaN row where a reading is NaN, infinite or saturated, or where no signal is
-    positive, or where the sum to normalise by is not positive. Light from elsewhere (albedo) is
-    not distinguished.
+    positive, or where the sum to normalise by is not positive. Other light (albedo) is not
+    distinguished from sunlight.
 
-    Cost: 3 operations an element.
+    Cost: 3 operations per element.
 
     Examples
     --------
@@ -151,7 +150,7 @@ class VoltageBalance(Extractor):
     Failure: a NaN row where a reading is NaN, infinite or saturated, or where the sum is not
     positive. At -1 or 1 all light is on one half and only the direction is known.
 
-    Cost: 17 operations a sample.
+    Cost: 17 operations per sample.
 
     Examples
     --------

@@ -30,9 +30,9 @@ Layout = Literal["l-slit", "spot"]
 class EventCentroid(Extractor):
     """Mean address of the events, weighted by the light that their times indicate.
 
-    A pixel fires when its charge reaches a threshold, so that the inverse of its time since the
-    reset is the light on it: the times rebuild the profile across a line, whose mean resolves
-    fractions of a pixel.
+    A pixel fires when its charge reaches a threshold, so the light on it is proportional to the
+    inverse of the time since the reset. These values form the profile across a line, whose mean
+    has sub-pixel resolution.
 
     Parameters
     ----------
@@ -69,10 +69,10 @@ class EventCentroid(Extractor):
 
     Failure: a NaN row without events, where an event is incomplete, infinite or at an address
     below 0, and where lines or spot hold less than half of the light (no lines, scattered events)
-    or, with an L, where one line has no events away from the other. Of two spots the one with
-    more light is found if it has more than half.
+    or, with an L, where one line has no events away from the other. Of two spots the brighter one
+    is found if it has more than half of the light.
 
-    Cost: 40 operations an event, in 3 to 5 moves, and the sorting of the times.
+    Cost: 40 operations per event, in 3 to 5 moves, and the sorting of the times.
 
     Examples
     --------
@@ -142,14 +142,15 @@ class EventCentroid(Extractor):
 class EventWinner(Extractor):
     """First column and first row to collect a number of events (winner takes all).
 
-    For arrays that output only their first spikes, without times: whole pixels, for comparison
-    with the mean. A single hot pixel does not win where several events are asked.
+    This method is for arrays that output only their first spikes, without times. It gives whole
+    pixels, for comparison with the mean. If several events are required, a single hot pixel does
+    not win.
 
     Parameters
     ----------
     winners : int
-        Events that a column or row must gather, at least 1. Ours: along an L's line more than the
-        other line is wide, for a spot half of its width.
+        Number of events that a column or row must collect, at least 1. Ours: along an L's line more
+        than the other line is wide, for a spot half of its width.
     offset_px : float
         Where a line falls from the detector's middle when the Sun is on the boresight, px;
         subtracted from both coordinates.
@@ -165,9 +166,9 @@ class EventWinner(Extractor):
 
     Failure: a NaN row without events, where an event is incomplete, infinite or at an address
     below 0, and where no column or no row gathers `winners` events. More hot pixels than that in
-    one column win without notice.
+    one column give a wrong answer, undetected.
 
-    Cost: 4 operations an event.
+    Cost: 4 operations per event.
 
     Examples
     --------

@@ -26,8 +26,8 @@ class DoubleBalance(Extractor):
     Parameters
     ----------
     moves : int
-        Windows tried before a spot is given up, at least 0: a whole spot settles in two or
-        three. 0 leaves the window on the brightest pixel, as the pseudocode does.
+        Maximum number of window moves, at least 0; a whole spot needs two or three. 0 leaves the
+        window on the brightest pixel, as in the pseudocode.
 
     Raises
     ------
@@ -40,20 +40,20 @@ class DoubleBalance(Extractor):
     columns 1 | 9 | 1 | 9 | 1, ``x_c = x_ROI + (S_D - S_B) / (2 (S_C - S_A))``; y with the rows.
     Printed on the assumption S_A = S_E; their mean is taken here, which is that on a dark
     background and halves its noise. The survey counts the columns from 2; corrected because the
-    five areas fill 21. The printed threshold moves no maximum and is left out. Of equal brightest
-    pixels the first starts. Survey's pseudocode leaves the spot off-centre, its words track it
-    over successive measurements: here the window is moved by the rounded offset until it stays.
-    Pixels of the window outside the frame count as the mean of the rim inside.
+    five areas fill 21. The printed threshold moves no maximum and is left out. If several pixels
+    are brightest, the window starts on the first. Survey's pseudocode leaves the spot off-centre,
+    its words track it over successive measurements: here the window is moved by the rounded offset
+    until it stays. Pixels of the window outside the frame count as the mean of the rim inside.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
     Failure: a NaN row for a frame that is dark (maximum not positive), without contrast (all dark
     or all saturated) or holds a NaN or infinity, where the window does not converge, and where its
     outermost columns or rows differ by half of the centre's light (spot cut by the edge or far
-    larger than the window). A spot a little larger than the window is biased without notice; so is
-    one with another beside it in the window. A second spot outside is ignored.
+    larger than the window). A spot slightly larger than the window, or a second spot in the
+    window, biases the answer undetected. A second spot outside is ignored.
 
-    Cost: 1 operation a pixel for the maxima, 3 a pixel of the window and move.
+    Cost: 1 operation per pixel for the maxima, 3 per pixel of the window and move.
 
     Examples
     --------

@@ -28,13 +28,13 @@ _DEVIATIONS = 6.0
 class BasicCentroid(Extractor):
     """Intensity-weighted mean position of all light in the frame.
 
-    Simple and sub-pixel, but every pixel of background and noise pulls the result towards the
-    centre of the frame, in proportion to its distance.
+    The method is simple and has sub-pixel resolution, but background and noise pull the result
+    towards the centre of the frame.
 
     Parameters
     ----------
     background : {"none", "border", "median"}
-        Level subtracted from every pixel before the sums; residuals below it count negative, so
+        Level subtracted from every pixel before the sums. Pixels below it count as negative, so
         that noise averages out. The published method subtracts nothing.
 
     Notes
@@ -46,9 +46,9 @@ class BasicCentroid(Extractor):
 
     Failure: a NaN row for a frame that is dark (sum not positive), without contrast (all dark or
     all saturated) or holds a NaN or infinity, or whose centroid falls outside it (pixels of both
-    signs that almost cancel). A second spot or a cut one is averaged in without notice.
+    signs that almost cancel). A second spot, or one cut by the edge, shifts the answer undetected.
 
-    Cost: 4 operations a pixel, one pass.
+    Cost: 4 operations per pixel, one pass.
 
     Examples
     --------
@@ -88,16 +88,16 @@ class BasicCentroid(Extractor):
 class ThresholdedCentroid(Extractor):
     """Our variant of BCTM: intensity-weighted mean position of the light above a threshold.
 
-    The threshold is subtracted and everything below it set to zero, so that background and noise
-    under it add nothing; the light just above it still counts little.
+    The threshold is subtracted and negative values are set to zero, so that background and noise
+    below it have no effect, and light just above it has little weight.
 
     Parameters
     ----------
     threshold : float or None
         The fraction mu of the maximum, in [0, 1), taken above the background. The survey gives no
-        value. None, ours, takes the one that the frame's own noise asks for: six standard
-        deviations above the mean of its dark sides. A lower one lets noise in, a higher one loses
-        light of the spot's rim.
+        value. None (our variant) uses a threshold six standard deviations above the mean of the
+        frame's dark sides. A lower threshold lets noise in, a higher one loses light at the rim of
+        the spot.
     background : {"none", "border", "median"}
         Level subtracted from every pixel first. The published method subtracts nothing.
 
@@ -116,8 +116,8 @@ class ThresholdedCentroid(Extractor):
     also where light lies along three sides. Pixels brighter than the threshold outside the spot (a
     second spot, a hot pixel, with a fraction noise at low signal) are averaged in without notice.
 
-    Cost: 1 operation a pixel for the maxima, 3 a pixel of the sides, 6 a pixel in rows that hold a
-    pixel above the threshold; integer sums are exact.
+    Cost: 1 operation per pixel for the maxima, 3 per pixel of the sides, 6 per pixel in rows that
+    hold a pixel above the threshold; integer sums are exact.
 
     Examples
     --------
@@ -194,9 +194,9 @@ class ThresholdedCentroid(Extractor):
 class FilteredCentroid(Extractor):
     """Intensity-weighted mean position of the frame smoothed by a 3 x 3 mean.
 
-    Each pixel is replaced by the mean of itself and its eight neighbours, zero outside the frame,
-    and the plain centroid is taken. Both steps are linear: over the whole frame only light in the
-    outermost pixels changes the result, so the gain over BCM lies in the window.
+    The frame is smoothed with a 3 x 3 mean (zero outside the frame), and the centroid of the
+    smoothed frame is computed. Both steps are linear, so over the whole frame the result differs
+    from BCM only by the light in the outermost pixels; smoothing helps only inside a window.
 
     Parameters
     ----------
@@ -204,17 +204,17 @@ class FilteredCentroid(Extractor):
         Level subtracted from every pixel before smoothing; residuals below it count negative.
         The published method subtracts nothing.
     window_px : int or None
-        Odd side, at least 3, of a square window of the smoothed frame that starts on the
-        brightest pixel and is moved onto its own centroid until it stays; None sums the whole
-        frame, as published.
+        Odd side, at least 3, of a square window of the smoothed frame that starts on the brightest
+        pixel and moves to its own centroid until it no longer changes; None sums the whole frame,
+        as published.
 
     Notes
     -----
     Implements: alg:IFM (fe:ifm, Chang2008): ``I_mn = (1/9) sum_{i=m-1..m+1} sum_{j=n-1..n+1}
     I_ij`` with zeros outside, then alg:BCM. The survey prints the zero only for ``i, j < 1``;
     corrected because the far edges need it too. The survey prints x over rows; corrected because x
-    runs along columns here. The smoothed frame is not formed: a pixel enters the sums with the
-    number of boxes that hold it.
+    runs along columns here. The smoothed frame is not computed; each pixel enters the sums as
+    often as it lies in a box.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
@@ -222,7 +222,7 @@ class FilteredCentroid(Extractor):
     all saturated) or holds a NaN or infinity, or whose centroid falls outside it (pixels of both
     signs that almost cancel).
 
-    Cost: 4 operations a pixel, one pass.
+    Cost: 4 operations per pixel, one pass.
 
     Examples
     --------

@@ -43,7 +43,7 @@ _DRIFT = 2.0 * math.log(100.0)
 class AdaptiveEnergyFilter(Extractor):
     """Centroid of pixel energies above the noise, averaged over frames while the Sun is still.
 
-    While the light is still, variation of a pixel from frame to frame is noise. The energies of a
+    While the Sun is still, changes of a pixel from frame to frame are noise. The energies of a
     sequence are averaged for as long as the spot stays, and start anew when the frames' mean shift
     against them is more than noise; the threshold falls with their noise. `extract_sequence` does
     so; `extract` reads each frame by itself.
@@ -70,16 +70,16 @@ class AdaptiveEnergyFilter(Extractor):
 
     Failure: a NaN row for a frame that is dark, without contrast (all dark or all saturated) or
     holds a NaN or infinity, and where the pixels above the threshold are fewer than two, not one
-    spot (two of them, scattered light) or touch the edge (a spot cut by it); noise alone gives NaN.
-    `extract` gives none either where registration (`algorithms.extractors.frames.mirror`) does not
-    find one whole symmetric light within half a pixel; `extract_sequence`, whose frames may be too
-    noisy for that one by one, takes two lights that overlap for one.
-    In a sequence a frame that holds a NaN is passed over, and one without a spot ends the mean. A
-    drift that hides in the noise leaves a lag, at most about a frame's own error; frames of a
-    Sun that moves by some six such errors a frame are better taken alone.
+    spot (two of them, scattered light) or touch the edge (a spot cut by it); noise alone gives
+    NaN. `extract` gives none either where registration (`algorithms.extractors.frames.mirror`)
+    does not find one whole symmetric light within half a pixel; `extract_sequence`, whose frames
+    may be too noisy for that one by one, takes two lights that overlap for one. In a sequence a
+    frame that holds a NaN is passed over, and one without a spot ends the mean. A drift that hides
+    in the noise leaves a lag, at most about a frame's own error; frames of a Sun that moves by
+    some six such errors a frame are better taken alone.
 
-    Cost: 6 operations a pixel, and that of registration; in a sequence 3 more, and 12 a pixel of
-    the spot.
+    Cost: 6 operations per pixel, and that of registration; in a sequence 3 more, and 12 per pixel
+    of the spot.
 
     Examples
     --------

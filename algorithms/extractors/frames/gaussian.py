@@ -41,22 +41,22 @@ _MISFIT = 1.5
 class GaussianFit(Extractor):
     """Least-squares fit of a Gaussian plus background to the whole frame.
 
-    The precise centroid of astronomical libraries: six parameters, amplitude, centre, a width
-    along each axis and background, every pixel of equal weight. On other symmetric spots it is
-    unbiased, but above the bound.
+    This is the precise centroid of astronomical libraries. It has six parameters (amplitude,
+    centre, a width along each axis, background) and gives every pixel equal weight. On other
+    symmetric spots it is unbiased, but its error is above the bound.
 
     Parameters
     ----------
     tolerance_px : float
         The fit ends when a step moves centre and widths by less.
     iterations : int
-        Steps, at least 1, after which the fit is given up.
+        Maximum number of steps, at least 1; without convergence the fit fails.
     light : {"spot", "any"}
-        What the light looks like: one whole, compact and symmetric spot, anything else being no
-        answer; or streaks, rings and stars too, as lenses and slits make them.
+        Expected shape of the light. "spot": one whole, compact and symmetric spot; other light
+        gives NaN. "any": also streaks, rings and stars, as lenses and slits cause them.
     longest_px : float or None
-        Longest half axis that the outline of one spot has, px, positive; None where no design
-        tells. See `algorithms.extractors.frames.mirror.extractor`.
+        Longest half axis that the outline of one spot has, px, positive; None if the design does
+        not give it. See `algorithms.extractors.frames.mirror.extractor`.
 
     Raises
     ------
@@ -78,7 +78,7 @@ class GaussianFit(Extractor):
     light within half a pixel of the centre. Where `light` is "any", only hot pixels and noise are
     refused: a second light shifts the fit without notice, one cut by the edge is fitted as such.
 
-    Cost: 10 operations a pixel and step, some 8 steps, and that of registration.
+    Cost: 10 operations per pixel and step, some 8 steps, and that of registration.
 
     References
     ----------

@@ -18,15 +18,15 @@ from algorithms.inputs import as_frames
 class PixelMax(Extractor):
     """Column and row whose summed light is largest.
 
-    The frame is reduced to its two profiles and the largest entry of each is the position: fast,
-    free of any threshold, and no finer than a whole pixel.
+    The frame is reduced to its two profiles, and the position is the largest entry of each. The
+    method is fast and needs no threshold, but has no sub-pixel resolution.
 
     Notes
     -----
     Implements: alg:PM (fe:pm, Coutinho2022): ``r_i = sum_j I_ij``, ``c_j = sum_i I_ij``, ``y_c =
     argmax r``, ``x_c = argmax c``. The survey prints x_c from the row profile; corrected because x
-    runs along columns here. Of several equal maxima the first counts: the survey's text stops at
-    the first, its loop would keep the last.
+    runs along columns here. If several maxima are equal, the first is used, as in the survey's
+    text; its loop would use the last.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), whole numbers, pixel centres
     at integers.
@@ -34,7 +34,7 @@ class PixelMax(Extractor):
     Failure: a NaN row for a frame that is dark (largest profile entry not positive), without
     contrast (all dark or all saturated) or holds a NaN or infinity.
 
-    Cost: 2 operations a pixel, one pass.
+    Cost: 2 operations per pixel, one pass.
 
     Examples
     --------

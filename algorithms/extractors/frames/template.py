@@ -35,11 +35,10 @@ Candidates = Literal["search", "brightest"]
 class TemplateMatch(Extractor):
     """Our variant of TM: position where outline and lit pixels differ in the fewest pixels.
 
-    Both frame and template have two levels only, so neither the light within the spot nor noise
-    below the threshold matters; what remains is the pixels' grid, which is searched to 1/16 px.
-    Two levels are also its limit: where within a pixel the rim lies is lost, and even without
-    noise a disc of 8 px radius is found to 0.05 px only. Ours is a grey frame under the same
-    outline.
+    Frame and template are binary, so light inside the spot and noise below the threshold have no
+    effect. Positions are searched in steps of 1/16 px. Binary frames lose the position of the rim
+    within a pixel: even without noise, a disc of 8 px radius is found only to 0.05 px. Ours is a
+    grey frame under the same outline.
 
     Parameters
     ----------
@@ -53,8 +52,9 @@ class TemplateMatch(Extractor):
     background : {"none", "border", "median"}
         Level below which the fraction counts. The published method subtracts none.
     binarise : bool
-        Compare with the lit pixels, as published. False goes on from there to where the outline
-        holds most of the grey frame's light: ours, and some eight times finer on a clean disc.
+        True compares with the binary frame, as published. False (our variant) continues to the
+        position where the outline contains most light of the grey frame, which is some eight times
+        more accurate on a clean disc.
     candidates : {"search", "brightest"}
         Positions compared. The published ones are the brightest pixels: whole numbers, which noise
         chooses within even light, though the survey counts the method among the sub-pixel ones.
@@ -81,11 +81,11 @@ class TemplateMatch(Extractor):
 
     Failure: a NaN row for a frame that is dark (maximum not above the background), without
     contrast (all dark or all saturated) or holds a NaN or infinity, and where the template leaves
-    the frame (spot cut by the edge). Another shape, two spots and noise give the place that fits
-    best without notice, unless `most_different` is given.
+    the frame (spot cut by the edge). Another shape, two spots or noise give the best-fitting
+    position, undetected, unless `most_different` is given.
 
-    Cost: 3 operations a pixel, and some 1600 positions of 10 operations a row of the template;
-    a grey frame 36 more of 60 operations a row.
+    Cost: 3 operations per pixel, and some 1600 positions of 10 operations per row of the template;
+    a grey frame 36 more of 60 operations per row.
 
     Examples
     --------

@@ -49,9 +49,9 @@ class MultipleThresholdCentroid(Extractor):
     Failure: a NaN row for a frame that is dark (no profile entry positive), without contrast (all
     dark or all saturated) or holds a NaN or infinity, for spots wider than half of the frame, and
     where the edge cuts the spot so that no threshold has a rise from both sides. Two spots give
-    the middle between their outer flanks without notice.
+    the middle between their outer flanks, undetected.
 
-    Cost: 2 operations a pixel for the profiles, the median of each, and 4 a threshold.
+    Cost: 2 operations per pixel for the profiles, the median of each, and 4 per threshold.
 
     Examples
     --------

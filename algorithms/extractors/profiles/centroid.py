@@ -27,13 +27,13 @@ _MOVES = 2
 class ProfileCentroid(SlitLines):
     """Intensity-weighted mean position of all light on each line.
 
-    Simple and sub-pixel, but dark signal counts with the light and pulls the result towards the
-    line's middle, in proportion to its distance and more where light is weak.
+    The method is simple and has sub-pixel resolution, but dark signal pulls the result towards the
+    middle of the line, more so for weak light.
 
     Parameters
     ----------
     subtract_dark : bool
-        Whether the line's median is subtracted first; residuals below it count negative. The
+        Whether the median of the line is subtracted first; pixels below it count as negative. The
         published method subtracts nothing.
 
     Notes
@@ -47,7 +47,7 @@ class ProfileCentroid(SlitLines):
     or all saturated) or with a NaN or infinity. Behind slits of one slant a missing or cut spot, a
     second Sun and noise alone are averaged in without notice; behind two slants they give NaN.
 
-    Cost: 4 operations a pixel.
+    Cost: 4 operations per pixel.
 
     Examples
     --------
@@ -87,8 +87,8 @@ class ProfileCentroid(SlitLines):
 class ProfileThresholdedCentroid(SlitLines):
     """Intensity-weighted mean position of the light above a fraction of each line's maximum.
 
-    The threshold is subtracted and everything below it set to zero, so that dark signal and
-    noise under it add nothing.
+    The threshold is subtracted and negative values are set to zero, so that dark signal and noise
+    below it have no effect.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ class ProfileThresholdedCentroid(SlitLines):
     spot, a second Sun and noise alone are averaged in without notice; behind two slants they give
     NaN.
 
-    Cost: 5 operations a pixel.
+    Cost: 5 operations per pixel.
 
     Examples
     --------
@@ -175,7 +175,7 @@ class ProfileThresholdAverage(SlitLines):
     from both sides. Behind slits of one slant a missing outer spot, a second Sun and noise alone
     give the middle between the outermost flanks without notice; behind two slants they give NaN.
 
-    Cost: the median of each line, 2 operations a pixel and 4 a threshold.
+    Cost: the median of each line, 2 operations per pixel and 4 per threshold.
 
     Examples
     --------

@@ -41,7 +41,7 @@ class DirectProfile(Extractor):
     Failure: a NaN row where a reading is NaN or infinite, or where a line has no light above its
     median.
 
-    Cost: a median and one operation a pixel.
+    Cost: a median and one operation per pixel.
 
     Examples
     --------
@@ -81,8 +81,8 @@ class DirectProfile(Extractor):
 class ThresholdProfile(Extractor):
     """Light of every pixel above a fraction of the line's maximum; zero elsewhere.
 
-    The thresholded light before its first moment is taken; the vernier model evaluates it mark by
-    mark.
+    This is the thresholded light without the computation of its centroid; the vernier model
+    evaluates it mark by mark.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ class ThresholdProfile(Extractor):
     Failure: a NaN row where a reading is NaN or infinite, or where a line has no light above its
     median.
 
-    Cost: a median and 3 operations a pixel.
+    Cost: a median and 3 operations per pixel.
 
     Examples
     --------

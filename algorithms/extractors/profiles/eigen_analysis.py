@@ -23,16 +23,17 @@ _PASSES = 2
 class EigenAnalysis(SlitLines):
     """Shift whose model spectrum has the smallest projection on the noise subspace.
 
-    The cross-spectrum of a shifted spot with its reference is a tone along frequency. The
-    eigenvectors of its covariance but the strongest span what is noise only, and the tone of the
-    right shift has the least projection on them.
+    The cross-spectrum of a shifted spot and its reference is a pure tone over frequency. All
+    eigenvectors of its covariance except the strongest span the noise subspace; the tone of the
+    true shift has the smallest projection on it.
 
     Parameters
     ----------
     frequencies : int or None
-        How many frequencies above zero make the series. The published one has them all. None,
-        ours, ends it at the last whose power exceeds nine times the noise, estimated from the
-        spectrum above a quarter of the sampling frequency: beyond, it is noise and aliased light.
+        How many frequencies above zero make the series. The published method uses all frequencies.
+        None, ours, ends it at the last whose power exceeds nine times the noise, estimated from
+        the spectrum above a quarter of the sampling frequency: beyond, it is noise and aliased
+        light.
 
     Notes
     -----
@@ -48,7 +49,7 @@ class EigenAnalysis(SlitLines):
     pixels are those of a window about each spot; the cross-spectra of slits of one slant are
     summed. The minimum is searched on a grid and then off it, by Newton's method.
 
-    Cost: 2 operations a pixel and slit, the median of each line, 8 a frequency and pixel of the
+    Cost: 2 operations per pixel and slit, the median of each line, 8 per frequency and pixel of the
     windows, the eigenvectors of a matrix, 5 to 30 a side, and its side times 4 tries a pixel.
 
     Examples

@@ -36,8 +36,8 @@ _PASSES = 2
 class LinearPhase(SlitLines):
     """Shift of the slits' light from the slope of its phase relative to a reference.
 
-    A shift multiplies a spectrum by a phase that grows linearly with frequency. Light blurred or
-    narrowed evenly on both sides keeps its phase, so the reference need not have its width right.
+    A shift multiplies a spectrum by a phase that grows linearly with frequency. Symmetric blur or
+    narrowing does not change the phase, so the width of the reference need not be exact.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class LinearPhase(SlitLines):
     spot, whose phases are summed over the slits of one slant: what is left to unwrap is a fraction
     of a turn, and the other spots stay out.
 
-    Cost: 2 operations a pixel and slit, the median of each line, and 8 a frequency and pixel of
+    Cost: 2 operations per pixel and slit, the median of each line, and 8 per frequency and pixel of
     the windows, half as many as pixels.
 
     Examples
@@ -116,7 +116,7 @@ class FrameLinearPhase(Extractor):
     shape : {"round", "square"}
         Its shape; a square's sides lie along the pixels.
     margin_px : float
-        What the spot is wider than that on each side.
+        Widening of the spot beyond that on each side.
     frequencies : int or None
         How many frequencies from the lowest on are fitted; None as in `LinearPhase`.
 
@@ -135,7 +135,7 @@ class FrameLinearPhase(Extractor):
     NaN or infinity, where the window leaves the frame (spot cut by the edge), and where sums
     elsewhere are half as large as the spot's (a second Sun, noise alone).
 
-    Cost: 2 operations a pixel for the sums, 4 a pixel of the window and 16 a frequency and
+    Cost: 2 operations per pixel for the sums, 4 per pixel of the window and 16 per frequency and
     column of it, half as many as columns.
 
     Examples

@@ -28,32 +28,33 @@ from algorithms.parameters import require_positive
 class PeakDetection(SlitLines):
     """Brightest pixel of a line; behind several slits, the brightest position of their pattern.
 
-    The pattern is at the shift that maximises its darkest pixel: a wrong shift misses a slit, so
-    equally spaced slits are not confused. The resolution is one pixel; within a uniformly lit spot
-    noise decides.
+    The position of the pattern is the shift at which its darkest slit is brightest. A wrong shift
+    misses at least one slit, so equally spaced slits are not confused. The resolution is one
+    pixel; within a uniformly lit spot the answer depends on noise.
 
     Parameters
     ----------
     alone : bool
-        Whether light elsewhere that is half as bright as the pattern's darkest pixel gives
-        nothing (a second Sun, noise alone, a hot pixel). Ours: the published method always
-        answers.
+        Whether to return NaN if other light is at least half as bright as the darkest pixel of the
+        pattern (a second Sun, noise alone, a hot pixel). This check is ours; the published method
+        always answers.
 
     Notes
     -----
     Implements: alg:PDsp, alg:PDmp (fe:peak, Enright2006b): ``n_peak = argmax_n I[n]``, and
     ``n_peak = argmax_n min_i I[n + d_i]`` with the offsets d_i of the slits, to whole pixels;
     ``tau = n_peak`` in pixels (Delta X = 1). Slits of one slant are one pattern; with two slants,
-    whose patterns shift against each other, the two maxima with the largest sum count among
-    those that a Sun in the field explains and that keep all spots apart. Of maxima that are
-    equal within a slit's width (a saturated spot) the middle of the first and the last counts.
+    whose patterns shift against each other, the two maxima with the largest sum count among those
+    that a Sun in the field explains and that keep all spots apart. If several maxima within a
+    slit's width are equal (a saturated spot), the answer is the middle between the first and the
+    last.
 
     Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds a
     NaN or infinity, and behind two slants where no Sun in the field explains two patterns apart.
     Noise alone, a second Sun, a hot pixel, and a slit's spot that is missing, off the line or
     covered by another's give a place without notice, unless `alone` is asked for.
 
-    Cost: 1 operation a pixel and slit, and the median of each line.
+    Cost: 1 operation per pixel and slit, and the median of each line.
 
     Examples
     --------
@@ -89,8 +90,8 @@ class PeakDetection(SlitLines):
 class FramePeak(Extractor):
     """Brightest pixel of a frame with one spot.
 
-    The simplest feature, and the baseline of the others: within a uniformly lit spot noise
-    decides, so it is no finer than the spot.
+    The simplest feature and a baseline for the others. Within a uniformly lit spot the answer
+    depends on noise, so its resolution is the width of the spot.
 
     Parameters
     ----------
@@ -99,9 +100,9 @@ class FramePeak(Extractor):
 
     Notes
     -----
-    Implements: alg:PDsp (fe:peak, Enright2006b) on both axes at once: ``(x_c, y_c) = argmax
-    I(x, y)``. Of several equal maxima the middle of the box around them counts, so that a
-    saturated spot gives its centre.
+    Implements: alg:PDsp (fe:peak, Enright2006b) on both axes at once: ``(x_c, y_c) = argmax I(x,
+    y)``. If several pixels share the maximum, the answer is the middle of the box around them,
+    which is the centre of a saturated spot.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
@@ -109,7 +110,7 @@ class FramePeak(Extractor):
     or all saturated) or holds a NaN or infinity, and where equal maxima are further apart than
     `width_px`. A second spot that is darker, a hot pixel and noise alone cannot be recognised.
 
-    Cost: 1 operation a pixel, and a second look at rows that hold the maximum.
+    Cost: 1 operation per pixel, and a second look at rows that hold the maximum.
 
     Examples
     --------

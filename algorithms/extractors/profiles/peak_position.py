@@ -36,9 +36,9 @@ SLIT_IMAGE: Coefficients = (0.0, -0.26, 1.0, 0.98, -0.42, 1.0)
 class PeakPositionEstimate(SlitLines):
     """Joint least-squares fit of all peaks of a line, one per slit.
 
-    Peaks of one slant keep their known distances and move by one shift; each has its own
-    amplitude. Every lit pixel counts, not only the brightest; overlapping peaks are separated by
-    subtracting the others.
+    All peaks of slits with the same slant move by one shift and keep their known distances; each
+    has its own amplitude. All lit pixels are used, not only the brightest; overlapping peaks are
+    separated by subtracting the others.
 
     Parameters
     ----------
@@ -50,10 +50,10 @@ class PeakPositionEstimate(SlitLines):
         ``c_1 .. c_6`` of the rational image; its denominator must have no zero. The survey gives
         no values; the default is fitted to a slit's blurred shadow.
     overlap : float
-        Peaks of two slants that are closer than this, in half widths, share one amplitude.
+        Distance of peaks of two slants, in half widths, below which they share one amplitude.
     tolerance : float
-        The fit ends when a step changes amplitudes by less than this fraction, and shifts by
-        less than this fraction of a half width.
+        The fit ends when a step changes the amplitudes by less than this fraction, and the shifts
+        by less than this fraction of a half width.
 
     Notes
     -----
@@ -64,17 +64,17 @@ class PeakPositionEstimate(SlitLines):
     they move by ``lambda + d_lambda``. The image types are read from the shifts, at the start and
     once more when fitted: 0 where peaks are apart, 1 to 4 where A and C, B and C, A and D, or B
     and D overlap, which then have one amplitude. Shifts are found to a pixel first, as the
-    maxi-min of the pattern; a step is held to half a half width. A line's median is subtracted.
-    Ours: any number of slits a slant, lines that see one slant only, and two means to make the
-    steps end: the pixels that count are chosen once at the start and once at the end, and steps
-    that shrink by a constant ratio are summed at once.
+    maxi-min of the pattern; a step is held to half a half width. The median of each line is
+    subtracted. Ours: any number of slits a slant, lines that see one slant only, and two means to
+    make the steps end: the pixels that count are chosen once at the start and once at the end, and
+    steps that shrink by a constant ratio are summed at once.
 
     Failure: a NaN row for a profile without contrast (all dark or all saturated), one that holds
     a NaN or infinity, where a slit's spot is missing or off the line, where light elsewhere is
     half as bright as the pattern's darkest peak (a second Sun, noise alone), and where the fit
     does not end, or not within a spot's width of its start with all amplitudes positive.
 
-    Cost: 1 operation a pixel and slit to start, 40 a pixel near a peak and step, some 8 steps.
+    Cost: 1 operation per pixel and slit to start, 40 per pixel near a peak and step, some 8 steps.
 
     Examples
     --------
@@ -185,7 +185,7 @@ class FramePeakPositionEstimate(Extractor):
     """Least-squares fit of a known peak shape to the column sums and row sums of a frame.
 
     One spot casts one peak on each profile; its position and amplitude are fitted there. All
-    pixels count, the noise of dark ones too.
+    pixels are used, so the noise of dark pixels contributes.
 
     Parameters
     ----------
@@ -211,10 +211,10 @@ class FramePeakPositionEstimate(Extractor):
 
     Failure: a NaN row for a frame without contrast (all dark or all saturated), one that holds a
     NaN or infinity, and where the fit does not end, or not within a spot's width of the profile's
-    largest value with a positive amplitude. A second spot shifts it without notice; noise alone
-    may be fitted.
+    largest value with a positive amplitude. A second spot shifts the answer undetected; noise
+    alone may be fitted.
 
-    Cost: 2 operations a pixel, 20 a pixel of the profiles and step, some 8 steps.
+    Cost: 2 operations per pixel, 20 per pixel of the profiles and step, some 8 steps.
 
     Examples
     --------

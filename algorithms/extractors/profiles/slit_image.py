@@ -45,8 +45,8 @@ _BENT = 40
 class SlitImage(SlitLines):
     """Position of each slit's image by least squares on a diffraction model of the image.
 
-    The image follows from the design and from the direction that the spot itself tells: Fresnel
-    diffraction of sunlight at both edges, blurred by the Sun's disc and summed over pixels. Light,
+    The image is computed from the design and the approximate direction: Fresnel diffraction of
+    sunlight at both edges, blurred by the solar disc and integrated over pixels. Light,
     background, width and position are fitted together.
 
     Parameters
@@ -71,20 +71,21 @@ class SlitImage(SlitLines):
     of wavelength l falls as ``|F(u_+) - F(u_-)|^2 / 2``, ``u_+- = sqrt(2 / (l n'Jn)) (w +- a)``, F
     the Fresnel integrals, a half of the slit's width and w the distance along its normal n; the
     Sun's disc blurs by ``|J n|`` times its radius. The direction is that of `LinearPhase`'s spot,
-    from which the fit starts. Noise grows with light: weights fall to a sixth at the brightest.
+    from which the fit starts. Noise grows with light, so weights fall to a sixth at the brightest
+    pixel.
 
-    The share of a pixel that is sensitive is on no drawing, crosstalk and a spectrum unlike the one
-    assumed blur as well: the width's derivative is fitted beside the place and, even where that is
-    odd, costs it little. Behind a slanted slit the height of the pixels spreads the image over an
-    unknown box, whose width is fitted. The mean wavelength is not: behind a slit four pixels wide,
-    550 nm in place of 620 treble the error (`pda-slit`), behind one of seven nothing changes. The
-    cubic term of the phase is left out, which moves spots as smoothly with direction as the model
-    learns.
+    The share of a pixel that is sensitive is on no drawing, crosstalk and a spectrum unlike the
+    one assumed blur as well: the width's derivative is fitted beside the place and, even where
+    that is odd, costs it little. Behind a slanted slit the height of the pixels spreads the image
+    over an unknown box, whose width is fitted. The mean wavelength is not: behind a slit four
+    pixels wide, 550 nm in place of 620 treble the error (`pda-slit`), behind one of seven nothing
+    changes. The cubic term of the phase is left out, which moves spots as smoothly with direction
+    as the model learns.
 
     Failure: a NaN row where `LinearPhase` has one and where a fit does not converge.
 
     Cost: that of `LinearPhase`, and for each spot 12 Fresnel integrals and 12 chords for each of
-    some 500 places, and 10 operations a pixel and step, 4 to 20 of them.
+    some 500 places, and 10 operations per pixel and step, 4 to 20 of them.
 
     Examples
     --------

@@ -64,7 +64,7 @@ class SlitLines:
     reach_px : float
         Largest displacement of the shadow on either axis, px, positive; used where slants differ.
     margin_px : float
-        What a spot is wider than its slit on each side, px, positive.
+        Widening of a spot beyond its slit on each side, px, positive.
 
     Notes
     -----

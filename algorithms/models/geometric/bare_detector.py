@@ -42,7 +42,7 @@ class BareDetector(ProjectionModel, ForwardModel):
     converged within 6e-8 deg. fit raises UnusableDataError below 6 samples, where they do not
     determine the parameters or are inconsistent.
 
-    Cost: 36 times 30 operations a sample; the fit, some ten times 21 passes of 30.
+    Cost: 36 times 30 operations per sample; the fit, some ten times 21 passes of 30.
 
     Examples
     --------

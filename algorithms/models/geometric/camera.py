@@ -44,14 +44,14 @@ class LensCamera(ProjectionModel, ForwardModel):
     2 y^2) + 2 p2 x y`` of the tangents x and y (Brown and Conrady, as OpenCV counts them), solved
     for by Newton's method. Least squares of our own: ``cv2.calibrateCamera`` looks for where a
     target stands, which of the Sun at infinity nothing tells. In a narrow field tilts, principal
-    point and p1, p2 act nearly alike; their standard errors then say so.
+    point and p1, p2 have nearly the same effect; their standard errors are then large.
 
     Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not
     converged within 6e-8 deg, as where the distortion folds the picture back. fit raises
     UnusableDataError below 6 samples, where they do not determine the parameters or are
     inconsistent.
 
-    Cost: 36 times 40 operations a sample; the fit, some ten times 23 passes of 40.
+    Cost: 36 times 40 operations per sample; the fit, some ten times 23 passes of 40.
 
     Examples
     --------

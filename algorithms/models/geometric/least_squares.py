@@ -61,7 +61,7 @@ class LeastSquaresGeometry(ProjectionModel, ParametricModel):
     one axis swept alone), where it does not converge, or where its residuals are as large as the
     field: with swapped or mirrored axes, which it does not know (`pinhole` does).
 
-    Cost: 5 transcendental functions and 20 operations a sample; the fit, some ten times eleven
+    Cost: 5 transcendental functions and 20 operations per sample; the fit, some ten times eleven
     passes over the samples.
 
     Examples

@@ -20,8 +20,8 @@ from algorithms.documented import documented
 class MultiSlit(SlitModel):
     """Spots of several slits whose edges come from the lower and the upper rim of the mask.
 
-    Oblique light is cut by the upper rim on one side and by the lower rim on the other; methods
-    then see one height, or one for each side of the boresight.
+    The upper rim cuts oblique light on one side and the lower rim on the other, so the effective
+    height is either the same everywhere or differs between the two sides of the boresight.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class MultiSlit(SlitModel):
     converged within 6e-8 deg. fit raises UnusableDataError below 5 samples, where they do not
     determine the parameters or are inconsistent. An inclined mask is left as a residual (`slit`).
 
-    Cost: 30 times 40 operations a sample; the fit, some ten times twenty passes of 40.
+    Cost: 30 times 40 operations per sample; the fit, some ten times twenty passes of 40.
 
     Examples
     --------

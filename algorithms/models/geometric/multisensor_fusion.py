@@ -43,9 +43,9 @@ class SixFaces(DrawnModel):
     Shapes: signals (N, 6), in any common unit, to unit vectors (N, 3), all directions.
 
     Failure: a NaN row for a NaN feature row, or where no signal is positive. Albedo on an unlit
-    face is taken for Sun where it is the brighter of its pair.
+    face is mistaken for sunlight if this face is the brighter of its pair.
 
-    Cost: 14 operations and one root a sample.
+    Cost: 14 operations and one root per sample.
 
     Examples
     --------

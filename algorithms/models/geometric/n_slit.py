@@ -55,7 +55,7 @@ class NSlit(SlitModel):
     converged within 6e-8 deg. fit raises UnusableDataError below 5 samples, where they do not
     determine the parameters or are inconsistent.
 
-    Cost: 30 times 60 operations a sample; the fit, some ten times twenty passes of 60.
+    Cost: 30 times 60 operations per sample; the fit, some ten times twenty passes of 60.
 
     Examples
     --------

@@ -37,16 +37,17 @@ FLATTEST = 1e-6
 class WeightedCells(FacesModel):
     """Sun vector by weighted least squares over the cosines of all lit cells.
 
-    Of cells spread over a sphere several are always lit; each is weighted by its illumination, and
-    those at grazing incidence are excluded.
+    Several cells on a sphere are always lit. Each is weighted by its illumination, and cells at
+    grazing incidence are excluded.
 
     Parameters
     ----------
     weighting : {"signal", "equal"}
         Weight of a lit cell: its signal over its reference current, or 1.
     largest_incidence_deg : float
-        In (0, 90); a cell counts as lit where its signal over its reference current reaches the
-        cosine. The default leaves four of sixteen evenly spread cells in every direction.
+        Largest angle of incidence, in (0, 90); a cell counts as lit if its signal over its
+        reference current is at least the cosine of this angle. The default leaves four of sixteen
+        evenly spread cells in every direction.
 
     Attributes
     ----------
@@ -64,11 +65,11 @@ class WeightedCells(FacesModel):
     others' mean. W is left open there, and the lit cells' choice is stated in words.
 
     Failure: a NaN row for a NaN feature row, and where fewer than three cells are lit or those lit
-    look along one plane. fit raises UnusableDataError where no sample lights a cell. Albedo is
-    taken for Sun. for_sensor refuses bodies that leave directions of their field unsolved, as
-    cubes do.
+    look along one plane. fit raises UnusableDataError where no sample lights a cell. Albedo is not
+    distinguished from sunlight. for_sensor refuses bodies that leave directions of their field
+    unsolved, as cubes do.
 
-    Cost: 21 operations a cell, 30 a sample.
+    Cost: 21 operations per cell, 30 per sample.
 
     Examples
     --------

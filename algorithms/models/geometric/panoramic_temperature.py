@@ -31,8 +31,8 @@ class WarmCells(WeightedCells):
     Parameters
     ----------
     largest_incidence_deg : float
-        In (0, 90); a cell counts as lit where its signal over its reference current reaches the
-        cosine.
+        Largest angle of incidence, in (0, 90); a cell counts as lit if its signal over its
+        reference current is at least the cosine of this angle.
     reference_temperature_K : float
         T_0, positive.
 
@@ -62,9 +62,9 @@ class WarmCells(WeightedCells):
     Failure: a NaN row for a NaN feature row or temperature, outside the hull, where fewer than
     three cells are lit or those lit look along one plane, and where it is so warm that no current
     is left. fit raises UnusableDataError where no sample lights a cell, and where temperatures
-    hardly differ. Albedo is taken for Sun.
+    hardly differ. Albedo is not distinguished from sunlight.
 
-    Cost: 22 operations a cell, 32 a sample.
+    Cost: 22 operations per cell, 32 per sample.
 
     Examples
     --------

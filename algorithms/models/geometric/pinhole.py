@@ -28,7 +28,7 @@ class BuiltPinhole(ProjectionModel, ParametricModel):
     """Pinhole projection with all assembly errors: seven parameters and a mirror image.
 
     The detector may be turned about the boresight, mounted from its back, and have another scale
-    along either axis; the head may be tilted. What no such sensor explains is left as residual.
+    along either axis; the head may be tilted. Effects outside this model remain as residuals.
 
     Attributes
     ----------
@@ -39,15 +39,15 @@ class BuiltPinhole(ProjectionModel, ParametricModel):
 
     Notes
     -----
-    Implements: model:spm (eq:stdproj) with the errors of assembly that model:lsq leaves out:
-    ``t = (+-(x - x_0) unit / f_x, (y - y_0) unit / f_y, 1)``, ``s = R_x(tilt_x) R_y(tilt_y)
-    R_z(rotation) t / |t|``. In a narrow field a tilt moves the spots as the centre does; their
-    standard errors then say so, and directions hold all the same.
+    Implements: model:spm (eq:stdproj) with the errors of assembly that model:lsq leaves out: ``t =
+    (+-(x - x_0) unit / f_x, (y - y_0) unit / f_y, 1)``, ``s = R_x(tilt_x) R_y(tilt_y) R_z(rotation)
+    t / |t|``. In a narrow field a tilt and a shift of the centre have nearly the same effect; their
+    standard errors are then large, but directions remain accurate.
 
     Failure: a NaN row for a NaN feature row and outside the hull. fit raises UnusableDataError
     below 4 samples, where they do not determine the parameters or are inconsistent.
 
-    Cost: 25 operations and one root a sample; the fit, some ten times fifteen passes.
+    Cost: 25 operations and one root per sample; the fit, some ten times fifteen passes.
 
     Examples
     --------

@@ -72,7 +72,7 @@ class RegularPyramid(FacesModel):
     three sums do not separate. A constant added to all faces pulls the vector towards +z. fit
     raises UnusableDataError where no sample lights all faces.
 
-    Cost: 6 operations a face and one root a sample.
+    Cost: 6 operations per face and one root per sample.
 
     Examples
     --------

@@ -65,7 +65,7 @@ class SteadyPyramid(FacesModel):
     the tangent of the angle off the boresight. fit raises UnusableDataError where no sample off the
     boresight lights all faces, by the drawing.
 
-    Cost: 8 operations a face and one root a sample.
+    Cost: 8 operations per face and one root per sample.
 
     Examples
     --------

@@ -25,15 +25,15 @@ _FLATTEST = 0.05
 class QuadrantGap(ForwardModel):
     """Spot of one aperture on four photodiodes with a fitted gap between them.
 
-    Light in the gap is missing from the signals, most of it when the spot is centred on the gap.
-    The lit areas of the quadrants say which spot gives the balances measured.
+    The signals lack the light that falls into the gap, most of all when the spot is centred on it.
+    The position of the spot follows from the lit areas of the quadrants.
 
     Parameters
     ----------
     aperture_width_mm : float
         Diameter of a round aperture, side of a square one, positive.
     aperture_shape : {"round", "square"}
-        Of the aperture, and so of the spot.
+        Shape of the aperture, and so of the spot.
     gap_mm : float
         Between the photodiodes, at least 0 and less than the aperture; where the fit of a round
         spot's starts, and what a square spot's stays.
@@ -63,7 +63,7 @@ class QuadrantGap(ForwardModel):
     UnusableDataError below 4 samples, where they do not determine the parameters or are
     inconsistent. A detector that cuts the spot off, and walls of the aperture, are not known.
 
-    Cost: of a round aperture 30 times 150 operations a sample, of a square one 30 times 20.
+    Cost: of a round aperture 30 times 150 operations per sample, of a square one 30 times 20.
 
     Examples
     --------

@@ -20,8 +20,9 @@ from algorithms.documented import documented
 class DeflectedSlits(SlitModel):
     """Slits with errors of height, deflection and inclination over their lines.
 
-    Each line measures one angle; a deflected or inclined slit couples in the other. The three
-    errors of each slit, both zero points and the head's tilts are fitted together.
+    Each line measures one angle; deflection or inclination of the slit adds a dependence on the
+    other angle. The three errors of each slit, both zero points and the head's tilts are fitted
+    together.
 
     Parameters
     ----------
@@ -47,10 +48,10 @@ class DeflectedSlits(SlitModel):
 
     Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not
     converged within 6e-8 deg. fit raises UnusableDataError below 6 samples, where they do not
-    determine the parameters or are inconsistent. In a narrow field a tilt moves spots as the
-    centre does; standard errors then say so.
+    determine the parameters or are inconsistent. In a narrow field a tilt and a shift of the centre
+    have nearly the same effect; their standard errors are then large.
 
-    Cost: 30 times 60 operations a sample; the fit, some ten times twenty passes of 60.
+    Cost: 30 times 60 operations per sample; the fit, some ten times twenty passes of 60.
 
     Examples
     --------

@@ -32,19 +32,19 @@ class SolarPanels(DrawnModel):
 
     Notes
     -----
-    Implements: eq:msfsc (model:solarpanel, Nurgizat2021): ``n = sum_i n_i I_i / sqrt(sum_i
-    I_i^2)`` over lit panels. The survey prints ``sum_i n_i I_0 / sum_i I_i^2``; corrected because
-    that ratio has a unit and no panel's direction weighs more than another's. The corrected one is
-    a unit vector where one panel of each pair is lit; the length is scaled to one where stray
-    light or albedo lights both. A panel is lit whose signal is positive.
+    Implements: eq:msfsc (model:solarpanel, Nurgizat2021): ``n = sum_i n_i I_i / sqrt(sum_i I_i^2)``
+    over lit panels. The survey prints ``sum_i n_i I_0 / sum_i I_i^2``; corrected because that ratio
+    has a unit and no panel's direction weighs more than another's. The corrected sum is a unit
+    vector if one panel of each pair is lit; if stray light or albedo lights both, it is scaled to
+    length one. A panel counts as lit if its signal is positive.
 
     Shapes: signals (N, 6), in any common unit, to unit vectors (N, 3), all directions.
 
     Failure: a NaN row for a NaN feature row, or where no signal is positive, or opposite ones
-    cancel. Albedo is taken for Sun, and differences between the panels go straight into the
-    result.
+    cancel. Albedo is not distinguished from sunlight, and differences between the panels are not
+    corrected.
 
-    Cost: 40 operations and one root a sample.
+    Cost: 40 operations and one root per sample.
 
     Examples
     --------

@@ -38,7 +38,7 @@ class StandardProjection(ProjectionModel, DrawnModel):
 
     Failure: a NaN row for a NaN feature row.
 
-    Cost: 11 operations a sample.
+    Cost: 11 operations per sample.
 
     Examples
     --------

@@ -54,7 +54,7 @@ class VSlit(SlitModel):
     they do not determine the parameters or are inconsistent. Thickness and index act alike but far
     off the boresight: their standard errors are large together, those of directions are not.
 
-    Cost: 30 times 60 operations a sample; the fit, some ten times twenty passes of 60.
+    Cost: 30 times 60 operations per sample; the fit, some ten times twenty passes of 60.
 
     Examples
     --------

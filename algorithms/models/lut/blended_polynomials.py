@@ -88,7 +88,7 @@ class BlendedPolynomials(ProjectionModel):
     polynomial on two rows, where they settle the rows so badly that rounding would show, or past
     250,000 coefficients.
 
-    Cost: 12 (n + 1) operations a sample, and 2 a facet of the hull; the fit solves one sparse
+    Cost: 12 (n + 1) operations per sample, and 2 per facet of the hull; the fit solves one sparse
     system in A (n + 1) unknowns.
 
     Examples

@@ -70,7 +70,7 @@ class ErrorTable(ProjectionModel):
     degrees. fit raises UnusableDataError below 3 samples, for samples on one line, or for a table
     past 250,000 nodes.
 
-    Cost: 40 operations a sample, and 2 a facet of the hull; the fit solves one sparse system in
+    Cost: 40 operations per sample, and 2 per facet of the hull; the fit solves one sparse system in
     A B unknowns.
 
     Examples

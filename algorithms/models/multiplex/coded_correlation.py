@@ -15,8 +15,8 @@ from algorithms.documented import documented
 class CodedCorrelation(CodedMask):
     """Visible part of a coded mask by correlation, then one direction from all spots.
 
-    Spots and apertures are correlated over all displacements of the mask; the highest peak gives
-    the sub-field. All spots that match there give one direction.
+    Spots and apertures are correlated over all displacements of the mask; the highest peak
+    identifies the sub-field. All spots that match there give one direction.
 
     Notes
     -----
@@ -41,7 +41,7 @@ class CodedCorrelation(CodedMask):
     spots nearly as well (`read` says ``ambiguous``). fit raises UnusableDataError where the code is
     read in less than half of the samples, and below 4 samples; ValueError for a list with a gap.
 
-    Cost: 8 to 30 us a sample for 500 to 1000 apertures, as one operation an aperture and spot.
+    Cost: 8 to 30 us per sample for 500 to 1000 apertures, as one operation per aperture and spot.
 
     Examples
     --------

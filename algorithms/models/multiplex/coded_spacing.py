@@ -15,8 +15,8 @@ from algorithms.documented import documented
 class CodedSpacing(CodedMask):
     """Visible part of a coded mask by spacings of spots, then one direction from all spots.
 
-    Spacings of neighbouring spots identify the visible sub-field; sizes do, too, if the mask codes
-    by size. All spots that match there give one direction.
+    Spacings of neighbouring spots identify the visible sub-field; so do their sizes if the mask
+    encodes by size. All spots that match there give one direction.
 
     Notes
     -----
@@ -42,7 +42,7 @@ class CodedSpacing(CodedMask):
     spots nearly as well (`read` says ``ambiguous``). fit raises UnusableDataError where the code is
     read in less than half of the samples, and below 4 samples; ValueError for a list with a gap.
 
-    Cost: 6 to 40 us a sample, for a mask of a thousand apertures as for one of a hundred.
+    Cost: 6 to 40 us per sample, for a mask of a thousand apertures as for one of a hundred.
 
     Examples
     --------

@@ -26,9 +26,10 @@ _START = (0.0, 0.0, 0.0, 1.0, 0.0)
 class PeriodicCode(DialModel):
     """Coarse cell and fine phase of each dial, corrected for periodic error and assembly.
 
-    The Gray code gives the period of the fine rows, their phase the position within the period.
-    Rows displaced against each other give the phase an error of two cycles per period; a dial off
-    centre, tilted or too far away bends the scale of tangents into a fraction of straight lines.
+    The Gray code identifies the period of the fine rows; their phase gives the position within the
+    period. Rows displaced against each other cause a phase error of two cycles per period. A dial
+    that is off centre, tilted or too far away changes the tangent into a ratio of two linear
+    functions.
 
     Attributes
     ----------
@@ -45,15 +46,15 @@ class PeriodicCode(DialModel):
     a))``, the fine phase from ``F3 - F1`` and ``F4 - F2``. The survey prints ``sin(4 pi alpha +
     t)``; corrected because the error repeats twice per fine period theta_0. The tracks of a flat
     dial are even in the tangent, so alpha_1, alpha_2 and k add up there and the period is the
-    phase's. (a, b, c, d) are one number too many: only their ratios count. They and (k, t) are
-    fitted by least squares of the angles, an axis at a time.
+    phase's. Of (a, b, c, d) only the three ratios are determined. They and (k, t) are fitted by
+    least squares of the angles, an axis at a time.
 
     Failure: a NaN row for a NaN feature row, for fine rows without contrast, where cell and phase
     contradict each other, and where the direction would lie behind the detector. What couples the
     axes (dials turned against the reference, slits askew) is not in the equation and stays. fit
     raises UnusableDataError where the samples do not determine the ten parameters.
 
-    Cost: 2 arc tangents, 2 sines and 60 operations a sample.
+    Cost: 2 arc tangents, 2 sines and 60 operations per sample.
 
     Examples
     --------

@@ -22,8 +22,8 @@ from algorithms.documented import documented
 class ReticlePhase(PeriodicSlitModel):
     """Reticle of equal slits over a line of pixels, located by the phase of its light.
 
-    All slits are read together: the light is correlated with the reticle's period, so that N slits
-    are as precise as N measurements of one. The ends of the reticle identify the slits.
+    The light of all slits is correlated with the period of the reticle, so N slits are as precise
+    as N measurements of one slit. The ends of the reticle identify the slits.
 
     Parameters
     ----------
@@ -31,8 +31,8 @@ class ReticlePhase(PeriodicSlitModel):
         Position mm, slant deg and width mm of each slit over a line; equal, on one
         raster without gaps.
     smallest_contrast : float
-        Length of the phase over the light, in [0, 1), below which it says nothing;
-        a half-open reticle gives 0.64 less what diffraction and the Sun's width take.
+        Smallest contrast of the pattern that is accepted, in [0, 1); a half-open reticle has a
+        contrast of 0.64, reduced by diffraction and the width of the Sun.
 
     Notes
     -----
@@ -48,7 +48,7 @@ class ReticlePhase(PeriodicSlitModel):
     mean light, as beyond the end of a line, and where the phase has no contrast. fit raises
     UnusableDataError below 6 samples, and where they do not determine the parameters.
 
-    Cost: 12 operations a pixel.
+    Cost: 12 operations per pixel.
 
     References
     ----------

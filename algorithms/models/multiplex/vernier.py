@@ -24,8 +24,8 @@ from algorithms.documented import documented
 class OpticalVernier(PeriodicSlitModel):
     """Vernier: slits slightly farther apart than marks of three pixels each.
 
-    Slits cross the marks one after the other as the light moves, so few large pixels resolve fine
-    steps. The omitted slits are the position code, which gives the number of whole marks.
+    As the Sun moves, one slit after the other passes its mark, so few large pixels resolve fine
+    steps. Omitted slits form a position code, which gives the number of whole marks.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class OpticalVernier(PeriodicSlitModel):
     0.3 of their mean light, and where the phase has no contrast. fit raises UnusableDataError
     below 6 samples, and where they do not determine the parameters.
 
-    Cost: 20 operations a slit and place, a place a pixel: some 20 000 of 16 slits on 100 pixels.
+    Cost: 20 operations per slit and place, a place a pixel: some 20 000 of 16 slits on 100 pixels.
 
     References
     ----------

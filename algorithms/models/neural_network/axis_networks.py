@@ -32,8 +32,8 @@ _STEPS = 400
 class AxisNetworks(CalibratedModel):
     """Each Sun angle by its own network of sigmoid units with both features as inputs.
 
-    No sensor model is needed: distortion, tilt and other deviations from the drawing are learnt,
-    as far as the poses show them.
+    The method needs no sensor model; it learns distortion, tilt and other deviations from the
+    drawing as far as the poses show them.
 
     Parameters
     ----------
@@ -55,10 +55,10 @@ class AxisNetworks(CalibratedModel):
     -----
     Implements: model:ann (model:nn, Rufino2009b), described in words: ``alpha = v_0 + sum_j v_j /
     (1 + exp(-(w_j . (x, y) + b_j)))`` and the same for beta, each with weights of its own. The
-    study's inputs are the mean centroid of the spots that its mask casts, always as many (S-FOV)
-    or as many as are seen (X-FOV); here features are the displacement of the whole pattern,
-    whatever was seen of it, so that no input jumps where a spot drops out, and both modes are one
-    network that was shown other poses. How many units the study has is not known; twelve are ours.
+    study's inputs are the mean centroid of the spots that its mask casts, always as many (S-FOV) or
+    as many as are seen (X-FOV); here features are the displacement of the whole pattern, whatever
+    was seen of it, so that no input jumps where a spot drops out, and both modes are one network
+    that was shown other poses. The study's number of units is not known; our default is twelve.
     Trained by Levenberg and Marquardt's method on four fifths of the poses until the error on the
     other fifth, in blocks, no longer falls.
 
@@ -66,7 +66,7 @@ class AxisNetworks(CalibratedModel):
     degrees. fit raises UnusableDataError for fewer poses than a network has weights, 49 for twelve
     units, or where they lie on one line.
 
-    Cost: 40 operations a unit and sample. A fit takes some 0.1 ms a pose and start.
+    Cost: 40 operations per unit and sample. A fit takes some 0.1 ms a pose and start.
 
     Examples
     --------

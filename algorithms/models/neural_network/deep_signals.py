@@ -31,9 +31,9 @@ from algorithms.row_arithmetic import normalise
 class DeepSignals(Corrected, SignalsModel):
     """Sun direction linear in all signals, corrected by a deep network.
 
-    From the signals the network learns the error of the direction: by Earthlight, by responses
-    that are not a cosine, by unlit faces. No model of any of these is needed, only samples that
-    show them.
+    The network learns the error of the direction as a function of the signals: errors due to
+    albedo, to responses that differ from the cosine, and to unlit faces. It needs no model of these
+    effects, only samples that contain them.
 
     Attributes
     ----------
@@ -53,17 +53,17 @@ class DeepSignals(Corrected, SignalsModel):
     where the study's is its sensor's own. Errors are tangents along two axes across the direction;
     of a sensor that was calibrated with Suns behind it too, the three components of the vector to
     be added, for no two axes are smooth on a whole sphere. Signals are not normalised, because
-    their strength shows light other than the Sun's. Trained by Levenberg and Marquardt's method on
-    four fifths of the poses until the error on the other fifth, in blocks, no longer falls.
+    their sum shows light other than the Sun's. Trained by Levenberg and Marquardt's method on four
+    fifths of the poses until the error on the other fifth, in blocks, no longer falls.
 
     Failure: a NaN row for a NaN feature row, and outside the cone. Effects that are absent in the
-    calibration, such as Earthlight in one made on the ground, are corrected wrongly. Faces that
+    calibration, such as albedo in a calibration on the ground, are corrected wrongly. Faces that
     all see Sun and Earth measure little but their sum: if the same sum fits several positions of
     the Earth, as on a tumbling satellite, no network can resolve it. fit raises UnusableDataError
     for fewer samples than the network has weights an output, 75 of four signals.
     UnsuitableDesignError for more than eight detectors.
 
-    Cost: 1200 operations a sample for four signals. A fit takes some 10 ms a sample and start.
+    Cost: 1200 operations per sample for four signals. A fit takes some 10 ms per sample and start.
 
     Examples
     --------

@@ -30,8 +30,8 @@ _CUBIC = tuple((total - j, j) for total in range(4) for j in range(total + 1))
 class DeepSurface(Corrected, CalibratedModel):
     """Cubic surfaces of both features, with a deep network for the residuals.
 
-    The surfaces fit the smooth part and the network the rest, such as a spot cut off at the edge
-    of the field.
+    The surfaces fit the smooth part, and the network fits the rest, such as a spot cut off at the
+    edge of the field.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class DeepSurface(Corrected, CalibratedModel):
     fewer poses than the network has weights an output, 60 for eight units, or where they lie on one
     line.
 
-    Cost: 1000 operations a sample. A fit takes some 5 ms a pose and start.
+    Cost: 1000 operations per sample. A fit takes some 5 ms a pose and start.
 
     Examples
     --------

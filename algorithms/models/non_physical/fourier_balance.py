@@ -32,8 +32,8 @@ _FUNDAMENTAL = np.pi / 2.0
 class FourierBalance(CalibratedModel):
     """Each Sun angle as a linear function of its balance plus a Fourier series.
 
-    The departure of a quadrant's balance from a line is smooth, and periodic if the light is
-    (interference, gaps of a mask); sines and cosines follow both.
+    The balance of a quadrant photodiode departs smoothly from a line, and periodically if the light
+    is periodic (interference, gaps of a mask); sines and cosines describe both.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class FourierBalance(CalibratedModel):
         Order N of the series, 1 to 8. None: chosen from the calibration samples by
         cross-validation.
     target : {"angle", "tangent"}
-        What the series gives: the angle in degrees, as published, or its tangent.
+        Output of the series: the angle in degrees, as published, or its tangent.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class FourierBalance(CalibratedModel):
     degrees. fit raises UnusableDataError below 2 + 2 N different balances an axis, or where the
     samples do not determine every term.
 
-    Cost: 4 tangents, 4 divisions and 14 N operations a sample.
+    Cost: 4 tangents, 4 divisions and 14 N operations per sample.
 
     Examples
     --------

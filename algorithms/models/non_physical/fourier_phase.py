@@ -62,7 +62,7 @@ class FourierPhase(DialModel):
     contradict each other, and where the direction would lie behind the detector. fit raises
     UnusableDataError where the samples do not determine every parameter.
 
-    Cost: 2 arc tangents, 4 sines a harmonic and 60 operations a sample.
+    Cost: 2 arc tangents, 4 sines per harmonic and 60 operations per sample.
 
     Examples
     --------

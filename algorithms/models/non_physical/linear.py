@@ -27,14 +27,14 @@ from algorithms.parameters import require_choice
 class LinearFit(CalibratedModel):
     """Each Sun angle as a linear function of the feature of its axis.
 
-    Two parameters per axis: the smallest and fastest calibration. It holds over a narrow field of
-    view, where the response is linear.
+    With two parameters per axis it is the smallest and fastest calibration. It is valid over a
+    narrow field of view, where the response is linear.
 
     Parameters
     ----------
     target : {"angle", "tangent"}
-        What the line gives: the angle in degrees, as published, or its tangent, which is what a
-        pinhole's response is straight in.
+        Output of the line: the angle in degrees, as published, or its tangent, in which the
+        response of a pinhole is linear.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class LinearFit(CalibratedModel):
     fit raises UnusableDataError below 3 samples, where they lie on one line, or where a line
     explains nothing of them, as with swapped axes.
 
-    Cost: 4 operations and 2 tangents a sample.
+    Cost: 4 operations and 2 tangents per sample.
 
     Examples
     --------

@@ -32,7 +32,7 @@ class AveragedPanelCurves(SquarePanelsModel):
     """One trigonometric curve for both panels of a pair; the lit panel gives angle and sign.
 
     Averaging opposite panels leaves only three curves to invert, but does not correct differences
-    between panels. The lit panels determine the quadrant.
+    between panels. The lit panels determine the quadrant of the angle.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class AveragedPanelCurves(SquarePanelsModel):
     pair is lit by fewer than eight samples or by some that do not determine its curve, or where a
     curve turns back among them.
 
-    Cost: 30 operations and 4 roots a sample.
+    Cost: 30 operations and 4 roots per sample.
 
     Examples
     --------

@@ -39,7 +39,7 @@ class _Polynomial(CalibratedModel):
     Parameters
     ----------
     target : {"angle", "tangent"}
-        What the polynomial gives: the angle in degrees, as published, or its tangent.
+        Output of the polynomial: the angle in degrees, as published, or its tangent.
     """
 
     degree: int | None = None
@@ -64,7 +64,8 @@ class _Polynomial(CalibratedModel):
 class AxisPolynomial(_Polynomial):
     """Each Sun angle as a polynomial of the feature of its own axis.
 
-    Compact and fast; it follows any smooth response of one axis, but not coupling between axes.
+    The model is compact and fast. It follows any smooth response of one axis, but not coupling
+    between axes.
 
     Parameters
     ----------
@@ -93,7 +94,7 @@ class AxisPolynomial(_Polynomial):
     degrees. fit raises UnusableDataError below n + 1 different features an axis, or where they lie
     on one line.
 
-    Cost: 6 (n + 1) operations and 2 tangents a sample.
+    Cost: 6 (n + 1) operations and 2 tangents per sample.
 
     Examples
     --------
@@ -195,7 +196,7 @@ class SurfacePolynomial(_Polynomial):
     degrees. fit raises UnusableDataError below (n + 1)(n + 2) / 2 samples or where they lie so
     that they do not determine every term.
 
-    Cost: 2.5 (n + 1)(n + 2) operations and 2 tangents a sample.
+    Cost: 2.5 (n + 1)(n + 2) operations and 2 tangents per sample.
 
     Examples
     --------

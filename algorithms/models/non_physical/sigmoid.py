@@ -44,9 +44,9 @@ _SERIES = (1.0, -1.0 / 3.0, 2.0 / 15.0, -17.0 / 315.0, 62.0 / 2835.0, -1382.0 / 
 class SigmoidBalance(ParametricModel):
     """Each balance as a logistic curve of its Sun angle, with first-order Fourier terms and offset.
 
-    The spot of a round aperture crosses a quadrant's edge slowly, quickly and slowly again; a
-    logistic curve has that shape, the Fourier terms fit the residual, and few parameters serve a
-    wide field.
+    The balance of a round spot changes slowly at the ends of the field and quickly in the middle. A
+    logistic curve has that shape and the Fourier terms fit the residual, so few parameters suffice
+    for a wide field.
 
     Attributes
     ----------
@@ -59,13 +59,13 @@ class SigmoidBalance(ParametricModel):
     Notes
     -----
     Implements: model:sigmoid (Pentke2022), described in words: ``s = slope L(t - m) + cosine cos(w
-    (t - m)) + sine sin(w (t - m)) + offset``, t the Sun angle, m the middle of its calibrated
-    range and 2 pi / w that range. ``L = T / (1 + skew T)``, ``T(x) = tanh(q x) / q``, ``q^2 =
-    bend``, is the logistic ``A (2 / (1 + exp(-k (t - c))) - 1)`` less its value at m, with ``q = k
-    / 2``, ``skew = q tanh(q (m - c))`` and ``slope = A q (1 - tanh^2(q (m - c)))``. Told by its
-    slope at m, bend and skew (ours) it passes through a straight line (both 0), where A, k and c
-    run to infinity or mean nothing, to ``tan(p x) / p``, ``p^2 = -bend``, which is a square
-    aperture's. The balances' errors are what is made small, for the noise is theirs.
+    (t - m)) + sine sin(w (t - m)) + offset``, t the Sun angle, m the middle of its calibrated range
+    and 2 pi / w that range. ``L = T / (1 + skew T)``, ``T(x) = tanh(q x) / q``, ``q^2 = bend``, is
+    the logistic ``A (2 / (1 + exp(-k (t - c))) - 1)`` less its value at m, with ``q = k / 2``,
+    ``skew = q tanh(q (m - c))`` and ``slope = A q (1 - tanh^2(q (m - c)))``. Told by its slope at
+    m, bend and skew (ours) it passes through a straight line (both 0), where A, k and c run to
+    infinity or mean nothing, to ``tan(p x) / p``, ``p^2 = -bend``, which is a square aperture's.
+    The fit minimises the errors of the balances, because the noise is that of the balances.
 
     Shapes: balances ``(s_a, s_b)`` (N, 2) to unit vectors (N, 3).
 
@@ -74,7 +74,7 @@ class SigmoidBalance(ParametricModel):
     do not determine the parameters, or where a fitted curve turns back within the calibrated
     range.
 
-    Cost: 2 tables and 6 steps of a hyperbolic tangent, a sine and a cosine a sample: some ten
+    Cost: 2 tables and 6 steps of a hyperbolic tangent, a sine and a cosine per sample: some ten
     times a polynomial's.
 
     Examples

@@ -41,16 +41,16 @@ _DEPENDENT = 1e-4
 class SignalPolynomial(SignalsModel):
     """Each component of the Sun vector as a polynomial of all detectors' signals.
 
-    No geometry of the cells is needed: angular responses, gains and mounting are compensated as
-    far as the degree permits.
+    The method needs no geometry of the cells; it compensates angular responses, gains and mounting
+    as far as the degree permits.
 
     Parameters
     ----------
     degree : int, optional
         Total degree n, 1 to 6. None: chosen from the calibration samples by cross-validation.
     extrapolation : float
-        How far past the cone of calibrated directions answers may go, in radians, at least 0, and
-        the signals past their calibrated range, in half ranges; infinity for anywhere.
+        Allowed extrapolation beyond the cone of calibrated directions, in radians, at least 0, and
+        beyond the calibrated range of signals, in half ranges; infinity: unlimited.
 
     Attributes
     ----------
@@ -68,12 +68,13 @@ class SignalPolynomial(SignalsModel):
 
     Notes
     -----
-    Implements: model:poly (Hermoso2021), described in words a polynomial of photodiode signals:
-    ``s = sum_p c_p u_1^p_1 ... u_K^p_K``, ``p_1 + ... + p_K <= n``, scaled to length one (ours,
-    for all signals at once), in products of Chebyshev polynomials, which span the same functions.
-    Signals of one Sun depend on each other: squares of a cube's add up to one, opposite panels are
-    never lit together. A term that is a sum of others before it on the calibration samples, to a
-    part in ten thousand, is settled by none of them and left out, the higher degrees first.
+    Implements: model:poly (Hermoso2021), described in words a polynomial of photodiode signals: ``s
+    = sum_p c_p u_1^p_1 ... u_K^p_K``, ``p_1 + ... + p_K <= n``, scaled to length one (ours, for all
+    signals at once), in products of Chebyshev polynomials, which span the same functions. The
+    signals of different cells are not independent: the squares of a cube's signals add up to one,
+    and opposite panels are never lit together. A term that is a linear combination of other terms
+    on the calibration samples (to one part in ten thousand) cannot be determined and is left out,
+    higher degrees first.
 
     Failure: a NaN row for a NaN feature row, outside the cone, where a signal leaves its
     calibrated range by more than a tenth of its half (a detector lit that never was), or where

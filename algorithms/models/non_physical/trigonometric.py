@@ -65,7 +65,7 @@ class TrigonometricPanels(SquarePanelsModel):
     outside the cone. fit raises UnusableDataError where a pair is lit by fewer than eight samples
     or by some that do not determine its cosine, or where three cosines lie in one plane.
 
-    Cost: 40 operations, 9 looked-up numbers and one root a sample.
+    Cost: 40 operations, 9 looked-up numbers and one root per sample.
 
     Examples
     --------

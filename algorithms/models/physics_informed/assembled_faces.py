@@ -86,10 +86,11 @@ class AssembledFaces(FacesModel):
     Shapes: signals (N, K), in any common unit, to unit vectors (N, 3).
 
     Failure: a NaN row for a NaN feature row, where no face is lit, where the lit ones leave the
-    direction open, and outside the cone. Albedo is taken for Sun. fit raises UnusableDataError
-    where a face is lit by fewer than 12 samples, or they do not determine its six numbers.
+    direction open, and outside the cone. Albedo is not distinguished from sunlight. fit raises
+    UnusableDataError where a face is lit by fewer than 12 samples, or they do not determine its six
+    numbers.
 
-    Cost: some ten steps of 30 operations a face and 60 a sample; the fit, some twenty passes of
+    Cost: some ten steps of 30 operations per face and 60 per sample; the fit, some twenty passes of
     seven over the samples a face.
 
     Examples

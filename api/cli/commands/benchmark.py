@@ -45,7 +45,9 @@ def benchmark(
     ] = None,
     config: Annotated[
         Path | None,
-        typer.Option(help="Of --data: the meaning of its columns, as `sunatlas calibrate` takes."),
+        typer.Option(
+            help="With --data: meaning of its columns, in the format of `sunatlas calibrate`."
+        ),
     ] = None,
     workers: ManyWorkersOption = AVAILABLE_WORKERS,
     scheduler: SchedulerOption = None,

@@ -43,8 +43,9 @@ def calibrate(
         Path | None,
         typer.Option(
             help=(
-                "Correct this calibration (JSON of an earlier run) by the poses of the files, "
-                "instead of a new one: a turn or an offset, if they show it."
+                "Correct this calibration (JSON of an earlier run) with the poses of the files "
+                "instead of fitting a new one: by a rotation or an offset, if that is clearly "
+                "better."
             )
         ),
     ] = None,

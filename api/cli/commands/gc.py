@@ -1,4 +1,4 @@
-"""`sunatlas gc`: what no cell refers to, dropped from the working store."""
+"""`sunatlas gc`: delete unused results from the local store."""
 
 from __future__ import annotations
 

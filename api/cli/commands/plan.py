@@ -46,7 +46,7 @@ def plan(
     this machine. Nothing is measured. JSON and CSV list every cell.
 
     Below stands how much of each stage that is: data to generate, features to extract, models to
-    fit, scores to compute. What is kept beside the local store is not done again.
+    fit, scores to compute. Stages in the cache of the local store are not computed again.
     """
     chosen = suite_named(str(suite))
     stores = stores_of(store)

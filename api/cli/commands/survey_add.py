@@ -201,13 +201,13 @@ def _print(document: Mapping[str, Any]) -> None:
     row = [{"column": column, "value": value} for column, value in study.items() if value]
     emit(row, ("column", "value"), Format.TABLE, title=f"Study {study['key']}")
     typer.echo()
-    emit(document["attributes"], _CELLS, Format.TABLE, title="Its cells")
+    emit(document["attributes"], _CELLS, Format.TABLE, title="Values")
     typer.echo()
     lines = [
         {**p, "assumed": [f"{part}: {rule}" for part, rule in p["assumed"].items()]}
         for p in document["pipelines"]
     ]
-    title = f"What of it would run here: {document['grade']}; pipelines: {len(lines)}"
+    title = f"Implementation here: {document['grade']}; pipelines: {len(lines)}"
     emit(lines, _PIPELINES, Format.TABLE, title=title)
     say(document["sentence"])
     for gap in document["gaps"]:

@@ -107,8 +107,7 @@ _RESPONSES: dict[int | str, dict[str, Any]] = {
 async def calibrations(request: Request) -> Response:
     """Compare models on the files' own readings, judge the best, and write flight code.
 
-    As `sunatlas calibrate` does it, within 60 s. Files are removed with the answer; nothing of
-    them is kept.
+    Same as `sunatlas calibrate`, with a limit of 60 s. Uploaded files are deleted after the answer.
     """
     wanted = media_type(request.headers.get("accept"), OFFERED)
     return await calibrated(request, wanted)

@@ -14,8 +14,8 @@ from benchmark.simulator.light.environment import Earth
 #: 40 K warmer than usual throughout.
 _WARM = ThermalCycle(sunlit_k=348.15, eclipse_k=288.15)
 UNDER_GLASS = (
-    "under a filter of 0.5 mm of glass (index 1.52), its head moving with temperature and age, "
-    "sunlit Earth in view."
+    "under a filter of 0.5 mm of glass (index 1.52), with an assembly that drifts with "
+    "temperature and age, and the sunlit Earth in view."
 )
 FIRM = "The nominal sensor with an assembly that does not drift."
 
@@ -53,7 +53,8 @@ def conditions_aloft(
     said = {
         "low-noise": f"{noise} low-noise condition.",
         "high-noise": f"{noise} high-noise condition.",
-        "misaligned": f"The nominal sensor, misaligned at first as {ground.name}'s of that name.",
+        "misaligned": "The nominal sensor with the initial misalignment of the misaligned "
+        f"{ground.name}.",
         **texts,
     }
     nominal, light = flying("nominal"), ground.condition("nominal").irradiance

@@ -108,7 +108,7 @@ def conditions(sensor: CodeDialSensor) -> dict[str, Condition]:
         "hot": hot(sensor, ", to a ninth of the current in full sunlight"),
         "square-windows": Condition(
             "The nominal sensor with plain windows of half a period as fine rows: all odd "
-            "harmonics, so the arc tangent of the fine currents errs periodically.",
+            "harmonics, so the arc tangent of the fine currents has a periodic error.",
             replace(sensor, dial=replace(dial, fine_rows="square")),
             LIGHT,
         ),

@@ -111,8 +111,8 @@ def photodiode_conditions(
         ),
         "hot": hot(sensor),
         "stray-light": Condition(
-            "The nominal sensor under stray light of 5 % of sunlight, 1 % from sample to sample: "
-            "the interference, the same on all faces, that Wang2019 suppresses.",
+            "The nominal sensor under stray light of 5 % of sunlight (1 % from sample to sample), "
+            "equal on all faces: the interference that Wang2019 suppresses.",
             sensor,
             Irradiance(stray=0.05, stray_spread=0.01),
         ),
@@ -218,9 +218,8 @@ def hot(sensor: Amplified) -> Condition:
 def albedo(sensor: Sensor, what: str) -> Condition:
     """Return the condition of an orbit with the sunlit Earth in view."""
     return Condition(
-        f"The nominal {what} in a 600 km orbit with the sunlit Earth in view on the test "
-        "split, position random where the Sun is visible; calibrated on the ground without "
-        "Earth.",
+        f"The nominal {what} in a 600 km orbit with the sunlit Earth in view on the test split, "
+        "at random positions with the Sun visible; calibrated on the ground without Earth.",
         sensor,
         LIGHT,
         earth=Earth(),

@@ -141,7 +141,7 @@ def blooming_conditions(camera: LensCamera) -> dict[str, Condition]:
     return {
         "nominal": seen(
             "Plain lens: 30 % of the light in an aureole, 5 % veil, two ghosts; read noise of a "
-            "third of a digital number, 2 % crosstalk, 13 dead pixels or so.",
+            "third of a digital number, 2 % crosstalk, about 13 dead pixels.",
             camera,
         ),
         "low-noise": seen(_LOW_NOISE, replace(camera, detector=quiet)),
@@ -191,7 +191,7 @@ def black_sun(camera: LensCamera) -> dict[str, Condition]:
     return {
         "nominal": seen(
             "Clean lens: 8 % of the light in an aureole, 2 % veil, two faint ghosts; read noise "
-            "of 2.6 digital numbers, 2 % crosstalk, 12 dead pixels or so.",
+            "of 2.6 digital numbers, 2 % crosstalk, about 12 dead pixels.",
             camera,
         ),
         "low-noise": seen(_LOW_NOISE, replace(camera, detector=quiet)),

@@ -42,10 +42,10 @@ def spin(
     parts = {field.name: getattr(sensor, field.name) for field in fields(sensor)}
     order = f"row by row, {1e6 * row_s:.0f} us apart" if rolls else "all pixels together"
     return Condition(
-        f"The nominal sensor on a satellite that tumbles at {TUMBLING.rate_deg_s:g} deg/s, about "
-        "another axis in every sample of the test split; calibrated at rest. Exposed for "
-        f"{1e3 * sensor.detector.exposure_s:g} ms, {order}; the Sun is that of the moment when "
-        "the row through its spot is half exposed.",
+        f"The nominal sensor on a satellite that tumbles at {TUMBLING.rate_deg_s:g} deg/s about a "
+        f"random axis in each test sample; calibrated at rest. Exposure "
+        f"{1e3 * sensor.detector.exposure_s:g} ms, {order}; the true direction is that at the "
+        "middle of the exposure of the row through the spot.",
         RollingDiffractiveSensor(**parts, row_time_s=row_s),
         irradiance,
         spin=TUMBLING,

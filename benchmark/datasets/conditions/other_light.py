@@ -55,7 +55,7 @@ def with_albedo(
         When the sensor does not see the Earth.
     """
     return Condition(
-        f"The nominal sensor {_ORBIT}. Earth is the same everywhere: Lambert's, albedo 0.3.",
+        f"The nominal sensor {_ORBIT}. The Earth is uniform: a Lambertian surface of albedo 0.3.",
         sensor,
         irradiance,
         earth=Earth(),
@@ -70,8 +70,8 @@ def with_clouds(
     earth = CloudyEarth()
     return Condition(
         f"The nominal sensor {_ORBIT}. Clouds of {earth.cloudy:.2f} cover "
-        f"{earth.clouds.cover:.0%} of ground of {earth.clouds.clear:.2f} in patches: 0.3 again in "
-        "the mean.",
+        f"{earth.clouds.cover:.0%} of ground of albedo {earth.clouds.clear:.2f} in patches; the "
+        "mean albedo is 0.3.",
         sensor,
         irradiance,
         earth=earth,
@@ -100,8 +100,8 @@ def with_ghosts(
     where = "the mask's underside" if seen.surface == "mask" else "the cover glass"
     return Condition(
         f"The nominal sensor whose detector reflects {seen.detector_reflectance:g} and {where} "
-        f"{seen.surface_reflectance:g} of that: a second image of {seen.share:.1%} of the light, "
-        "further out.",
+        f"{seen.surface_reflectance:g} of that: this gives a second image with {seen.share:.1%} "
+        "of the light, farther out.",
         replace(sensor, ghost=seen),
         irradiance,
         geometry=geometry,
@@ -117,9 +117,9 @@ def with_stray_gradient(
     """
     stray = 10.0 * irradiance.stray
     return Condition(
-        f"The nominal sensor with stray light of {stray:g} of sunlight that slopes from sample to "
-        "sample: the detector's edge gets a quarter more or less than its middle, one standard "
-        "deviation an axis.",
+        f"The nominal sensor with stray light of {stray:g} of sunlight with a gradient that "
+        "differs between samples: between middle and edge of the detector it changes by 25 % "
+        "(one standard deviation per axis).",
         sensor,
         UnevenIrradiance(irradiance.spread, stray, stray / 5.0, stray / 4.0),
         geometry=geometry,

@@ -231,8 +231,7 @@ def pixel_conditions(
             light,
         ),
         "misaligned": Condition(
-            f"The nominal sensor {MISALIGNED}, focal length 2.5 % long, {off_centre}: far above "
-            "the noise.",
+            f"The nominal sensor {MISALIGNED}, focal length 2.5 % long, {off_centre}.",
             replace(sensor, camera=replace(camera, assembly=errors)),
             light,
         ),
@@ -245,9 +244,9 @@ def pixel_conditions(
             light,
         ),
         "aged": Condition(
-            "The nominal sensor at the end of its life, calibrated then: some 5e9 protons/cm2 have "
-            f"made dark current {_AGED_DARK:g} times as strong and one pixel in a hundred hot, "
-            f"with {_AGED_HOT['hot_factor']:g} times that again on average.",
+            "The nominal sensor at the end of its life (some 5e9 protons/cm2), also calibrated "
+            f"then: {_AGED_DARK:g} times the dark current, and one pixel in a hundred hot, with "
+            f"{_AGED_HOT['hot_factor']:g} times as much again on average.",
             replace(sensor, detector=aged(detector)),
             light,
         ),
@@ -266,12 +265,12 @@ def as_bought(detector: PixelArray) -> str:
     if errors.crosstalk:
         said.append(f"{100.0 * errors.crosstalk:g} % crosstalk")
     if errors.smear:
-        said.append(f"{100.0 * errors.smear:g} % smear a row")
+        said.append(f"{100.0 * errors.smear:g} % smear per row")
     if errors.nonlinearity:
-        said.append(f"a full well {100.0 * errors.nonlinearity:g} % short of proportion")
+        said.append(f"{100.0 * errors.nonlinearity:g} % nonlinearity at full well")
     if errors.column_offset_e:
-        what = "columns" if detector.rows > 1 else "pixels"
-        said.append(f"{what}' amplifiers {errors.column_offset_e:g} electrons apart")
+        what = "column" if detector.rows > 1 else "pixel"
+        said.append(f"{what} offsets of {errors.column_offset_e:g} electrons")
     return ", ".join(said)
 
 

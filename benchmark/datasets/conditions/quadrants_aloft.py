@@ -22,8 +22,8 @@ def quadrants_aloft(
 
     still = replace(flying("nominal"), assembly=AssemblyDrift(), photodiodes=PhotodiodeDrift())
     texts = {
-        "nominal": f"The nominal sensor of {ground.name}, its head and gains moving with "
-        "temperature and age, sunlit Earth in view.",
+        "nominal": f"The nominal sensor of {ground.name}, with an assembly and gains that drift "
+        "with temperature and age, and the sunlit Earth in view.",
         "stable": "The nominal sensor with an assembly and gains that do not drift.",
     }
     return conditions_aloft(ground, flying, still, texts, black_earth=True)

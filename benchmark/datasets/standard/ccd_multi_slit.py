@@ -16,12 +16,12 @@ PRESET = line_arrays(
     half_fov_deg=60.0,
     follows=("Enright2007a", "Enright2006b", "Enright2007b", "Enright2008b", "Radan2019"),
     description=(
-        "Two pairs of narrow slits at right angles to each other over one linear CCD, as in "
-        "the studies of the peak position estimate. Peaks of one pair move with tan(beta) - "
-        "tan(alpha), those of the other with tan(beta) + tan(alpha). The sensors of these "
-        "studies (SS-411, NFSS-411) have slits in a metal film under a window; no dimensions "
-        "are published. Assumed: slits of 0.1 mm, 1.8 mm above 2048 pixels of 14 um; spacings "
-        "of 0.7 and 0.9 mm tell the pairs apart; 9.2 mm between the pairs keeps their peaks "
-        "apart over the whole field."
+        "Two pairs of narrow slits at right angles to each other over one linear CCD, as in the "
+        "studies of the peak position estimate. Peaks of one pair move with tan(beta) - "
+        "tan(alpha), those of the other with tan(beta) + tan(alpha). The sensors of these studies "
+        "(SS-411, NFSS-411) have slits in a metal film under a window; no dimensions are "
+        "published. Assumed: slits of 0.1 mm, 1.8 mm above 2048 pixels of 14 um; spacings of 0.7 "
+        "and 0.9 mm distinguish the pairs; 9.2 mm between the pairs keeps their peaks apart over "
+        "the whole field."
     ),
 )

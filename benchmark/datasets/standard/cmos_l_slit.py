@@ -27,11 +27,11 @@ PRESET = pixels.windows(
     directions=AngleField(60.0, steps=13, test_samples=400),
     follows=("Jing2016",),
     description=(
-        "Windows of 96 x 96 px of a 512 x 512 px array behind an L of two slits: the one "
-        "along y gives beta, the one along x gives alpha. From Jing2016: slits, pixel array, "
-        "windowed read-out; no dimensions. Assumed: slits of 0.1 x 0.57 mm, 1.2 mm up in a "
-        "foil of 10 um, 0.1 mm apart at the corner; field +-60 deg. The Fresnel number is "
-        "3.8: sides are 26 um soft. Windows miss the spot by up to 8 px per axis."
+        "Windows of 96 x 96 px of a 512 x 512 px array behind an L of two slits: the one along y "
+        "gives beta, the one along x gives alpha. From Jing2016: slits, pixel array, windowed "
+        "read-out; no dimensions. Assumed: slits of 0.1 x 0.57 mm, 1.2 mm up in a foil of 10 um, "
+        "0.1 mm apart at the corner; field +-60 deg. The Fresnel number is 3.8: sides are 26 um "
+        "soft. Windows are off the spot by up to 8 px per axis."
     ),
     more=seen_with(_SENSOR, "albedo-clouds", "ghosts"),
 )

@@ -25,11 +25,11 @@ PRESET = pixels.windows(
     directions=AngleField(60.0),
     follows=("Chang2008", "Xie2012"),
     description=(
-        "Windows of 64 x 64 px of a 512 x 512 px array behind one round hole. From the TU "
-        "Delft micro-DSS (Xie2012): 512 px. From its successor, the TNO miniDSS: pixels of "
-        "6.5 um. From Foresail-1p: a hole of 0.1 mm. Height 0.75 mm, assumed below the 0.97 "
-        "mm that the miniDSS's field permits; field +-60 deg. The Fresnel number is 6: the "
-        "spot is a soft shadow some 15 px wide (Xie2010: about 10). Windows miss the spot by "
-        "up to 8 px per axis."
+        "Windows of 64 x 64 px of a 512 x 512 px array behind one round hole. From the TU Delft "
+        "micro-DSS (Xie2012): 512 px. From its successor, the TNO miniDSS: pixels of 6.5 um. From "
+        "Foresail-1p: a hole of 0.1 mm. Height 0.75 mm, assumed below the 0.97 mm that the "
+        "miniDSS's field permits; field +-60 deg. The Fresnel number is 6: the spot is a soft "
+        "shadow some 15 px wide (Xie2010: about 10). Windows are off the spot by up to 8 px per "
+        "axis."
     ),
 )

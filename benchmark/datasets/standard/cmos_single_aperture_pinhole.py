@@ -26,12 +26,12 @@ PRESET = pixels.windows(
     directions=AngleField(30.0),
     follows=("Antonello2018",),
     description=(
-        "Windows of 64 x 64 px of a 448 x 448 px array behind the one pinhole that a mapped "
-        "study publishes: 20 um wide, 7 mm above a commercial CMOS detector (Antonello2018). "
-        "The Fresnel number is 0.026: the spot is a diffraction pattern of 0.47 mm between "
-        "dark rings, seven times the image of the Sun. Assumed: 24 um pixels, field of 30 deg "
-        "per axis, no filter, a thin foil. The peak is 1/180 of full sunlight, exposed to "
-        "17,000 electrons. Windows miss the spot by up to 8 px per axis."
+        "Windows of 64 x 64 px of a 448 x 448 px array behind the one pinhole that a mapped study "
+        "publishes: 20 um wide, 7 mm above a commercial CMOS detector (Antonello2018). The "
+        "Fresnel number is 0.026: the spot is a diffraction pattern of 0.47 mm between dark "
+        "rings, seven times the image of the Sun. Assumed: 24 um pixels, field of 30 deg per "
+        "axis, no filter, a thin foil. The peak is 1/180 of full sunlight, exposed to 17,000 "
+        "electrons. Windows are off the spot by up to 8 px per axis."
     ),
     kind=UnevenPreset,
 )

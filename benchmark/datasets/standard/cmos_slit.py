@@ -24,11 +24,10 @@ PRESET = pixels.windows(
     directions=AngleField(60.0),
     follows=("Chum2003",),
     description=(
-        "Windows of 64 x 96 px of a 512 x 512 px array behind one slit along y. From "
-        "Chum2003: a slit sensor of +-60 deg on CCD or CMOS, without dimensions; its two "
-        "lines of pixels are one array here, so the ends of the slit give the second angle, "
-        "less accurately. Assumed: a slit of 0.1 x 0.72 mm, 1.2 mm up in a foil of 10 um, 12 "
-        "um pixels. The Fresnel number is 3.8: sides are 26 um soft. Windows miss the spot by "
-        "up to 8 px per axis."
+        "Windows of 64 x 96 px of a 512 x 512 px array behind one slit along y. From Chum2003: a "
+        "slit sensor of +-60 deg on CCD or CMOS, without dimensions; its two lines of pixels are "
+        "one array here, so the ends of the slit give the second angle, less accurately. Assumed: "
+        "a slit of 0.1 x 0.72 mm, 1.2 mm up in a foil of 10 um, 12 um pixels. The Fresnel number "
+        "is 3.8: sides are 26 um soft. Windows are off the spot by up to 8 px per axis."
     ),
 )

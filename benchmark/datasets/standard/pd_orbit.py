@@ -19,12 +19,11 @@ PRESET = in_orbit(
     follows=("Frezza2022", "OKeefe2017"),
     description=(
         "The cube of pd-maskless-cube in a sun-synchronous orbit of 600 km (node at 10:30, a "
-        "third of each orbit in eclipse) on a slowly tumbling satellite, so that the Sun "
-        "passes over nearly the whole sphere. From Frezza2022: six photodiodes aided by a "
-        "magnetometer. From OKeefe2017: albedo that ends with eclipse, calibration in orbit "
-        "(eq:mnoise). Orbit and drift are assumed. Calibration: sunlight of the first three "
-        "orbits, Earth in view. Test: three orbits a quarter of a year later, the same unit "
-        "aged. The temperature approaches 35 deg C in sunlight and -25 deg C in eclipse (time "
-        "constant 2000 s)."
+        "third of each orbit in eclipse) on a slowly tumbling satellite, so that the Sun passes "
+        "over nearly the whole sphere. From Frezza2022: six photodiodes aided by a magnetometer. "
+        "From OKeefe2017: no albedo in eclipse, calibration in orbit (eq:mnoise). Orbit and drift "
+        "are assumed. Calibration: sunlight of the first three orbits, Earth in view. Test: three "
+        "orbits a quarter of a year later, the same unit aged. The temperature approaches 35 deg "
+        "C in sunlight and -25 deg C in eclipse (time constant 2000 s)."
     ),
 )

@@ -13,10 +13,7 @@ _CAMERA = diodes.through(
     diodes.rectangular_opening(0.8, 0.8), 0.5, careful_alignment(0.002, 0.002, -0.0015), GLASS
 )
 _SENSOR = diodes.quadrants(_CAMERA, half_width_mm=0.8, gap_mm=0.02)
-_NOMINAL = (
-    "Glued without tilt to speak of, 2 um of glue, 1 % gain mismatch, noise of 2e-4 of full "
-    "sunlight."
-)
+_NOMINAL = "Almost no tilt, 2 um of glue, 1 % gain mismatch, noise of 2e-4 of full sunlight."
 _OFF = "12 um of glue, window 20 and -15 um off centre"
 
 PRESET = diodes.masked_photodiodes(

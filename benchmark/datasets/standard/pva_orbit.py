@@ -22,9 +22,9 @@ PRESET = in_orbit(
     follows=("Zhang2022b",),
     description=(
         "The cells of pva-maskless-sphere with a thermometer, in orbit, for Zhang2022b's "
-        "temperature term (eq:msfpano) and albedo. Its satellite has flown since 2020; orbit, "
-        "attitude and drift are not known. Orbit, tumbling, calibration, test and temperature "
-        "as in pd-orbit. Assumed: a cell in full sunlight is 40 K warmer than the body; 0.06 "
-        "%/K (typical of multi-junction cells)."
+        "temperature term (eq:msfpano) and albedo. The satellite has been in orbit since 2020; "
+        "orbit, attitude and drift are not known. Orbit, tumbling, calibration, test and "
+        "temperature as in pd-orbit. Assumed: a cell in full sunlight is 40 K warmer than the "
+        "body; 0.06 %/K (typical of multi-junction cells)."
     ),
 )

@@ -28,12 +28,11 @@ PRESET = diodes.masked_photodiodes(
     setups=diodes.usual(_SENSOR, _NOMINAL, _OFF, misalign(0.025)) | seen_with(_SENSOR, "albedo"),
     follows=("Delgado2011", "Delgado2012a", "Delgado2012b", "Delgado2013"),
     description=(
-        "The quadrants of qpd-single-aperture under a cover glass that fills the gap: the "
-        "window is in the metal on the glass, as in sensors of the University of Seville "
-        "(Ortega2010). The Delgado studies give no sizes. Assumed: sizes of "
-        "qpd-single-aperture, 1 mm of glass of index 1.52. In glass the Sun stays within 41 "
-        "deg of the boresight, so the field is +-60 deg instead of 40 deg; refraction bends "
-        "the balance (eq:refcomp1)."
+        "The quadrants of qpd-single-aperture under a cover glass that fills the gap: the window "
+        "is in the metal on the glass, as in sensors of the University of Seville (Ortega2010). "
+        "The Delgado studies give no sizes. Assumed: sizes of qpd-single-aperture, 1 mm of glass "
+        "of index 1.52. In glass rays stay within 41 deg of the boresight, so the field is +-60 "
+        "deg instead of 40 deg; refraction makes the balance nonlinear (eq:refcomp1)."
     ),
     regime=measured_geometric(0.0005, (1.0, 1.0, 1.0)),
 )

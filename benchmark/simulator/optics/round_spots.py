@@ -93,33 +93,12 @@ class _Holes:
 
 @dataclass(frozen=True)
 class RoundSpots:
-    """What a camera's round holes put on pixels: Fresnel diffraction of every hole by itself.
+    """Light of a camera's round holes on pixels, by Fresnel diffraction of each hole.
 
-    Holes of one drawn diameter share three tables (`RoundPattern`): of the hole as drawn, and of
-    holes smaller and larger by 2.25 `size_mm`. Each is interpolated between them by the parabola in
-    its radius a, whether the unit is off as a whole or the hole by itself. What is left is
-    ``x (x^2 - g^2) / 6`` times the third derivative over a, x the hole's excess and g that of the
-    larger table. Against a table of every hole's own radius, six units of each: 1.0e-3 of peak on
-    `ccd-multi-aperture`, 4e-4 on `cmos-multi-aperture` (1.1e-3 where a unit's holes are 2.5 % too
-    small) and 4e-5 on `cmos-encoded`. It grows with the cube of x: holes four standard deviations
-    off are out by ten times as much as those within 2.6. With what lattice and height below leave,
-    frames of standard units were within 1.9e-3 of peak of tables of their own.
-
-    Tables are of the drawn height, whatever the built one: light that has gone ``r`` times as far
-    has the Fresnel numbers, and so the pattern, of a hole ``sqrt(r)`` times smaller, ``sqrt(r)``
-    times as large. Of the Sun's image and the pixel that leaves out ``(r - 1) / 2`` of their
-    width: up to 1.2e-3 of peak for the 0.3 % by which heights of the standard data sets are off. In
-    return all units, built a little differently, look their light up in the same tables.
-
-    A pixel is divided into cells over which tables are averaged whichever way they are turned
-    (`RoundPattern.cell_mm`): one look-up a cell. Where many holes light one frame, their common
-    pattern is looked up once, on a lattice finer than the pixels, and interpolated by Lagrange's
-    quintic along rows and columns at the place of each.
-
-    Light of a spot is left out where its skirt - ``4 pi N_r N_t / v^3`` of the open light, v the
-    ``k a`` times the direction cosine, on average over the rings of Airy's pattern - is below
-    `skirt` of the brightest spot at normal incidence: of 1e-4, that is 2 to 4 % of the light,
-    spread all over the detector.
+    Holes of one drawn diameter share three tables of the diffracted light (`RoundPattern`): of
+    the drawn radius, and of radii smaller and larger by 2.25 `size_mm`. The light of a built hole
+    is interpolated between them. All units share the tables. Frames of standard units differ by
+    less than 1.9e-3 of their peak from frames with a table for every hole.
 
     Attributes
     ----------
@@ -137,6 +116,32 @@ class RoundSpots:
         Standard deviation of built radii from the drawn one (`MaskErrors.radius_mm`).
     skirt
         Share of the peak at normal incidence below which light is left out.
+
+    Notes
+    -----
+    The interpolation is a parabola in the radius a of the hole. Its error is
+    ``x (x^2 - g^2) / 6`` times the third derivative over a, x the hole's excess and g that of the
+    larger table. Against a table of every hole's own radius, six units of each: 1.0e-3 of peak on
+    `ccd-multi-aperture`, 4e-4 on `cmos-multi-aperture` (1.1e-3 where a unit's holes are 2.5 % too
+    small) and 4e-5 on `cmos-encoded`. It grows with the cube of x: holes four standard deviations
+    off are out by ten times as much as those within 2.6. With what lattice and height below leave,
+    frames of standard units were within 1.9e-3 of peak of tables of their own.
+
+    Tables are for the drawn height, whatever the built one: light that has gone ``r`` times as far
+    has the Fresnel numbers, and so the pattern, of a hole ``sqrt(r)`` times smaller, ``sqrt(r)``
+    times as large. Of the Sun's image and the pixel that leaves out ``(r - 1) / 2`` of their
+    width: up to 1.2e-3 of peak for the 0.3 % by which heights of the standard data sets are off. In
+    return all units, built a little differently, look their light up in the same tables.
+
+    A pixel is divided into cells over which tables are averaged whichever way they are turned
+    (`RoundPattern.cell_mm`): one look-up a cell. Where many holes light one frame, their common
+    pattern is looked up once, on a lattice finer than the pixels, and interpolated by Lagrange's
+    quintic along rows and columns at the place of each.
+
+    Light of a spot is left out where its skirt - ``4 pi N_r N_t / v^3`` of the open light, v the
+    ``k a`` times the direction cosine, on average over the rings of Airy's pattern - is below
+    `skirt` of the brightest spot at normal incidence: of 1e-4, that is 2 to 4 % of the light,
+    spread all over the detector.
     """
 
     camera: Camera

@@ -270,7 +270,7 @@ def test_rows_of_polynomials_say_how_many_terms_are_settled() -> None:
     axis = np.linspace(-20.0, 20.0, 9)
     angles = np.stack(np.meshgrid(axis, axis[::2]), axis=-1).reshape(-1, 2)  # 5 different beta
     rows = BlendedPolynomials(focal_length_mm=1.0, unit_mm=1.0, degree=8, smoothing=1e-3)
-    with pytest.raises(UnusableDataError, match=r"settle 18 terms .* settle only 10"):
+    with pytest.raises(UnusableDataError, match=r"settle 18.*10"):
         rows.fit(np.tan(np.radians(angles[:, ::-1])), sun_from_angles(angles))
 
 

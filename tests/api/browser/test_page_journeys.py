@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
+from api.pages.dataset import FIRST
 from tests.api.browser.visiting import PATIENCE_MS, WIDE, Visit, follow, get_json, tab_to
 
 pytestmark = pytest.mark.slow
@@ -71,7 +72,7 @@ def test_find_a_study_see_how_it_runs_and_its_board(wide: Visit) -> None:
     expect(page.locator(".copyable code")).to_have_text("sunatlas run Chang2008")
     follow(page.get_by_role("link", name="cmos-single-aperture", exact=True).first)
     expect(page.locator("h1")).to_have_text("cmos-single-aperture")
-    expect(page.locator("#board ~ table tbody tr")).to_have_count(25)
+    expect(page.locator("#board ~ table tbody tr")).to_have_count(FIRST)
     page.locator('select[name="condition"]').select_option("hot")
     page.get_by_role("button", name="Show", exact=True).click()
     page.wait_for_url("**condition=hot**")

@@ -254,7 +254,7 @@ def test_a_field_of_view_can_be_read_off():
 @pytest.mark.parametrize(
     ("arguments", "code", "says"),
     [
-        (["--field", "25"], 2, "--field: no 25; expected one of 10, 20"),
+        (["--field", "25"], 2, "25; expected one of 10, 20"),
         (["--dataset", "ccd-orbt"], 1, "did you mean 'ccd-orbit'?"),
         (["--condition", "nominl"], 1, "did you mean 'nominal'?"),
         (["--stored"], 2, "--stored goes with --check"),

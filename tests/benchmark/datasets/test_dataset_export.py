@@ -280,7 +280,7 @@ def test_a_directory_that_is_no_export_is_refused(tmp_path, card, says):
 
 def test_nothing_in_the_way_is_overwritten(copy, tmp_path):
     before = content(copy)
-    with pytest.raises(ExportError, match="holds an earlier export; replace it with --force"):
+    with pytest.raises(ExportError, match="--force"):
         exported("qpd-single-aperture", copy)
     assert content(copy) == before
     made = exported("qpd-single-aperture", copy, n=3, force=True)
@@ -316,11 +316,11 @@ def test_a_failure_half_way_leaves_nothing(tmp_path, monkeypatch):
 def test_wrong_names_and_numbers_are_refused(tmp_path):
     with pytest.raises(UnknownDatasetError, match="did you mean 'pd-maskless-cube'"):
         exported("pd-maskless-cub", tmp_path / "x")
-    with pytest.raises(UnknownNameError, match="no condition named 'nominl'; did you mean"):
+    with pytest.raises(UnknownNameError, match="'nominl'"):
         exported("pd-maskless-cube", tmp_path / "x", conditions=["nominl"])
-    with pytest.raises(UnknownNameError, match="no split named 'tset'; did you mean 'test'"):
+    with pytest.raises(UnknownNameError, match=r"'tset'.*'test'"):
         exported("pd-maskless-cube", tmp_path / "x", splits=["tset"])
-    with pytest.raises(ValueError, match="n must be at least 1; got 0"):
+    with pytest.raises(ValueError, match=r"n.*1.*0"):
         exported("pd-maskless-cube", tmp_path / "x", n=0)
     assert list(tmp_path.iterdir()) == []
 

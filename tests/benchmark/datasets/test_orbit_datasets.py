@@ -226,16 +226,16 @@ def test_hashes_without_context_are_what_they_were_and_cover_it_otherwise() -> N
 
 def test_a_flight_that_does_not_fit_is_refused() -> None:
     preset = PRESETS["pd-orbit"]
-    with pytest.raises(TypeError, match="directions must be a Flight; got AngleField"):
+    with pytest.raises(TypeError, match=r"directions.*AngleField"):
         replace(preset, directions=datasets.get("cmos-single-aperture").directions)
     higher = replace(flight_of("pd-orbit").flight, orbit=CircularOrbit(altitude_km=700.0))
-    with pytest.raises(ValueError, match=r"orbit's altitude of 700\.0 km; got 600\.0 km"):
+    with pytest.raises(ValueError, match=r"orbit's.*700\.0.*600\.0"):
         replace(preset, directions=higher)
     ground = datasets.get("pd-maskless-cube").setups
     with pytest.raises(TypeError, match="condition nominal must have a thermal cycle"):
         replace(preset, setups=ground)
     with pytest.raises(ValueError, match="samples and step_s must be positive"):
         Span(0.0, 0, 10.0)
-    with pytest.raises(ValueError, match="no split 'train'; there are calibration, test"):
+    with pytest.raises(ValueError, match="'train'"):
         preset.generate("nominal", "train")
     assert isinstance(preset.directions, Flight)

@@ -287,5 +287,5 @@ def test_near_the_axis_angle_and_axes_agree() -> None:
 def test_nuisances_without_spread_are_refused() -> None:
     setup, pattern = setup_of("pd-maskless-cube")
     scene = scene_at(setup, [10.0], [10.0])
-    with pytest.raises(ValueError, match=r"stray_spread above 0; got 0\.02 and 0\.0"):
+    with pytest.raises(ValueError, match=r"stray_spread.*0.*0\.02.*0\.0"):
         cramer_rao(setup.sensor, scene, pattern, Irradiance(spread=0.02))

@@ -68,7 +68,7 @@ print(json.dumps([hits, misses]))
 
 
 def test_no_workers_compile_nothing() -> None:
-    with pytest.raises(ValueError, match="workers must be at least 1; got 0"):
+    with pytest.raises(ValueError, match=r"workers.*1.*0"):
         compile_kernels(0)
 
 

@@ -243,7 +243,7 @@ def test_scores_of_data_that_were_pinned_anew_are_dropped(store):
 
 
 def test_wrong_calls_are_refused(store):
-    with pytest.raises(ValueError, match="workers must be at least 1; got 0"):
+    with pytest.raises(ValueError, match=r"workers.*1.*0"):
         update(store, workers=0)
     with pytest.raises(UnknownNameError, match="did you mean 'fake-diodes'"):
         update(store, datasets=["fake-diode"], parts=parts(Diodes()))

@@ -69,8 +69,8 @@ def test_an_override_decides(tables: survey_data.SurveyTables) -> None:
 @pytest.mark.parametrize(
     ("overrides", "expected"),
     [
-        ({"Masc": "mask"}, r"column Masc: no such column \(did you mean 'Mask'\?\)"),
-        ({"Mask": "masque"}, r"column Mask: cannot be mapped to 'masque' \(did you mean 'mask'\?"),
+        ({"Masc": "mask"}, r"column Masc.*\(did.*'Mask'\?\)"),
+        ({"Mask": "masque"}, r"column Mask.*'masque' \(did.*'mask'\?"),
         ({"Key": "study", "Mask": "study"}, "study takes one column"),
         ({"Key": "-"}, "no column identifies the study"),
         ({"Mask": "-"}, "no column holds an attribute"),

@@ -62,7 +62,7 @@ def test_a_workbook_is_read_as_text_from_its_first_filled_sheet(tmp_path: Path) 
     assert frame["Year"].tolist() == ["2008", "2005"]
     assert frame["Accuracy"].iloc[0] == "0.05"
     assert read_table(path, sheet="Sheet1").equals(frame)
-    with pytest.raises(SurveyImportError, match="no sheet 'Data'; it has Sheet, Sheet1"):
+    with pytest.raises(SurveyImportError, match=r"'Data'.*Sheet1"):
         read_table(path, sheet="Data")
 
 

@@ -12,10 +12,10 @@ from tools.faults.kills.trials import SIGNALS, Kill
 def report(kills: Sequence[Kill], met: Sequence[PairResult]) -> str:
     """Return what was killed, what met, and what was wrong of either."""
     hit, left = sum(kill.hit for kill in kills), sum(kill.left for kill in kills)
-    columns = (*(by.name for by in SIGNALS), "before its end", "left something", "not as wanted")
+    columns = (*(by.name for by in SIGNALS), "before its end", "left files", "wrong")
     summary = (
-        f"{len(kills)} kills; {hit} before the end of the program, {left} left something that the "
-        f"next call had to remove. {sum(bool(kill.wrong) for kill in kills)} were not as wanted."
+        f"{len(kills)} kills; {hit} before the end of the program, {left} left files that the "
+        f"next call had to remove. Wrong results: {sum(bool(kill.wrong) for kill in kills)}."
     )
     lines = [
         summary,
@@ -32,7 +32,7 @@ def report(kills: Sequence[Kill], met: Sequence[PairResult]) -> str:
             sum(bool(kill.wrong) for kill in some),
         ]
         lines.append(f"| {COMMANDS[name].what} | {' | '.join(map(str, counts))} |")
-    lines += ["", "| writers at once | refused | not as wanted |", "| --- | ---: | ---: |"]
+    lines += ["", "| writers at once | refused | wrong |", "| --- | ---: | ---: |"]
     lines += [f"| {one.what} | {one.refused} of 2 | {len(one.wrong)} |" for one in met]
     return "\n".join(lines) + "\n"
 

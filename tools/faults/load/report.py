@@ -56,9 +56,9 @@ def report(load: Load) -> str:
     late = sum(one.late_s > 0.05 for one in load.answers) / len(took)
     counted = ", ".join(f"{number} of {status}" for status, number in sorted(statuses.items()))
     level = (
-        "too short a run to say whether it is level"
+        "the run is too short to tell whether it is constant"
         if growth is None
-        else f"from the five minutes after the tenth to the last five it changed by {growth:+.2%}"
+        else f"between minutes 10 to 15 and the last five minutes it changed by {growth:+.2%}"
     )
     lines = [
         (
@@ -69,12 +69,12 @@ def report(load: Load) -> str:
         (
             f"Median {1e3 * statistics.median(took):.1f} ms; {quick_share(took):.2%} below ten "
             f"times that; 99 % below {1e3 * _quantile(took, 0.99):.0f} ms, the longest "
-            f"{1e3 * max(took):.0f} ms. The asking side was late by more than 50 ms for "
-            f"{late:.2%} of the requests."
+            f"{1e3 * max(took):.0f} ms. The client sent more than 50 ms late for {late:.2%} of "
+            "the requests."
         ),
         "",
-        f"Memory of its own, which no file backs, after {_minutes(load.memory)}; {level}.",
-        f"Resident, with pages of files: {_minutes(load.resident)}.",
+        f"Private memory (not backed by files) after {_minutes(load.memory)}; {level}.",
+        f"Resident memory, including pages of files: {_minutes(load.resident)}.",
         "",
         "| requests | number | median, ms | 99 % below, ms | longest, ms |",
         "| --- | ---: | ---: | ---: | ---: |",

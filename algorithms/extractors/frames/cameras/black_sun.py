@@ -29,10 +29,10 @@ _REACH = 3.0
 class BlackSunCentroid(Extractor):
     """Corner of the dark hole in binary masks of descending thresholds, averaged over them.
 
-    Pixels of a CMOS camera that take far too much light invert: the Sun is a black disc with a
-    sharp rim in a saturated halo, whatever the halo's shape. The hole is sought in the mask
-    of the middle threshold and followed through the others; what keeps its place is the Sun,
-    what moves or closes is a gap between bright patches.
+    Heavily overexposed pixels of a CMOS camera invert, so the Sun is a black disc with a sharp rim
+    in a saturated halo. The hole is located in the mask of the middle threshold and followed
+    through the other thresholds. The Sun keeps its position; a gap between bright patches moves or
+    closes.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class BlackSunCentroid(Extractor):
     survival : float
         Share of the thresholds, in (0, 1], that a corner must survive in a row.
     moved_px : float
-        Farthest that a corner moves from one threshold to the next and survives.
+        Largest move of a corner from one threshold to the next for which it survives.
     radius_px : float
         Least radius of a black Sun in the middle mask: dead pixels are smaller.
     blur_px : float
@@ -69,7 +69,7 @@ class BlackSunCentroid(Extractor):
     where no hole survives (a white Sun, noise, a black Sun cut by the frame's edge), and where a
     second one has 0.8 of the largest radius (two Suns).
 
-    Cost: 20 operations a pixel for the blur, 4 for the masks, and 10 a pixel of the holes and
+    Cost: 20 operations per pixel for the blur, 4 for the masks, and 10 per pixel of the holes and
     threshold.
 
     Examples

@@ -32,15 +32,14 @@ _TURNED = [1, 0, 3, 2, 4, 6, 5]
 class HoughLines(Extractor):
     """Blooming line of a saturated Sun, and the position on it from gradients of its halo.
 
-    Charge that a CCD's pixels cannot hold runs up and down their columns: a line through the Sun,
-    far longer than its image and symmetric across it. A second line gives the position on it: here
-    every pixel of the halo gives one, along its gradient; in `sun_from_blooming_lines` other
-    cameras do.
+    Charge above the full well of a CCD spills along the columns, forming a line through the Sun
+    that is much longer than its image. A second line gives the position on it: here every pixel of
+    the halo gives one, along its gradient; in `sun_from_blooming_lines` other cameras do.
 
     Parameters
     ----------
     saturated : float
-        Fraction of the frame's range, in (0, 1), above which a pixel is taken to be full. Ours.
+        Fraction of the frame's range, in (0, 1), above which a pixel counts as full. Ours.
     tilt_deg : float
         Largest angle between line and columns that is tried, in steps of 0.25 deg, at most 90: all
         lines, as published. Zero tries the columns alone, along which charge runs unless the
@@ -70,10 +69,10 @@ class HoughLines(Extractor):
     without a line of `least_votes` rows that is four times longer than wide (no blooming: a disc,
     noise), and where the line is found and the Sun on it not: other saturated light covers it
     (cloud), or the two sides' gradients meet the line in places 1 px apart. `lines` has the line
-    then. Of two Suns the longer line wins without notice.
+    then. Of two Suns the one with the longer line is found, undetected.
 
-    Cost: 6 operations a pixel for the runs, 4 a run and angle (720 of them) and 1 a cell and angle,
-    80 a pixel within reach.
+    Cost: 6 operations per pixel for the runs, 4 per run and angle (720 of them) and 1 per cell and
+    angle, 80 per pixel within reach.
 
     Examples
     --------
@@ -168,9 +167,9 @@ class HoughLines(Extractor):
 class HoughCircle(Extractor):
     """Circle of unknown radius that most edge pixels vote for.
 
-    Every edge pixel votes for the centres that lie along its gradient, one for each radius; the
-    circle's centre gathers the votes of its whole rim, whatever else the frame holds and though
-    parts of the rim are missing.
+    Every edge pixel votes for the centres that lie along its gradient, one for each radius. The
+    centre of a circle collects the votes of its whole rim, even if parts of the rim are missing or
+    the frame contains other light.
 
     Parameters
     ----------
@@ -180,36 +179,36 @@ class HoughCircle(Extractor):
         The accumulator threshold tau, in (0, 1]: the share of the rim, in 16 sectors, that must
         have edges.
     smallest_px : float
-        Least radius, at least 1.
+        Smallest radius, at least 1.
     largest_px : float or None
-        Largest radius; None is half of the frame's smaller side. The survey goes on to the
-        frame's diagonal, whose circles do not fit into it.
+        Largest radius; None is half of the frame's smaller side. The survey uses radii up to the
+        frame's diagonal; such circles do not fit into the frame.
     dark_first : bool
-        Whether a dark circle is sought first, for cameras whose Sun may be black, and a bright
-        one only where there is none.
+        Whether to search first for a dark circle, for cameras whose Sun may be black, and for a
+        bright one only if there is none.
     sure : bool
         Whether nothing is found where another circle elsewhere has 0.8 of the best one's mean edge
-        (two Suns), and no circle whose edges scatter by more than half a pixel about it. Ours: the
-        published maximum always answers.
+        (two Suns), and no circle whose edges scatter by more than half a pixel about it. This
+        check is ours; the published method always answers.
 
     Notes
     -----
     Implements: alg:CHT (fe:ht, Adatrao2016): edges, accumulator ``H[a, b, r]``, ``a = x - r
     cos(theta)``, ``b = y - r sin(theta)``, its maximum above tau. The angle is that of the edge's
     gradient, both ways, instead of all of them; votes count 1/r, so that circles of every size
-    compare. The accumulator's highest cells are looked at again with their edges: the circle
-    with the strongest mean edge around its rim wins, fitted to edges at sub-pixel places by least
-    squares; where they do not fit one it stays at its cell. Ours: a bright circle must be bright
-    inside its rim, else it is a ghost.
+    compare. The accumulator's highest cells are looked at again with their edges: the circle with
+    the strongest mean edge around its rim wins, fitted to edges at sub-pixel places by least
+    squares; where they do not fit one it stays at its cell. In our variant a bright circle must be
+    bright inside its rim; otherwise it is a ghost.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px)`` (N, 2), pixel centres at integers.
 
     Failure: a NaN row for a frame that is dark or without contrast or holds a NaN or infinity, and
     where no circle has enough of its rim (noise, lines, a spot more than half cut). Of two Suns
-    the one with the stronger rim is found without notice, unless `sure` is asked for. A bright
-    round cloud can beat a white Sun, and blooming breaks its rim.
+    the one with the stronger rim is found, undetected, unless `sure` is asked for. A bright round
+    cloud can beat a white Sun, and blooming breaks its rim.
 
-    Cost: 30 operations a pixel for edges, 4 an edge and radius, 500 an edge for the candidates.
+    Cost: 30 operations per pixel for edges, 4 an edge and radius, 500 an edge for the candidates.
 
     Examples
     --------

@@ -27,15 +27,16 @@ from algorithms.parameters import require_positive
 class MirrorRegistration(Extractor):
     """Centre of a point-symmetric spot, found by registration with its own mirror image.
 
-    Discs, ellipses, squares, Gaussians and Airy patterns have such a centre; no other shape is
-    assumed. Hot and dead pixels and a sloping or bent background are found and left out.
+    Discs, ellipses, squares, Gaussians and Airy patterns are point-symmetric; the method assumes
+    nothing else about the shape. Hot and dead pixels and an uneven background are detected and
+    removed.
 
     Parameters
     ----------
     longest_px : float or None
-        Longest half axis that the outline of one spot has, px, positive: outlines up to it are of
-        one spot, whatever their shape; half of the detector behind a slit. None where no design
-        tells.
+        Longest half axis of the outline of one spot, px, positive; an outline up to this size
+        counts as one spot of any shape. Behind a slit it is half of the detector. None if the
+        design does not give it.
 
     Raises
     ------
@@ -57,7 +58,7 @@ class MirrorRegistration(Extractor):
     lights. Rims sharper than a pixel are found to some thousandths of a pixel, along rows or
     columns to hundredths.
 
-    Cost: 10 operations a pixel, some 300 in single precision a pixel of the spot's surroundings.
+    Cost: 10 operations per pixel, some 300 in single precision a pixel of the spot's surroundings.
 
     References
     ----------

@@ -46,9 +46,9 @@ _LONGEST = 8.0
 class ImageCorrelation(MaskSpots, Extractor):
     """Our variant of FEIC: centre of the summed correlations of all spots with their templates.
 
-    Windows are placed at the predicted spots. Each is correlated with the image its aperture
-    should cast, and because all spots move alike, the sum of the correlations is one peak that
-    uses the light of all spots. A missing spot adds almost nothing.
+    A window is placed at each predicted spot. Each window is correlated with the expected image of
+    its aperture. All spots move together, so the sum of the correlations has one peak that uses
+    the light of all spots. A missing spot contributes almost nothing.
 
     Parameters
     ----------
@@ -75,14 +75,14 @@ class ImageCorrelation(MaskSpots, Extractor):
     pixel of the result. The survey prints m with x, over rows; corrected because x runs along
     columns here.
 
-    The study's templates are images of an earlier frame; here they are drawn from the design.
+    The study takes its templates from an earlier frame; here they are computed from the design.
     The prediction is the previous frame's result in `track`; in `extract`, which does not depend
     on order, it is the pattern found in the same frame as MCAM does.
 
     Failure: a NaN row where the pattern is not found, as for MCAM, where the windows do not come
     to rest, and where fewer than 0.3 of the spots that should be whole in the frame are there.
 
-    Cost: as MCAM, and ``2 (N_c + 1)^2`` operations a pixel of the template and spot.
+    Cost: as MCAM, and ``2 (N_c + 1)^2`` operations per pixel of the template and spot.
 
     Examples
     --------

@@ -36,19 +36,19 @@ class MaskSpots:
     Parameters
     ----------
     apertures_px : tuple of (x, y, width)
-        The mask's apertures, px from its middle; one at least.
+        Positions of the apertures of the mask, px from its middle; at least one.
     blur_px : float
-        Width of the Sun's image behind a hole, px, not negative: bounds the size of a spot.
+        Width of the Sun's image behind a hole, px, not negative; it limits the size of a spot.
     threshold : float
         The fraction, in (0, 1), of the spots' brightness that makes a spot when the pattern is
         searched for.
     tolerance_px : float
-        Largest distance of a spot from its aperture's place, px; below a quarter of the least
-        distance of two apertures.
+        Largest distance of a spot from the position of its aperture, px; below a quarter of the
+        smallest distance between apertures.
     faulty_lines : int
-        Lines of apertures (columns or rows) that may be dark or doubled at once without a wrong
-        answer, not negative: a displacement is an answer where every other one leaves more of
-        them unexplained. The survey's methods take the mask for whole, which is 0.
+        Number of lines of apertures (columns or rows) that may be dark or doubled without a wrong
+        answer, not negative. A displacement is accepted only if every other one leaves more lines
+        unexplained. The survey's methods assume an intact mask (0).
     field_px : tuple of (x, y, reach) or None
         Where the pattern's middle is for a Sun on the boresight, and how far along an axis it is
         from there at the edge of the field of view, px, positive: a Sun beyond it counts as a

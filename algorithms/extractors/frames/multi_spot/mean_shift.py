@@ -58,18 +58,18 @@ class MeanShift(MaskSpots, Extractor):
     convergence_px : float
         Step epsilon that ends the shift, px, positive.
     similarity : float
-        Bhattacharyya coefficient, over that of the goal's own spots, below which a spot is
-        missing; in (0, 1).
+        Similarity (Bhattacharyya coefficient relative to that of the reference spots) below which a
+        spot counts as missing; in (0, 1).
 
     Notes
     -----
     Implements: alg:FMMS1, alg:FMMS2 (fe:fmms, You2011): ``q_u = C sum K_E delta[b(x_i) - u]``,
     ``p_u(y)`` alike with ``(y - x_i) / h``, ``rho = sum sqrt(p_u q_u)``, ``w_i = sqrt(q_u /
     p_u(y_0))`` for the pixel's bin u, ``y_1 = sum(x_i w_i g) / sum(w_i g)``, halved towards y_0
-    while rho falls. The survey prints the weights with p_u(y_1); corrected because y_1 is not
-    known yet. g is constant inside the window for the Epanechnikov kernel, whose profile ``1 -
-    r^2`` is meant where K_E is printed with a squared norm. The survey prints no end of the
-    halving; corrected because a maximum reached makes it endless: steps below epsilon end it.
+    while rho falls. The survey prints the weights with p_u(y_1); corrected because y_1 is not known
+    yet. g is constant inside the window for the Epanechnikov kernel, whose profile ``1 - r^2`` is
+    meant where K_E is printed with a squared norm. The printed halving does not end once a maximum
+    is reached; here it ends at steps below epsilon.
 
     The study's goal is a spot of an earlier frame; here it is the mean of the spots found whole
     in the same frame (in `track`, in the first one), with a kernel that ends at their rim and
@@ -83,7 +83,7 @@ class MeanShift(MaskSpots, Extractor):
     Failure: a NaN row where the pattern is not found, as for MCAM, and where fewer than 0.3 of the
     spots that should be whole in the frame resemble the goal.
 
-    Cost: as MCAM, and 10 operations a pixel of a window of radius h, a spot and a step: three or
+    Cost: as MCAM, and 10 operations per pixel of a window of radius h, a spot and a step: three or
     four steps.
 
     Examples

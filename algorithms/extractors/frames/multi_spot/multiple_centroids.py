@@ -31,9 +31,9 @@ from algorithms.inputs import Frames, as_frames
 class MultipleCentroids(MaskSpots, Extractor):
     """Mean of the thresholded centroids of all whole spots, each less its aperture's place.
 
-    Every aperture of the mask repeats the measurement, so noise falls with the square root of
-    their number. Which aperture cast which spot is found from the pattern, so that spots may be
-    missing, cut by the edge, or cast by any part of a mask larger than the detector.
+    Every aperture of the mask repeats the measurement, so noise falls with the square root of the
+    number of apertures. The pattern tells which aperture belongs to which spot, so spots may be
+    missing or cut by the edge, and the mask may be larger than the detector.
 
     Parameters
     ----------
@@ -47,21 +47,21 @@ class MultipleCentroids(MaskSpots, Extractor):
     sum(I')`` in each segment n, ``x_avg = sum(x_n) / N``. The survey prints x over rows; corrected
     because x runs along columns here. mu counts from the background, the median of every so many
     pixels, and I_max is a brightness that rows of half a spot reach, so that hot pixels do not set
-    it: ours. Printed are segments of known number; here they are sets of touching pixels. Those at
-    the edge, and those of less than 0.4 of an aperture's area or far more than it with the Sun's
-    image, are left out. Displacements that most pairs of spot and aperture agree on are compared
-    by what the frame shows of every aperture: dark places, unexplained spots.
+    it: ours. The printed algorithm knows the number of segments; here segments are sets of
+    touching pixels. Segments at the edge are left out, and segments smaller than 0.4 of an
+    aperture or much larger than its image. The displacements on which most pairs of spot and
+    aperture agree are compared by their dark apertures and unexplained spots.
 
     Failure: a NaN row for a frame that is dark, without contrast, holds a NaN or infinity, or
     whose spots rise less than five times its noise; where fewer than 0.3 of the apertures that
     should be seen are; and where two displacements explain the frame alike (two suns, part of a
-    code that several sub-fields share), or one of them with no more than `faulty_lines` faults.
-    A grid of which an edge is doubled in full light, the other one out of view, makes the very
-    frame of a grid moved by a pitch: it is answered so, and `measure` says AMBIGUOUS_PATTERN
-    wherever that may be; with one more of `faulty_lines` there is no answer. Spots that all fall
-    alike on the pixels share the threshold's bias, and averaging gains nothing.
+    code that several sub-fields share), or one of them with no more than `faulty_lines` faults. A
+    grid of which an edge is doubled in full light, the other one out of view, makes the very frame
+    of a grid moved by a pitch: it is answered so, and `measure` says AMBIGUOUS_PATTERN wherever
+    that may be; with one more of `faulty_lines` there is no answer. If all spots have the same
+    sub-pixel position, they share the bias of the threshold, and averaging does not reduce it.
 
-    Cost: 2 operations a pixel, 8 in rows with spots, and 20 a pair of spot and aperture.
+    Cost: 2 operations per pixel, 8 in rows with spots, and 20 per pair of spot and aperture.
 
     Examples
     --------

@@ -43,17 +43,18 @@ _ROOM = 4
 class SpotList(Extractor):
     """Thresholded centroid and total light of every whole spot of a frame.
 
-    The threshold of BCTM divides a frame into segments; the spot of each is located separately. A
-    model of the mask's code then matches spots with apertures.
+    The threshold of BCTM divides a frame into segments; the spot in each segment is located
+    separately. A model of the mask's code then matches spots with apertures.
 
     Parameters
     ----------
     apertures_px : tuple of (x, y, width)
-        The mask's apertures, px from its middle: their widths say how large spots are.
+        Positions of the apertures of the mask, px from its middle, and their widths, which
+        determine the size of spots.
     spots : int
-        Length of the list, at least 1. Of more spots the brightest are kept.
+        Length of the list, at least 1. If there are more spots, the brightest are kept.
     blur_px : float
-        Width of the Sun's image behind a hole, px, not negative: bounds the size of a spot.
+        Width of the Sun's image behind a hole, px, not negative; it limits the size of a spot.
     threshold : float
         The fraction mu, in (0, 1), of the spots' brightness above the background.
 
@@ -65,13 +66,13 @@ class SpotList(Extractor):
     Notes
     -----
     Implements: alg:BCTM (fe:bctm) in every segment of a frame, as the coded sensors of Wei2013,
-    Wei2014, Wang2015, Wei2017, Zhang2021 and Zhang2022a use it: ``I' = max(I - mu I_max, 0)``,
-    ``x = sum(x I') / sum(I')``. mu counts from the background, the median of every so many
-    pixels. Segments are sets of touching pixels above mu of a brightness that rows of half a spot
-    reach; then I_max is each spot's own, the mean of its brightest quarter, so that light goes as
-    the aperture's area, and a hot pixel sets neither: ours. Segments at the frame's edge, and those
-    of less than 0.15 of the smallest aperture's area or far more than the largest's with the Sun's
-    image, are left out.
+    Wei2014, Wang2015, Wei2017, Zhang2021 and Zhang2022a use it: ``I' = max(I - mu I_max, 0)``, ``x
+    = sum(x I') / sum(I')``. mu counts from the background, the median of every so many pixels.
+    Segments are sets of touching pixels above mu of a brightness that rows of half a spot reach;
+    then I_max is each spot's own, the mean of its brightest quarter, so that light goes as the
+    aperture's area, and a hot pixel sets neither: ours. Segments at the edge of the frame are left
+    out, and segments smaller than 0.15 of the smallest aperture or much larger than the image of
+    the largest.
 
     Shapes: frames (N, H, W), any unit, to ``(x_px, y_px, light)`` of each spot (N, 3 spots), in
     the order their first pixels are read, pixel centres at integers, light the sum of I'; zeros
@@ -80,7 +81,7 @@ class SpotList(Extractor):
     Failure: a NaN row for a frame that is dark, without contrast, holds a NaN or infinity, whose
     spots rise less than five times its noise, or that has no whole spot.
 
-    Cost: 2 operations a pixel, 8 in rows with spots.
+    Cost: 2 operations per pixel, 8 in rows with spots.
 
     References
     ----------

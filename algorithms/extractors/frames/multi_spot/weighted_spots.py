@@ -42,34 +42,34 @@ _RIM_PX = 2.0
 @documented
 @dataclass(frozen=True)
 class WeightedSpots(MaskSpots, Extractor):
-    """Mean of the centres of all whole spots, each by the image that all of them share.
+    """Mean of the centres of all whole spots, each located by the mean image of all spots.
 
-    The pattern tells which aperture cast which spot. The radial profile is averaged over all
+    The pattern tells which aperture belongs to which spot. The radial profile is averaged over all
     spots, and each spot is located by its best fit to this profile; spots are weighted by their
-    variances, and those that disagree are left out. Because the fit is not biased by where a spot
-    falls on its pixels, N spots are sqrt(N) times as precise as one also where all of them fall
-    alike.
+    variances, and those that disagree are left out. The fit has no bias from the sub-pixel
+    position, so N spots are sqrt(N) times as precise as one even if all have the same sub-pixel
+    position.
 
     Parameters
     ----------
     longest_px : float or None
         With one aperture, the longest half axis that the outline of its spot has, px, positive;
-        None where no design tells. See `algorithms.extractors.frames.mirror.extractor`.
+        None if the design does not give it. See `algorithms.extractors.frames.mirror.extractor`.
 
     Notes
     -----
     Implements: nothing printed in the survey. With C the second moments of the light above the
-    threshold, of all spots, ``rho^2 = sqrt(det C) u^T C^-1 u`` makes them round. The profile p(rho)
-    is a smooth cubic spline through the pixels of all spots, each over the spot's share of the
-    light, less its background; a step d of a centre solves ``sum(h g g^T p' / v) d = -sum(h g (I -
-    p) / v)``, g the slope of rho, h that of p averaged over more than a pixel. A profile of rho is
-    symmetric about the middle, and so are the answers for every symmetric image, of whatever
-    outline. The variance v grows with the light by the factor that explains how lit pixels
-    scatter. The background is that beyond the spots' rims, with a slope where it shows one. Pixels
-    six deviations off are left out; so are spots of which the misfit or the place is far from the
-    others' median. Where places scatter more than noise explains, by two deviations, apertures are
-    off: their variance is added to each. Moments, noise and that factor are those of the median
-    spot: light beside one or two that is no spot's own changes nothing for the others.
+    threshold, of all spots, ``rho^2 = sqrt(det C) u^T C^-1 u`` makes them round. The profile
+    p(rho) is a smooth cubic spline through the pixels of all spots, each over the spot's share of
+    the light, less its background; a step d of a centre solves ``sum(h g g^T p' / v) d = -sum(h g
+    (I - p) / v)``, g the slope of rho, h that of p averaged over more than a pixel. A profile of
+    rho is symmetric about the middle, and so are the answers for every symmetric image, of
+    whatever outline. The variance v grows with the light by the factor that explains how lit
+    pixels scatter. The background is that beyond the spots' rims, with a slope where it shows one.
+    Pixels six deviations off are left out; so are spots of which the misfit or the place is far
+    from the others' median. Where places scatter more than noise explains, by two deviations,
+    apertures are off: their variance is added to each. Moments, noise and that factor are those of
+    the median spot: light beside one or two that is no spot's own changes nothing for the others.
 
     What a spline of 0.65 px misses of sharp rims or rings does not average where all spots fall
     alike on the pixels: 0.0003 px of a disc seven pixels wide, 0.001 to 0.002 px of strong rings.
@@ -79,7 +79,7 @@ class WeightedSpots(MaskSpots, Extractor):
     aperture, also where registration (`algorithms.extractors.frames.mirror`) does not find one
     whole symmetric light within half a pixel of the answer.
 
-    Cost: as MCAM, and some 150 operations a pixel of the spots' surroundings.
+    Cost: as MCAM, and some 150 operations per pixel of the spots' surroundings.
 
     Examples
     --------

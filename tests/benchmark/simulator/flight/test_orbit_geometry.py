@@ -106,7 +106,7 @@ def test_the_sun_keeps_its_seasons() -> None:
     ("wrong", "words"),
     [
         ({"altitude_km": 0.0}, "altitude_km and radius_km must be positive"),
-        ({"inclination_deg": 181.0}, r"inclination_deg must be in \[0, 180\]; got 181"),
+        ({"inclination_deg": 181.0}, r"inclination_deg.*\[0.*180\].*181"),
     ],
 )
 def test_impossible_orbits_are_refused(wrong: dict[str, float], words: str) -> None:
@@ -147,9 +147,9 @@ def test_tumbling_goes_on_from_one_leg_to_the_next() -> None:
 
 
 def test_a_body_needs_possible_moments_of_inertia() -> None:
-    with pytest.raises(ValueError, match=r"inertia_ratio must be in \(0, 2\); got 2"):
+    with pytest.raises(ValueError, match=r"inertia_ratio.*\(0.*2\).*2"):
         Tumble(70.0, 40.0, 0.5, 2.0)
-    with pytest.raises(ValueError, match=r"momentum_sun_deg must be in \(0, 180\); got 0"):
+    with pytest.raises(ValueError, match=r"momentum_sun_deg.*\(0.*180\).*0"):
         Tumble(0.0, 40.0, 0.5, 1.0)
 
 

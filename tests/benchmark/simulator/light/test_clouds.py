@@ -108,10 +108,10 @@ def test_conditions_with_and_without_clouds_differ_in_them_alone() -> None:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"cover": 1.0}, r"cover must be in \(0, 1\); got 1.0"),
-        ({"clear": 1.5}, r"clear must be in \[0, 1\]; got 1.5"),
-        ({"waves": 0}, "waves must be at least 1; got 0"),
-        ({"shortest_km": 9000.0}, "at most longest_km; got 9000.0 and 6000.0"),
+        ({"cover": 1.0}, r"cover.*\(0.*1\).*1.0"),
+        ({"clear": 1.5}, r"clear.*\[0.*1\].*1.5"),
+        ({"waves": 0}, "waves.*1.*0"),
+        ({"shortest_km": 9000.0}, "longest_km.*9000.0.*6000.0"),
         ({"softness": 0.0}, "softness must be positive; got 0.0"),
     ],
 )

@@ -108,7 +108,7 @@ def test_codes_that_could_be_misread_are_refused() -> None:
     assert len(spacing_coded(13, **good).apertures) == 507
     with pytest.raises(ValueError, match=r"ambiguous in cells of 2\.2 mm"):
         spacing_coded(13, **(good | {"pitch_mm": 2.2}))
-    with pytest.raises(ValueError, match=r"must exceed the diameter of 0\.95 mm"):
+    with pytest.raises(ValueError, match=r"0\.95"):
         spacing_coded(13, **(good | {"diameter_mm": 0.95}))
 
 
@@ -129,7 +129,7 @@ def test_the_compound_eye_has_the_published_counts_and_no_overlaps() -> None:
         for a in np.linspace(-2.8, 2.8, 9)
     ]
     assert np.ptp(reach) < 1.0
-    with pytest.raises(ValueError, match=r"overlap at a pitch of 0\.8 mm"):
+    with pytest.raises(ValueError, match=r"overlap.*0\.8"):
         compound_eye(100, 2, pitch_mm=0.8, diameter_mm=0.6, code_mm=0.1, focal_length_mm=5.0)
 
 

@@ -110,7 +110,7 @@ def test_gaussian_shot_noise_is_nowhere_farther_from_poisson_than_stated() -> No
     mean = np.geomspace(1e-3, 1e6, 500)
     for read in (10.0, 30.0, 150.0):
         assert (mean / (mean + read**2) ** 1.5).max() <= 0.3850 / read
-    with pytest.raises(ValueError, match=r"read noise of at least 10.0 electrons; got 5.0"):
+    with pytest.raises(ValueError, match=r"read.*10.0.*5.0"):
         replace(SENSOR, detector=replace(SENSOR.detector, read_noise_e=5.0))
 
 

@@ -196,7 +196,7 @@ def test_a_spiral_has_the_low_moments_of_the_disc(count: int, darkening: float) 
 
 @pytest.mark.parametrize("wrong", [-4, 3, 30])
 def test_a_spiral_has_sets_of_four(wrong: int) -> None:
-    with pytest.raises(ValueError, match="spiral must be 0 or a positive multiple of four"):
+    with pytest.raises(ValueError, match=r"spiral.*0"):
         SolarDisc(spiral=wrong)
 
 

@@ -139,9 +139,9 @@ def test_the_condition_says_how_much() -> None:
 
 
 def test_what_is_no_mirror_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"detector_reflectance must be in \[0, 1\]; got 1.5"):
+    with pytest.raises(ValueError, match=r"detector_reflectance.*\[0.*1\].*1.5"):
         Ghost(1.5)
-    with pytest.raises(ValueError, match=r"surface_reflectance must be in \[0, 1\]; got -0.1"):
+    with pytest.raises(ValueError, match=r"surface_reflectance.*\[0.*1\].*-0.1"):
         Ghost(0.3, -0.1)
     with pytest.raises(ValueError, match="'mask' or 'glass'; got 'lens'"):
         Ghost(surface="lens")  # type: ignore[arg-type]

@@ -91,7 +91,7 @@ def test_holes_further_off_than_the_masks_errors_are_refused() -> None:
     sensor = replace(sensor_of(0.8, holes=2, hole_mm=0.04), errors=MaskErrors(size_mm=0.002))
     pattern = dict(sensor.fixed_pattern("test"))
     pattern["apertures"] = pattern["apertures"] * np.array([1.0, 1.0, 1.0, 1.5, 1.5, 1.0, 1.0])
-    with pytest.raises(ValueError, match=r"drawn 0.04 mm wide must be built within 28.1 % of it"):
+    with pytest.raises(ValueError, match=r"drawn 0.04.*28.1"):
         sensor.lit(seen(0.0, 0.0), pattern)
 
 

@@ -106,8 +106,8 @@ def test_what_is_read_inverts_and_rises(nonlinearity: float, share: float) -> No
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"smear": -1.0}, "smear must not be negative; got -1.0"),
-        ({"crosstalk": 0.7}, "crosstalk must be at most 0.5.*got 0.7"),
+        ({"smear": -1.0}, "smear.*-1.0"),
+        ({"crosstalk": 0.7}, "crosstalk.*0.5.*got 0.7"),
         ({"hot": float("nan")}, "hot must not be negative; got nan"),
     ],
 )

@@ -230,7 +230,7 @@ def test_tunnels_dim_the_sun_and_no_stray_light(name: str) -> None:
 
 
 def test_impossible_tunnels_and_cameras_are_refused() -> None:
-    with pytest.raises(ValueError, match="tunnel must not be negative; got -1"):
+    with pytest.raises(ValueError, match=r"tunnel.*-1"):
         sensor_of("ccd-slit", PixelErrors(), columns=10).detector.__class__(
             **{**vars(sensor_of("ccd-slit", PixelErrors()).detector), "tunnel": -1.0}
         )

@@ -127,7 +127,7 @@ def test_shapes_broadcast_and_each_element_stands_alone() -> None:
 
 
 def test_ends_in_the_wrong_order_are_refused() -> None:
-    with pytest.raises(ValueError, match="highest must be above lowest = 5; got 5"):
+    with pytest.raises(ValueError, match=r"highest.*= 5.*5"):
         reading_variance(np.ones(1), np.ones(1), 5, 5)
 
 

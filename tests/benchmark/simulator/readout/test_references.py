@@ -138,8 +138,8 @@ def test_readings_that_there_are_none_of_are_left_out() -> None:
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
-        ({"flats": -1}, "must not be negative; got -1 and 16"),
-        ({"darks": -2}, "must not be negative; got 16 and -2"),
+        ({"flats": -1}, "-1.*16"),
+        ({"darks": -2}, "16.*-2"),
         ({"level": 0.0}, "between 0 and 1; got 0.0"),
         ({"level": 1.0}, "between 0 and 1; got 1.0"),
     ],

@@ -89,11 +89,11 @@ def test_a_cap_holds_all_its_directions_and_none_beyond() -> None:
 def test_impossible_layouts_are_refused() -> None:
     with pytest.raises(ValueError, match="at least 3 faces; got 2"):
         pyramid(2, 30.0)
-    with pytest.raises(ValueError, match=r"tilt_deg must be in \(0, 90\); got 90"):
+    with pytest.raises(ValueError, match=r"tilt_deg.*\(0.*90\).*90"):
         pyramid(4, 90.0)
-    with pytest.raises(ValueError, match="count must be at least 1; got 0"):
+    with pytest.raises(ValueError, match=r"count.*1.*0"):
         sphere(0)
-    with pytest.raises(ValueError, match=r"lowest_cosine must be in \[-1, 1\); got 1"):
+    with pytest.raises(ValueError, match=r"lowest_cosine.*\[-1.*1\).*1"):
         lattice(5, 1.0)
 
 
@@ -245,8 +245,8 @@ def test_ageing_takes_its_share_from_every_cell() -> None:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"in_series": 0}, "in_series must be at least 1; got 0"),
-        ({"loss": 1.0}, r"loss must be in \[0, 1\); got 1.0"),
+        ({"in_series": 0}, "in_series.*1.*0"),
+        ({"loss": 1.0}, r"loss.*\[0.*1\).*1.0"),
         ({"mismatch": -0.1}, "must not be negative; got -0.1"),
     ],
 )
@@ -276,7 +276,7 @@ def test_a_phototransistor_s_gain_is_half_at_the_knee_and_goes_with_the_light_be
     much = collect(np.array([1e4, 2e4]), 0.2)
     assert much[1] / much[0] == pytest.approx(2.0, rel=2e-3)
     assert collect(np.array([-1.0, 0.0, 0.7]), 0.0) == pytest.approx([0.0, 0.0, 0.7])
-    with pytest.raises(ValueError, match="knee must not be negative; got -1"):
+    with pytest.raises(ValueError, match=r"knee.*-1"):
         OptoIsolatorSensor(CUBE, IDEAL, knee=-1.0)
 
 

@@ -185,7 +185,7 @@ def test_light_beyond_the_active_area_is_lost() -> None:
 def test_what_is_no_position_sensor_is_refused() -> None:
     with pytest.raises(ValueError, match="length_mm must be positive; got 0"):
         LateralEffect(0.0)
-    with pytest.raises(ValueError, match=r"nonlinearity must be in \[0, 1/6\); got 0.2"):
+    with pytest.raises(ValueError, match=r"nonlinearity.*\[0.*1/6\).*0.2"):
         LateralEffect(1.0, 0.2)
     thick = Camera(1.0, Mask((Aperture("round", 0.1, 0.1),), thickness_mm=0.1))
     with pytest.raises(ValueError, match="behind a thin mask; got thickness_mm"):

@@ -122,5 +122,5 @@ def test_the_standard_bus_serves_bursts_late_and_loses_none(name: str) -> None:
 
 @pytest.mark.parametrize("service_us", [-0.1, math.nan, math.inf])
 def test_an_impossible_bus_is_refused(service_us: float) -> None:
-    with pytest.raises(ValueError, match="service_us must be finite and not negative"):
+    with pytest.raises(ValueError, match="service_us"):
         array(service_us=service_us)

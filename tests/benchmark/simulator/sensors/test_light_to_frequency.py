@@ -77,7 +77,7 @@ def test_rates_fall_short_by_the_square_and_rise_with_the_temperature() -> None:
     seen = readout.rate(np.array([0.5, 1.0]), np.ones(2))
     straight = 1.005 * np.array([0.5e5, 1e5])
     assert seen == pytest.approx(straight - 0.002 * straight**2 / 1e5)
-    with pytest.raises(ValueError, match=r"nonlinearity must leave rates rising .* got 0.1"):
+    with pytest.raises(ValueError, match=r"nonlinearity.*0.1"):
         FrequencyCounter(1e5, 0.1, 0.0, 1e6, nonlinearity=0.1)
 
 

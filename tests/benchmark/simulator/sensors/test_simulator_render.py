@@ -239,7 +239,7 @@ def test_a_window_without_origin_or_outside_the_detector_is_refused() -> None:
     pattern = sensor.fixed_pattern("test")
     with pytest.raises(ValueError, match="origin_px is None"):
         sensor.expected(Scene(sun, np.ones(1), np.zeros(1)), pattern)
-    with pytest.raises(ValueError, match="leaves the detector of 512 x 512 px"):
+    with pytest.raises(ValueError, match=r"512.*512"):
         sensor.expected(Scene(sun, np.ones(1), np.zeros(1), np.array([[-1, 0]])), pattern)
 
 

@@ -365,7 +365,7 @@ def test_the_longest_spot_of_a_design_follows_its_shadow_or_its_diffraction():
     far = 0.64 * 6e-4 * 2.0 * (1.0 + corner**2) ** 1.5 / 0.01 / 0.005
     assert designed(aperture_width_mm=0.01).longest_px == pytest.approx(1.15 * far + 0.5, rel=0.01)
     assert MirrorRegistration.for_sensor(SensorGeometry(focal_length_mm=2.0)).longest_px is None
-    with pytest.raises(ValueError, match="longest_px must be positive and finite; got 0"):
+    with pytest.raises(ValueError, match=r"longest_px.*0"):
         MirrorRegistration(longest_px=0.0)
 
 
