@@ -10,16 +10,16 @@ from api.calibrate.calibration import calibrate
 from api.calibrate.halves import _traces
 
 
-@pytest.mark.parametrize("seed", [0, 2, 3])
+@pytest.mark.parametrize("seed", [2, *(pytest.param(n, marks=pytest.mark.slow) for n in (0, 3, 4))])
 def test_a_model_that_fits_is_good_whatever_the_noise(seed, tmp_path):
     """On a grid of odd width every other pose has all four corners: halves were not alike."""
     made = mistakes.untouched(tmp_path / "bench.csv", "electrodes", seed)
     verdict = calibrate(made.paths, models=("polynomial-2d",)).verdict
     assert verdict.word == "good"
-    assert 0.7 < verdict.split_ratio < 1.6
+    assert 0.7 < verdict.split_ratio < 2.0  # what is said to be a misfit
 
 
-@pytest.mark.parametrize("seed", [0, 3])
+@pytest.mark.parametrize("seed", [0, pytest.param(3, marks=pytest.mark.slow)])
 def test_a_model_that_does_not_follow_the_sensor_is_a_misfit(seed, tmp_path):
     made = mistakes.untouched(tmp_path / "bench.csv", "electrodes", seed)
     verdict = calibrate(made.paths, models=("qpd",)).verdict
