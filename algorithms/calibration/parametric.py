@@ -229,8 +229,16 @@ def across(found: Floats, sun: Floats, first: Floats, second: Floats) -> Floats:
 
     The length is the angle itself, so that a direction behind is farther off than one beside.
     """
-    off = np.stack([(found * first).sum(axis=1), (found * second).sum(axis=1)], axis=1)
-    sine = np.linalg.norm(off, axis=1)
-    angle = np.arctan2(sine, (found * sun).sum(axis=1))
+    off = np.empty((len(found), 2))
+    for column, axis in enumerate((first, second)):
+        off[:, column] = _dot(found, axis)
+    defined = np.isfinite(off)
+    sine = np.sqrt(off[:, 0] * off[:, 0] + off[:, 1] * off[:, 1])
+    angle = np.arctan2(sine, _dot(found, sun))
     ratio = np.divide(angle, sine, out=np.ones_like(sine), where=sine > 0)
-    return np.where(np.isfinite(off), off * ratio[:, None], _UNDEFINED_RAD)
+    return np.where(defined, off * ratio[:, None], _UNDEFINED_RAD)
+
+
+def _dot(one: Floats, other: Floats) -> Floats:
+    """Products (N,) of rows (N, 3): column by column, as rows are too short for NumPy's loops."""
+    return one[:, 0] * other[:, 0] + one[:, 1] * other[:, 1] + one[:, 2] * other[:, 2]

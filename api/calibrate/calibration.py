@@ -16,6 +16,7 @@ from api.calibrate.conventions.finding import Finding, change_of
 from api.calibrate.conventions.findings import findings
 from api.calibrate.exclusions import Excluded, excluded_of, kept_by_model, sound_of
 from api.calibrate.frames import of_spots, table_in, with_spots
+from api.calibrate.halves import halves
 from api.calibrate.readings import BEHIND, Readings, joined, readings_of
 from api.calibrate.robust import wrong_poses
 from api.calibrate.roles import guess
@@ -27,7 +28,6 @@ from api.calibrate.selection import (
     compare,
     deviation_of,
     fitted,
-    fold_of,
     geometry_of,
 )
 from api.calibrate.settings import Settings
@@ -239,11 +239,12 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     tick("uncertainty")
     sample = readings.only(np.arange(0, len(readings), max(len(readings) // 2000, 1)))
     around = noise_around(model.predict(sample.features, sample.context) - sample.sun, sample.sun)
-    ratio, spread = _split(wanted[chosen.name], sample, geometry, around, readings)
+    spread = _fit_spread(wanted[chosen.name], sample, geometry, around, readings)
+    split = halves(wanted[chosen.name], sample, geometry, around)
     compared = readings.only(np.arange(0, len(readings), _step(readings, chosen)))
     patterns = patterns_in(np.asarray(chosen.offsets), compared)
     verdict = judge(
-        chosen.rms_deg, residual, noise, stated.bench.floor_deg, ratio, patterns,
+        chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
         *next_poses(readings.sun),
     )  # fmt: skip
     if uncertain := next((one for one in found if one.certain and one.change), None):
@@ -305,32 +306,17 @@ def _usual(one: Candidate) -> float:
     return float(np.median(errors[np.isfinite(errors)]))
 
 
-def _split(
+def _fit_spread(
     scored: Scored, sample: Readings, geometry: SensorGeometry, noise: Floats, readings: Readings
-) -> tuple[float, Floats]:
-    """Return the split-half ratio, and the fit's own spread at each sample."""
-    nothing = np.full(len(readings), np.nan)
+) -> Floats:
+    """Return the fit's own spread (N,) at each reading; NaN where it is not known."""
+    unknown = np.full(len(readings), np.nan)
     if not (noise > 0).all():
-        return float("nan"), nothing
-    fold, _ = fold_of(sample)
-    first = np.where(fold < 0, np.arange(len(fold)) % 2 == 0, fold % 2 == 0)
+        return unknown
     try:
-        one = fitted(scored, sample.only(first), geometry).predict(sample.features, sample.context)
-        two = fitted(scored, sample.only(~first), geometry).predict(sample.features, sample.context)
-        spreads = [
-            spread_deg(refits(scored, sample.only(half), geometry, noise[half], sample))
-            for half in (first, ~first)
-        ]
-        whole = spread_deg(refits(scored, sample, geometry, noise, readings))
+        return spread_deg(refits(scored, sample, geometry, noise, readings))
     except UnusableDataError:
-        return float("nan"), nothing
-    apart = separation_deg(one, two)
-    expected = np.hypot(*spreads)
-    known = np.isfinite(apart) & np.isfinite(expected)
-    if not (known & (expected > 1e-9)).any():  # a model of no parameters
-        return float("nan"), whole
-    ratio = np.sqrt(np.mean(apart[known] ** 2) / max(float(np.mean(expected[known] ** 2)), 1e-300))
-    return float(ratio), whole
+        return unknown
 
 
 def _step(readings: Readings, chosen: Candidate) -> int:

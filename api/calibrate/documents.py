@@ -124,15 +124,16 @@ def document(found: Calibration, command: str = "") -> dict[str, Any]:
             "rows_dropped": dict(found.readings.dropped),
             "notes": list(found.notes),
             "command": command,
-            "versions": {
-                "sun-sensor-atlas": _version("sun-sensor-atlas"),
-                "numpy": _version("numpy"),
-                "scipy": _version("scipy"),
-                "python": sys.version.split()[0],
-            },
+            "versions": versions(),
         },
     }
     return {**held, DIGEST: digest_of(held)}
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of what calibrates, by name."""
+    names = ("sun-sensor-atlas", "numpy", "scipy")
+    return {**{name: _version(name) for name in names}, "python": sys.version.split()[0]}
 
 
 def selection_table(found: Calibration) -> list[dict[str, Any]]:

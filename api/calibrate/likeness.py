@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-
-from api.calibrate.selection import Candidate
 
 #: Models that both must have: of fewer, some data set has the same ratios by chance.
 _FEWEST = 4
@@ -38,7 +36,7 @@ class Likeness:
 
 
 def alike(
-    candidates: Sequence[Candidate], nominal: Mapping[tuple[str, str, str], Mapping[str, Any]]
+    errors_deg: Mapping[str, float], nominal: Mapping[tuple[str, str, str], Mapping[str, Any]]
 ) -> list[Likeness]:
     """Return the standard data sets, the one where models rank most alike first.
 
@@ -49,12 +47,12 @@ def alike(
 
     Parameters
     ----------
-    candidates : sequence of Candidate
-        Models on the reader's data.
+    errors_deg : mapping of str to float
+        RMS error of models on the reader's data.
     nominal : mapping
         Published scores by data set, extractor and model.
     """
-    mine = {one.name: one.rms_deg for one in candidates if not one.refused and one.rms_deg > 0}
+    mine = {name: error for name, error in errors_deg.items() if error > 0}
     theirs: dict[tuple[str, str], dict[str, Mapping[str, Any]]] = {}
     for (dataset, extractor, model), row in nominal.items():
         if model in mine and row["status"] == "ok" and row["rms_deg"]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime as dt
 import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -24,6 +25,8 @@ COLUMNS: dict[str, int | None] = {
     "channels": None,
     "frames": 1,
 }
+#: What a certificate says of what nobody stated, and of such a country.
+UNSTATED, NO_COUNTRY = "not stated", "ZZ"
 Transform = Literal[
     "swap-xy", "mirror-x", "mirror-y", "rotate-90", "rotate-180", "rotate-270", "swap-negated-xy"
 ]
@@ -137,6 +140,30 @@ class SensorSettings(_Strict):
         return SensorGeometry(**dict(self))
 
 
+class CertificateSettings(_Strict):
+    """Who calibrated what for whom, for `--certificate`."""
+
+    laboratory: str = Field(default=UNSTATED, description="Who calibrated.")
+    address: str = Field(default=UNSTATED, description="Of the laboratory.")
+    country: Annotated[str, Field(pattern="^[A-Z]{2}$")] = Field(
+        default=NO_COUNTRY,
+        description="Of the laboratory, two letters of ISO 3166; ZZ where not stated.",
+    )
+    mail: str = Field(default=UNSTATED, description="E-mail address of the laboratory.")
+    person: str = Field(default=UNSTATED, description="Who is responsible.")
+    customer: str = Field(default=UNSTATED, description="For whom.")
+    item: str = Field(default="sun sensor", description="What was calibrated.")
+    manufacturer: str = Field(default=UNSTATED, description="Of it.")
+    serial: str = Field(default=UNSTATED, description="Its serial number.")
+    identifier: str | None = Field(
+        default=None, description="Number of the certificate; by default the data's digest."
+    )
+    begin: dt.date | None = Field(
+        default=None, description="First day of the measurement, as 2026-11-26; by default today."
+    )
+    end: dt.date | None = Field(default=None, description="Last day.")
+
+
 class Settings(_Strict):
     """All that is said of a calibration file."""
 
@@ -145,6 +172,7 @@ class Settings(_Strict):
     rows: RowSettings = RowSettings()
     bench: BenchSettings = BenchSettings()
     sensor: SensorSettings = SensorSettings()
+    certificate: CertificateSettings = CertificateSettings()
     apply: tuple[Transform, ...] = Field(
         default=(),
         description="Changes of the readings' axes, in order, before anything is fitted.",

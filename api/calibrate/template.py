@@ -8,6 +8,7 @@ from pydantic import BaseModel
 
 from api.calibrate.settings import (
     BenchSettings,
+    CertificateSettings,
     DirectionSettings,
     ReadingsSettings,
     RowSettings,
@@ -21,6 +22,7 @@ _TITLES = {
     "rows": "What else is known of each row.",
     "bench": "The bench.",
     "sensor": "The drawing, as far as it is known; what is missing is estimated from the readings.",
+    "certificate": "Who calibrated what for whom, for --certificate.",
 }
 
 
@@ -40,6 +42,7 @@ def template(settings: Settings, names: list[str]) -> str:
         "rows": (RowSettings, settings.rows),
         "bench": (BenchSettings, settings.bench),
         "sensor": (SensorSettings, settings.sensor),
+        "certificate": (CertificateSettings, settings.certificate),
     }
     for name, (kind, values) in parts.items():
         lines += ["", f"# {_TITLES[name]}", f"[{name}]"]

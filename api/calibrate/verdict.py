@@ -11,12 +11,14 @@ import numpy as np
 from algorithms.angles import separation_deg
 from algorithms.calibration.hull import Hull
 from algorithms.contract import Floats, UnusableDataError
+from api.calibrate.halves import Halves
 from api.calibrate.readings import Readings
 from api.calibrate.uncertainty import tangent_offsets
 
 Word = Literal["good", "model misfit", "poses missing", "conventions uncertain"]
-#: Ratio of the difference of two halves' fits to what their stated uncertainties add up to.
-RATIO_GOOD, RATIO_MISFIT = (0.7, 1.4), 2.0
+#: Ratio of the difference of two halves' fits to their stated uncertainties that is a misfit, if
+#: noise alone has a smaller chance than this to make it.
+_RATIO, _RATIO_CHANCE = 2.0, 1e-3
 #: Share of the residuals' variance that a pattern explains to be named, and its significance.
 _SHARE, _CHANCE = 0.05, 1e-4
 _NEXT = 20
@@ -72,7 +74,7 @@ def judge(  # noqa: PLR0917 - the numbers it is made of
     residual_deg: float,
     noise: float,
     floor_deg: float,
-    split_ratio: float,
+    split: Halves,
     patterns: tuple[Pattern, ...],
     next_poses: Floats,
     gap: float,
@@ -87,8 +89,8 @@ def judge(  # noqa: PLR0917 - the numbers it is made of
         Of single samples, degrees.
     floor_deg : float
         Of the bench, degrees.
-    split_ratio : float
-        See `Verdict`.
+    split : Halves
+        How far fits to halves are apart.
     patterns : tuple of Pattern
         In the errors.
     next_poses : ndarray
@@ -97,6 +99,7 @@ def judge(  # noqa: PLR0917 - the numbers it is made of
         Largest distance of a direction of the field to a pose, in usual steps.
     """
     floor = np.hypot(noise if np.isfinite(noise) else 0.0, floor_deg)
+    apart = split.ratio > _RATIO and split.chance < _RATIO_CHANCE
     smooth = [one for one in patterns if one.share > 0.25]
     if rms_deg > 1.6 * residual_deg and rms_deg > 1.3 * floor:
         word: Word = "poses missing"
@@ -110,11 +113,11 @@ def judge(  # noqa: PLR0917 - the numbers it is made of
             f"parts of the field are {gap:.0f} steps from any pose: there the model is not tested "
             f"(where it is, samples left out err {rms_deg:.3g} deg)"
         )
-    elif split_ratio > RATIO_MISFIT or (smooth and residual_deg > 1.5 * floor):
+    elif apart or (smooth and residual_deg > 1.5 * floor):
         word = "model misfit"
         reason = (
-            f"fits to two halves differ {split_ratio:.2g} times as much as noise explains"
-            if split_ratio > RATIO_MISFIT
+            f"fits to two halves differ {split.ratio:.2g} times as much as noise explains"
+            if apart
             else f"residuals of {residual_deg:.3g} deg are more than the noise of {floor:.3g} deg"
         ) + (f", and go with {smooth[0].name}" if smooth else "")
     else:
@@ -123,7 +126,7 @@ def judge(  # noqa: PLR0917 - the numbers it is made of
             f"samples left out err {rms_deg:.3g} deg, those fitted {residual_deg:.3g} deg, "
             f"noise is {floor:.3g} deg"
         )
-    return Verdict(word, reason, split_ratio, patterns, next_poses)
+    return Verdict(word, reason, split.ratio, patterns, next_poses)
 
 
 def with_uncertain_conventions(verdict: Verdict, found: str) -> Verdict:

@@ -21,6 +21,8 @@ from api.pages import boards
 from api.pages.plots.heat import heat_map
 from api.pages.plots.line_chart import Line, LineChart
 from api.pages.serving import PageRouter, View
+from api.real.scores import beside_standard
+from api.real.sets import SETS
 from api.schema import words
 from api.schema.base import Question
 from api.schema.datasets import DatasetsQuery
@@ -68,7 +70,10 @@ async def datasets(known: Known) -> View:
         for board in known.measurements.leaderboard["datasets"]
         for best in best_of_each({"datasets": [board]})
     }
-    return View("datasets.html", answer, leaders=leaders, finer=finer, available=AVAILABLE)
+    real = [(one, beside_standard(name, known.measurements.nominal)) for name, one in SETS.items()]
+    return View(
+        "datasets.html", answer, leaders=leaders, finer=finer, available=AVAILABLE, real=real
+    )
 
 
 @router.page("/datasets/{name}")

@@ -18,7 +18,6 @@ from algorithms.contract import (
 )
 from algorithms.documented import documented
 from algorithms.models.geometric.detector_faces import Normals, require_normals
-from algorithms.models.physics_informed.assembled_faces import invert
 from algorithms.parameters import require_choice
 
 Response = Literal["kelly", "fitted"]
@@ -140,6 +139,8 @@ class AngularLoss(CalibratedCompensation):
 
     def apply(self, features: Floats, context: Columns) -> Floats:
         """Cosines of incidence (N, K) of signals (N, K)."""
+        from algorithms.models.physics_informed.faces_kernel import invert  # noqa: PLC0415 - Numba
+
         del context
         relative = features / self.gains_
         return np.column_stack([invert(column, self.response_) for column in relative.T])

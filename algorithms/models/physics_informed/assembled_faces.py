@@ -19,23 +19,6 @@ from algorithms.row_arithmetic import normalise
 
 Sharing = Literal["common", "each"]
 
-ITERATIONS = 100
-"""Most steps towards a direction; ten are usual."""
-
-#: Smallest step, over its vector, that is still taken.
-_AT_REST = 1e-13
-#: Of the equations' diagonal, over its mean, at the first step and at least.
-_FIRST_DAMPING, _LEAST_DAMPING = 1e-4, 1e-12
-#: Rise of the sum of squares, relative, that is still none: rounding must not choose the path.
-_EQUAL = 1e-12
-#: Width of the bend between dark and lit, over the face's noise: the equations are smooth there,
-#: so that steps come to rest where the least sum is, on every processor.
-_BEND = 0.5
-#: Of the equations of the first vector, so that what is open is nothing.
-_LEAST_START = 1e-6
-#: What the first vector is moved by, over its length: between two dark faces the signals have two
-#: solutions, one to each side, and a start on the ridge between them leaves the side to rounding.
-_ASIDE = (6e-4, 5e-4, 7e-4)
 #: Standard deviation of a direction from which on it is none: the lit faces leave it open.
 _WORST_RAD = 0.1
 
@@ -168,30 +151,13 @@ class AssembledFaces(FacesModel):
         return self._solve(features)[1]
 
     def _solve(self, signals: Floats) -> tuple[Floats, Floats]:
-        """Directions (N, 3), and the mean variance (N,) of their two components across.
+        """Directions (N, 3), and the mean variance (N,) of their two components across."""
+        from algorithms.models.physics_informed.faces_kernel import explain  # noqa: PLC0415 - Numba
 
-        Levenberg-Marquardt, every sample with a damping of its own.
-        """
-        light = signals - self.dark_
-        vector = self._start(light)
-        normal, right, cost = self._equations(vector, light)
-        damping = np.full(len(light), _FIRST_DAMPING)
-        moving = np.flatnonzero(np.isfinite(vector[:, 0]))
-        for _ in range(ITERATIONS):
-            if not len(moving):
-                break
-            here, equations, squares = vector[moving], normal[moving], cost[moving]
-            size = damping[moving] * (equations[:, 0, 0] + equations[:, 1, 1] + equations[:, 2, 2])
-            step = _solve3(equations + size[:, None, None] * np.eye(3), right[moving])
-            tried = here + step
-            found = self._equations(tried, light[moving])
-            better = found[2] <= squares * (1.0 + _EQUAL)
-            for kept, new in zip((vector, normal, right, cost), (tried, *found), strict=True):
-                kept[moving[better]] = new[better]
-            times = np.where(better, damping[moving] / 10.0, damping[moving] * 10.0)
-            damping[moving] = np.clip(times, _LEAST_DAMPING, 1e6)
-            small = (step**2).sum(axis=1) <= _AT_REST**2 * (here**2).sum(axis=1)
-            moving = moving[~small]
+        light = np.ascontiguousarray(signals - self.dark_)
+        vector, normal = np.empty((len(light), 3)), np.empty((len(light), 3, 3))
+        told = (self.normals_, self.responses_, self.noise_, float(self.level_spread))
+        explain(light, told, vector, normal)
         sun = normalise(vector)
         inverse = _inverse3(normal)
         along = np.zeros(len(sun))
@@ -203,88 +169,6 @@ class AssembledFaces(FacesModel):
         known = (variance >= 0) & (variance <= _WORST_RAD**2)
         sun[~known] = np.nan
         return sun, np.where(known, variance, 0.0)
-
-    def _start(self, light: Floats) -> Floats:
-        """(N, 3) vectors that fit the lit faces' cosines; NaN where no face is lit.
-
-        A component that no lit face tells of starts beside nothing, as the dark ones say.
-        """
-        normal, right = np.zeros((len(light), 3, 3)), np.zeros((len(light), 3))
-        lit = np.zeros(len(light), dtype=np.bool_)
-        for face, axis in enumerate(self.normals_):
-            cosine = invert(light[:, face], self.responses_[face])
-            seen = light[:, face] > 3.0 * self.noise_[face]
-            lit |= seen
-            weight = seen.astype(np.float64)
-            _add_row(normal, right, [weight * component for component in axis], weight * cosine)
-        start = _solve3(normal + _LEAST_START * np.eye(3), right)
-        start += np.sqrt((start**2).sum(axis=1))[:, None] * np.array(_ASIDE)
-        start[~lit] = np.nan
-        return start
-
-    def _equations(self, vector: Floats, light: Floats) -> tuple[Floats, Floats, Floats]:
-        """Give normal equations (N, 3, 3), right sides (N, 3) and sum of squares at a vector.
-
-        The vector's (N, 3) direction is the Sun's, its length the light's strength.
-        """
-        level = np.sqrt((vector**2).sum(axis=1))
-        sun = vector / level[:, None]
-        normal, right = np.zeros((len(light), 3, 3)), np.zeros((len(light), 3))
-        cost = np.zeros(len(light))
-        for face, axis in enumerate(self.normals_):
-            cosine = sun[:, 0] * axis[0] + sun[:, 1] * axis[1] + sun[:, 2] * axis[2]
-            value, slope = bend_and_slope(cosine, self.responses_[face], _BEND * self.noise_[face])
-            residual = (light[:, face] - level * value) / self.noise_[face]
-            # of level * f(n . v / level): f s + f' (n - c s)
-            rows = [
-                (value * sun[:, k] + slope * (axis[k] - cosine * sun[:, k])) / self.noise_[face]
-                for k in range(3)
-            ]
-            _add_row(normal, right, rows, residual)
-            cost += residual * residual
-        rows = [sun[:, k] / self.level_spread for k in range(3)]
-        residual = (1.0 - level) / self.level_spread
-        _add_row(normal, right, rows, residual)
-        return normal, right, cost + residual * residual
-
-
-def bend_and_slope(cosine: Floats, coefficients: Floats, width: float) -> tuple[Floats, Floats]:
-    """Response at cosines of incidence (N,), bent softly to nothing in the dark; its derivative.
-
-    Behind the face the cubic goes on as a straight line, so that there is no jump; a value v
-    becomes ``w log(1 + exp(v / w))`` of width w, in the signals' unit.
-    """
-    b0, b1, b2, b3 = coefficients
-    front = np.maximum(cosine, 0.0)
-    # a line that rises towards the front, whatever the fit says of grazing light
-    rise = max(float(b1), 0.1 * float(coefficients.sum()))
-    value = ((b3 * front + b2) * front + b1) * front + b0 + rise * (cosine - front)
-    slope = np.where(cosine > 0, (3.0 * b3 * front + 2.0 * b2) * front + b1, rise)
-    ratio = value / width
-    decay = np.exp(-np.abs(ratio))
-    share = np.where(ratio > 0, 1.0, decay) / (1.0 + decay)
-    return width * (np.maximum(ratio, 0.0) + np.log1p(decay)), slope * share
-
-
-def invert(signal: Floats, coefficients: Floats) -> Floats:
-    """Cosines (N,) in [0, 1.2] at which a response gives signals (N,), by Newton's steps."""
-    b0, b1, b2, b3 = coefficients
-    cosine = np.clip(signal / coefficients.sum(), 0.0, 1.2)
-    for _ in range(6):
-        value = ((b3 * cosine + b2) * cosine + b1) * cosine + b0
-        slope = np.maximum((3.0 * b3 * cosine + 2.0 * b2) * cosine + b1, 0.1 * b1)
-        cosine = np.clip(cosine - (value - signal) / slope, 0.0, 1.2)
-    return np.asarray(cosine)
-
-
-def _add_row(normal: Floats, right: Floats, row: list[Floats], residual: Floats) -> None:
-    """Add one equation a sample, derivatives `row` (3 of (N,)) and residual (N,), in place."""
-    for i in range(3):
-        right[:, i] += row[i] * residual
-        for j in range(i, 3):
-            normal[:, i, j] += row[i] * row[j]
-            if j > i:
-                normal[:, j, i] = normal[:, i, j]
 
 
 def _inverse3(matrix: Floats) -> Floats:
@@ -301,17 +185,3 @@ def _inverse3(matrix: Floats) -> Floats:
         inverse /= determinant[:, None, None]
     inverse[~np.isfinite(determinant) | (determinant == 0)] = np.nan
     return inverse
-
-
-def _solve3(matrix: Floats, right: Floats) -> Floats:
-    """Solutions (N, 3) of symmetric equations."""
-    inverse = _inverse3(matrix)
-    return np.stack(
-        [
-            inverse[:, i, 0] * right[:, 0]
-            + inverse[:, i, 1] * right[:, 1]
-            + inverse[:, i, 2] * right[:, 2]
-            for i in range(3)
-        ],
-        axis=1,
-    )

@@ -94,7 +94,8 @@ def _on_own_data(data: Path, config: Path | None, models: list[str] | None, form
 
     settings = None if config is None else read_settings(config)
     found = calibrate([data], settings, models=models)
-    ranked = alike(found.candidates, knowledge().measurements.nominal)
+    mine = {one.name: one.rms_deg for one in found.candidates if not one.refused}
+    ranked = alike(mine, knowledge().measurements.nominal)
     nearest = ranked[0] if ranked else None
     rows = [
         {

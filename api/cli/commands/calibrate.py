@@ -55,6 +55,13 @@ def calibrate(
     name: Annotated[
         str, typer.Option(help="Prefix of file names and C identifiers.")
     ] = "sun_sensor",
+    certificate: Annotated[
+        Path | None,
+        typer.Option(
+            help="Write a digital calibration certificate (DCC, PTB's XML schema 3.1.2) to this "
+            "file; the configuration's section [certificate] says who calibrated what."
+        ),
+    ] = None,
     apply: Annotated[
         bool,
         typer.Option(
@@ -76,6 +83,9 @@ def calibrate(
     code. The exit code is 0 for the verdict "good", otherwise 3.
     """
     from api.calibrate.calibration import calibrate as run  # noqa: PLC0415 - SciPy
+    from api.calibrate.certificate.certificate import (  # noqa: PLC0415 - as above
+        certificate as xml_of,
+    )
     from api.calibrate.frames import table_in  # noqa: PLC0415 - as above
     from api.calibrate.products import write_products  # noqa: PLC0415 - as above
     from api.calibrate.roles import guess  # noqa: PLC0415 - as above
@@ -106,7 +116,11 @@ def calibrate(
             progress=lambda step, done, total: report(done, total, step),
         )
         written = write_products(found, out, name, command)
+        if certificate is not None:
+            replace_file(certificate, xml_of(found, command))
     _print(found, written, out)
+    if certificate is not None:
+        typer.echo(f"wrote {certificate}")
     return 0 if found.verdict.word == "good" else 3
 
 

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from api.cli.table_output import Format, FormatOption, emit
 from api.cli.wrong_call import WrongCallError
+
+if TYPE_CHECKING:
+    from api.real.sets import RealSet
 
 
 def fetch(
@@ -18,6 +22,15 @@ def fetch(
     out: Annotated[
         Path | None, typer.Option(help="Output directory; by default the set's name.")
     ] = None,
+    scores: Annotated[
+        bool,
+        typer.Option(
+            "--scores",
+            help="Download nothing; print the errors of models on the set, beside those on the "
+            "standard data set where models rank most alike.",
+        ),
+    ] = False,
+    form: FormatOption = Format.TABLE,
 ) -> None:
     """Download real readings from their public source, checked by SHA-256.
 
@@ -35,6 +48,20 @@ def fetch(
         raise WrongCallError(
             f"there is no set of real readings {name!r} (there are {', '.join(SETS)})"
         )
+    if scores:
+        _print_scores(SETS[name], form)
+        return
     written = run(SETS[name], out or Path(name))
     typer.echo(f"wrote {', '.join(path.name for path in written)} in {out or name}")
     typer.echo(f"cite: {SETS[name].citation}")
+
+
+def _print_scores(real: RealSet, form: Format) -> None:
+    """Print the kept scores of a set, with its licence and whose it is."""
+    from api.cli.asking import knowledge  # noqa: PLC0415 - the published record
+    from api.real.scores import beside_standard  # noqa: PLC0415 - of this command
+
+    rows = beside_standard(real.name, knowledge().measurements.nominal)
+    emit(rows, tuple(rows[0]), form, title=f"{len(rows)} models on {real.name}, runs left out")
+    typer.echo(f"licence: {real.licence}", err=True)
+    typer.echo(f"cite: {real.citation}", err=True)

@@ -12,12 +12,9 @@ from scipy.optimize import minimize
 
 from algorithms.angles import separation_deg
 from algorithms.contract import UnusableDataError
-from algorithms.models.physics_informed.assembled_faces import (
-    AssembledFaces,
-    bend_and_slope,
-    invert,
-)
+from algorithms.models.physics_informed.assembled_faces import AssembledFaces
 from algorithms.models.physics_informed.faces_fit import FacesFit
+from algorithms.models.physics_informed.faces_kernel import bend_and_slope, invert
 
 CUBE = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 KELLY = np.array([-0.015, 0.750, 0.637, -0.369]) / 1.003
@@ -105,7 +102,7 @@ def test_a_direction_is_the_least_squares_one():
         def cost(vector, signal=signal):
             level = np.linalg.norm(vector)
             light = [
-                bend_and_slope(np.array([vector @ normal / level]), response, noise / 2)[0][0]
+                bend_and_slope(vector @ normal / level, response, noise / 2)[0]
                 for normal, response, noise in zip(
                     model.normals_, model.responses_, model.noise_, strict=True
                 )
@@ -174,14 +171,14 @@ def test_parameters_out_of_range_are_named(wrong, named):
 
 def test_a_response_is_inverted_within_its_range():
     cosines = np.linspace(0.03, 1.0, 50)
-    value, slope = bend_and_slope(cosines, KELLY, 1e-4)
-    np.testing.assert_allclose(invert(value, KELLY), cosines, atol=1e-9)
+    bent = np.vectorize(lambda cosine, width: bend_and_slope(cosine, KELLY, width))
+    np.testing.assert_allclose(invert(bent(cosines, 1e-4)[0], KELLY), cosines, atol=1e-9)
     step = 1e-6
     for wide in (cosines, np.linspace(-1.0, 1.0, 50)):
-        _, slope = bend_and_slope(wide, KELLY, 1e-2)
-        ends = [bend_and_slope(wide + way * step, KELLY, 1e-2)[0] for way in (1.0, -1.0)]
-        np.testing.assert_allclose(slope, (ends[0] - ends[1]) / (2 * step), atol=1e-5)
-    assert bend_and_slope(np.array([-0.2]), KELLY, 1e-4)[0][0] == pytest.approx(0.0, abs=1e-12)
+        ends = [bent(wide + way * step, 1e-2)[0] for way in (1.0, -1.0)]
+        slope = (ends[0] - ends[1]) / (2 * step)
+        np.testing.assert_allclose(bent(wide, 1e-2)[1], slope, atol=1e-5)
+    assert bend_and_slope(-0.2, KELLY, 1e-4)[0] == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.slow

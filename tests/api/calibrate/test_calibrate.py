@@ -230,6 +230,25 @@ def test_the_command_writes_report_and_code_and_a_template(tmp_path, monkeypatch
     assert {path.suffix for path in out.iterdir()} == {".html", ".json", ".py", ".c", ".h"}
 
 
+def test_an_interrupted_command_leaves_nothing(tmp_path, monkeypatch):
+    import typer
+
+    from api.calibrate import products
+
+    def interrupted(*_):  # the report is the last that is made
+        raise KeyboardInterrupt
+
+    path = bench_file(tmp_path / "camera.csv")
+    monkeypatch.setattr(products, "report", interrupted)
+    command = typer.main.get_command(app)
+    status = command.main(
+        [str(path), "--model", "homography", "--out", str(tmp_path / "out")],
+        standalone_mode=False,
+    )
+    assert status == 130
+    assert {one.name for one in tmp_path.iterdir()} == {"camera.csv"}
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [

@@ -9,14 +9,10 @@ import pytest
 import typer
 
 from api.calibrate.likeness import alike
-from api.calibrate.selection import Candidate
 from api.cli.commands.benchmark import app
 from api.cli.wrong_call import WrongCallError
 
-MINE = [
-    Candidate(name, rms_deg=rms)
-    for name, rms in (("a", 0.1), ("b", 0.2), ("c", 1.0), ("d", 4.0), ("e", 5.0))
-]
+MINE = {"a": 0.1, "b": 0.2, "c": 1.0, "d": 4.0, "e": 5.0}
 
 
 def scored(dataset, extractor, **errors):
@@ -35,7 +31,7 @@ def test_ratios_between_models_decide_and_not_their_size():
         **scored("flat", "x", a=0.1, b=0.1, c=0.1, d=0.1),
         **scored("few", "x", a=0.1, b=0.2, c=None),
     }
-    found = alike([*MINE, Candidate("g", refused="too few")], nominal)
+    found = alike(MINE, nominal)
     assert [(one.dataset, one.extractor) for one in found] == [("near", "x"), ("flat", "x")]
     assert found[0].factor == pytest.approx(1.0)
     assert set(found[0].errors_deg) == set("abcde")
@@ -43,7 +39,7 @@ def test_ratios_between_models_decide_and_not_their_size():
 
 def test_few_models_are_like_nothing():
     nominal = scored("near", "x", a=1.0, b=2.0, c=10.0)
-    assert alike(MINE[:3], nominal) == []
+    assert alike({name: MINE[name] for name in "abc"}, nominal) == []
 
 
 @pytest.mark.parametrize(

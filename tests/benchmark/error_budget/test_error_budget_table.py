@@ -47,7 +47,8 @@ def test_whatever_is_not_near_its_bound_has_a_sentence_with_its_measurement():
         bound = row["bound_unit_deg"] or row["bound_deg"]
         assert found.is_near_bound == (row["rms_deg"] <= 2.0 * bound)
         if not found.is_near_bound:
-            assert found.leading_part == "noise" or sentences.PARTS[found.leading_part] in found.sentence
+            named = sentences.PARTS[found.leading_part] in found.sentence
+            assert named or found.leading_part == "noise"
             assert found.parts_deg[found.leading_part] == max(found.parts_deg.values())
 
 

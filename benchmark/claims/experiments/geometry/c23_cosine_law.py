@@ -12,7 +12,6 @@ import numpy as np
 
 from algorithms.compensations.electronics.angular_loss import KELLY
 from algorithms.contract import Floats
-from algorithms.models.physics_informed.assembled_faces import invert
 from benchmark.claims.benches import middles, ratio, rms, rms_within
 from benchmark.claims.experiment import Trial
 from benchmark.datasets.standard import ltf_maskless_cube
@@ -29,6 +28,8 @@ _UNIT = np.array(KELLY) / sum(KELLY)
 
 def trial(number: int) -> Trial:
     """Measure one converter of its own gain and noise."""
+    from algorithms.models.physics_informed.faces_kernel import invert  # noqa: PLC0415 - Numba
+
     setup = ltf_maskless_cube.PRESET.condition("kelly")
     rng = generator("claims", "C23", number, "incidence")
     incidence = EDGES_DEG[-1] * rng.random(_SAMPLES)

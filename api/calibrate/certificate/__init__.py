@@ -1,0 +1,1 @@
+"""A calibration as a digital calibration certificate (DCC), the metrologists' XML."""
