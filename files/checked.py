@@ -7,17 +7,49 @@ its digest shows.
 from __future__ import annotations
 
 import hashlib
+import io
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
 
 from files.temporary import temporary_file_beside
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
 
 _DIGEST_BYTES = hashlib.sha256().digest_size
 
 
-def write_checked(path: Path, *parts: bytes | memoryview) -> None:
-    """Write parts one after the other, behind their digest; directories above the file are made.
+class CheckedFile(io.RawIOBase):
+    """A file that is written once from front to back, of which a digest is taken meanwhile."""
 
-    Of processes that write the same file, the last one's stands.
+    def __init__(self, file: BinaryIO) -> None:
+        super().__init__()
+        self._file = file
+        self._digest = hashlib.sha256()
+        file.write(bytes(_DIGEST_BYTES))
+
+    def writable(self) -> bool:
+        """Say that it can be written to."""
+        return True
+
+    def write(self, part: ReadableBuffer) -> int:
+        """Write some bytes; returns how many."""
+        self._digest.update(part)
+        return self._file.write(part)
+
+    def finish(self) -> None:
+        """Put the digest to the front."""
+        self._file.seek(0)
+        self._file.write(self._digest.digest())
+
+
+@contextmanager
+def writing_checked(path: Path) -> Iterator[CheckedFile]:
+    """Yield a file to write to, behind its digest; directories above it are made.
+
+    It stands once all is written. Of processes that write the same file, the last one's stands.
 
     Raises
     ------
@@ -26,13 +58,17 @@ def write_checked(path: Path, *parts: bytes | memoryview) -> None:
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     with temporary_file_beside(path) as scratch:
-        digest = hashlib.sha256()
-        for part in parts:
-            digest.update(part)
         with scratch.open("wb") as file:
-            file.write(digest.digest())
-            file.writelines(parts)
+            checked = CheckedFile(file)
+            yield checked
+            checked.finish()
         scratch.replace(path)
+
+
+def write_checked(path: Path, content: bytes) -> None:
+    """Write content, as `writing_checked`."""
+    with writing_checked(path) as file:
+        file.write(content)
 
 
 def read_checked(path: Path) -> memoryview | None:

@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from files.checked import read_checked, write_checked
+from files.checked import CheckedFile, read_checked, writing_checked
 from files.locks import LockedError, lock_or_refuse
 
 #: Bytes that the stages of a store may take; another number of gigabytes by this variable.
@@ -96,16 +96,17 @@ class StageFiles:
         """Keep a result that took so long to make; nothing where that cannot be done."""
         if self.limit <= 0 or self.has(key):
             return
-        try:
-            content = _packed(value)
-        except (pickle.PicklingError, AttributeError, TypeError):
-            return
-        if content.nbytes > self.limit:
-            return
         path = self._folder(key) / f"{key[_FOLDER:]}.{round(1000 * seconds)}"
-        with suppress(OSError):
-            write_checked(path, content)
-        self._written.append(content.nbytes)
+        try:
+            with writing_checked(path) as file:
+                _pack(value, file)
+            size = path.stat().st_size
+        except (OSError, pickle.PicklingError, AttributeError, TypeError):
+            return
+        if size > self.limit:
+            path.unlink(missing_ok=True)
+            return
+        self._written.append(size)
         if sum(self._written) > min(_LOOKED_AFTER, self.limit // 16):
             self._written.clear()
             self.make_room()
@@ -195,19 +196,12 @@ class _Pickler(pickle.Pickler):
         return NotImplemented
 
 
-def _packed(value: Any) -> memoryview:
-    """Return a value's pickle, compressed on the way: data may be half of what memory there is."""
-    from pyarrow import (  # noqa: PLC0415 - slow to load
-        BufferOutputStream,
-        CompressedOutputStream,
-        system_memory_pool,
-    )
+def _pack(value: Any, file: CheckedFile) -> None:
+    """Write a value's pickle, compressed on the way: data may be half of what memory there is."""
+    from pyarrow import CompressedOutputStream  # noqa: PLC0415 - slow to load
 
-    # the default pool would hold on to it
-    sink = BufferOutputStream(system_memory_pool())
-    with CompressedOutputStream(sink, "zstd") as stream:
+    with CompressedOutputStream(file, "zstd") as stream:
         _Pickler(stream, protocol=5).dump(value)
-    return memoryview(sink.getvalue())
 
 
 def _unpacked(content: memoryview) -> Any:

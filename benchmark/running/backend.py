@@ -27,7 +27,7 @@ from benchmark.running.schedule import (
     total_seconds,
 )
 from benchmark.running.task import Task, TaskResult, measure
-from benchmark.running.workers import hands_of, release_free_memory
+from benchmark.running.workers import hands_of
 
 _Timed = tuple[Task, TaskResult, Took]
 
@@ -81,8 +81,6 @@ class Work:
         def timed(task: Task) -> _Timed:
             place = place_of(task)
             made = place not in places and not self._data_kept(task)
-            if place not in places:
-                release_free_memory()
             started = time.process_time()
             result = replace(measure(replace(task, preset=own), self.kept), task=task)
             seconds = time.process_time() - started

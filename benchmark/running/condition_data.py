@@ -24,6 +24,7 @@ from benchmark.datasets.corrected import correct, correction
 from benchmark.datasets.pins import Pin
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.metrics.score import store
+from benchmark.processes import release_free_memory
 from benchmark.running.kept_stages import DATA, TRUTH, KeptStages
 from benchmark.simulator.light.memory import memory
 
@@ -115,7 +116,7 @@ def generate(
     """
     place = _place_of(preset, condition, unit)
     if place not in _kept:
-        _make_room()
+        _make_room(preset.name)
         made = _rendered_or_kept(preset, condition, unit, all_observable, kept)
         _kept[place] = correct_readings(made, preset)
     _kept.move_to_end(place)
@@ -179,6 +180,7 @@ def _rendered_or_kept(
     started = time.process_time()
     made = render(preset, condition, unit, all_observable=all_observable)
     seconds = time.process_time() - started
+    release_free_memory()
     # a preset is the caller's own: it is not kept, but taken from who asks
     bare = replace(made.data, preset=cast("Preset", None))
     kept.put(DATA, cell, replace(made, data=bare), seconds)
@@ -313,10 +315,13 @@ def rms_bound(bound: Bound, first: int | None = None) -> float | None:
     return store(float(np.sqrt(np.mean(angle**2)))) if len(angle) else None
 
 
-def _make_room() -> None:
-    """Let go of what was used longest ago, before more is generated."""
+def _make_room(dataset: str) -> None:
+    """Let go of other data sets and of what was used longest ago, before more is generated."""
+    for place in [place for place in _kept if place[0] != dataset]:
+        del _kept[place]
     while _kept and (len(_kept) >= _KEPT or _kept_bytes() > _KEPT_BYTES):
         _kept.popitem(last=False)
+    release_free_memory()
 
 
 def _kept_bytes() -> int:

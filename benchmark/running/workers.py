@@ -7,10 +7,8 @@ process is killed they end by themselves (`benchmark.processes`).
 from __future__ import annotations
 
 import atexit
-import ctypes
 import os
 import signal
-import sys
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
@@ -25,7 +23,7 @@ from typing import Any, TypeVar
 from joblib.externals.loky import get_reusable_executor, process_executor
 from joblib.externals.loky.backend.process import LokyProcess
 
-from benchmark.processes import end_if_requested, work_for
+from benchmark.processes import end_if_requested, release_free_memory, work_for
 from benchmark.running.cluster import WorkerLostError
 from benchmark.simulator.light.memory import memory
 from files.temporary import temporary_directory
@@ -49,7 +47,7 @@ _ONE_THREAD = dict.fromkeys(
 #: the next ones, which costs less than to have the system clear pages for each.
 _MEMORY = {
     "MALLOC_MMAP_THRESHOLD_": str(64 * 2**20),
-    "MALLOC_TRIM_THRESHOLD_": str(256 * 2**20),
+    "MALLOC_TRIM_THRESHOLD_": str(64 * 2**20),
 }
 
 
@@ -167,13 +165,6 @@ def _begin(coordinator: int, tables: Path) -> None:
     process_executor._USE_PSUTIL = False  # noqa: SLF001 - there is no public way
     work_for(coordinator)
     memory.share_tables(tables)
-
-
-def release_free_memory() -> None:
-    """Give memory that is free back to the system; nothing where that cannot be said."""
-    if sys.platform == "linux":
-        with suppress(AttributeError):  # another C library than glibc
-            ctypes.CDLL(None).malloc_trim(0)
 
 
 def _do(work: Callable[[], A]) -> A:
