@@ -91,7 +91,7 @@ class UnscentedKalmanFilter(SunFilter):
     Parameters
     ----------
     kappa : float
-        Spread of the points: they stand ``sqrt(n + kappa)`` standard deviations off; at least 0.
+        Spread of the points, at least 0: their distance is ``sqrt(n + kappa)`` standard deviations.
 
     Notes
     -----

@@ -59,7 +59,7 @@ def _table(known: dict[tuple[str, str], str], table_of: _Described) -> str:
     key = _keys(schema)
     said += [key] if key else []
     said += ["\n".join(lines)] if lines else []
-    said += [f"As in the table named: {', '.join(above)}."] if above else []
+    said += [f"Columns described under the table in brackets: {', '.join(above)}."] if above else []
     return "\n\n".join(said)
 
 

@@ -249,8 +249,10 @@ def _stated_departures(
         text = f"the kind of its {name} is chosen, {_names(running)}"
         yield Departure(part, value, text, f"what the study says of its {value}")
     elif compensates and all(one.stands_for for one in running):
-        text = f"the model behind its {name} is chosen, that of {_names(running)}"
-        yield Departure("model", _BEHIND, text, "the model that the study corrects so")
+        text = f"the model behind its {name} is assumed: {_names(running)}"
+        yield Departure(
+            "model", _BEHIND, text, "the model that the study combines with this compensation"
+        )
 
 
 def _names(chosen: Sequence[ChosenMethod]) -> str:

@@ -38,13 +38,14 @@ class LensCamera(ProjectionModel, ForwardModel):
     Notes
     -----
     Implements: eq:cameq (model:cam, Saleem2019): ``tan(phi) = (u - p_x) / f``, ``tan(theta) = -(v
-    - p_y) / f``, phi along x (beta here), theta up the picture; the minus is gone, as y counts
-    here the way that alpha moves a spot. It holds for undistorted places: the camera's own are
-    ``x (1 + k1 r^2 + k2 r^4) + 2 p1 x y + p2 (r^2 + 2 x^2)``, ``y (1 + k1 r^2 + k2 r^4) + p1 (r^2 +
-    2 y^2) + 2 p2 x y`` of the tangents x and y (Brown and Conrady, as OpenCV counts them), solved
-    for by Newton's method. Least squares of our own: ``cv2.calibrateCamera`` looks for where a
-    target stands, which of the Sun at infinity nothing tells. In a narrow field tilts, principal
-    point and p1, p2 have nearly the same effect; their standard errors are then large.
+    - p_y) / f``, with phi along x (beta here) and theta upwards. The minus sign is omitted here,
+    because y increases in the direction in which alpha moves a spot. It holds for undistorted
+    places: the camera's own are ``x (1 + k1 r^2 + k2 r^4) + 2 p1 x y + p2 (r^2 + 2 x^2)``, ``y (1 +
+    k1 r^2 + k2 r^4) + p1 (r^2 + 2 y^2) + 2 p2 x y`` of the tangents x and y (Brown and Conrady, as
+    OpenCV counts them), solved for by Newton's method. Least squares of our own:
+    ``cv2.calibrateCamera`` looks for where a target stands, which of the Sun at infinity nothing
+    tells. In a narrow field tilts, principal point and p1, p2 have nearly the same effect; their
+    standard errors are then large.
 
     Failure: a NaN row for a NaN feature row, outside the hull, and where the steps have not
     converged within 6e-8 deg, as where the distortion folds the picture back. fit raises
