@@ -32,7 +32,7 @@ class ExtendedKalmanFilter(SunFilter):
 
     Notes
     -----
-    Implements: the online section's EKF, of the filters that model:mnc names.
+    Implements: EKF, one of the filters in the survey's section on online methods (model:mnc).
 
     Cost: 20 us per step on the development machine.
 
@@ -59,7 +59,7 @@ class CubatureKalmanFilter(SunFilter):
 
     Notes
     -----
-    Implements: the online section's CKF, of the filters that model:mnc names.
+    Implements: CKF, one of the filters in the survey's section on online methods (model:mnc).
 
     Examples
     --------
@@ -95,7 +95,7 @@ class UnscentedKalmanFilter(SunFilter):
 
     Notes
     -----
-    Implements: the online section's UKF, of the filters that model:mnc names.
+    Implements: UKF, one of the filters in the survey's section on online methods (model:mnc).
 
     Examples
     --------
@@ -137,7 +137,7 @@ class RobustKalmanFilter(SunFilter):
 
     Notes
     -----
-    Implements: the online section's RKF, of the filters that model:mnc names.
+    Implements: RKF, one of the filters in the survey's section on online methods (model:mnc).
 
     Cost: 30 us per step on the development machine.
 
@@ -180,8 +180,8 @@ class AdaptiveKalmanFilter(SunFilter):
 
     Notes
     -----
-    Implements: the online section's AKF, of the filters that model:mnc names: ``R <- R + (e e' + H
-    P H' - R) / window``.
+    Implements: AKF, one of the filters in the survey's section on online methods (model:mnc): ``R
+    <- R + (e e' + H P H' - R) / window``.
 
     Examples
     --------
@@ -224,7 +224,8 @@ class MultipleModelEstimation(SunFilter):
 
     Notes
     -----
-    Implements: the online section's MMAE, of the filters that model:mnc names: Magill's bank.
+    Implements: MMAE, one of the filters in the survey's section on online methods (model:mnc):
+    Magill's bank.
 
     Cost: 50 us per step on the development machine.
 

@@ -302,9 +302,9 @@ _ALL = (
         "sweeps",
         "largest over smallest rms error for peak SNR 10 to 200 (sweep `noise`), with 90 % found "
         "at each. The table means a level accuracy (the text: TM's is consistent across noise "
-        "levels, that of BCTM and IFM falls as noise rises), so the error itself is asked to be "
-        "level, not its ratio to a bound that grows about twentyfold over these levels. A method "
-        "at the bound is therefore not agnostic, one whose error has another cause can be",
+        "levels, that of BCTM and IFM falls as noise rises), so the error itself must be "
+        "constant, not its ratio to a bound that grows about twentyfold over these levels. A "
+        "method at the bound is therefore not agnostic, one whose error has another cause can be",
         unit="times",
         full=2.0,
         partly=4.0,

@@ -51,10 +51,10 @@ class QuadrantGap(ForwardModel):
     signals over the lit areas of the quadrants. Added to the signals it gives the balance of the
     whole spot. All areas follow from the spot's place, which is wanted; so the equation is solved,
     by Newton's method, for the place whose ``S_A .. S_D`` have the balances measured, ``s_a = (S_B
-    + S_C - S_A - S_D) / (S_A + S_B + S_C + S_D)`` and as much for ``s_b`` (alg:VB). The
-    coefficient k_G makes up for a gap that is not known; here its width is fitted instead. Behind
-    a square aperture the balance is ``2 X / (d - gap)``, exactly linear: focal length and gap have
-    one effect between them, and the gap stays as drawn. Ours: the head's turns.
+    + S_C - S_A - S_D) / (S_A + S_B + S_C + S_D)`` and as much for ``s_b`` (alg:VB). The coefficient
+    k_G makes up for a gap that is not known; here its width is fitted instead. Behind a square
+    aperture the balance is ``2 X / (d - gap)``, exactly linear: focal length and gap have the same
+    effect, so the gap keeps its drawn value. Ours: the head's turns.
 
     Shapes: balances ``(s_a, s_b)`` (N, 2), dimensionless, to unit vectors (N, 3).
 

@@ -51,7 +51,8 @@ class FourierPhase(DialModel):
     F1)`` where a_1 is alone; the survey states in words that the error of p is a Fourier series.
     Here ``T = place(cell, p) + sum_n A_n sin(n p) + B_n cos(n p)``, a tangent, of each dial.
     Fan2013 measures one axis, where assembly turns T into ``(b - d T) / (c T - a)`` (eq:pamulti);
-    the projection is what that becomes for two (ours). A tilt in any direction, dials turned or
+    the projective transformation extends
+    it to two axes (ours). A tilt in any direction, dials turned or
     off centre, a wrong focal length and slits askew are all projections: the relation is exact.
 
     Shapes: signals (N, 2 (bits + 4)), a dial's coarse tracks and then F1 to F4, in any common
