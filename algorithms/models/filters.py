@@ -32,7 +32,7 @@ class ExtendedKalmanFilter(SunFilter):
 
     Notes
     -----
-    Implements: EKF, one of the filters in the survey's section on online methods (model:mnc).
+    Implements: EKF, of the survey's online methods (model:mnc).
 
     Cost: 20 us per step on the development machine.
 
@@ -53,13 +53,12 @@ class ExtendedKalmanFilter(SunFilter):
 class CubatureKalmanFilter(SunFilter):
     """Cubature Kalman filter of the Sun direction in a rotating body.
 
-    Covariances are propagated through dynamics and measurements by the cubature rule of third
-    degree: 2 n points of equal weight, none in the centre. It has no tuning parameter and no
-    negative weight.
+    Covariances are propagated by the cubature rule of third degree: 2 n points of equal weight,
+    none in the centre. It has no tuning parameter and no negative weight.
 
     Notes
     -----
-    Implements: CKF, one of the filters in the survey's section on online methods (model:mnc).
+    Implements: CKF, of the survey's online methods (model:mnc).
 
     Examples
     --------
@@ -84,9 +83,8 @@ class CubatureKalmanFilter(SunFilter):
 class UnscentedKalmanFilter(SunFilter):
     """Unscented Kalman filter of the Sun direction in a rotating body.
 
-    Covariances are propagated through dynamics and measurements by points on both sides of the
-    estimate, which includes curvature and needs no derivatives. The points of directions lie on the
-    sphere.
+    Covariances are propagated by points on both sides of the estimate, which includes curvature
+    and needs no derivatives. The points of directions lie on the sphere.
 
     Parameters
     ----------
@@ -95,7 +93,7 @@ class UnscentedKalmanFilter(SunFilter):
 
     Notes
     -----
-    Implements: UKF, one of the filters in the survey's section on online methods (model:mnc).
+    Implements: UKF, of the survey's online methods (model:mnc).
 
     Examples
     --------
@@ -137,7 +135,7 @@ class RobustKalmanFilter(SunFilter):
 
     Notes
     -----
-    Implements: RKF, one of the filters in the survey's section on online methods (model:mnc).
+    Implements: RKF, of the survey's online methods (model:mnc).
 
     Cost: 30 us per step on the development machine.
 
@@ -180,7 +178,7 @@ class AdaptiveKalmanFilter(SunFilter):
 
     Notes
     -----
-    Implements: AKF, one of the filters in the survey's section on online methods (model:mnc): ``R
+    Implements: AKF, of the survey's online methods (model:mnc): ``R
     <- R + (e e' + H P H' - R) / window``.
 
     Examples
@@ -219,13 +217,11 @@ class MultipleModelEstimation(SunFilter):
     Parameters
     ----------
     noise_scales : tuple of float
-        Standard deviation of the readings assumed by each filter, relative to that of the
-        calibration; positive.
+        Standard deviation assumed by each filter, relative to that of the calibration; positive.
 
     Notes
     -----
-    Implements: MMAE, one of the filters in the survey's section on online methods (model:mnc):
-    Magill's bank.
+    Implements: MMAE (Magill's bank), of the survey's online methods (model:mnc).
 
     Cost: 50 us per step on the development machine.
 

@@ -95,10 +95,8 @@ class _Holes:
 class RoundSpots:
     """Light of a camera's round holes on pixels, by Fresnel diffraction of each hole.
 
-    Holes of one drawn diameter share three tables of the diffracted light (`RoundPattern`): of
-    the drawn radius, and of radii smaller and larger by 2.25 `size_mm`. The light of a built hole
-    is interpolated between them. All units share the tables. Frames of standard units differ by
-    less than 1.9e-3 of their peak from frames with a table for every hole.
+    Holes of one drawn diameter share three tables (`RoundPattern`), between which their light is
+    interpolated: of the drawn radius, and of radii smaller and larger by 2.25 `size_mm`.
 
     Attributes
     ----------
@@ -119,19 +117,17 @@ class RoundSpots:
 
     Notes
     -----
-    The interpolation is a parabola in the radius a of the hole. Its error is
-    ``x (x^2 - g^2) / 6`` times the third derivative over a, x the hole's excess and g that of the
-    larger table. Against a table of every hole's own radius, six units of each: 1.0e-3 of peak on
-    `ccd-multi-aperture`, 4e-4 on `cmos-multi-aperture` (1.1e-3 where a unit's holes are 2.5 % too
-    small) and 4e-5 on `cmos-encoded`. It grows with the cube of x: holes four standard deviations
-    off are out by ten times as much as those within 2.6. With what lattice and height below leave,
-    frames of standard units were within 1.9e-3 of peak of tables of their own.
+    It is interpolated by a parabola in the radius a, with the error ``x (x^2 - g^2) / 6`` times the
+    third derivative over a, x the hole's excess and g that of the larger table. Against a table of
+    every hole's own radius, six units of each: 1.0e-3 of peak on `ccd-multi-aperture`, 4e-4 on
+    `cmos-multi-aperture` (1.1e-3 where a unit's holes are 2.5 % too small) and 4e-5 on
+    `cmos-encoded`. It grows with the cube of x. With lattice and height (below), frames of standard
+    units are within 1.9e-3 of peak.
 
     Tables are for the drawn height, whatever the built one: light that has gone ``r`` times as far
     has the Fresnel numbers, and so the pattern, of a hole ``sqrt(r)`` times smaller, ``sqrt(r)``
-    times as large. Of the Sun's image and the pixel that leaves out ``(r - 1) / 2`` of their
-    width: up to 1.2e-3 of peak for the 0.3 % by which heights of the standard data sets are off. In
-    return all units, built a little differently, look their light up in the same tables.
+    times as large. This leaves out ``(r - 1) / 2`` of the width of the Sun's image and the pixel,
+    up to 1.2e-3 of peak for the heights of the standard data sets (0.3 % off).
 
     A pixel is divided into cells over which tables are averaged whichever way they are turned
     (`RoundPattern.cell_mm`): one look-up a cell. Where many holes light one frame, their common
