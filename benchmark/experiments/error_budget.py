@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from statistics import geometric_mean
@@ -12,6 +12,7 @@ from algorithms.chain import Scored
 from algorithms.contract import Extractor
 from benchmark.contract import Cell
 from benchmark.datasets.preset import Preset
+from benchmark.error_budget import plots
 from benchmark.error_budget.measure import score_variants
 from benchmark.error_budget.record import RECORD, SCORE
 from benchmark.metrics.ranking import order
@@ -73,6 +74,10 @@ class ErrorBudget(RecordedExperiment[str]):
             )
             for cell in cells
         }
+
+    def pictures(self) -> Mapping[str, Callable[[], str]]:
+        """Draw error, bound and contributions of every leader."""
+        return {"error-budget.svg": lambda: plots.picture(self.rows())}
 
     def tasks(self, cells: Sequence[str]) -> Iterator[Task]:
         """Make a task of each data set."""
