@@ -170,7 +170,6 @@ def test_read_noise_makes_finer_pixels_worse_in_proportion() -> None:
     assert fine / middle == pytest.approx(2.0, rel=0.03)
 
 
-@pytest.mark.slow
 def test_the_near_test_of_observability_agrees_with_the_far_one() -> None:
     """Where both can be asked: a deviation just below and just above the step."""
     setup, pattern = setup_of("cmos-single-aperture", "high-noise")

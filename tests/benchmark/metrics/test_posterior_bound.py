@@ -89,7 +89,6 @@ def test_other_vectors_tell_the_turn_about_the_sun_and_across_it() -> None:
     assert along[0] == pytest.approx(math.degrees(SIGMA), rel=1e-5)
 
 
-@pytest.mark.slow
 def test_matrices_give_the_bound_of_one_sample_and_more_is_never_worse() -> None:
     preset = datasets.get("pd-orbit")
     single = preset.bound("nominal")
