@@ -143,7 +143,7 @@ def test_the_one_command_of_the_guide_ends_on_a_board(tree: Path) -> None:
     assert marked[0][2] == "squared-centroid"
     assert int(marked[0][1]) > 1
     assert any("mirror" in row for row in rows)
-    assert "Scored here: its 12 pipelines on the standard unit." in done.stdout
+    assert re.search(r"\b12 pipelines\b", done.stdout)
     board = (tree / written).read_text()
     assert board.count('class="marked"') == 12
     assert '/squared-centroid/homography" class="marked"' in board

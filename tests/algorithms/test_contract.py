@@ -102,13 +102,13 @@ def test_the_kind_names_the_columns():
 
 def test_a_design_that_says_what_is_needed_is_taken_by_default():
     assert Middle.for_sensor(SensorGeometry(centre_px=(1.0, 2.0))) == Middle(0.5)
-    with pytest.raises(UnsuitableDesignError, match="middle needs the sensor geometry's centre_px"):
+    with pytest.raises(UnsuitableDesignError, match=r"middle.*centre_px"):
         Middle.for_sensor(SensorGeometry())
     wide = SensorGeometry(half_fov_deg=60.0)
     assert Ahead.for_sensor(wide, FeatureKind.SPOT) == Ahead()
-    with pytest.raises(UnsuitableDesignError, match="ahead needs the sensor geometry's half_fov"):
+    with pytest.raises(UnsuitableDesignError, match=r"ahead.*half_fov"):
         Ahead.for_sensor(SensorGeometry(), FeatureKind.SPOT)
-    with pytest.raises(UnsuitableDesignError, match=r"ahead accepts balance, spot .*; got signals"):
+    with pytest.raises(UnsuitableDesignError, match=r"ahead.*balance, spot.*signals"):
         Ahead.for_sensor(wide, FeatureKind.SIGNALS)
 
 

@@ -31,5 +31,5 @@ def test_a_cell_is_spelled_one_way(value, text):
 
 
 def test_what_no_document_holds_is_refused():
-    with pytest.raises(TypeError, match="expected text, numbers, lists and mappings; got complex"):
+    with pytest.raises(TypeError, match="complex"):
         plain_value([1j])

@@ -119,8 +119,8 @@ def test_a_store_that_takes_nothing_is_done_without(tmp_path: Path, drawn: list[
 def test_what_is_not_drawn_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(previews, "_drawn_beside", lambda *_: None)
     monkeypatch.setattr(previews, "published_preview", lambda _: tmp_path / "of other code")
-    with pytest.raises(RuntimeError, match="the picture of a was not drawn"):
-        Pictures(tmp_path).png("a")
+    with pytest.raises(RuntimeError, match="never-drawn"):
+        Pictures(tmp_path).png("never-drawn")
 
 
 def test_pictures_of_older_code_are_removed_but_the_newest(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 
 import pytest
@@ -16,16 +17,16 @@ from benchmark.progress import console_progress, lines, time_left
         (
             1.0,
             [
-                "building: 15 of 40, about 25 s left (data set 14)",
-                "building: 30 of 40, about 10 s left (data set 29)",
+                ["15", "40", "25 s", "14"],
+                ["30", "40", "10 s", "29"],
             ],
         ),
         (
             60.0,
             [
-                "building: 1 of 4, about 3 min left (data set 0)",
-                "building: 2 of 4, about 2 min left (data set 1)",
-                "building: 3 of 4, about 60 s left (data set 2)",
+                ["1", "4", "3 min", "0"],
+                ["2", "4", "2 min", "1"],
+                ["3", "4", "60 s", "2"],
             ],
         ),
         (0.1, []),
@@ -39,7 +40,8 @@ def test_lines_are_seldom_and_say_the_time_that_is_left(each_s, expected):
     for done in range(total + 1):
         report(done, total, f"data set {done - 1}")
         now[0] += each_s
-    assert said == expected
+    assert all(line.startswith("building: ") for line in said)
+    assert [re.findall(r"\d+(?: min| s)?\b", line) for line in said] == expected
 
 
 def test_nothing_is_said_of_what_has_no_parts_or_is_done():

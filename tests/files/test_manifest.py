@@ -1,5 +1,6 @@
 """What was changed by hand is named by file, row and column; what a command wrote passes."""
 
+import re
 import shutil
 from pathlib import Path
 
@@ -35,11 +36,7 @@ def test_what_a_command_wrote_passes_and_nothing_else_is_left(folder):
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        (
-            "two,2,",
-            "two,20,",
-            "row 3, column size: not as its command wrote it: now '20'",
-        ),
+        ("two,2,", "two,20,", r"table\.csv, row 3, column size: .*'20'"),
         ("blue\n", "blue", "table.csv, row 5"),
         ("blue\n", "bluf\n", "table.csv, row 4, column colour: "),
         ("two,2,green\n", "", "table.csv, row 3"),
@@ -55,12 +52,13 @@ def test_a_change_by_hand_is_named_by_its_cell(folder, old, new, said):
     path = folder / "table.csv"
     assert old in TABLE
     path.write_bytes(TABLE.replace(old, new).encode("latin-1" if "\xff" in new else "utf-8"))
-    assert said in problems_of(folder)[0]
+    assert re.search(said, problems_of(folder)[0])
 
 
 def test_other_files_are_named_by_line_and_what_is_missing_or_extra_by_file(folder):
     (folder / "inner/said.json").write_text('{\n"a": 2\n}\n')
-    assert problems_of(folder) == ["inner/said.json, row 2: not as its command wrote it"]
+    (said,) = problems_of(folder)
+    assert said.startswith("inner/said.json, row 2: ")
     (folder / "inner/said.json").unlink()
     (folder / "new.csv").write_text("a\n")
     found = [str(p) for p in differences(folder, (*NAMES, "new.csv"))]
@@ -89,7 +87,9 @@ def test_a_missing_or_damaged_manifest_is_named(folder, tmp_path):
     assert problems_of(folder) == []
     assert problems_of(folder, required=True) == [f"{FILE}: the file is missing"]
     (folder / FILE).mkdir()
-    assert problems_of(folder) == [f"{FILE}: expected a file, got a directory"]
+    (said,) = problems_of(folder)
+    assert said.startswith(f"{FILE}: ")
+    assert "directory" in said
 
 
 @pytest.mark.parametrize("killed_after", [0, 1, 2])

@@ -1,5 +1,6 @@
 """Why nothing meets what is asked, and the least that must give way, case by case."""
 
+import re
 from collections.abc import Callable, Mapping
 
 import pytest
@@ -13,13 +14,16 @@ from registry.studies import Facts
 Rows = list[Mapping[str, list[str]]]
 
 
+def untold(blocked: BlockingConstraint) -> str:
+    """Return what a refusal says, in a sentence of its own, that no study or measurement tells."""
+    return blocked.detail.partition(". ")[2]
+
+
 def test_a_limit_nothing_tells_of_says_so(survey: Facts) -> None:
     answer = recommend({"task": "Accuracy", "max_latency_us": 5}, facts=survey)
     assert answer.blocking_constraint is not None
     assert answer.blocking_constraint.constraint == "max_latency_us"
-    assert answer.blocking_constraint.detail.endswith(
-        "Nothing measured or stated tells of at most 5 us a sample"
-    )
+    assert re.search(r"\b5 us\b", untold(answer.blocking_constraint))
 
 
 def test_an_impossible_question_names_the_constraint_and_ways_out(survey: Facts) -> None:
@@ -156,7 +160,7 @@ def test_values_excluded_are_offered_back_one_by_one(
         ({"exclude_mask": ("Slit",)}, 2),
         ({"exclude_mask": ("Lens",)}, 1),
     ]
-    assert blocked.detail == "nothing meets no mask Slit or Lens; without it 3 architectures would"
+    assert re.findall(r"mask|Slit|Lens|\d+", blocked.detail) == ["mask", "Slit", "Lens", "3"]
     ask = {"exclude_detector": ["CMOS"], "exclude_mask": ["Slit"], "detector": ["CMOS", "CCD"]}
     alone = blocked_of(recommend({**ask, "mask": "Slit"}, facts=facts))
     assert {"exclude_mask": ()} not in [change for change, _ in changes(alone)]
@@ -175,12 +179,11 @@ def test_hazards_and_properties_are_offered_less_one(
     row = pipeline(hazards={"albedo": bad, "spin": (Score("spinning", None),)})
     facts = facts_of([STUDY])
     blocked = blocked_of(recommend({"survive": ["albedo", "spin"]}, [row], facts=facts))
-    assert blocked.detail == (
-        "nothing meets surviving albedo and spin; without it 1 architecture would"
-    )
+    assert re.findall(r"albedo|spin|\d+", blocked.detail) == ["albedo", "spin", "1"]
+    assert untold(blocked) == ""
     assert changes(blocked) == [({"survive": ("albedo",)}, 1)]
     untried = blocked_of(recommend({"survive": ["glare"]}, [row], facts=facts))
-    assert untried.detail.endswith("Nothing measured or stated tells of surviving glare")
+    assert "glare" in untold(untried)
     marks = survey.properties
     names = [n for n in marks if not marks[n].get("FEIC", 0)][:1]
     names += [n for n in marks if marks[n].get("FEIC", 0)][:1]
@@ -196,25 +199,17 @@ def test_a_hazard_and_an_error_that_exclude_each_other_are_each_a_way_out(
     row = pipeline(rms_deg=0.1, hazards={"albedo": (Score("albedo", 0.8),)})
     ask = {"max_error_deg": 0.2, "survive": "albedo"}
     blocked = blocked_of(recommend(ask, [row], facts=facts_of([STUDY])))
-    assert [one.to_dict() for one in blocked.relaxations] == [
-        {
-            "constraint": "max_error_deg",
-            "drop": {"max_error_deg": 0.2},
-            "architectures": 1,
-            "words": "drop an error of at most 0.2 deg",
-        },
-        {
-            "constraint": "survive",
-            "drop": {"survive": ["albedo"]},
-            "architectures": 1,
-            "words": "drop surviving albedo",
-        },
-        {
-            "constraint": "max_error_deg",
-            "change": {"max_error_deg": 0.8},
-            "architectures": 1,
-            "words": "ask instead for an error of at most 0.8 deg",
-        },
+    ways = [one.to_dict() for one in blocked.relaxations]
+    words = [way.pop("words") for way in ways]
+    assert [re.findall(r"drop|albedo|[\d.]+ deg", said) for said in words] == [
+        ["drop", "0.2 deg"],
+        ["drop", "albedo"],
+        ["0.8 deg"],
+    ]
+    assert ways == [
+        {"constraint": "max_error_deg", "drop": {"max_error_deg": 0.2}, "architectures": 1},
+        {"constraint": "survive", "drop": {"survive": ["albedo"]}, "architectures": 1},
+        {"constraint": "max_error_deg", "change": {"max_error_deg": 0.8}, "architectures": 1},
     ]
 
 
@@ -240,9 +235,8 @@ def test_of_several_ways_out_the_one_that_gives_most_is_first(
         ("mask", 2),
         ("detector", 1),
     ]
-    assert blocked.detail == (
-        "nothing meets mask Lens beside the other requirements; without it 2 architectures would"
-    )
+    found = re.findall(r"mask|Lens|detector|CMOS|\d+", blocked.detail)
+    assert found == ["mask", "Lens", "2"]
 
 
 def test_two_that_must_go_together_are_named_together(
@@ -252,10 +246,8 @@ def test_two_that_must_go_together_are_named_together(
     facts = facts_of([{**STUDY, "accuracy_deg": ["0.25"]}])
     blocked = blocked_of(recommend(ask, facts=facts))
     assert blocked.constraint == "detector + mask"
-    assert blocked.detail == (
-        "nothing meets detector PD and mask Lens beside the other requirements; "
-        "without them 1 architecture would"
-    )
+    found = re.findall(r"detector|PD|mask|Lens|\d+", blocked.detail)
+    assert found == ["detector", "PD", "mask", "Lens", "1"]
     assert [one.to_dict() for one in blocked.relaxations] == [
         {
             "constraint": "detector + mask",
@@ -269,18 +261,15 @@ def test_two_that_must_go_together_are_named_together(
 def test_what_nothing_tells_of_is_said_of_that_alone(
     facts_of: Callable[[Rows], Facts],
 ) -> None:
-    hint = ". Nothing measured or stated tells of "
     plain = facts_of([STUDY])
     both = blocked_of(recommend({"max_error_deg": 1.0, "min_fov_deg": 10.0}, facts=plain))
-    assert both.detail.endswith(
-        f"would{hint}an error of at most 1 deg or a full field of view of at least 10 deg"
-    )
+    assert re.findall(r"[\d.]+ deg", untold(both)) == ["1 deg", "10 deg"]
     stated = facts_of([{**STUDY, "accuracy_deg": ["2"]}])
-    assert hint not in blocked_of(recommend({"max_error_deg": 1.0}, facts=stated)).detail
+    assert not untold(blocked_of(recommend({"max_error_deg": 1.0}, facts=stated)))
     rows = [pipeline(rms_deg=2.0)]
-    assert hint not in blocked_of(recommend({"max_error_deg": 1.0}, rows, facts=plain)).detail
-    assert hint in blocked_of(recommend({"max_error_deg": 1.0}, facts=plain)).detail
-    assert hint not in blocked_of(recommend({"mask": "Lens"}, facts=plain)).detail
+    assert not untold(blocked_of(recommend({"max_error_deg": 1.0}, rows, facts=plain)))
+    assert untold(blocked_of(recommend({"max_error_deg": 1.0}, facts=plain)))
+    assert not untold(blocked_of(recommend({"mask": "Lens"}, facts=plain)))
 
 
 def test_a_class_of_accuracy_is_named_where_what_is_measured_is_coarser(
@@ -290,6 +279,6 @@ def test_a_class_of_accuracy_is_named_where_what_is_measured_is_coarser(
     facts = facts_of([{**STUDY, "accuracy": ["UFSS"]}])
     blocked = blocked_of(recommend({"accuracy": "UFSS"}, [pipeline(rms_deg=0.01)], facts=facts))
     assert blocked.constraint == "accuracy"
-    assert blocked.detail == "nothing meets accuracy UFSS; without it 1 architecture would"
+    assert re.findall(r"UFSS|\d+", blocked.detail) == ["UFSS", "1"]
     finer = recommend({"accuracy": "UFSS"}, [pipeline(rms_deg=0.0027)], facts=facts)
     assert finer.blocking_constraint is None

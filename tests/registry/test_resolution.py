@@ -1,5 +1,6 @@
 """A study resolves to what the plan scores of it, and everything else of it has a reason."""
 
+import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -90,10 +91,10 @@ def test_the_nearest_stands_in_where_nothing_of_a_study_runs(facts_of: Build) ->
     found = resolved(facts_of, study_of(model=["LSQ"]))
     (pipeline,) = found.pipelines
     assert (pipeline.model, pipeline.basis["model"]) == ("spm", "defaulted")
-    assert pipeline.assumed == {
-        "model": "used instead of LSQ, which is not implemented for this sensor"
-    }
-    assert [gap.reason for gap in found.gaps] == ["no model implements LSQ; spm is used instead"]
+    ((stage, why),) = pipeline.assumed.items()
+    assert (stage, re.findall(r"LSQ|spm", why)) == ("model", ["LSQ"])
+    (gap,) = found.gaps
+    assert re.findall(r"LSQ|spm", gap.reason) == ["LSQ", "spm"]
     # A network learns a curve; where a polynomial is there, it is nearer than the projection.
     cubic = implementation("cubic", "Polynomial", None, frozenset({SPOT}))
     assert models_of(resolved(facts_of, study_of(model=["ANN"]))) == ["spm"]
@@ -158,7 +159,7 @@ def test_a_parent_runs_as_each_kind(facts_of: Build) -> None:
     assert models_of(found) == ["noise", "kelly"]
     assert found.state == "complete"
     found = resolved(facts_of, study_of(model=["SPM", "ICM"]))
-    assert found.gaps[0].reason == "no model implements any of ICM, ICM/Albedo, ICM/Shadow"
+    assert found.gaps[0].reason.endswith(" ICM, ICM/Albedo, ICM/Shadow")
 
 
 def test_no_method_runs_with_the_simplest_that_fits_and_says_so(facts_of: Build) -> None:
@@ -192,7 +193,8 @@ def test_a_compensation_alone_runs_ahead_of_the_simplest_model(facts_of: Build) 
     found = resolved(facts_of, study_of(model=["OCM"]), models=GLASSED)
     (pipeline,) = found.pipelines
     assert (pipeline.model, found.state) == ("glass + spm", "complete")
-    assert pipeline.assumed == {"model": "OCM ahead of the simplest model that fits"}
+    ((stage, why),) = pipeline.assumed.items()
+    assert (stage, why.split()[0]) == ("model", "OCM")
 
 
 def test_where_a_compensation_is_not_planned_its_model_runs_bare(facts_of: Build) -> None:

@@ -124,8 +124,8 @@ def test_a_named_pipe_a_directory_and_a_loop_are_refused_at_once(tmp_path):
     os.mkfifo(tmp_path / "pipe.csv")
     (tmp_path / "folder.csv").mkdir()
     (tmp_path / "loop.csv").symlink_to(tmp_path / "loop.csv")
-    assert "expected a file, got a named pipe" in refusal(tmp_path / "pipe.csv")
-    assert "expected a file, got a directory" in refusal(tmp_path / "folder.csv")
+    assert "named pipe" in refusal(tmp_path / "pipe.csv")
+    assert "directory" in refusal(tmp_path / "folder.csv")
     assert "cannot be read" in refusal(tmp_path / "loop.csv")
 
 

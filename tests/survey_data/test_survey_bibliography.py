@@ -96,10 +96,9 @@ def test_a_comparison_shows_what_differs_and_writes_nothing(copy: Any) -> None:
     assert kinds["Duan2006", "type"] == "new"
     assert kinds["Chang2008", "title"] == "conflict"  # a page has confirmed ours
     assert plan.settled == ("Duan2006", "Fan2017")
-    assert dict(plan.left_aside) == {
-        "Mafi2023": "published in 2021, which the key contradicts",
-        "Knuth1984": "no study has this key",
-    }
+    left_aside = dict(plan.left_aside)
+    assert set(left_aside) == {"Mafi2023", "Knuth1984"}
+    assert "2021" in left_aside["Mafi2023"]
     assert len(plan.missing) == 129 - 3
     assert plan.written == 0
 
@@ -116,7 +115,8 @@ def test_applying_completes_identities_once(copy: Any) -> None:
         "journal",
         "10.1234/abc.5",
     )
-    assert duan["note"] == "identified by the survey's bibliography (refs.bib), unknown before"
+    assert "(refs.bib)" in duan["note"]
+    assert "unknown" in duan["note"]
     assert cells(copy, "Chang2008")["title"] != "Another title altogether"
     assert len(load(copy.directory).studies.query("identity == 'confirmed'")) == known + 2
     after = copy.path("studies").read_bytes()
@@ -129,7 +129,7 @@ def test_the_first_of_two_entries_of_a_key_is_taken(copy: Any) -> None:
     twice = "@article{Fan2017, title={One}}\n@article{Fan2017, title={Two}}\n"
     plan = import_bibliography(offer(copy, twice), copy.directory)
     assert [d.theirs for d in plan.differences if d.column == "title"] == ["One"]
-    assert plan.left_aside[0][1] == "stands twice in the bibliography; the first is taken"
+    assert plan.left_aside[0][0] == "Fan2017"
 
 
 @pytest.mark.parametrize("text", ["", "a,b\n1,2\n", "@article{", "% nothing"])
@@ -241,8 +241,7 @@ def test_a_bibliography_of_every_key_completes_every_identity_by_one_call(copy: 
     assert {key: cells(copy, key) for key in keys} == before  # nothing is written yet
     assert shown.missing == ()
     assert shown.conflicts
-    assert (keys[0], "stands twice in the bibliography; the first is taken") in shown.left_aside
-    assert ("Knuth1984", "no study has this key") in shown.left_aside
+    assert {keys[0], "Knuth1984"} <= dict(shown.left_aside).keys()
 
     import_bibliography(path, copy.directory, apply=True)
     assert validate(copy.directory) == []
@@ -267,7 +266,9 @@ def test_a_confirmed_identity_is_replaced_only_by_name(copy: Any) -> None:
     text = "@article{Chang2008, title = {Another title altogether}, year = {2007}}\n"
     path = offer(copy, text)
     plan = import_bibliography(path, copy.directory, apply=True)
-    assert plan.left_aside == (("Chang2008", "published in 2007, which the key contradicts"),)
+    ((key, why),) = plan.left_aside
+    assert key == "Chang2008"
+    assert "2007" in why
     plan = import_bibliography(path, copy.directory, replace_studies=["Chang2008"], apply=True)
     assert [(d.column, d.kind) for d in plan.differences] == [("title", "changed")]
     after = cells(copy, "Chang2008")

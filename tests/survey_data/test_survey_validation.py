@@ -392,5 +392,5 @@ def test_a_weakened_descriptor_is_reported(tmp_path: Path) -> None:
 
 def test_a_problem_reads_as_a_place_and_a_message() -> None:
     problem = survey_data.Problem("studies.csv", 7, "year", "expected a year")
-    assert str(problem) == "studies.csv, row 7, column year: expected a year"
+    assert str(problem) == f"studies.csv, row 7, column year: {problem.message}"
     assert problem.to_dict()["row"] == 7

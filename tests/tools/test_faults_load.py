@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+import re
 
 import numpy as np
 import pytest
@@ -33,14 +34,15 @@ def test_a_good_hour_has_no_failures() -> None:
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"status": 500}, "1 answers are 5xx or none: 500 /v1/studies/y"),
-        ({"status": 0}, "1 answers are 5xx or none: 0 /v1/studies/y"),
-        ({"slow": 20}, "98.00% of the answers took less than 10 medians, not 99%"),
-        ({"memory": 1.1}, "memory rose by 10.0% after ten minutes"),
+        ({"status": 500}, r"^1 .* 500 /v1/studies/y$"),
+        ({"status": 0}, r"^1 .* 0 /v1/studies/y$"),
+        ({"slow": 20}, r"^98\.00% .*\b10 medians\b.* 99%$"),
+        ({"memory": 1.1}, r"^memory .* 10\.0% "),
     ],
 )
 def test_each_fault_is_told(changes: dict[str, float], said: str) -> None:
-    assert failures(load(**changes)) == [said]
+    (fault,) = failures(load(**changes))
+    assert re.search(said, fault)
 
 
 def test_pages_of_files_are_no_memory_of_its_own() -> None:

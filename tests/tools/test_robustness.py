@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -271,7 +272,7 @@ def test_the_table_names_the_seed_and_a_broken_limit_is_the_status(monkeypatch, 
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (["--sets", "dics"], "no set named dics in these groups; there are disc, gaussian"),
+        (["--sets", "dics"], r"\bdics\b.*\bdisc, gaussian\b"),
         (["--frames", "0"], "1; got 0"),
         (["--sets", "disc", "--methods", "x", "--frames", "1"], "no method named x"),
     ],
@@ -279,7 +280,7 @@ def test_the_table_names_the_seed_and_a_broken_limit_is_the_status(monkeypatch, 
 def test_what_is_not_there_is_refused(capsys, given, said):
     with pytest.raises(SystemExit):
         robustness.main(given)
-    assert said in capsys.readouterr().err
+    assert re.search(said, capsys.readouterr().err)
 
 
 def test_what_is_held_to_limits_sees_every_frame_however_slow(monkeypatch):

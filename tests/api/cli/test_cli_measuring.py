@@ -150,13 +150,15 @@ def test_an_unknown_condition_of_a_study_s_data_is_refused():
 
 @pytest.mark.slow
 def test_ctrl_c_says_what_is_kept(unpublished, monkeypatch):
+    reason = "interrupted with 1 of 2 cells measured"
+
     def interrupted(*_arguments, **_options):
-        raise RunInterruptedError("interrupted with 1 of 2 cells measured")
+        raise RunInterruptedError(reason)
 
     monkeypatch.setattr(measuring, "run", interrupted)
     shown = sunatlas("benchmark", *CHEAP)
     assert shown.exit_code == 130
-    assert shown.stderr == "sunatlas: interrupted with 1 of 2 cells measured\n"
+    assert shown.stderr == f"sunatlas: {reason}\n"
 
 
 @pytest.mark.parametrize(

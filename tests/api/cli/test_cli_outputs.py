@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -57,7 +58,7 @@ def test_the_root_of_files_is_refused_at_once(name):
     shown = CliRunner().invoke(app, [*COMMANDS[name], "--out", "/"], catch_exceptions=False)
     assert shown.exit_code == 1
     assert shown.stderr.count("\n") == 1
-    assert "/: the root of a file system cannot be replaced" in shown.stderr
+    assert re.search(r"\s/: .*directory", shown.stderr)
 
 
 @pytest.mark.parametrize("name", COMMANDS)

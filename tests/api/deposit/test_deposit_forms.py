@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import sqlite3
 from contextlib import closing
@@ -18,7 +19,7 @@ from api.deposit.bundle import write_other_forms
 from api.deposit.crate import CRATE
 from api.deposit.database import DATABASE
 from api.deposit.package import DESCRIPTOR
-from api.deposit.verification import verify
+from api.deposit.verification import UNSEEN, verify
 from benchmark.datasets.checksums import sha256
 from tests.api.deposit import small_bundle
 from tests.api.deposit.test_deposit_verification import agree, change
@@ -57,7 +58,7 @@ def test_a_table_changed_in_csv_alone_is_seen_in_the_other_forms(small):
 def test_a_table_of_other_rows_is_seen_by_its_count(small):
     (small / TABLE).write_text("name\na\nb\n")
     problems = found(small)
-    assert problems[PARQUET] == "has 1 rows, the table in CSV has 2"
+    assert re.findall(r"\d+", problems[PARQUET]) == ["1", "2"]
     assert DATABASE in problems
 
 
@@ -68,8 +69,7 @@ def test_a_number_changed_in_every_form_is_not_seen_and_this_is_said(small):
     assert found(small) == {}
     shown = CliRunner().invoke(app, ["deposit", "verify", "--alone", str(small)])
     assert shown.exit_code == 0
-    assert "held against itself alone" in shown.stderr
-    assert "Not seen so: a number that was changed in every form" in shown.stderr
+    assert UNSEEN in shown.stderr
 
 
 @pytest.mark.parametrize("name", [PARQUET, DATABASE])

@@ -2,6 +2,7 @@
 
 import logging
 import pickle
+import re
 
 import httpx
 import pytest
@@ -44,7 +45,7 @@ def test_a_redirect_is_not_followed(journey, step):
 def test_an_address_elsewhere_is_not_asked(journey):
     with Elsewhere() as other:
         journey.archive.bucket_at = other.address
-        with pytest.raises(ArchiveError, match="the token is for no other host"):
+        with pytest.raises(ArchiveError, match=re.escape(other.address)):
             journey.upload()
         assert other.asked == []
 

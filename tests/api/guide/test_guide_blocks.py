@@ -106,9 +106,9 @@ def test_a_command_shows_what_it_prints_and_sh_shows_nothing(tmp_path: Path) -> 
     ("text", "message"),
     [
         (fenced("python", "print(1 / 0)"), "page.md, line 1 fails: ZeroDivisionError"),
-        (fenced("python", "print(1)"), "prints, and no text block shows it"),
+        (fenced("python", "print(1)"), "no text block"),
         (page(fenced("python", "a = 1"), fenced("text", "1")), "prints nothing"),
-        (fenced("sh", "rm -r /"), "expected sunatlas, curl, cat or ls; got rm"),
+        (fenced("sh", "rm -r /"), "got rm"),
         (fenced("console", "ls"), "starts with a command"),
         (fenced("sh", "sunatlas no-such-command"), "exit code"),
         (fenced("sh", "curl 'http://127.0.0.1:8000/v1/nothing'"), "404"),

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import re
 from typing import Annotated, Any
 from urllib.parse import urlencode
 
@@ -156,31 +157,32 @@ def test_refusals_name_the_nearest():
 @pytest.mark.parametrize(
     ("query", "body", "expected"),
     [
-        ("task=x", {"task": ["x"]}, "one of Accuracy, Cost, FOV"),
-        ("max_error_deg=0", {"max_error_deg": 0}, "a number above 0, at most 180"),
-        ("grouped=1", {"grouped": 1}, "true or false"),
-        ("q=", {"q": ""}, "text of 1 to 50 characters"),
-        ("limit=0", {"limit": 0}, "an integer from 1 to 500"),
+        ("task=x", {"task": ["x"]}, "Accuracy, Cost, FOV"),
+        ("max_error_deg=0", {"max_error_deg": 0}, r"number.*\b0\b.*\b180\b"),
+        ("grouped=1", {"grouped": 1}, r"\btrue\b.*\bfalse\b"),
+        ("q=", {"q": ""}, r"text.*\b1\b.*\b50\b"),
+        ("limit=0", {"limit": 0}, r"integer.*\b1\b.*\b500\b"),
     ],
 )
 def test_query_and_body_are_refused_in_the_same_words(query, body, expected):
     status, document = in_body(body)
     assert status == 422
-    for problem in (refusal(query), document):
-        assert [error["expected"] for error in problem["errors"]] == [expected]
+    (said,) = (error["expected"] for error in document["errors"])
+    assert re.search(expected, said)
+    assert [error["expected"] for error in refusal(query)["errors"]] == [said]
 
 
 @pytest.mark.parametrize(
     ("body", "expected"),
     [
-        ({"task": "FOV"}, "a list, each item one of Accuracy, Cost, FOV"),
-        ({"max_error_deg": "1"}, "a number above 0, at most 180"),
-        ({"max_error_deg": True}, "a number above 0, at most 180"),
-        ({"max_error_deg": None}, "a number above 0, at most 180"),
-        ({"limit": "1"}, "an integer from 1 to 500"),
-        ({"limit": 1.5}, "an integer from 1 to 500"),
-        ({"grouped": "true"}, "true or false"),
-        ({"q": None}, "text of 1 to 50 characters"),
+        ({"task": "FOV"}, r"\blist\b.*Accuracy, Cost, FOV"),
+        ({"max_error_deg": "1"}, r"number.*\b0\b.*\b180\b"),
+        ({"max_error_deg": True}, r"number.*\b0\b.*\b180\b"),
+        ({"max_error_deg": None}, r"number.*\b0\b.*\b180\b"),
+        ({"limit": "1"}, r"integer.*\b1\b.*\b500\b"),
+        ({"limit": 1.5}, r"integer.*\b1\b.*\b500\b"),
+        ({"grouped": "true"}, r"\btrue\b.*\bfalse\b"),
+        ({"q": None}, r"text.*\b1\b.*\b50\b"),
         ([], "a JSON object"),
         (None, "a JSON object"),
     ],
@@ -188,7 +190,8 @@ def test_query_and_body_are_refused_in_the_same_words(query, body, expected):
 def test_a_body_is_taken_to_the_letter(body, expected):
     status, document = in_body(body)
     assert status == 422
-    assert [error["expected"] for error in document["errors"]] == [expected]
+    (said,) = (error["expected"] for error in document["errors"])
+    assert re.search(expected, said)
 
 
 def test_json_knows_one_kind_of_number():

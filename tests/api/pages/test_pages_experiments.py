@@ -90,7 +90,8 @@ def test_one_file_is_a_whole_experiment(
     listed = client.get("/experiments.json").json()["items"]
     assert {"name": "cubes", "title": "Cubes of numbers"}.items() <= listed[-1].items()
     page = client.get("/experiments/cubes", accept="text/html")
-    assert "A row of each number, with its cube." in page.text
+    described = MODULE.partition("class Cubes")[2].split('"""')[1]
+    assert described in page.text
     assert "/experiments/cubes/cubes.svg" in page.text
     assert client.get("/experiments/cubes.csv").text == "cell,cube\n2,8\n3,27\n4,64\n"
     assert "<title>Cubes" in client.get("/experiments/cubes/cubes.svg").text

@@ -89,8 +89,8 @@ def test_every_formula_of_an_algorithm_is_typeset_with_all_that_it_says() -> Non
                 if written is not None:
                     assert names_of(mathml(written)) == names_of(text), text
     assert len(typeset) > 200
-    left = {text for text in plain if re.search(r"[=+<>/^]|\) -", text)}
-    assert left == {"sum(I at slits) - sum(I at gaps)"}
+    (left,) = {text for text in plain if re.search(r"[=+<>/^]|\) -", text)}
+    assert left.count("sum(I at ") == 2
 
 
 LETTERS = st.sampled_from("abcd")

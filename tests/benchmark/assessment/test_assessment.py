@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 
 import pytest
@@ -148,7 +149,8 @@ def test_robust_to_noise_ends_at_the_first_level_that_fails():
     none, why = only(SWEPT["Robust to noise"]([row("noise", "50", 50.0, over_bound=9.0)]))
     assert math.isnan(none)
     # everything is found: what fails is the size of the error, and that is what is said
-    assert why == "9 times the bound at peak SNR 50 already"
+    assert re.findall(r"[\d.]+", why) == ["9", "50"]
+    assert "bound" in why
 
 
 def test_a_level_error_is_agnostic_of_the_noise_and_one_at_the_bound_is_not():
@@ -201,11 +203,11 @@ def test_a_mask_that_a_method_was_never_given_is_no_outcome_and_silence_is_one()
     seldom = score(availability=0.4, rms_deg=0.01)
     value, why = only(SCORED["CMOS Detector"]([seldom]))
     assert math.isnan(value)
-    assert why == "answers 40% of the Suns at most"
+    assert re.findall(r"[\d.]+%?", why) == ["40%"]
     with pytest.raises(NotMeasuredError, match="no data set of this kind"):
         SCORED["CCD Detector"]([seldom])
     refused = score(status="refused", availability=None, rms_deg=None, reason="too few lights")
-    with pytest.raises(NotMeasuredError, match="d with m: refused, too few lights"):
+    with pytest.raises(NotMeasuredError, match=r"\bd\b.*\bm\b.*refused, too few lights"):
         SCORED["CMOS Detector"]([refused])
 
 
@@ -280,7 +282,7 @@ def test_what_is_not_judged_keeps_its_number_and_says_why(tmp_path):
     assert "look alike wherever they fall" in anywhere.reason
     robust = found["Robust to noise"]
     assert (robust.measured, robust.value) == (0, None)
-    assert robust.reason == "9 times the bound at peak SNR 50 already"
+    assert re.findall(r"[\d.]+", robust.reason) == ["9", "50"]
 
 
 def test_the_first_version_s_outcomes_are_of_every_cell_and_stay_as_they_were():

@@ -202,7 +202,7 @@ def test_a_repeat_is_one_pose_twice_at_least(poses: int, passes: int, right: boo
 
 @pytest.mark.parametrize("n", [0, -1])
 def test_less_than_one_sample_is_refused(n: int) -> None:
-    with pytest.raises(ValueError, match=f"n must be at least 1; got {n}"):
+    with pytest.raises(ValueError, match=rf"^n\b.*\b1\b.* {n}$"):
         fake().generate("nominal", "test", n)
 
 
@@ -301,7 +301,7 @@ def test_objects_that_name_another_type_stand_whole() -> None:
 
 
 def test_a_sensor_that_sees_no_earth_is_refused_one() -> None:
-    with pytest.raises(ValueError, match="for faces and for sensors behind openings; got Teller"):
+    with pytest.raises(ValueError, match=r"\bTeller$"):
         replace(fake().setups["nominal"], earth=Earth())
 
 

@@ -150,7 +150,7 @@ def test_differences_of_objects_are_taken_back_by_merging() -> None:
     ):
         assert merge(base, differences(base, other)) == other
     assert differences(base, {**base, "b": {"type": "X", "c": 3, "d": [1, 2]}}) == {"b": {"c": 3}}
-    with pytest.raises(ValueError, match="no member of the first may be missing"):
+    with pytest.raises(ValueError, match=r"\['a', 'b', 'e', 'f'\].*\['a'\]"):
         differences(base, {"a": 1})
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import re
 import shutil
 from pathlib import Path
 
@@ -72,7 +73,7 @@ def test_pins_tell_without_making_anything_again(copy, monkeypatch):
     forging._changed(copy / "nominal" / "test.npz", lambda a: a["observations"].__imul__(1.001))
     forging._fit(copy, json.loads((copy / CARD).read_text()))
     ((_, what),) = verify(copy, pins=PINS, anew=False)
-    assert what.startswith("hash of the first 4 samples is ")
+    assert re.match(r"hash\D* 4 \D", what)
     assert verify(copy, anew=False) == []  # no pins, and nothing made again
 
 

@@ -186,7 +186,8 @@ def test_a_missing_pin_is_named_and_an_altered_one_by_what_differs(published):
     assert check(published, stored_only=True) == []
     [difference] = check(published)
     assert (difference.file, difference.cell) == ("pins.csv", place)
-    assert difference.measured.endswith("the data changed and the version did not")
+    assert "data_hash" in difference.measured
+    assert "0" * 32 in difference.measured
     with_pins(*rest, dataclasses.replace(first, version=4))
     [unmeasured] = check(published, stored_only=True)
     assert unmeasured == Difference("pins.csv", f"{place}/version", "4", "1")
@@ -256,7 +257,8 @@ def test_data_that_moved_under_their_version_are_told_before_anything_is_measure
         for condition in Diodes().conditions
         for split in ("calibration", "test", "repeat")
     }
-    assert all("the data changed and the version did not" in d.measured for d in moved)
+    assert all("hash" in d.measured for d in moved)
+    assert {d.stored for d in moved} == {f"version {Diodes().version}"}
     assert moved == found[: len(moved)]
     assert not [line for line in log() if line.startswith(("extract", "fit"))]
 

@@ -135,7 +135,11 @@ def test_current_components_are_of_the_code_as_it_is():
     ("old", "new", "message"),
     [
         ("{", "[", "not JSON"),
-        (f'"schema": {SCHEMA_VERSION}', '"schema": 1', "expected schema .* and metric .*; delete"),
+        (
+            f'"schema": {SCHEMA_VERSION}',
+            '"schema": 1',
+            f"schema {SCHEMA_VERSION} .*{METRIC_VERSION}",
+        ),
         ('"metric": ', '"metric": 9', "expected schema"),
         (f'"metric": {METRIC_VERSION}', f'"metric": {METRIC_VERSION - 1}', "expected schema"),
         (f'"metric": {METRIC_VERSION}', '"metric": "3"', "expected schema"),

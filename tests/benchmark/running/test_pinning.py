@@ -211,18 +211,18 @@ def test_generating_again_tells_what_is_not_as_pinned_and_writes_nothing(store):
     assert differences(version=3) == [f"{place}: version 1, pinned 3"]
     assert differences(dataset="else") == [f"{place}: not pinned"]
     gone = pinning.differences(store, progress=silent, parts=parts(Diodes(), Missing()))
-    assert gone == [
-        f"fake-missing {condition}: cannot be generated: OSError: no data today"
-        for condition in ("noisy", "quiet")
+    assert [line.partition(": ")[0] for line in gone] == [
+        "fake-missing noisy",
+        "fake-missing quiet",
     ]
+    assert all(line.endswith("OSError: no data today") for line in gone)
 
 
 def test_data_that_cannot_be_made_are_told_and_the_rest_is_pinned(store):
     done = update(store, parts=parts(Missing(), Diodes()))
-    assert done.warnings == tuple(
-        f"fake-missing {condition}: cannot be generated: OSError: no data today"
-        for condition in ("quiet", "noisy")
-    )
+    named = [line.partition(": ")[0] for line in done.warnings]
+    assert named == ["fake-missing quiet", "fake-missing noisy"]
+    assert all(line.endswith("OSError: no data today") for line in done.warnings)
     assert len(store.pins()) == 6
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -45,10 +46,12 @@ def test_the_error_names_every_data_set_with_its_first_change_and_keeps_all() ->
     changed = [pin("calibration", n=4), pin(data_hash="x"), pin(dataset="a", n=9)]
     with pytest.raises(UnversionedChangeError) as caught:
         pinning.require_versions(known, changed)
-    assert str(caught.value) == (
-        "data of 2 data sets changed while their versions did not: a (c test: n 9, pinned 3); "
-        "d (c calibration: n 4, pinned 3). Raise `version` in their presets if the change is meant"
-    )
+    said = str(caught.value)
+    assert re.findall(r"(\w) \((\w \w+): n (\d), pinned (\d)\)", said) == [
+        ("a", "c test", "9", "3"),
+        ("d", "c calibration", "4", "3"),
+    ]
+    assert "`version`" in said
     assert list(caught.value.changes) == ["a", "d"]
     assert len(caught.value.changes["d"]) == 2
 
@@ -142,7 +145,9 @@ def test_only_what_is_missing_is_generated_and_counted(tmp_path: Any) -> None:
         )
         assert (first.kept, first.renewed) == (0, 2)
         assert 0.0 < first.seconds < 600.0
-        assert first.warnings == ("z quiet: cannot be generated: OSError: no data today",)
+        (warning,) = first.warnings
+        assert warning.startswith("z quiet: ")
+        assert warning.endswith(": OSError: no data today")
         assert seen == [
             (0, 3, ""), (1, 3, "fake-diodes quiet"), (2, 3, "fake-diodes noisy"), (3, 3, "z quiet"),
         ]  # fmt: skip

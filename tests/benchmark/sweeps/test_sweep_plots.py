@@ -44,7 +44,7 @@ def test_the_file_is_small_says_what_it_is_and_holds_no_time(rows):
     assert len(text.encode()) < 150_000
     assert text.startswith("<svg")
     root = ET.fromstring(text)
-    assert root.findtext(f"{SVG}title") == "Error against peak SNR of every method, with its bound"
+    assert "peak SNR" in root.findtext(f"{SVG}title")
     words = {element.text for element in root.iter(f"{SVG}text")}
     assert {"rms error of one coordinate", "less than 90 % found", "Cramer-Rao bound"} <= words
     assert "date" not in text.casefold()

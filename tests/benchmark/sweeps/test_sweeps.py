@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import dataclasses
 import io
+import re
 from dataclasses import dataclass
 from typing import ClassVar
 from xml.etree import ElementTree as ET
@@ -91,10 +92,9 @@ def test_points_are_measured_failures_named_and_misfits_listed(made):
     assert len(rows) == 1 + 2 * POINTS
     reasons = {row["reason"] for row in rows if row["status"] == "failed"}
     assert reasons == {"RuntimeError: no light"}
-    listed = sweep_tables.unmeasured_settings(rows)
-    assert listed == [
-        ("", "spots-of-readings", "no reference series of currents that are read as spot")
-    ]
+    ((sensor, method, reason),) = sweep_tables.unmeasured_settings(rows)
+    assert (sensor, method) == ("", "spots-of-readings")
+    assert re.search(r"\bcurrents\b.*\bspot\b", reason)
 
 
 def test_the_closed_form_of_balances_is_at_the_bound(made):
@@ -143,9 +143,9 @@ def test_a_reason_that_changes_is_renewed(made, monkeypatch):
     monkeypatch.setattr(Spots, "about", events)
     monkeypatch.setattr(sweep_plan, "_SERIES_OF", dict.fromkeys(Observation, ()))
     computed(made)
-    assert sweep_tables.unmeasured_settings(swept(made)) == [
-        ("", "spots-of-readings", "no reference series of events that are read as spot")
-    ]
+    ((sensor, method, reason),) = sweep_tables.unmeasured_settings(swept(made))
+    assert (sensor, method) == ("", "spots-of-readings")
+    assert re.search(r"\bevents\b.*\bspot\b", reason)
 
 
 @pytest.mark.slow
@@ -194,7 +194,7 @@ def test_tables_show_what_is_stored_cell_by_cell(made):
     assert shown["quadrants/noise/50/plain", "over_bound"] == f"{row['over_bound']:#.4g}"
     text = "\n".join(sweep_tables.to_markdown(rows))
     assert f"| {shown['quadrants/noise/50/plain', 'over_bound']} |" in text
-    assert "- spots-of-readings on any: no reference series" in text
+    assert re.search(r"^- spots-of-readings\b.*currents", text, re.MULTILINE)
     as_csv = list(csv.DictReader(io.StringIO(sweep_tables.to_csv(rows))))
     assert len(as_csv) == len(rows)
     for line, stored in zip(as_csv, rows, strict=True):
@@ -219,7 +219,7 @@ def test_pictures_are_the_same_every_time_and_well_formed(made):
         if line.get_marker() == "o"
     ]
     assert sum(map(len, dots)) == 7
-    with pytest.raises(ValueError, match="sweep must be one of noise, size, phase"):
+    with pytest.raises(ValueError, match=r"\bsweep\b.*noise, size, phase"):
         sweep_pictures.picture(rows, "pedestal")
 
 

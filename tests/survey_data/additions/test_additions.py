@@ -99,16 +99,16 @@ def test_a_study_of_the_survey_cannot_be_removed_or_added_again(
 @pytest.mark.parametrize(
     ("right", "wrong", "at", "said"),
     [
-        ('"CMOS"', '"CMOSS"', '"CMOSS"', r"detector 'CMOSS': expected one of PD, .*mean CMOS\?"),
+        ('"CMOS"', '"CMOSS"', '"CMOSS"', r"detector 'CMOSS': .*\bPD, .* CMOS\?"),
         ('"CMOS"', '"APS"', '"APS"', r"detector 'APS': .*did you mean CMOS\?"),
         ('"title"', '"titel"', '"titel"', r"basis 'titel': .*did you mean title\?"),
         ('"title"', '"survey-table"', '"survey-table"', "basis 'survey-table': expected one of"),
         ('"thesis"', '"theses"', '"theses"', r"type 'theses': .*did you mean thesis\?"),
         ('"proposed"', '"proposes"', '"proposes"', r"role 'proposes': .*mean proposed\?"),
-        ("0.005", "500", "500", "accuracy_deg: expected a number from 1e-06 to 180, got 500"),
-        ("0.005", '"5 arcsec"', '"5 arcsec"', "accuracy_deg: expected a number, got '5 arcsec'"),
-        ("year = 2030", "year = 2029", "year = 2029", "year 2029: the key Doe2030 says 2030"),
-        ("venue =", "venu =", "venu =", r"unknown key 'venu': .*did you mean venue\?"),
+        ("0.005", "500", "500", r"accuracy_deg: .*\b1e-06\b.*\b180\b.*\b500\b"),
+        ("0.005", '"5 arcsec"', '"5 arcsec"', r"accuracy_deg: .*number.*'5 arcsec'"),
+        ("year = 2030", "year = 2029", "year = 2029", r"year 2029: .*\bDoe2030\b.*\b2030\b"),
+        ("venue =", "venu =", "venu =", r"key 'venu': .*\bvenue\?"),
         ('basis = "title"', 'base = "title"', "base =", r"unknown key 'base': .*mean basis\?"),
         ('source = "10.1234/made.up"', "", 'basis = "abstract"', "abstract needs a source"),
         ('name = "graph network"', "", "nearest = true", "nearest = true needs a name"),
@@ -179,9 +179,9 @@ def test_sensors_of_a_study_use_each_of_its_values(known: Vocabulary, recorded: 
     )
     pair = '[[architecture]]\ndetector = "{}"\nmask = "{}"\nbasis = "title"\n'
     text = sensors + pair.format("CMOS", "Lens")
-    assert {message for _, message in refused(known, text)} == {
-        "detector 'PDA' is on none of the sensors listed",
-        "mask 'Slit' is on none of the sensors listed",
+    assert {tuple(message.split()[:2]) for _, message in refused(known, text)} == {
+        ("detector", "'PDA'"),
+        ("mask", "'Slit'"),
     }
     path = offered(recorded, text + pair.format("PDA", "Slit"))
     add_study(read_study(path, recorded), recorded, apply=True)

@@ -81,7 +81,7 @@ def test_a_filled_form_is_a_study(known: Vocabulary, end: str) -> None:
     ("text", "said"),
     [
         ("", "headings of the form are missing"),
-        ("hello\n### Key\n\nDoe2030", "headings of the form are missing: ### Title"),
+        ("hello\n### Key\n\nDoe2030", "missing: ### Title"),
         (body({**FILLED, "Title": "x\n\n### Key\n\nRoe2030"}), "'### Key' stands twice"),
         ("x" * 70_000, "longer than 65536"),
     ],

@@ -108,7 +108,7 @@ def test_what_is_read_inverts_and_rises(nonlinearity: float, share: float) -> No
     [
         ({"smear": -1.0}, "smear.*-1.0"),
         ({"crosstalk": 0.7}, "crosstalk.*0.5.*got 0.7"),
-        ({"hot": float("nan")}, "hot must not be negative; got nan"),
+        ({"hot": float("nan")}, "hot.*nan"),
     ],
 )
 def test_impossible_errors_are_refused(changes: dict[str, float], message: str) -> None:
