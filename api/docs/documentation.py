@@ -54,7 +54,7 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
         "parts": boards.parts,
     },
     "limits.md": {
-        "best pipelines": limits.best_pipelines,
+        "best-pipelines": limits.best_pipelines,
         "contributions": limits.contributions,
         "sentences": limits.sentences,
         "headlines": limits.headline_table,
