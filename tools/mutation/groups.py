@@ -92,7 +92,14 @@ GROUPS: Mapping[str, Group] = {
             "benchmark/running/pinning.py": _in(_RUNNING, "pinning_rules", "pinning"),
             "benchmark/running/tim*.py": _in(_RUNNING, "timing", "times"),
             "benchmark/running/threads.py": _in(_RUNNING, "threads"),
-            "benchmark/running/condition_data.py": _in(_RUNNING, "pinning_rules", "runner"),
+            "benchmark/running/condition_data.py": _in(
+                _RUNNING, "condition_data", "pinning_rules", "runner"
+            ),
+            "benchmark/running/cluster.py": _in(_RUNNING, "cluster_rules"),
+            "benchmark/running/compiling.py": _in(_RUNNING, "compiling"),
+            "benchmark/running/durations.py": _in(_RUNNING, "durations"),
+            "benchmark/running/experiment.py": _in(_RUNNING, "experiment"),
+            "benchmark/running/workers.py": _in(_RUNNING, "workers"),
             "benchmark/plan/*": _in(_RUNNING, "plan"),
             "benchmark/running/*": _in(_RUNNING, "backend", "runner"),
         },
