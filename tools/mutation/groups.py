@@ -108,6 +108,13 @@ GROUPS: Mapping[str, Group] = {
         50,
         {
             "benchmark/results/closure.py": _in(_RESULTS, "closure"),
+            "benchmark/results/analyses.py": _in(_RESULTS, "closure"),
+            "benchmark/results/definitions.py": _in(_RESULTS, "closure"),
+            "benchmark/results/syntax.py": _in(_RESULTS, "closure"),
+            "benchmark/results/pipelines.py": _in(_RESULTS, "pipelines"),
+            "benchmark/results/samples.py": _in(_RESULTS, "samples"),
+            "benchmark/results/stage_files.py": _in(_RESULTS, "stage_files"),
+            "benchmark/results/unchanged.py": _in(_RESULTS, "unchanged"),
             "benchmark/results/digests.py": _in(_RESULTS, "digests"),
             "benchmark/results/components.py": _in(_RESULTS, "components", "record"),
             "benchmark/results/record.py": _in(_RESULTS, "record"),
