@@ -131,6 +131,8 @@ GROUPS: Mapping[str, Group] = {
             "registry/resolution.py": _in("registry", "resolution", "resolution_sensors"),
             "registry/fitting.py": _in("registry", "resolution"),
             "registry/sensors.py": _in("registry", "resolution_sensors"),
+            "registry/draws.py": _in("registry", "draws", "recommendation"),
+            "registry/fidelity/*": _in("registry", "fidelity", "resolution"),
             "registry/catalogue.py": _in("registry", "catalogue", "resolution"),
             "registry/*": _in(
                 "registry",
@@ -146,11 +148,21 @@ GROUPS: Mapping[str, Group] = {
         45,
         {
             "benchmark/datasets/coverage.py": _in(_DATASETS, "coverage"),
+            "benchmark/datasets/benches.py": _in(_DATASETS, "benches", "dataset_parts"),
+            "benchmark/datasets/calibration.py": _in(_DATASETS, "calibration", "dataset_parts"),
+            "benchmark/datasets/corrected.py": _in(_DATASETS, "dataset_parts", "benches"),
+            "benchmark/datasets/features.py": (
+                *_in(_RUNNING, "features_of_corrected"),
+                *_in(_DATASETS, "dataset_parts"),
+            ),
+            "benchmark/datasets/repeats.py": _in(_DATASETS, "repeats_and_units", "dataset_parts"),
+            "benchmark/datasets/units.py": _in(_DATASETS, "repeats_and_units", "dataset_parts"),
+            "benchmark/datasets/export_verification.py": _in(
+                _DATASETS, "export_parts", "export_verification", "dataset_export"
+            ),
             "benchmark/datasets/export*.py": _in(_DATASETS, "export_parts", "dataset_export"),
             "benchmark/datasets/checksums.py": _in(_DATASETS, "export_parts", "dataset_export"),
-            "benchmark/datasets/preview*.py": _in(
-                _DATASETS, "overlay_parts", "preview_parts", "dataset_preview"
-            ),
+            "benchmark/datasets/preview*.py": _in(_DATASETS, "dataset_preview"),
             "benchmark/datasets/samples.py": _in(_RESULTS, "digests"),
             "benchmark/datasets/pins.py": (
                 *_in(_RESULTS, "store"),
@@ -178,6 +190,16 @@ GROUPS: Mapping[str, Group] = {
             ),
             "algorithms/models/geometric/solar_panel.py": _in(
                 _MODELS, "model_limits", "fusion_models"
+            ),
+            "algorithms/models/filters.py": _in(_MODELS, "filter_models", "fusion_models"),
+            "algorithms/models/geometric/*slit*.py": _in(
+                _MODELS, "model_limits", "geometric_models", "slit_models"
+            ),
+            "algorithms/models/geometric/quadrant_gap.py": _in(
+                _MODELS, "model_limits", "quadrant_model"
+            ),
+            "algorithms/models/physics_informed/*": _in(
+                _MODELS, "model_limits", "assembled_faces", "faces_weighing"
             ),
             "algorithms/models/*": _in(
                 _MODELS, "model_limits", "geometric_models", "fusion_models"
