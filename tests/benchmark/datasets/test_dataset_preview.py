@@ -214,3 +214,10 @@ def test_a_line_of_text_stands_on_its_baseline():
     rows, columns = np.nonzero((read(sheet.png()) < 128).all(axis=2))
     assert rows.max() == pytest.approx(39, abs=1)
     assert 20 <= columns.min() < columns.max() < 32
+
+
+def test_a_picture_s_corner_is_where_it_is_put():
+    sheet = Sheet(12, 10)
+    sheet.picture(3, 2, np.zeros((4, 5)), span([0.0, 1.0]))
+    rows, columns = np.nonzero((read(sheet.png()) != PAPER).any(axis=2))
+    assert (rows.min(), rows.max(), columns.min(), columns.max()) == (2, 5, 3, 7)

@@ -142,7 +142,7 @@ def moderated(spread, freedom):
     return np.sqrt(variance), prior + freedom
 
 
-@pytest.mark.parametrize("scatter", [0.6, 1.5])  # priors of 4.5 and 1.1 degrees of freedom
+@pytest.mark.parametrize("scatter", [0.6, 1.2])  # priors of 2.7 and 1.0 degrees of freedom
 def test_variances_are_drawn_together_as_limma_does(scatter):
     """Methods whose log ratios to the leader spread by what was chosen, exactly."""
     chosen = 0.03 * np.exp(scatter * stats.norm.ppf((np.arange(11) + 0.5) / 11))
