@@ -13,7 +13,7 @@ import pytest
 
 from api.previews import published_preview
 from benchmark import datasets
-from benchmark.datasets import preview
+from benchmark.datasets import preview, preview_overlay
 from benchmark.datasets.preview import FIRST_SAMPLES, incidence_deg, preview_png
 from benchmark.datasets.preview_sheet import Sheet, heat, number, span
 
@@ -221,3 +221,21 @@ def test_a_picture_s_corner_is_where_it_is_put():
     sheet.picture(3, 2, np.zeros((4, 5)), span([0.0, 1.0]))
     rows, columns = np.nonzero((read(sheet.png()) != PAPER).any(axis=2))
     assert (rows.min(), rows.max(), columns.min(), columns.max()) == (2, 5, 3, 7)
+
+
+def test_an_overlay_is_cut_about_the_sun_with_an_orange_cross_and_a_green_ring():
+    from matplotlib.colors import to_rgb
+
+    sheet, frame = Sheet(240, 240), np.arange(60000.0).reshape(200, 300)
+    found, true = np.array([151.0, 91.0]), np.array([150.0, 90.0])
+    preview_overlay._tile(sheet, (0, 0), frame, true, (found, true))
+    (axes,) = sheet.figure.axes
+    assert axes.get_xlim() == (150 - 58.5, 150 + 57.5)
+    assert axes.get_ylim() == (90 + 57.5, 90 - 58.5)
+    marks = {line.get_marker(): line for line in axes.lines}
+    for marker, place in (("+", found), ("o", true)):
+        np.testing.assert_array_equal(marks[marker].get_xydata(), [place])
+    red, green, blue = to_rgb(marks["+"].get_markeredgecolor())
+    assert red > green > blue
+    red, green, blue = to_rgb(marks["o"].get_markeredgecolor())
+    assert green > max(red, blue)
