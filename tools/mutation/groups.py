@@ -92,7 +92,14 @@ GROUPS: Mapping[str, Group] = {
             "benchmark/running/pinning.py": _in(_RUNNING, "pinning_rules", "pinning"),
             "benchmark/running/tim*.py": _in(_RUNNING, "timing", "times"),
             "benchmark/running/threads.py": _in(_RUNNING, "threads"),
-            "benchmark/running/condition_data.py": _in(_RUNNING, "pinning_rules", "runner"),
+            "benchmark/running/condition_data.py": _in(
+                _RUNNING, "condition_data", "pinning_rules", "runner"
+            ),
+            "benchmark/running/cluster.py": _in(_RUNNING, "cluster_rules"),
+            "benchmark/running/compiling.py": _in(_RUNNING, "compiling"),
+            "benchmark/running/durations.py": _in(_RUNNING, "durations"),
+            "benchmark/running/experiment.py": _in(_RUNNING, "experiment"),
+            "benchmark/running/workers.py": _in(_RUNNING, "workers"),
             "benchmark/plan/*": _in(_RUNNING, "plan"),
             "benchmark/running/*": _in(_RUNNING, "backend", "runner"),
         },
@@ -101,10 +108,20 @@ GROUPS: Mapping[str, Group] = {
         50,
         {
             "benchmark/results/closure.py": _in(_RESULTS, "closure"),
+            "benchmark/results/analyses.py": _in(_RESULTS, "closure"),
+            "benchmark/results/definitions.py": _in(_RESULTS, "closure"),
+            "benchmark/results/syntax.py": _in(_RESULTS, "closure"),
+            "benchmark/results/pipelines.py": _in(_RESULTS, "pipelines"),
+            "benchmark/results/parquet_tables.py": _in(_RESULTS, "row_file", "samples"),
+            "benchmark/results/record_manifest.py": _in(_RESULTS, "row_file", "samples"),
+            "benchmark/results/row_file.py": _in(_RESULTS, "row_file"),
+            "benchmark/results/samples.py": _in(_RESULTS, "samples"),
+            "benchmark/results/stage_files.py": _in(_RESULTS, "stage_files"),
+            "benchmark/results/unchanged.py": _in(_RESULTS, "unchanged"),
             "benchmark/results/digests.py": _in(_RESULTS, "digests"),
             "benchmark/results/components.py": _in(_RESULTS, "components", "record"),
             "benchmark/results/record.py": _in(_RESULTS, "record"),
-            "benchmark/results/pins.py": _in(_RESULTS, "store", "record"),
+            "benchmark/results/pins.py": _in(_RESULTS, "store", "row_file", "record"),
             "benchmark/results/*": _in(_RESULTS, "store", "record"),
         },
     ),
@@ -117,6 +134,8 @@ GROUPS: Mapping[str, Group] = {
             "registry/resolution.py": _in("registry", "resolution", "resolution_sensors"),
             "registry/fitting.py": _in("registry", "resolution"),
             "registry/sensors.py": _in("registry", "resolution_sensors"),
+            "registry/draws.py": _in("registry", "draws", "recommendation"),
+            "registry/fidelity/*": _in("registry", "fidelity", "resolution"),
             "registry/catalogue.py": _in("registry", "catalogue", "resolution"),
             "registry/*": _in(
                 "registry",
@@ -132,11 +151,21 @@ GROUPS: Mapping[str, Group] = {
         45,
         {
             "benchmark/datasets/coverage.py": _in(_DATASETS, "coverage"),
+            "benchmark/datasets/benches.py": _in(_DATASETS, "benches", "dataset_parts"),
+            "benchmark/datasets/calibration.py": _in(_DATASETS, "calibration", "dataset_parts"),
+            "benchmark/datasets/corrected.py": _in(_DATASETS, "dataset_parts", "benches"),
+            "benchmark/datasets/features.py": (
+                *_in(_RUNNING, "features_of_corrected"),
+                *_in(_DATASETS, "dataset_parts"),
+            ),
+            "benchmark/datasets/repeats.py": _in(_DATASETS, "repeats_and_units", "dataset_parts"),
+            "benchmark/datasets/units.py": _in(_DATASETS, "repeats_and_units", "dataset_parts"),
+            "benchmark/datasets/export_verification.py": _in(
+                _DATASETS, "export_parts", "export_verification", "dataset_export"
+            ),
             "benchmark/datasets/export*.py": _in(_DATASETS, "export_parts", "dataset_export"),
             "benchmark/datasets/checksums.py": _in(_DATASETS, "export_parts", "dataset_export"),
-            "benchmark/datasets/preview*.py": _in(
-                _DATASETS, "overlay_parts", "preview_parts", "dataset_preview"
-            ),
+            "benchmark/datasets/preview*.py": _in(_DATASETS, "dataset_preview"),
             "benchmark/datasets/samples.py": _in(_RESULTS, "digests"),
             "benchmark/datasets/pins.py": (
                 *_in(_RESULTS, "store"),
@@ -164,6 +193,16 @@ GROUPS: Mapping[str, Group] = {
             ),
             "algorithms/models/geometric/solar_panel.py": _in(
                 _MODELS, "model_limits", "fusion_models"
+            ),
+            "algorithms/models/filters.py": _in(_MODELS, "filter_models", "fusion_models"),
+            "algorithms/models/geometric/*slit*.py": _in(
+                _MODELS, "model_limits", "geometric_models", "slit_models"
+            ),
+            "algorithms/models/geometric/quadrant_gap.py": _in(
+                _MODELS, "model_limits", "quadrant_model"
+            ),
+            "algorithms/models/physics_informed/*": _in(
+                _MODELS, "model_limits", "assembled_faces", "faces_weighing"
             ),
             "algorithms/models/*": _in(
                 _MODELS, "model_limits", "geometric_models", "fusion_models"

@@ -40,9 +40,11 @@ _SPARE = 60.0
 #: Left out: Monte Carlo of tens of seconds, which a mutant run cannot afford.
 _QUICK = "not slow and not maximum_likelihood and not amplifier_limited"
 
-#: Exit statuses of pytest that say something of a mutant: passed, failed, and broken off where
-#: its module cannot even be imported, which its tests have seen too.
-PASSED, FAILED, BROKEN_OFF = 0, 1, 2
+#: Exit status of pytest where all tests passed.
+PASSED = 0
+#: Those that say that a mutant was noticed: a test failed, or the module cannot even be imported,
+#: by a test file or by a `conftest.py`, which without the mutant they all could.
+NOTICED = frozenset({1, 2, 4})
 
 
 @dataclass

@@ -130,7 +130,7 @@ class _Slot:
             return None
         taken = time.monotonic() - self._run.started
         self.end()
-        if status > running.BROKEN_OFF:
+        if status > running.PASSED and status not in running.NOTICED:
             raise RuntimeError(f"pytest ended with {status}:\n{running.tail(self._output)}")
         caught = status != running.PASSED
         return MutantResult(self._group, self._mutant, caught, self._diff, taken)

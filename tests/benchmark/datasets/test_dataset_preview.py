@@ -13,7 +13,8 @@ import pytest
 
 from api.previews import published_preview
 from benchmark import datasets
-from benchmark.datasets.preview import FIRST_SAMPLES, preview_png
+from benchmark.datasets import preview, preview_overlay
+from benchmark.datasets.preview import FIRST_SAMPLES, incidence_deg, preview_png
 from benchmark.datasets.preview_sheet import Sheet, heat, number, span
 
 ROOT = Path(datasets.__file__).parents[2]
@@ -169,3 +170,72 @@ def test_matplotlib_is_loaded_by_pictures_alone():
         "assert 'matplotlib' not in sys.modules\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, timeout=600)
+
+
+@pytest.fixture
+def sheets(monkeypatch):
+    """Sheets of the previews that are drawn."""
+    made = []
+
+    class Kept(Sheet):
+        def __init__(self, width, height):
+            super().__init__(width, height)
+            made.append(self)
+
+    monkeypatch.setattr(preview, "Sheet", Kept)
+    return made
+
+
+@pytest.mark.parametrize(
+    ("name", "said", "plots", "lines"),
+    [
+        ("pda-slit", "512 px, 2 arrays of 256 px end to end;", 4, 2),  # a border, and the read-out
+        ("ccd-multi-slit", "2048 px; digital", 4, 1),
+        ("qpd-single-aperture", "sweep of the calibration split", 1, 4),  # a line each element
+        ("pd-maskless-cube", "single samples", 6, 0),
+    ],
+)
+def test_a_picture_shows_what_its_words_say(name, said, plots, lines, sheets):
+    preview_png(datasets.get(name))
+    (sheet,) = sheets
+    assert said in " ".join(text.get_text() for text in sheet.figure.texts)
+    assert [len(axes.lines) for axes in sheet.figure.axes] == [lines] * plots
+
+
+def test_incidence_is_the_angle_off_the_boresight():
+    sun = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.0, 1.0, 0.0], [0.0, -0.6, -0.8]])
+    expected = [0.0, math.degrees(math.atan(0.75)), 90.0, 180.0 - math.degrees(math.atan(0.75))]
+    np.testing.assert_allclose(incidence_deg(sun), expected, rtol=1e-12)
+
+
+def test_a_line_of_text_stands_on_its_baseline():
+    sheet = Sheet(60, 50)
+    sheet.text(20, 40, "I", 20)
+    rows, columns = np.nonzero((read(sheet.png()) < 128).all(axis=2))
+    assert rows.max() == pytest.approx(39, abs=1)
+    assert 20 <= columns.min() < columns.max() < 32
+
+
+def test_a_picture_s_corner_is_where_it_is_put():
+    sheet = Sheet(12, 10)
+    sheet.picture(3, 2, np.zeros((4, 5)), span([0.0, 1.0]))
+    rows, columns = np.nonzero((read(sheet.png()) != PAPER).any(axis=2))
+    assert (rows.min(), rows.max(), columns.min(), columns.max()) == (2, 5, 3, 7)
+
+
+def test_an_overlay_is_cut_about_the_sun_with_an_orange_cross_and_a_green_ring():
+    from matplotlib.colors import to_rgb
+
+    sheet, frame = Sheet(240, 240), np.arange(60000.0).reshape(200, 300)
+    found, true = np.array([151.0, 91.0]), np.array([150.0, 90.0])
+    preview_overlay._tile(sheet, (0, 0), frame, true, (found, true))
+    (axes,) = sheet.figure.axes
+    assert axes.get_xlim() == (150 - 58.5, 150 + 57.5)
+    assert axes.get_ylim() == (90 + 57.5, 90 - 58.5)
+    marks = {line.get_marker(): line for line in axes.lines}
+    for marker, place in (("+", found), ("o", true)):
+        np.testing.assert_array_equal(marks[marker].get_xydata(), [place])
+    red, green, blue = to_rgb(marks["+"].get_markeredgecolor())
+    assert red > green > blue
+    red, green, blue = to_rgb(marks["o"].get_markeredgecolor())
+    assert green > max(red, blue)

@@ -5,11 +5,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy import stats
+from scipy import optimize, special, stats
 
 from benchmark.metrics.paired import (
     EQUIVALENT,
     LEVEL,
+    POWER,
     groups,
     logarithms,
     over,
@@ -124,3 +125,33 @@ def test_more_units_tell_smaller_ratios_apart():
     ratio = [smallest_ratio(logs[:, :n], 0) for n in (5, 10, 20, 40)]
     assert all(later < earlier for earlier, later in pairwise(ratio))
     assert min(ratio) > EQUIVALENT
+
+
+def moderated(spread, freedom):
+    """Standard deviations and freedom of limma's `squeezeVar`: its equations solved by bisection.
+
+    A scaled F distribution is fitted to the variances by the mean and variance of their logarithms.
+    """
+    logs = 2.0 * np.log(spread) - special.digamma(freedom / 2) + math.log(freedom / 2)
+    excess = np.var(logs, ddof=1) - special.polygamma(1, freedom / 2)
+    prior = 2.0 * optimize.brentq(
+        lambda half: special.polygamma(1, half) - excess, 1e-3, 1e6, xtol=1e-14, rtol=1e-14
+    )
+    common = math.exp(np.mean(logs) + special.digamma(prior / 2) - math.log(prior / 2))
+    variance = (prior * common + freedom * spread**2) / (prior + freedom)
+    return np.sqrt(variance), prior + freedom
+
+
+@pytest.mark.parametrize("scatter", [0.6, 1.2])  # priors of 2.7 and 1.0 degrees of freedom
+def test_variances_are_drawn_together_as_limma_does(scatter):
+    """Methods whose log ratios to the leader spread by what was chosen, exactly."""
+    chosen = 0.03 * np.exp(scatter * stats.norm.ppf((np.arange(11) + 0.5) / 11))
+    shape = stats.zscore([3.0, -1.0, 2.0, 0.0, -2.0, 1.0, -4.0, 1.0], ddof=1)
+    logs = np.vstack([np.zeros(8), chosen[:, None] * shape])
+    sd, freedom = moderated(chosen, 7)
+    methods = len(logs)  # all of them are beside the leader: their mean log ratio is nothing
+    needed = stats.t.ppf(1 - LEVEL / (methods * (methods - 1)), freedom)
+    needed += stats.t.ppf(POWER, freedom)
+    expected = EQUIVALENT * math.exp(needed * np.median(sd) / math.sqrt(8))
+    assert smallest_ratio(logs, 0) == pytest.approx(expected, rel=1e-9)
+    assert not separate(logs, 0).any()

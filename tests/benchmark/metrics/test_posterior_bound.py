@@ -112,3 +112,38 @@ def test_matrices_give_the_bound_of_one_sample_and_more_is_never_worse() -> None
     assert (alone[seen] <= single.angle_deg[seen] * (1 + 1e-9)).all()
     both = np.isfinite(found)
     assert (fused[both] <= found[both] * (1 + 1e-9)).all()
+
+
+def test_in_the_dark_a_wandering_bias_adds_up_twice() -> None:
+    """Of n steps, the bias drawn in the k-th moves the angle in all n - k + 1 that follow."""
+    sun, information, motion = at_rest(30, Gyro(0.0, 0.0, 20.0))
+    information[1:] = 0.0
+    found = np.radians(recursive_bound(sun, information, motion)) ** 2
+    step = (math.radians(20.0) / 3600.0**1.5) ** 2 * STEP_S
+    n = np.arange(30.0)
+    moved = step * STEP_S**2 * n * (n + 1) * (2 * n + 1) / 6
+    np.testing.assert_allclose(found - found[0], 2.0 * moved, rtol=1e-6, atol=1e-15)
+
+
+def test_in_the_dark_a_body_that_spins_spreads_a_constant_bias_round() -> None:
+    """Integral in closed form: across the axis a bias turns with the body, along it, it adds up."""
+    count, rate, gyro = 40, 0.03, Gyro(0.0, 10.0, 0.0)  # two turns and a half in all
+    time_s = STEP_S * np.arange(count)
+    angle = rate * time_s
+    cos, sin, nought, one = np.cos(angle), np.sin(angle), np.zeros(count), np.ones(count)
+    # from the inertial frame to that of a body turning about z; the Sun is at x of the inertial one
+    turn = np.array([[cos, sin, nought], [-sin, cos, nought], [nought, nought, one]])
+    turn = np.moveaxis(turn, 2, 0)
+    information = np.zeros((count, 3, 3))
+    information[0] = np.eye(3) / SIGMA**2
+    found = recursive_bound(turn[:, :, 0], information, Motion(turn, time_s, gyro))
+    bias = math.radians(10.0) / 3600.0
+    across = (2.0 - 2.0 * cos) / rate**2  # |integral of the bias's turning axis|^2
+    expected = 2.0 * SIGMA**2 + bias**2 * (across + time_s**2)
+    np.testing.assert_allclose(np.radians(found) ** 2, expected, rtol=1e-6)
+
+
+def test_two_samples_at_one_time_are_refused() -> None:
+    sun, information, motion = at_rest(3, Gyro())
+    with pytest.raises(ValueError, match="time_s"):
+        recursive_bound(sun, information, Motion(motion.turn, np.array([0.0, 1, 1]), motion.gyro))

@@ -8,7 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from benchmark.metrics.score import METRICS, is_available, score, separation_deg, store
+from benchmark.metrics.score import (
+    METRICS,
+    is_available,
+    score,
+    separation_deg,
+    store,
+    stored_beside,
+)
 
 ANGLES = st.floats(1e-9, 179.0)
 NAN = float("nan")
@@ -327,3 +334,18 @@ def test_wrong_predictions_are_refused(predicted, message):
         score(predicted, sun, np.ones(2), np.ones(2, bool))
     with pytest.raises(ValueError, match="bound_deg and observable"):
         score(sun, sun, np.ones(3), np.ones(2, bool))
+
+
+def test_a_bias_is_stored_to_the_last_digit_of_its_rms():
+    """Errors of +1.2345678 and -1.2 degrees: their mean, 0.0172839, has no digit of its own."""
+    turns = np.deg2rad([1.2345678, -1.2])
+    sun = np.array([[0.0, 0.0, 1.0]] * 2)
+    off = np.column_stack([np.zeros(2), np.sin(turns), np.cos(turns)])
+    row = score(off, sun, None, np.ones(2, bool)).row()
+    assert (row["rms_alpha_deg"], row["bias_alpha_deg"]) == (1.2174, 0.0173)
+    assert (row["rms_beta_deg"], row["bias_beta_deg"]) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("tiny", [1e-9, -1e-9])
+def test_a_bias_that_rounds_to_nothing_has_no_sign(tiny):
+    assert str(stored_beside(tiny, 1.0)) == "0.0"

@@ -380,3 +380,17 @@ def test_a_damaged_file_of_analyses_is_no_file(tmp_path):
     for damaged in (b"", kept[:-1], kept[:20], kept.replace(b"x", b"y"), b"{}"):
         file.write_bytes(damaged)
         assert Analyses(file).of(source) == found
+
+
+def test_analyses_are_written_where_any_was_made_alone(tmp_path):
+    source, file = tmp_path / "m.py", tmp_path / "definitions"
+    source.write_text("x = 1\n")
+    Analyses(file).keep()
+    assert not file.exists()
+    first = Analyses(file)
+    found = first.of(source)
+    first.keep()
+    file.unlink()
+    first.keep()
+    assert not file.exists(), "it is written already"
+    assert first.of(source) == found

@@ -1,0 +1,73 @@
+"""Tables, pins and manifests: what is written is read, and what contradicts itself is not."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fake_results import pin
+from pyarrow import parquet
+
+from benchmark.results import record_manifest
+from benchmark.results.csv_tables import StoreError, number, word
+from benchmark.results.parquet_tables import parquet_bytes
+from benchmark.results.pins import pins_text, read_pins
+from benchmark.results.row_file import Row, TableFile
+
+TABLE: TableFile[str] = TableFile(
+    "squares.csv",
+    {"cell": word, "group": word, "square": number},
+    {"key": str},
+    lambda row: str(row["cell"]),
+    lambda row: str(row["group"]),
+    lambda row: str(row["cell"]),
+)
+
+
+def rows() -> dict[str, Row]:
+    return {
+        cell: {"cell": cell, "group": group, "square": float(cell) ** 2, "key": f"key {group}"}
+        for cell, group in (("3", "odd"), ("1", "odd"), ("2", "even"))
+    }
+
+
+def test_a_table_comes_back_sorted_with_what_its_groups_share(tmp_path: Path) -> None:
+    assert TABLE.write(rows(), tmp_path)
+    assert not TABLE.write(rows(), tmp_path)
+    assert TABLE.read(tmp_path) == rows()
+    assert list(TABLE.read(tmp_path)) == ["1", "2", "3"]
+    (tmp_path / "squares.json").unlink()
+    with pytest.raises(StoreError, match=r"line 2: 'odd' is not in squares\.json"):
+        TABLE.read(tmp_path)
+
+
+@pytest.mark.parametrize(("observable", "right"), [(0, False), (1, True), (3, True)])
+def test_a_bound_needs_a_sample_that_can_be_observed(
+    observable: int, right: bool, tmp_path: Path
+) -> None:
+    path, one = tmp_path / "pins.csv", pin(observable=observable)
+    path.write_text(pins_text([one]))
+    if right:
+        assert read_pins(path) == {one.place: one}
+    else:
+        with pytest.raises(StoreError, match="line 2: a bound and no observable samples"):
+            read_pins(path)
+
+
+def test_no_column_of_a_parquet_file_may_be_null() -> None:
+    written = parquet_bytes({"a": np.array([1, 2], np.int32)}, {"a": "int32"})
+    assert not parquet.read_schema(io.BytesIO(written)).field("a").nullable
+
+
+def test_a_record_is_of_its_files_alone(tmp_path: Path) -> None:
+    for name in ("a.csv", "b/c.json", "times.csv", ".d/e.csv", "f.txt"):
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.touch()
+    (tmp_path / "g.csv").mkdir()
+    (tmp_path / "h.csv").symlink_to(tmp_path / "b")
+    assert record_manifest.names(tmp_path) == ("a.csv", "b/c.json", "h.csv")
+    assert record_manifest.changes(tmp_path) == []
+    assert record_manifest.changes(tmp_path, required=True) != []

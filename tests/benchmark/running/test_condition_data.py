@@ -1,0 +1,74 @@
+"""Data as extractors get them: corrected at once or some samples at a time, bounds beside them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+from fake_atlas import Currents, Diodes, FakeBound, FakeSamples
+
+from algorithms.references import ReferenceCorrection
+from benchmark.running import condition_data
+from benchmark.running.condition_data import ConditionData, RenderedData
+
+BY = ReferenceCorrection(np.array([1.0, 2.0, 3.0, 4.0]), np.array([11.0, 32.0, 13.0, 24.0]))
+READ = np.arange(40.0).reshape(10, 4) + 20.0
+
+
+def read(correction: ReferenceCorrection | None = None) -> ConditionData:
+    splits: Any = {"test": FakeSamples(READ.copy(), np.zeros((10, 3)))}
+    seen = np.ones(10, dtype=np.bool_)
+    preset: Any = Diodes()
+    return ConditionData(preset, splits, None, None, seen, (), correction=correction)
+
+
+@dataclass(frozen=True)
+class Counting(Currents):
+    """Says how many samples it is given at a time."""
+
+    given: tuple[Any, ...] = ([],)
+
+    def extract(self, observations: Any) -> Any:
+        self.given[0].append(len(observations))
+        return super().extract(observations)
+
+
+@pytest.mark.parametrize(("samples", "sizes"), [(3, [3, 3, 3, 1]), (0.5, [1] * 10), (99, [10])])
+def test_samples_corrected_some_at_a_time_give_the_features_of_all(
+    samples: float, sizes: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(condition_data, "_BATCH_BYTES", int(samples * READ[0].nbytes))
+    extractor: Any = Counting(given=([],))
+    found = condition_data.found_features(read(BY), extractor, "test")
+    assert extractor.given[0] == sizes
+    np.testing.assert_array_equal(found, BY.correct(READ))
+
+
+@pytest.mark.parametrize(("limit", "later"), [(READ.nbytes, False), (READ.nbytes - 1, True)])
+def test_readings_are_corrected_at_once_where_memory_allows(
+    limit: int, later: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(condition_data, "_CORRECTED_BYTES", limit)
+    preset: Any = Diodes()
+    data = condition_data.correct_readings(RenderedData(read(), BY), preset)
+    observations = np.asarray(data.splits["test"].observations)
+    np.testing.assert_array_equal(observations, READ if later else BY.correct(READ))
+    assert data.correction is (BY if later else None)
+    assert not observations.flags.writeable
+
+
+def test_bounds_of_who_does_not_know_the_unit_stand_where_there_are_any() -> None:
+    class Known(Diodes):
+        def bound(self, condition: str, split: str = "test", n: int | None = None) -> FakeBound:
+            bound = super().bound(condition, split, n)
+            return FakeBound(bound.angle_deg, bound.observable)
+
+    def rendered(preset: Any) -> ConditionData:
+        return condition_data.render(preset, "quiet", 0, all_observable=False).data
+
+    data = rendered(Diodes(n=40, unit_share=1.5))
+    assert data.bound_deg is not None
+    np.testing.assert_array_equal(data.bound_unit_deg, 1.5 * data.bound_deg)
+    assert rendered(Known(n=40)).bound_unit_deg is None
