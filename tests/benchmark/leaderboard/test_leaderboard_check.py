@@ -258,7 +258,7 @@ def test_data_that_moved_under_their_version_are_told_before_anything_is_measure
         for split in ("calibration", "test", "repeat")
     }
     assert all("hash" in d.measured for d in moved)
-    assert {d.stored for d in moved} == {f"version {Diodes().version}"}
+    assert {d.committed for d in moved} == {f"version {Diodes().version}"}
     assert moved == found[: len(moved)]
     assert not [line for line in log() if line.startswith(("extract", "fit"))]
 
