@@ -55,7 +55,6 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
     },
     "limits.md": {
         "best-pipelines": limits.best_pipelines,
-        "contributions": limits.contributions,
         "sentences": limits.sentences,
         "headlines": limits.headline_table,
     },

@@ -1,4 +1,4 @@
-"""What the docs say of the best pipelines: how near their bounds, and what holds them back."""
+"""Generated parts of docs/limits.md: errors and main error sources of the best pipelines."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import Any
 from api.docs.markdown import table
 from benchmark.error_budget.record import RECORD as ERROR_BUDGET
 from benchmark.error_budget.sentences import NEAR, PARTS, bound_of, verdict
-from benchmark.error_budget.variants import WORSE
 from benchmark.leaderboard.headlines import headlines
 from benchmark.leaderboard.realism import realism
 from benchmark.results.store import Store
@@ -40,24 +39,13 @@ def best_pipelines() -> str:
         "own error (deg)",
         "bound (deg)",
         "ratio",
-        "held back by",
+        "main error source",
     )
     return table((*header, "bench adds (deg)", "built sensors' accuracy (deg rms)"), rows)
 
 
-def contributions() -> str:
-    """Write what each part of the chain contributes, a row a data set."""
-    rows = []
-    for name, row in ERROR_BUDGET.read().items():
-        parts = verdict(row).parts_deg
-        errors = (_number(row[f"{variant}_deg"]) for variant in ("as_is", *WORSE))
-        rows.append((name, *errors, *(_number(parts.get(part)) for part in PARTS)))
-    columns = (part.replace("_", " ") for part in PARTS)
-    return table(("data set", "own error", "on a bench", "uncorrected", *columns), rows)
-
-
 def sentences() -> str:
-    """Count the best pipelines near their bounds; say what holds each of the others back."""
+    """Count the best pipelines near their bounds; name the main error source of each other."""
     judged = [verdict(row) for row in ERROR_BUDGET.read().values()]
     far = [one for one in judged if not one.is_near_bound]
     counted = (
@@ -90,7 +78,7 @@ def headline_table() -> str:
             )
         )
         said.append(f"- {row['study']}, {row['kind']}: {row['difference']}")
-    header = ("study", "its number is", "published", "data set", "pipeline", "ours", "ratio")
+    header = ("study", "quantity", "published", "data set", "pipeline", "ours", "ratio")
     return table((*header, "bench adds", "answered"), rows) + "\n\n" + "\n".join(said)
 
 

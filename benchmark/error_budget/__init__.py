@@ -1,1 +1,1 @@
-"""Which part of the chain holds a data set's best pipeline back: measured, tabled, said."""
+"""Error budgets: how much each part of the chain adds to the error of each leading pipeline."""
