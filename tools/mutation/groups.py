@@ -153,6 +153,7 @@ GROUPS: Mapping[str, Group] = {
             "benchmark/datasets/coverage.py": _in(_DATASETS, "coverage"),
             "benchmark/datasets/benches.py": _in(_DATASETS, "benches", "dataset_parts"),
             "benchmark/datasets/calibration.py": _in(_DATASETS, "calibration", "dataset_parts"),
+            "benchmark/datasets/controls.py": _in(_DATASETS, "dataset_parts", "benches"),
             "benchmark/datasets/corrected.py": _in(_DATASETS, "dataset_parts", "benches"),
             "benchmark/datasets/features.py": (
                 *_in(_RUNNING, "features_of_corrected"),

@@ -223,15 +223,20 @@ def test_a_picture_s_corner_is_where_it_is_put():
     assert (rows.min(), rows.max(), columns.min(), columns.max()) == (2, 5, 3, 7)
 
 
-def test_an_overlay_is_cut_about_the_sun_with_an_orange_cross_and_a_green_ring():
+@pytest.mark.parametrize(
+    ("true", "corner"), [((150, 90), (92, 32)), ((298, 198), (184, 84)), ((1, 1), (0, 0))]
+)
+def test_an_overlay_is_cut_about_the_sun_with_an_orange_cross_and_a_green_ring(true, corner):
+    """116 pixels each way of a frame of 300 by 200, and none beyond it."""
     from matplotlib.colors import to_rgb
 
     sheet, frame = Sheet(240, 240), np.arange(60000.0).reshape(200, 300)
-    found, true = np.array([151.0, 91.0]), np.array([150.0, 90.0])
+    true, (left, first) = np.array(true, dtype=float), corner
+    found = true + 1.0
     preview_overlay._tile(sheet, (0, 0), frame, true, (found, true))
     (axes,) = sheet.figure.axes
-    assert axes.get_xlim() == (150 - 58.5, 150 + 57.5)
-    assert axes.get_ylim() == (90 + 57.5, 90 - 58.5)
+    assert axes.get_xlim() == (left - 0.5, left + 115.5)
+    assert axes.get_ylim() == (first + 115.5, first - 0.5)
     marks = {line.get_marker(): line for line in axes.lines}
     for marker, place in (("+", found), ("o", true)):
         np.testing.assert_array_equal(marks[marker].get_xydata(), [place])
