@@ -54,7 +54,7 @@ HAZARDS: Mapping[str, str] = MappingProxyType(
         "noise": "ten times the noise",
     }
 )
-"""Hazards that a sensor may have to tolerate (conditions: `benchmark.datasets.hazards`)."""
+"""Hazards that a sensor may have to tolerate; `benchmark.datasets.hazards` lists the conditions."""
 
 LISTS = ("survive", "properties")
 """Requirements of which all values must hold: hazards, and properties of the assessment."""

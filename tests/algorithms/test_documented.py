@@ -82,8 +82,8 @@ Parameters
 order : int
     Of its own.
 unit_mm : float
-    Displacement of the spot for one unit of feature, positive: the pixel pitch for spots, half
-    the aperture's width for balances.
+    Displacement of the spot per unit of the feature, positive: the pixel pitch for spots, half the
+    aperture's width for balances.
 extrapolation : float
     How far.
 

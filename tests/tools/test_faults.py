@@ -7,9 +7,9 @@ from tools.faults.kinds import GIVEN
 from tools.faults.kinds_measured import MEASURED
 
 NAMES = ("facts", "table", "bibl", "times", "saved", "journal", "export, forged", "claim")
-#: Of one kind each file is judged by all code: seconds.
+#: Every file is read by all that reads it: half a second and more.
 KINDS = [
-    pytest.param(kind, marks=pytest.mark.slow if kind.name.startswith("claim") else ())
+    pytest.param(kind, marks=() if kind.name.startswith(("facts", "times")) else pytest.mark.slow)
     for kind in (*GIVEN, *MEASURED)
     if kind.name.startswith(NAMES)
 ]

@@ -84,7 +84,7 @@ def check_in_eclipse_no_sun_is_invented(cls, model, cal):
     assert np.isnan(found[60:90]).all()
     assert np.isnan(model.deviation_deg(cal.features, context)[60:90]).all()
     track = model.track(cal.features, context)
-    assert not track.read[60:90].any()
+    assert not track.is_read[60:90].any()
     assert (np.diff(track.deviation_deg[60:90]) > 0).all()
     assert separation_deg(track.sun[60:90], cal.sun[60:90]).max() < 3.0
     assert np.isfinite(found[90:]).all()

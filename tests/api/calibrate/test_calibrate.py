@@ -74,6 +74,7 @@ def test_wrong_poses_are_listed_and_cost_nothing(camera, tmp_path):
     assert np.sqrt(np.mean(clean[both] ** 2)) <= 1.05 * np.sqrt(np.mean(before[both] ** 2))
 
 
+@pytest.mark.slow
 def test_a_run_off_by_a_constant_is_left_out(tmp_path):
     files = []
     for number in range(4):

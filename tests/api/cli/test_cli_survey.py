@@ -96,6 +96,7 @@ def test_an_unknown_value_is_named_with_file_row_and_column(copy):
     assert ("attributes.csv", number + 1, "value") in places
 
 
+@pytest.mark.slow
 def test_a_study_that_is_gone_is_missed_where_it_is_referred_to(copy):
     rows = rows_of(copy / "studies.csv")
     write(copy / "studies.csv", [row for row in rows if row[0] != "Chang2008"])
@@ -107,6 +108,7 @@ def test_a_study_that_is_gone_is_missed_where_it_is_referred_to(copy):
     assert found == expected
 
 
+@pytest.mark.slow
 def test_a_row_that_stands_twice_is_named_in_every_table(copy):
     expected = set()
     for name in TABLES:

@@ -55,8 +55,16 @@ STEPS: dict[str, dict[str, Callable[[str, str], bool]]] = {
 
 
 def each(*steps: str) -> pytest.MarkDecorator:
-    """Run a test for each of the steps that an interface has, in each interface."""
-    pairs = [(api, step) for api, known in STEPS.items() for step in steps if step in known]
+    """Run a test for each of the steps that an interface has, in each interface.
+
+    Those of the older interface are left to the slow run.
+    """
+    pairs = [
+        pytest.param(api, step, marks=pytest.mark.slow if api == "legacy" else ())
+        for api, known in STEPS.items()
+        for step in steps
+        if step in known
+    ]
     return pytest.mark.parametrize(("journey", "step"), pairs, indirect=["journey"])
 
 

@@ -80,6 +80,7 @@ def test_a_form_that_is_cut_short_is_seen(small, name, share):
     assert found(small).keys() == {name}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [PARQUET, DATABASE])
 def test_a_form_with_any_byte_turned_is_refused_or_holds_the_same(small, name):
     data = (small / name).read_bytes()

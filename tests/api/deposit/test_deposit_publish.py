@@ -143,7 +143,7 @@ def test_a_new_version_survives_a_moment_s_failure(journey, kind, step):
             journey.upload(version_of=first)
         (draft,) = journey.archive.drafts
         done = journey.upload(draft=draft)
-        assert done.left == ("old-name.zip",)
+        assert done.remaining_files == ("old-name.zip",)
         return
     done = journey.upload(version_of=first)
     assert fault.met.is_set()

@@ -129,7 +129,7 @@ def test_files_of_others_in_a_draft_are_left_and_told(journey):
     )
     files["notes.txt"] = {**files["README.md"], "id": "f-9"}
     again = journey.upload(draft=done.draft.id)
-    assert again.left == ("notes.txt",)
+    assert again.remaining_files == ("notes.txt",)
     assert "notes.txt" in journey.archive.held(done.draft.id)
     with pytest.raises(ArchiveError, match=r"notes\.txt is not of the bundle"):
         journey.publish(done.draft.id)

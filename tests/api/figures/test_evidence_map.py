@@ -31,6 +31,7 @@ def test_a_model_is_impossible_with_another_category_than_its_own() -> None:
     assert len(possible) == len(facts().taxonomy.values("model"))
 
 
+@pytest.mark.slow
 def test_states_are_drawn_as_cells_of_their_own(evidence: Evidence) -> None:
     found = evidence_map(facts(), evidence=evidence)
     assert sum(found.counts.values()) == len(found.rows) == 100

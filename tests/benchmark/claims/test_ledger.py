@@ -175,6 +175,7 @@ def test_what_was_not_measured_says_so(tmp_path):
     assert unexplained_claims(entries) == ()
 
 
+@pytest.mark.slow
 def test_the_second_method_disagrees_where_a_rule_comes_out_otherwise(tmp_path):
     low = {"little": 0.5, "before": 2.0}
     made = [dataclasses.replace(trial, second=low) for trial in trials()]

@@ -31,9 +31,9 @@ PINS = Store(PUBLISHED).pins()
 KINDS = (
     *(
         pytest.param(name, marks=pytest.mark.slow)
-        for name in ("cmos-single-aperture", "ccd-periodic", "event-l-slit")
+        for name in ("cmos-single-aperture", "ccd-periodic", "event-l-slit", "pd-orbit")
     ),
-    *("qpd-single-aperture", "pd-orbit"),
+    "qpd-single-aperture",
 )
 
 

@@ -22,17 +22,27 @@ NAMES = (
     *("pd-orbit", "pd-albedo-orbit", "ccd-orbit", "qpd-orbit", "ccd-multi-slit-orbit"),
     "pva-orbit",
 )
+#: One flight with photodiodes in the quick run; the other takes as long as the rest.
+each = pytest.mark.parametrize(
+    "name",
+    [pytest.param(n, marks=pytest.mark.slow if n == "pd-orbit" else ()) for n in NAMES],
+)
 PRESETS = {name: datasets.get(name) for name in NAMES}
 VECTORS = ("magnetic_field_nT", "nadir", "sun_inertial", "nadir_inertial")
 
 
+class Made(dict[tuple[str, str], Samples]):
+    """Splits by data set and name, generated when they are first asked for."""
+
+    def __missing__(self, key: tuple[str, str]) -> Samples:
+        name, split = key
+        self[key] = PRESETS[name].generate("nominal", split)
+        return self[key]
+
+
 @pytest.fixture(scope="module")
-def made() -> dict[tuple[str, str], Samples]:
-    return {
-        (name, split): PRESETS[name].generate("nominal", split)
-        for name in NAMES
-        for split in ("calibration", "test")
-    }
+def made() -> Made:
+    return Made()
 
 
 def flight_of(name: str) -> FlightPreset:
@@ -41,7 +51,7 @@ def flight_of(name: str) -> FlightPreset:
     return preset
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each
 def test_context_has_the_columns_the_card_names(made, name: str) -> None:
     card = PRESETS[name].card()
     for split in ("calibration", "test"):
@@ -57,7 +67,7 @@ def test_context_has_the_columns_the_card_names(made, name: str) -> None:
     assert "posterior" in card["bound"]["note"]
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each
 def test_samples_are_in_order_and_continuous(made, name: str) -> None:
     span = flight_of(name).flight.test
     test, calibration = made[name, "test"], made[name, "calibration"]
@@ -81,7 +91,7 @@ def test_samples_are_in_order_and_continuous(made, name: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
+@each
 def test_eclipse_is_dark_and_only_the_test_split_has_it(made, name: str) -> None:
     samples = made[name, "test"]
     eclipse = samples.context["eclipse"]
@@ -97,7 +107,7 @@ def test_eclipse_is_dark_and_only_the_test_split_has_it(made, name: str) -> None
         assert (scene.irradiance[~eclipse] > 0.95).all()
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each
 def test_the_direction_is_not_observable_in_eclipse(made, name: str) -> None:
     eclipse = made[name, "test"].context["eclipse"]
     preset = PRESETS[name]
@@ -194,7 +204,7 @@ def test_albedo_vanishes_in_eclipse_by_geometry(made) -> None:
     assert np.abs(dark).max() < 1e-12
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each
 def test_first_samples_are_those_of_the_whole(made, name: str) -> None:
     whole, part = made[name, "test"], PRESETS[name].generate("nominal", "test", 70)
     assert np.array_equal(part.observations, whole.observations[:70])

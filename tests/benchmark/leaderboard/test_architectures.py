@@ -48,6 +48,7 @@ def found():
     return {(r["detector"], r["mask"]): r for r in architectures(board_of(Store(PUBLISHED)))}
 
 
+@pytest.mark.slow
 def test_every_architecture_has_what_errs_least_over_most_units(record, found):
     assert set(found) == set(zip(record["detector"], record["mask"], strict=True))
     logs = record.assign(log=np.log(record["charged_deg"]))

@@ -32,6 +32,7 @@ def runs():
     return pd.DataFrame(rows, columns=["dataset", "role", "part", "ratio"])
 
 
+@pytest.mark.slow
 def test_shares_are_those_of_the_best_pipeline_of_a_part_on_each_board(found, runs):
     best = runs.groupby(["role", "part", "dataset"])["ratio"].min()
     nearest = best.groupby("dataset").min()

@@ -105,6 +105,7 @@ def test_nothing_is_scored_twice_nor_outside_the_plan():
     assert pairs == {(cell.dataset, cell.extractor, cell.model) for cell in cells(parts=parts)}
 
 
+@pytest.mark.slow
 def test_each_extractor_is_seen_under_every_condition():
     scores, parts = Store(PUBLISHED).scores(), installed_parts()
     planned = {(cell.dataset, cell.extractor) for cell in scope.first(parts)}

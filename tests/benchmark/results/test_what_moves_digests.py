@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from benchmark.results.analyses import Analyses
-from benchmark.results.closure import Sources, module_path, reached
+from benchmark.results.closure import Sources, module_path, reachable_definitions
 from benchmark.results.definitions import Definitions, analyse
 from benchmark.results.digests import STAGES, stage_digests
 
@@ -36,7 +36,7 @@ class Edited(Analyses):
         self._edited = analyse(text.replace(old, new).encode(), str(self._path))
 
     def of(self, path: Path) -> Definitions:
-        return self._edited if path == self._path else Analyses.shared().of(path)
+        return self._edited if path == self._path else Analyses.of_user().of(path)
 
 
 def moved(module: str, old: str, new: str) -> list[str]:
@@ -47,7 +47,7 @@ def moved(module: str, old: str, new: str) -> list[str]:
 
 @pytest.mark.parametrize("stage", STAGES)
 def test_no_stage_reaches_what_only_hands_it_on(stage: str) -> None:
-    found = reached(*STAGES[stage])
+    found = reachable_definitions(*STAGES[stage])
     assert len(found) > 100
     ours = tuple(f"{name}{end}" for name in INFRASTRUCTURE for end in ".:")
     assert not [one for one in found if one.startswith(ours)]

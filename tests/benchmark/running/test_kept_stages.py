@@ -171,6 +171,7 @@ def test_any_number_of_workers_shares_what_is_kept(tmp_path):
     assert {name.partition(".")[0] for name in keys[0]} == {n.partition(".")[0] for n in keys[1]}
 
 
+@pytest.mark.slow
 def test_of_what_is_damaged_or_gone_the_stage_is_made_again(store, tmp_path, doings):
     known = parts()
     measured(store, known)

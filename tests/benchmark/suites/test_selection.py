@@ -23,6 +23,7 @@ def quick() -> list[Cell]:
     return suite("quick").select({}, installed_parts())
 
 
+@pytest.mark.slow
 def test_quick_meets_every_extractor_and_every_model_that_fits_a_data_set(
     quick: list[Cell],
 ) -> None:

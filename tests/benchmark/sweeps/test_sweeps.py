@@ -205,6 +205,7 @@ def test_tables_show_what_is_stored_cell_by_cell(made):
                 assert line[name] == ("" if value is None else str(value))
 
 
+@pytest.mark.slow
 def test_pictures_are_the_same_every_time_and_well_formed(made):
     rows = swept(made)
     for sweep in sweep_pictures.DRAWN:

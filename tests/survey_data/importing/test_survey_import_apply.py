@@ -152,6 +152,7 @@ def test_applying_twice_changes_nothing_the_second_time(copy: Any) -> None:
     assert copy.path("attributes").read_bytes() == once
 
 
+@pytest.mark.slow
 def test_a_newer_authors_table_replaces_an_older_one(copy: Any) -> None:
     import_table(offer(copy, "Key,Mask\nAlvi2014,Lens\n"), copy.directory, apply=True)
     import_table(offer(copy, "Key,Mask\nAlvi2014,V-Slit\n"), copy.directory, apply=True)
@@ -207,6 +208,7 @@ def test_a_table_about_other_studies_is_refused(copy: Any) -> None:
         import_table(offer(copy, "Key,Mask\nNobody1999,Slit\n"), copy.directory)
 
 
+@pytest.mark.slow
 def test_a_plan_made_before_our_tables_changed_is_refused(copy: Any) -> None:
     plan = import_table(offer(copy, "Key,Mask\nAlvi2014,Lens\n"), copy.directory)
     import_table(offer(copy, "Key,Mask\nAlvi2014,V-Slit\n"), copy.directory, apply=True)
