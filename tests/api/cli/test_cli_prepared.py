@@ -41,6 +41,7 @@ def made(monkeypatch, rows):
     return calls
 
 
+@pytest.mark.slow
 def test_what_is_kept_is_what_was_made(made, rows):
     first, again = prepared_measurements.measure(), prepared_measurements.measure()
     assert made == [working_directory()]

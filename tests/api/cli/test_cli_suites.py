@@ -150,6 +150,7 @@ def test_a_record_that_holds_is_verified_and_nothing_is_written(
     assert not small.exists()
 
 
+@pytest.mark.slow
 def test_a_number_that_does_not_hold_fails_with_its_cell(published: Store) -> None:
     path = published.scores_directory / "qpd-single-aperture.csv"
     (cell,) = (cell for cell in published.scores() if cell.dataset == path.stem)

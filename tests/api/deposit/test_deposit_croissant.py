@@ -34,6 +34,7 @@ def records(dataset: mlcroissant.Dataset, table: str) -> list[dict[str, object]]
     return [{k.removeprefix(f"{table}/"): v for k, v in row.items()} for row in found]
 
 
+@pytest.mark.slow
 def test_every_document_is_valid_and_names_files_as_they_are(built: Bundle) -> None:
     folder = built.directory / "croissant"
     paths = sorted(folder.iterdir())

@@ -176,6 +176,7 @@ def test_exporting_twice_gives_the_same_bytes(quads, tmp_path):
     assert content(again.directory) == content(quads.directory)
 
 
+@pytest.mark.slow
 def test_a_whole_split_carries_the_published_hash(tmp_path):
     out = tmp_path / "cube"
     made = export("pd-maskless-cube", out, conditions=["cosine"], splits=["test"], pins=PINS)

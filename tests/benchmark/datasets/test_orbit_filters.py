@@ -87,6 +87,7 @@ def test_the_gyroscopes_noise_is_that_of_its_data_sheet() -> None:
         Gyro(bias_deg_h=-1.0)
 
 
+@pytest.mark.slow
 def test_a_version_drawn_as_another_has_its_observations(flown) -> None:
     samples = flown["nominal"][1]
     later = replace(CUBE, version=CUBE.version + 7).generate("nominal", "test", n=50)
