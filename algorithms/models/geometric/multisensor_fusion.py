@@ -24,8 +24,8 @@ from algorithms.row_arithmetic import normalise
 class SixFaces(DrawnModel):
     """Sun vector from the brighter face of each opposite pair of a cube.
 
-    Each face's signal is the cosine of its angle to the Sun, so the lit one of a pair is that
-    axis's component and its side the sign; the length is then scaled to one.
+    The signal of a face is the cosine of its angle to the Sun. The lit face of a pair gives the
+    component along their axis, its side the sign; the vector is scaled to unit length.
 
     Parameters
     ----------

@@ -23,7 +23,8 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 async def claims(known: Known, query: Annotated[ClaimsQuery, Query()]) -> Answer:
     """List the claims of the survey about algorithms with their verdicts.
 
-    Each claim was tested with criteria set in advance. CSV: a row per claim.
+    Each claim is tested with stated criteria; those of eleven were changed after a first result.
+    CSV: a row per claim.
     """
     found = [entry for entry in known.measurements.claims.values() if _is_wanted(entry, query)]
     items = order([entry.to_dict() for entry in found], query.sort)
