@@ -24,7 +24,7 @@ MEASURE = """
 import json, sys
 from benchmark import datasets
 from benchmark.plan import combinations as plan
-from benchmark.running import run as runner
+from benchmark.running import runner
 from benchmark.results.store import Store
 from registry.catalogue import catalogue
 

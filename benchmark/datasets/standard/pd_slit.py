@@ -36,11 +36,10 @@ PRESET = diodes.masked_photodiodes(
     follows=("Chang2006", "Abhilash2014", "Hales2002"),
     description=(
         "Photodiodes under slits, balanced in pairs. From Chang2006: field +-60 deg, shade of the "
-        "slit's thickness. From Abhilash2014 and Hales2002: two axes on one die. Dimensions are "
-        "not known. Assumed: slits at 45 deg to the axes, which put each photodiode into a "
-        "quadrant, so that the voltage balance gives both axes; slits 2.8 mm wide and 5 mm long, "
-        "0.5 mm up; 100 uA per photodiode at normal incidence. The aperture width d of the "
-        "geometry is the slit width times sqrt(2)."
+        "slit's thickness. From Abhilash2014 and Hales2002: two axes on one die. Assumed: slits at "
+        "45 deg to the axes, which put each photodiode into a quadrant, so that the voltage "
+        "balance gives both axes; slits 2.8 mm wide and 5 mm long, 0.5 mm up; 100 uA per "
+        "photodiode at normal incidence. The aperture width d is the slit width times sqrt(2)."
     ),
     regime=measured_geometric(0.02, (1.0, 1.0, 1.0)),
 )
