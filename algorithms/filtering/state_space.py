@@ -1,4 +1,4 @@
-"""What a filter knows of a system: `StateSpace`; and the plainest one, `LinearStateSpace`."""
+"""State-space models for filters: `StateSpace`, and the simplest one, `LinearStateSpace`."""
 
 from __future__ import annotations
 

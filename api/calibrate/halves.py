@@ -52,7 +52,7 @@ def halves(scored: Scored, sample: Readings, geometry: SensorGeometry, noise: Fl
     scored : Scored
         The model.
     sample : Readings
-        What is halved.
+        Readings to split.
     geometry : SensorGeometry
     noise : ndarray, shape (N,)
         1-sigma of each sample, degrees.

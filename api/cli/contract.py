@@ -53,6 +53,8 @@ def name_of(given: str) -> str:
             raise UnknownNameError("algorithm", given, found)
         return given
     path = Path(given).resolve()
+    if not path.is_file():
+        raise WrongCallError(f"{given}: no such file")
     names = [name for name, cls in found.items() if Path(inspect.getfile(cls)).resolve() == path]
     if len(names) == 1:
         return names[0]

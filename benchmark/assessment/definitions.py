@@ -205,7 +205,7 @@ _ALL = (
     Definition(
         "Feature pattern agnostic",
         "",
-        "what a method must know of the mask's pattern is part of how it is defined; an "
+        "the knowledge of the mask pattern is part of the definition of a method; an "
         "experiment over patterns would measure the choice of patterns",
         "never",
     ),

@@ -114,7 +114,7 @@ def _start(
 ) -> bool:
     """Fit a vector (3,) to the lit faces' cosines; False where no face is lit.
 
-    A component that no lit face tells of starts beside nothing, as the dark ones say.
+    A component that no lit face determines starts near zero, since the faces along it are dark.
     """
     normals, responses, noise, _ = told
     normal[:] = 0.0

@@ -13,7 +13,7 @@ DCC, SI, XSI = (
     "https://ptb.de/si",
     "http://www.w3.org/2001/XMLSchema-instance",
 )
-#: Coverage factor of the uncertainties, and what it stands for.
+#: Coverage factor of the expanded uncertainties, and its coverage probability.
 COVERAGE_FACTOR, COVERAGE = 2.0, 0.95
 #: Characters that XML 1.0 has no place for.
 _UNWRITABLE = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")

@@ -41,6 +41,8 @@ def fetch(
     from api.real.sets import SETS  # noqa: PLC0415 - as above
 
     if name is None:
+        if scores or out is not None:
+            raise WrongCallError(f"name a set of real readings: {', '.join(SETS)}")
         for one in SETS.values():
             typer.echo(f"{one.name}: {one.about} ({one.licence})")
         return

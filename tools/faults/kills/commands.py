@@ -146,11 +146,11 @@ def pin(*names: str) -> None:
 
 def update_leaderboard() -> None:
     """`sunatlas leaderboard update` of a small record; no sweep takes frames."""
+    from benchmark.leaderboard import update as updating
     from benchmark.sweeps import plan as sweep_plan
 
     _give(sweep_plan, "_SERIES_OF", dict.fromkeys(sweep_plan._SERIES_OF, ()))
     _give(leaderboard_command, "PUBLISHED", Path("store"))
-    updating = leaderboard_command.updating
     _give(updating, "update", partial(updating.update, parts=small.parts()))
     sunatlas("leaderboard", "update", "--workers", 2)
 

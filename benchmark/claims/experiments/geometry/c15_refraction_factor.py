@@ -1,9 +1,9 @@
 """C15: what one scale factor K does against refraction, for the N of slits (Maji2015).
 
 Under cover glass `n-slit` is calibrated with K held at 1 and with K fitted; the line's place and
-turns are fitted both times. As the equations are printed K stands for refraction alone, so that
-both know of no glass. The plot has the model beside it that knows the glass and applies Snell's
-law, which no statistic uses.
+turns are fitted both times. As the equations are printed K stands for refraction alone, and
+neither fit includes the glass. The plot also shows the model that includes the glass and applies
+Snell's law; no statistic uses it.
 """
 
 from __future__ import annotations
