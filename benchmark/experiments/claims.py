@@ -17,7 +17,7 @@ from benchmark.running.threads import one_thread
 
 
 class Claims(RecordedExperiment[str]):
-    """A row of each claim that has a module of `benchmark.claims.experiments`, by its id.
+    """Results of the experiments that test the survey's claims.
 
     A row holds what was measured, never the verdict: that is computed at reading, by the rules as
     they stand.

@@ -43,7 +43,7 @@ class Task:
 
 
 class ErrorBudget(RecordedExperiment[str]):
-    """A row of each data set, by its name: of the score, on the standard unit, that leads it."""
+    """Error of each data set's best pipeline with one part of the chain made perfect at a time."""
 
     name = "error_budget"
     title = "Error budget"

@@ -27,7 +27,7 @@ _CODE = (
 
 
 class LearningCurves(RecordedExperiment[Leader]):
-    """A curve for the leaders of every data set, by the scores of the record."""
+    """Own error of the best pipelines of each data set against the number of calibration poses."""
 
     name = "learning_curves"
     title = "Learning curves"

@@ -19,7 +19,7 @@ _QUESTIONS: Mapping[str, Callable[[], Iterator[NetworkError]]] = {
 
 
 class Networks(Report[str]):
-    """A row of each question, which holds what was measured case by case."""
+    """Answers to questions on neural networks, each with the cases measured."""
 
     name = "networks"
 

@@ -12,7 +12,7 @@ from benchmark.running.experiment import Report
 
 
 class Selection(Report[str]):
-    """A row of each data set, which holds the choice of every model that chooses."""
+    """Choices of the models that select their own order, for each data set."""
 
     name = "selection"
 

@@ -27,7 +27,7 @@ def series_digests() -> dict[str, str]:
 
 
 class Sweeps(RecordedExperiment[Point]):
-    """A row of every extractor at each point of the series that it fits, and why not elsewhere."""
+    """Error of every extractor as noise, background, size and other conditions change."""
 
     name = "sweeps"
     title = "Sweeps on synthetic features"

@@ -16,6 +16,8 @@ def test_sets_are_listed_fetched_and_refused_by_name(monkeypatch, tmp_path, caps
     assert "cubesatbox" in capsys.readouterr().out
     with pytest.raises(WrongCallError, match="no set of real readings"):
         command.main(["fetch", "cubesatbx"], standalone_mode=False)
+    with pytest.raises(WrongCallError, match="cubesatbox"):
+        command.main(["fetch", "--scores"], standalone_mode=False)
     monkeypatch.setattr(fetching, "_download", lambda address: b"another file")
     out = tmp_path / "box"
     with pytest.raises(fetching.FetchError, match="expected SHA-256"):

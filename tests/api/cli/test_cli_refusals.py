@@ -60,6 +60,7 @@ def odd(tmp_path):
         ("leaderboard render --out {odd}/file", 2, r"{odd}/file\b.*directory"),
         ("plan --store {odd}/file", 2, r"--store: {odd}/file\b.*directory"),
         ("benchmark --dataset pd-slit --extractor bcm", 1, r"pd-slit, bcm: .*frames"),
+        ("rank {odd}/nothing.py --dataset pd-slit", 2, r"{odd}/nothing\.py: no such file"),
         ("survey check --data {odd}/file", 1, "directory"),
         ("survey import {odd}/nothing.csv", 1, r"{odd}/nothing\.csv: No such file"),
         ("survey import {odd}/empty", 1, r"{odd}/empty: .*file.*directory"),
