@@ -14,7 +14,7 @@ from typing import Any
 import cv2
 import matplotlib.image
 import numpy as np
-from benchmark.reference.frames import REFERENCE_SETS
+from benchmark.synthetic_features.frames import REFERENCE_SETS
 from numpy.typing import NDArray
 
 from algorithms.extractors.frames.cameras import dark_holes_kernel
