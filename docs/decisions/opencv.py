@@ -14,14 +14,15 @@ from typing import Any
 import cv2
 import matplotlib.image
 import numpy as np
-from benchmark.synthetic_features.frames import REFERENCE_SETS
 from numpy.typing import NDArray
 
 from algorithms.extractors.frames.cameras import dark_holes_kernel
 from algorithms.extractors.frames.cameras.hough import HoughCircle, HoughLines
 from algorithms.extractors.frames.mirror import search_kernel
 from algorithms.extractors.frames.multi_spot import correlation_kernel, spots_kernel
+from algorithms.extractors.frames.multi_spot.records import Seen
 from algorithms.kernels import moments
+from benchmark.synthetic_features.frames import REFERENCE_SETS
 
 Frames = NDArray[Any]
 #: What is timed, on what: ours, OpenCV's, and how their results differ.
@@ -111,7 +112,8 @@ def components(frames: Frames) -> Case:
         spots, cuts = np.zeros((len(frames), 64, 4)), np.zeros((len(frames), 8, 3))
         counts, cut_counts = np.zeros((2, len(frames)), dtype=np.int64)
         levels = np.full(len(frames), level)
-        spots_kernel.segment(frames, maxima, levels, 4.0, 400.0, spots, counts, cuts, cut_counts)
+        seen = Seen(spots, counts, cuts, cut_counts)
+        spots_kernel.segment(frames, maxima, levels, 4.0, 400.0, seen)
         return spots[:, :25, :2]
 
     def theirs() -> Any:
@@ -161,7 +163,7 @@ def blur(frames: Frames) -> Case:
         out = np.empty(frames.shape)
         rows = np.empty(frames.shape[1:])
         for k, frame in enumerate(frames):
-            dark_holes_kernel.blurred(frame, taps, rows, out[k])
+            dark_holes_kernel.blur(frame, taps, rows, out[k])
         return out
 
     def theirs() -> Any:
