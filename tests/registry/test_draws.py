@@ -79,20 +79,20 @@ def test_of_what_is_said_to_meet_a_limit_fresh_units_and_benches_do():
 
 
 def pipeline(name, own, **more):
-    return MeasuredPipeline(
-        dataset=name,
-        detector="CMOS",
-        mask="Single-Ap.",
-        extractor="e",
-        extractor_taxonomy="BCTM",
-        model="m",
-        stages=("SPM",),
-        nominal=Score("nominal", own, availability=1.0),
-        half_fov_deg=60.0,
-        unit_own_deg=(own,) * 10,
-        bench_deg=0.0158,
-        **more,
-    )
+    row = {
+        "dataset": name,
+        "detector": "CMOS",
+        "mask": "Single-Ap.",
+        "extractor": "e",
+        "extractor_taxonomy": "BCTM",
+        "model": "m",
+        "stages": ("SPM",),
+        "nominal": Score("nominal", own, availability=1.0),
+        "half_fov_deg": 60.0,
+        "unit_own_deg": (own,) * 10,
+        "bench_deg": 0.0158,
+    }
+    return MeasuredPipeline(**{**row, **more})
 
 
 def test_an_error_is_judged_on_the_bench_asked_for_and_one_that_would_do_is_named():
@@ -110,6 +110,28 @@ def test_an_error_is_judged_on_the_bench_asked_for_and_one_that_would_do_is_name
     blocked = recommend({**only, "min_availability": 0.5}, [row]).blocking_constraint
     assert blocked is not None
     assert "bench good to" in blocked.detail
+
+
+def test_units_within_a_limit_are_counted_for_each_calibration_of_an_architecture():
+    rows = [
+        pipeline(
+            "a",
+            own,
+            model=model,
+            stages=(model,),
+            unit_own_deg=(own,) * within + (0.5,) * (10 - within),
+            unit_ratios=(1.0,) * within + (0.5 / own,) * (10 - within),
+        )
+        for own, model, within in ((0.003, "SPM", 9), (0.0035, "Linear", 10), (0.004, "ANN", 9))
+    ]
+    answer = recommend({"max_error_deg": 0.01, "mask": "Single-Ap.", "bench_deg": 0.0}, rows)
+    (place,) = (one for one in answer.architectures if one.best.measured)
+    found = {
+        one.model: one.measured["units"]["within_limit"]
+        for one in place.calibrations
+        if one.measured
+    }
+    assert found == {"SPM": 9, "Linear": 10, "ANN": 9}
 
 
 def test_what_a_calibration_reads_can_be_excluded():

@@ -135,6 +135,13 @@ GROUPS: Mapping[str, Group] = {
             "registry/fitting.py": _in("registry", "resolution"),
             "registry/sensors.py": _in("registry", "resolution_sensors"),
             "registry/draws.py": _in("registry", "draws", "recommendation"),
+            "registry/answer_json.py": _in(
+                "registry",
+                "draws",
+                "recommendation_measured",
+                "recommendation_survey",
+                "recommendation",
+            ),
             "registry/fidelity/*": _in("registry", "fidelity", "resolution"),
             "registry/catalogue.py": _in("registry", "catalogue", "resolution"),
             "registry/*": _in(

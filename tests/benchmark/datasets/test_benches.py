@@ -6,7 +6,12 @@ import pytest
 from benchmark import datasets
 from benchmark.datasets.benches import aligned_bench_deg, report
 from benchmark.datasets.controls import board_facts, oracle
-from benchmark.datasets.corrected import correct, correction, reference_condition
+from benchmark.datasets.corrected import (
+    correct,
+    correction,
+    reference_condition,
+    references_used,
+)
 from benchmark.metrics.score import separation_deg
 
 
@@ -73,6 +78,10 @@ def test_a_condition_that_changes_light_alone_shares_the_nominal_references(slit
         "nominal",
         "hot",
     ]
+
+
+def test_a_camera_without_references_is_given_none():
+    assert references_used(datasets.get("cmos-lens")).startswith("nothing")
 
 
 def test_correction_takes_away_the_pattern_that_units_differ_by(slit):

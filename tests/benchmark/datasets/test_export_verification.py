@@ -97,3 +97,16 @@ def test_an_archive_that_unpacks_to_more_than_its_card_says_is_not_unpacked(copy
     assert "unpacks to more" not in export_verification._read(path, described)
     forging._changed(path, lambda a: a.update(sun=a["sun"].repeat(1000, axis=0)))
     assert "unpacks to more" in export_verification._read(path, described)
+
+
+def test_what_a_card_leaves_out_is_named_but_not_a_hash_that_is_published_for_one_side(copy):
+    card = json.loads((copy / CARD).read_text())
+    card["mask"] = None
+    for entry in card["files"]:
+        if "published_data_hash" in entry:
+            assert entry["published_data_hash"] is None
+            entry["published_data_hash"] = entry["data_hash"]
+    forging._fit(copy, card)
+    (problem,) = verify(copy, pins=PINS)
+    assert problem[0] == CARD
+    assert problem[1].startswith("mask is None, ")

@@ -12,14 +12,6 @@ STUDY = {
     "extractor": ["BCTM"],
 }
 
-STUDY = {
-    "task": ["Cost"],
-    "detector": ["CMOS"],
-    "mask": ["Slit"],
-    "model": ["SPM"],
-    "extractor": ["BCTM"],
-}
-
 
 def pipeline(**changed: object) -> MeasuredPipeline:
     """A pipeline on CMOS behind a slit that errs 0.1 deg over 120, with some of it changed."""
