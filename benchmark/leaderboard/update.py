@@ -64,7 +64,7 @@ def update(
     first, studied = scope.first(known), scope.studied_pipelines(known)
     choose = partial(scope.followers, studied=studied)
     store = Store(directory)
-    kept = kept_beside(store, components, scheduler)
+    kept = kept_beside(store, components)
     with open_record(store) as record:
         pinned = store.pins()
         _require_heads(store, known, components)

@@ -149,7 +149,7 @@ def outcomes(
     durations
         How long tasks took before, by which they are shared out; takes in how long they took now.
     kept
-        Where stages are kept; nowhere for None.
+        Where stages are kept; nowhere for None, and on a cluster whose workers do not see it.
 
     Raises
     ------
@@ -178,6 +178,8 @@ def _timed(
 ) -> Iterator[_Timed]:
     if scheduler is not None:
         with connect(scheduler) as cluster:
+            if kept is not None and not cluster.sees(kept.files.directory):
+                kept = None
             yield from shared_out(
                 tasks, cluster, cluster.workers(), follow_ups, durations, kept=kept
             )

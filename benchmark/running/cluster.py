@@ -8,17 +8,20 @@ process. A worker that dies takes with it what it had in hand; Dask gives that t
 from __future__ import annotations
 
 import gc
+import os
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 from benchmark.results.closure import closure_digest
 from benchmark.results.digests import entries_of, method_entries
 from benchmark.running.task import Task
+from files.temporary import temporary_file_beside
 
 #: Seconds to wait for the scheduler, and then for a worker to be there.
 _PATIENCE_S = 30
@@ -74,6 +77,15 @@ class Cluster:
     def workers(self) -> int:
         """Count the worker processes there are now."""
         return len(self.client.ncores())
+
+    def sees(self, directory: Path) -> bool:
+        """Say whether every worker sees a directory of this machine: on it, or by a shared disk.
+
+        It is made where it is not there.
+        """
+        directory.mkdir(parents=True, exist_ok=True)
+        with temporary_file_beside(directory / "seen") as path:
+            return all(self.client.run(os.path.exists, str(path)).values())
 
     def is_free(self) -> bool:
         """Say whether there are more workers than things to do; one more each is sent ahead."""

@@ -62,7 +62,8 @@ class KeptStages:
         limit = limit_bytes()
         if not limit:
             return None
-        files, *more = (StageFiles(one / "stages", limit) for one in (directory, *others))
+        folders = [(one / "stages").absolute() for one in (directory, *others)]
+        files, *more = (StageFiles(folder, limit) for folder in folders)
         return cls(files, components, tuple(more))
 
     def get(self, stage: str, cell: Cell) -> Any:

@@ -114,7 +114,7 @@ def run(
             workers=workers,
             progress=progress,
             scheduler=scheduler,
-            kept=kept_beside(store, components, scheduler, others) if keep_stages else None,
+            kept=kept_beside(store, components, others) if keep_stages else None,
         )
         record.write(components.only(wanted))
     return Summary(
@@ -177,12 +177,9 @@ def measure_missing(
 def kept_beside(
     store: Store,
     components: Components,
-    scheduler: str | None = None,
     others: Iterable[Store] = (),
 ) -> KeptStages | None:
-    """Return the stages kept beside stores; None on a cluster, whose disks are its own."""
-    if scheduler:
-        return None
+    """Return the stages kept beside stores; None where nothing is to be kept."""
     looked_at = [other.work_directory for other in others]
     return KeptStages.beside(store.work_directory, components, looked_at)
 

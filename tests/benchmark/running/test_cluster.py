@@ -99,6 +99,30 @@ def test_two_dask_workers_give_the_bytes_of_a_local_run(
     assert 1 <= len(processes) <= 2
 
 
+def test_workers_that_see_the_store_keep_stages_there_and_take_them_from_there(
+    scheduler: str, log: Path, expected: dict[Path, bytes], tmp_path: Path
+) -> None:
+    first, second = Store(tmp_path / "first"), Store(tmp_path / "second")
+    measured(first, scheduler=scheduler)
+    assert list((first.work_directory / "stages").glob("??/*"))
+    log.write_text("")
+    done = measured(second, scheduler=scheduler, others=[first])
+    assert done.computed == PLANNED
+    assert made(log) == []
+    assert contents(second) == expected
+
+
+def test_workers_that_see_another_disk_are_told_from_those_that_see_this_one(
+    scheduler: str, tmp_path: Path
+) -> None:
+    with dask_cluster.connect(scheduler) as cluster:
+        assert cluster.sees(tmp_path / "stages")
+    answers = SimpleNamespace(run=lambda look, path: {"tcp://a": look(path), "tcp://b": False})
+    apart: Any = SimpleNamespace(client=answers)
+    assert not dask_cluster.Cluster.sees(apart, tmp_path / "stages")
+    assert list((tmp_path / "stages").iterdir()) == []
+
+
 def test_two_local_workers_do_too(expected: dict[Path, bytes], tmp_path: Path) -> None:
     assert measured(Store(tmp_path), workers=2).computed == PLANNED
     assert contents(Store(tmp_path)) == expected
