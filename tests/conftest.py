@@ -20,6 +20,10 @@ settings.register_profile(
 )
 settings.load_profile("any-machine")
 
+#: What tests share stays: the collector's walks over it were a quarter of the time of collecting
+#: and of the suite, were they as frequent as in a small process.
+gc.set_threshold(100_000, 20, 50)
+
 #: What compiles kernels comes last: first those of extractors and models, then the simulator's.
 LAST = ("algorithms", "benchmark")
 
@@ -28,7 +32,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Put side by side what shares readings or kernels, and try fewer examples.
 
     Each of two workers begins with its half of the tests, and they seldom compile the same kernel
-    at once. Where the slow tests are left out too, properties are tried on a quarter of their
+    at once. Where the slow tests are left out too, properties are tried on an eighth of their
     examples, the same ones in every run.
     """
     items.sort(key=_place)
@@ -40,7 +44,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         own = getattr(test, "_hypothesis_internal_use_settings", None)  # no public way to change it
         if own is not None and test not in done:
             done.add(test)
-            fewer = min(own.max_examples, max(10, own.max_examples // 4))
+            fewer = min(own.max_examples, max(10, own.max_examples // 8))
             test._hypothesis_internal_use_settings = settings(
                 own, max_examples=fewer, derandomize=True, database=None
             )
@@ -53,12 +57,9 @@ def _place(item: pytest.Item) -> int:
 
 
 def pytest_collection_finish() -> None:
-    """What is loaded by now stays, and what tests share too: a quarter of the suite's time would
-    go into the collector's walks over it, were they as frequent as in a small process.
-    """
+    """What is loaded by now is walked over no more."""
     gc.collect()
     gc.freeze()
-    gc.set_threshold(100_000, 20, 50)
 
 
 @pytest.fixture(scope="session", autouse=True)
