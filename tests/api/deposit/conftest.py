@@ -14,6 +14,8 @@ from typing import Any
 
 import pytest
 
+from api.deposit import verification
+from api.deposit.archives import sealed
 from api.deposit.archives.contract import PublishedRecord
 from api.deposit.archives.depositions import DepositionsArchive
 from api.deposit.archives.publishing import publish
@@ -22,6 +24,7 @@ from api.deposit.archives.server import Token, server_at
 from api.deposit.archives.transport import Transport
 from api.deposit.archives.uploading import UploadResult, upload
 from api.deposit.bundle import Bundle, build
+from benchmark.datasets.checksums import contents
 from tests.api.deposit import small_bundle
 from tests.api.deposit.standins.depositions import Depositions
 from tests.api.deposit.standins.records import Records
@@ -161,6 +164,23 @@ def _certificates_are_read_once() -> Iterator[None]:
     """Each client would read all authorities anew, which takes longer than what it then does."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ssl, "create_default_context", cache(ssl.create_default_context))
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _same_bundles_are_verified_once() -> Iterator[None]:
+    """Most tests send the same small bundle, and more than once."""
+    sound = set()
+
+    def verify(directory: Path) -> list[tuple[str, str]]:
+        key = tuple((name, (directory / name).read_bytes()) for name in contents(directory))
+        wrong = [] if key in sound else verification.verify(directory)
+        if not wrong:
+            sound.add(key)
+        return wrong
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sealed, "verify", verify)
         yield
 
 

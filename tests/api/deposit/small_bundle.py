@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import datetime as dt
 import json
+from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 
 from api.deposit.bundle import write_other_forms
 from api.deposit.citation import authors
 from api.deposit.crate import CRATE, crate
-from api.deposit.database import DATABASE
 from api.deposit.deposit_tables import MeasuredTable
 from api.deposit.identity import Identity, identity
 from api.deposit.package import DESCRIPTOR, package
 from api.deposit.packing import pack
 from api.deposit.terms import terms
 from benchmark.datasets.checksums import contents, sha256, write_checksums
+from files.temporary import temporary_directory
 
+ZIP = "bundle.zip"
 PEOPLE = """\
 authors:
   - family-names: Sommer
@@ -29,6 +32,27 @@ PLACEHOLDER = "authors:\n  - name: The Sun Sensor Atlas contributors\n"
 
 def make(directory: Path, people: str = PEOPLE, readme: str = "# read me\n") -> Path:
     """Make a bundle and its zip; over an earlier one, whose files it has."""
+    for name, content in _made(people, readme).items():
+        path = directory.with_name(f"{directory.name}.zip") if name == ZIP else directory / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+    return directory
+
+
+@cache
+def _made(people: str, readme: str) -> Mapping[str, bytes]:
+    """Return the contents of each file by its name."""
+    with temporary_directory() as place:
+        directory = _write(place / "bundle", people, readme)
+        made = {
+            path.relative_to(directory).as_posix(): path.read_bytes()
+            for path in directory.rglob("*")
+            if path.is_file()
+        }
+        return {**made, ZIP: (place / ZIP).read_bytes()}
+
+
+def _write(directory: Path, people: str, readme: str) -> Path:
     citation = f"cff-version: 1.2.0\ntype: dataset\n{people}"
     who = Identity(
         "Sun Sensor Atlas",
@@ -40,9 +64,8 @@ def make(directory: Path, people: str = PEOPLE, readme: str = "# read me\n") -> 
         identity().code_licence,
         identity().data_licence,
     )
-    (directory / "benchmark").mkdir(parents=True, exist_ok=True)
-    (directory / "bibliography").mkdir(exist_ok=True)
-    (directory / "survey").mkdir(exist_ok=True)
+    for name in ("benchmark", "bibliography", "survey"):
+        (directory / name).mkdir(parents=True)
     (directory / "benchmark" / "one.csv").write_text("name\na\n")
     schema = {"fields": [{"name": "name", "type": "string"}], "primaryKey": ["name"]}
     table = MeasuredTable("one", "One", "One table.", "", schema)
@@ -59,10 +82,7 @@ def make(directory: Path, people: str = PEOPLE, readme: str = "# read me\n") -> 
     }
     for name, text in files.items():
         (directory / name).write_text(text, "utf-8")
-    (directory / DATABASE).unlink(missing_ok=True)
     write_other_forms(directory, json.loads(files[DESCRIPTOR]))
-    for name in (CRATE, "checksums-sha256.txt"):
-        (directory / name).unlink(missing_ok=True)
     described = {
         name: ((directory / name).stat().st_size, sha256(directory / name))
         for name in contents(directory)
@@ -70,6 +90,5 @@ def make(directory: Path, people: str = PEOPLE, readme: str = "# read me\n") -> 
     document = crate(who, described, {}, {name: terms(name) for name in described}, ["sun sensor"])
     (directory / CRATE).write_text(json.dumps(document))
     write_checksums(directory)
-    packed = directory.with_name(f"{directory.name}.zip")
-    pack(directory, packed, "sun-sensor-atlas-0.1.0", who.released)
+    pack(directory, directory.with_name(ZIP), "sun-sensor-atlas-0.1.0", who.released)
     return directory

@@ -36,7 +36,16 @@ def in_one_sentence(error: BaseException) -> bool:
     return said.isprintable() and 10 < len(said) <= 600 and TOKEN not in said
 
 
-@pytest.mark.parametrize("name", [name for name, answer in ANSWERS.items() if answer is not drip])
+@pytest.mark.parametrize(
+    ("journey", "name"),
+    [
+        pytest.param(api, name, marks=pytest.mark.slow if api == "legacy" else ())
+        for name, answer in ANSWERS.items()
+        if answer is not drip
+        for api in ("records", "legacy")
+    ],
+    indirect=["journey"],
+)
 def test_any_answer_ends_in_one_sentence_and_nothing_is_sent(journey, name):
     journey.fails(ANSWERS[name], "create", times=99)
     with pytest.raises(ArchiveError) as raised:

@@ -11,7 +11,10 @@ from tests.api.deposit.standins.server import TOKEN
 
 #: Steps that a first upload takes, in both interfaces or one.
 TAKEN = ("create", "list", "declare", "send", "commit")
-UNDECIDED = [500, 502, 503, 504, "drop before", "drop after"]
+UNDECIDED = [
+    *(500, "drop before", "drop after"),
+    *(pytest.param(status, marks=pytest.mark.slow) for status in (502, 503, 504)),
+]
 
 
 def test_an_upload_brings_every_file_once_and_publishes_nothing(journey):
