@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from typer.main import get_command
 
-from api.calibrate.calibration import calibrate
+from api.calibrate import calibration
 from api.calibrate.certificate.certificate import certificate
 from api.calibrate.roles import guess
 from api.calibrate.settings import CertificateSettings
@@ -102,7 +102,7 @@ def camera(tmp_path_factory):
     stated = CertificateSettings(
         laboratory="Bench & <Sons>", country="FI", serial="7", end=dt.date(2026, 1, 2)
     )
-    return calibrate(
+    return calibration.calibrate(
         made.paths, settings.model_copy(update={"certificate": stated}), models=("pinhole",)
     )
 
@@ -142,10 +142,10 @@ def test_who_and_what_are_stated_and_the_rest_is_said_to_be_unknown(camera):
     assert any((one or "").startswith("Verdict: good") for one in held)
 
 
-def test_the_command_writes_it_beside_the_rest(tmp_path, capsys):
-    made = mistakes.untouched(tmp_path / "bench.csv", "spots", 1)
+def test_the_command_writes_it_beside_the_rest(camera, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(calibration, "calibrate", lambda *_, **__: camera)
     written = tmp_path / "certificate.xml"
-    told = [str(made.paths[0]), "--model", "homography", "--out", str(tmp_path / "out")]
+    told = ["bench.csv", "--out", str(tmp_path / "out")]
     command = get_command(app)
     status = command.main([*told, "--certificate", str(written)], standalone_mode=False)
     assert status == 0

@@ -51,7 +51,7 @@ def test_options_that_would_count_for_nothing_are_refused(call):
 
 
 def test_own_data_are_scored_beside_a_standard_set(tmp_path, capsys):
-    angles = bench.grid(11)
+    angles = bench.grid(9)
     path = bench.write(
         tmp_path / "a.csv", bench.HEADER, bench.spots(bench.sun_of(angles), 1), angles
     )

@@ -22,15 +22,11 @@ FRESH = bench.sun_of(np.random.default_rng(6).uniform(-45, 45, (500, 2)))
 
 
 @pytest.fixture(scope="module")
-def old(tmp_path_factory):
+def old(camera, tmp_path_factory):
     """Path of a camera's calibration."""
-    directory = tmp_path_factory.mktemp("old")
-    angles = bench.grid(15)
-    path = bench.write(
-        directory / "a.csv", bench.HEADER, bench.spots(bench.sun_of(angles), 1), angles
-    )
-    save(calibrate([path], models=("homography",)), directory / "old.json")
-    return directory / "old.json"
+    path = tmp_path_factory.mktemp("old") / "old.json"
+    save(camera, path)
+    return path
 
 
 def few(path, spots, stated=SUN):
