@@ -12,8 +12,9 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from api.figures.catalogue import evidence_map
+from api.http.knowledge import Knowledge
 from api.http.measurements import Measurements
-from benchmark.plan.combinations import cells, scorable_plan
+from benchmark.plan.combinations import cells
 from benchmark.results.store import PUBLISHED, Store
 from registry.catalogue import catalogue
 from registry.evidence import Evidence
@@ -46,13 +47,13 @@ def test_states_are_drawn_as_cells_of_their_own(evidence: Evidence) -> None:
 
 
 @pytest.fixture(scope="module")
-def measurements() -> Measurements:
-    return Measurements()
+def measurements(knowledge: Knowledge) -> Measurements:
+    return knowledge.measurements
 
 
 @pytest.fixture(scope="module")
-def evidence(measurements: Measurements) -> Evidence:
-    return Evidence(catalogue(), measurements.pipelines, scorable_plan())
+def evidence(knowledge: Knowledge) -> Evidence:
+    return knowledge.evidence
 
 
 def place(row: Any) -> tuple[str, str, str]:

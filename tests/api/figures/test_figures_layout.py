@@ -24,7 +24,7 @@ WIDTHS = (322.0, 390.0, 501.0, 680.0, 820.0, 960.0, 1100.0, 1240.0)
 PAIRS = [
     ("detector", "mask"),
     ("model", "extractor"),
-    ("extractor", "model"),
+    pytest.param("extractor", "model", marks=pytest.mark.slow),
     ("task", "accuracy"),
     ("model_category", "model"),
     ("mask", "mask"),
@@ -46,7 +46,13 @@ def test_the_oracle_sees_what_overlaps_and_what_reaches_out() -> None:
 
 
 @pytest.mark.parametrize("name", TITLES)
-@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize(
+    "width",
+    [
+        pytest.param(wide, marks=() if wide in {322.0, 680.0, 1240.0} else pytest.mark.slow)
+        for wide in WIDTHS
+    ],
+)
 def test_nothing_overlaps_in_a_figure_of_the_survey(name: str, width: float) -> None:
     drawing = figure(name, facts()).draw(width)
     assert len([s for s in shapes(drawing) if s.kind == "text"]) > 10

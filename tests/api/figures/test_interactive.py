@@ -11,33 +11,34 @@ import pytest
 
 from api.figures.catalogue import MATRIX, TITLES, evidence_map, figure
 from api.figures.interactive import specification
-from api.http.measurements import Measurements
-from benchmark.plan.combinations import scorable_plan
-from registry.catalogue import catalogue
-from registry.evidence import Evidence
 from registry.studies import facts
 
 
-@functools.cache
-def evidence():
-    return Evidence(catalogue(), Measurements().pipelines, scorable_plan())
+@pytest.fixture(scope="module")
+def drawn(knowledge):
+    """Draws a figure by its name."""
 
+    @functools.cache
+    def draw(name):
+        if name == MATRIX:
+            return evidence_map(facts(), evidence=knowledge.evidence)
+        return figure(name, facts())
 
-def drawn(name):
-    return evidence_map(facts(), evidence=evidence()) if name == MATRIX else figure(name, facts())
+    return draw
 
 
 @pytest.mark.parametrize("name", [*TITLES, MATRIX])
-def test_plotly_reads_every_figure_back_and_it_is_the_same_each_time(name):
+def test_plotly_reads_every_figure_back_and_it_is_the_same_each_time(name, drawn):
     text = specification(drawn(name))
     read = plotly.io.from_json(text)
     assert read.data
     assert read.layout.title.text == drawn(name).title
+    drawn.cache_clear()
     assert text == specification(drawn(name))
 
 
 @pytest.mark.parametrize("name", ["error", "performance", "cross-analysis", "task", "aggregate"])
-def test_flows_into_a_node_are_those_of_the_table(name):
+def test_flows_into_a_node_are_those_of_the_table(name, drawn):
     found = drawn(name)
     (trace,) = json.loads(specification(found))["data"]
     values, counted = Counter(), Counter()
@@ -51,7 +52,7 @@ def test_flows_into_a_node_are_those_of_the_table(name):
     assert len(trace["node"]["label"]) == len(nodes)
 
 
-def test_rings_of_the_sunburst_add_up_to_the_ring_within():
+def test_rings_of_the_sunburst_add_up_to_the_ring_within(drawn):
     (trace,) = json.loads(specification(drawn("models")))["data"]
     within = dict(zip(trace["ids"], trace["values"], strict=True))
     outer = Counter()
@@ -60,7 +61,7 @@ def test_rings_of_the_sunburst_add_up_to_the_ring_within():
     assert {name: outer[name] for name in outer if name} == {n: within[n] for n in outer if n}
 
 
-def test_bars_and_cells_hold_what_the_table_counts():
+def test_bars_and_cells_hold_what_the_table_counts(drawn):
     found = drawn("publications")
     bars = json.loads(specification(found))["data"]
     assert sum(sum(bar["y"]) for bar in bars) == sum(row["count"] for row in found.rows)
@@ -70,7 +71,7 @@ def test_bars_and_cells_hold_what_the_table_counts():
 
 
 @pytest.mark.parametrize("name", ["error", "models", MATRIX])
-def test_the_page_gives_it_under_its_own_name(atlas, name):
+def test_the_page_gives_it_under_its_own_name(atlas, name, drawn):
     answer = atlas.get(f"/figures/{name}.plotly.json")
     assert answer.status_code == 200
     assert answer.headers["content-type"] == "application/json"

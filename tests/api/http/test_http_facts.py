@@ -50,7 +50,7 @@ def test_all_129_studies_are_served_once(atlas, values):
     assert [item["key"] for item in answer["items"]] == list(values)
 
 
-@pytest.mark.parametrize("limit", [1, 7, 43, 128, 129, 130])
+@pytest.mark.parametrize("limit", [pytest.param(1, marks=pytest.mark.slow), 7, 43, 128, 129, 130])
 def test_pages_make_up_the_whole(atlas, limit):
     whole = atlas.get("/v1/studies?limit=500").json()["items"]
     assert atlas.walk(f"/v1/studies?limit={limit}") == whole

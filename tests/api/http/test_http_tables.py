@@ -36,7 +36,7 @@ MODELS = {
     "/v1/flows/error?error=Electrical&counting=fractional": Link,
     "/v1/figures": ListedFigure,
     "/v1/figures/matrix": PairRow,
-    "/v1/figures/matrix?rows=model&columns=model&detector=OI": PairRow,
+    "/v1/figures/matrix?rows=mask&columns=mask&detector=OI": PairRow,
     "/v1/figures/performance": FlowRow,
     "/v1/figures/error?detector=OI": FlowRow,
     "/v1/figures/models?detector=OI": ArcRow,

@@ -39,7 +39,7 @@ def every_page(atlas: Client) -> list[str]:
     ]
 
 
-@pytest.mark.parametrize("step", [6, pytest.param(1, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("step", [12, pytest.param(1, marks=pytest.mark.slow)])
 def test_no_page_links_to_a_mirror_or_shows_a_label_of_the_latex_source(
     atlas: Client, step: int
 ) -> None:
