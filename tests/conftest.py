@@ -20,8 +20,8 @@ settings.register_profile(
 )
 settings.load_profile("any-machine")
 
-#: What tests share stays: the collector's walks over it were a quarter of the time of collecting
-#: and of the suite, were they as frequent as in a small process.
+#: What tests share stays. Were the collector's walks over it as frequent as in a small process,
+#: they would be a quarter of the time of collecting, and of the suite.
 gc.set_threshold(100_000, 20, 50)
 
 #: What compiles kernels comes last: first those of extractors and models, then the simulator's.
