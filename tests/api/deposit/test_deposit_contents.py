@@ -195,12 +195,17 @@ def test_samples_are_whole_exports_of_the_stated_size(built):
         assert (row["data_hash"] == pin.data_hash) == (count == pin.n)
 
 
-def test_the_sample_of_a_data_set_follows_from_the_size_of_its_frames():
-    pins = Store(PUBLISHED).pins()
-    assert sample_size("pd-slit", pins) is None
-    assert sample_size("cmos-single-aperture", pins) is None  # 441 of 64 x 64 pixels, 3.4 MiB
-    assert sample_size("ccd-lens", pins) == ROOM // (256 * 256 * 2) == 8
-    assert sample_size("ccd-multi-aperture", pins) == LEAST
+@pytest.mark.parametrize(
+    ("name", "size"),
+    [
+        ("pd-slit", None),
+        ("cmos-single-aperture", None),  # 441 of 64 x 64 pixels, 3.4 MiB
+        ("ccd-lens", ROOM // (256 * 256 * 2)),
+        ("ccd-multi-aperture", LEAST),
+    ],
+)
+def test_the_sample_of_a_data_set_follows_from_the_size_of_its_frames(name, size):
+    assert sample_size(name, Store(PUBLISHED).pins()) == size
 
 
 def test_the_example_of_the_readme_runs_where_it_lies(bundle):
