@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -114,18 +114,24 @@ def solve_table(design: Any, roughness: Any, weight: float, errors: Floats, by: 
     UnusableDataError
         If the samples settle the nodes so badly that rounding would show in them.
     """
-    normal = (design.T @ design + weight * roughness).tocoo()
-    width = _width(normal)
-    if normal.shape[0] * (width + 1) > MAX_BAND:
+    stiff = _lower_entries(roughness)
+    width = max(_width_of_rows(design), stiff.width)
+    if design.shape[1] * (width + 1) > MAX_BAND:
+        normal, right = design.T @ design + weight * roughness, design.T @ errors
+        diagonal = normal.diagonal()
         solve, pivots = _factored_sparse(normal)
     else:
-        solve, pivots = _factored_band(_band(normal, width))
-    if not _settled(solve, pivots, normal.diagonal()):
+        every = np.ones(len(errors), dtype=np.bool_)
+        equations, right = _sums(design, every, errors, width)
+        equations[stiff.below, stiff.column] += weight * stiff.entries
+        diagonal = equations[0].copy()
+        solve, pivots = _factored_band(equations)
+    if not _settled(solve, pivots, diagonal):
         raise UnusableDataError(
             f"{by}: the samples settle the table too badly: its equations' condition is above "
             f"{WORST_CONDITION:g}, so that rounding would show in its numbers"
         )
-    return np.asarray(solve(design.T @ errors), dtype=np.float64)
+    return np.asarray(solve(right), dtype=np.float64)
 
 
 def errors_left_out(
@@ -153,20 +159,27 @@ def errors_left_out(
     parts : sequence of (ndarray, ndarray)
         Which samples are fitted and which left out, as masks (n,).
     """
+    from algorithms.models.lut.table_kernel import interpolate  # noqa: PLC0415 - Numba
+
     total, count = np.zeros(len(weights)), 0
-    stiff = roughness.tocoo()
+    stiff = _lower_entries(roughness)
+    width = max(_width_of_rows(design), stiff.width)
+    bends = np.zeros((width + 1, design.shape[1]), order="F")
+    bends[stiff.below, stiff.column] = stiff.entries
     for fitted, left_out in parts:
-        rows, asked, missed = design[fitted], design[left_out], errors[left_out]
-        normal, right = (rows.T @ rows).tocoo(), rows.T @ errors[fitted]
-        width = max(_width(normal), _width(stiff))
-        sums, bends = _band(normal, width), _band(stiff, width)
+        sums, right = _sums(design, fitted, errors, width)
+        missed = errors[left_out]
+        asked = np.empty(missed.shape)
         count += len(missed)
         for number, weight in enumerate(weights):
             equations = sums + weight * bends
             diagonal = equations[0].copy()
             solve, pivots = _factored_band(equations)
             if _settled(solve, pivots, diagonal):
-                total[number] += float(((asked @ solve(right) - missed) ** 2).sum())
+                interpolate(
+                    design.indptr, design.indices, design.data, left_out, solve(right), asked
+                )
+                total[number] += float(((asked - missed) ** 2).sum())
             else:
                 total[number] = np.inf
     return np.sqrt(total / count) if count else np.full(len(weights), np.inf)
@@ -180,20 +193,43 @@ def _settled(solve: Solver, pivots: Floats, diagonal: Floats) -> bool:
     return _condition(solve, np.sqrt(diagonal)) <= WORST_CONDITION
 
 
-def _width(matrix: Any) -> int:
-    """How far from the diagonal a sparse matrix has numbers."""
-    row, column = matrix.coords
-    return int((row - column).max())
+@dataclass(frozen=True)
+class _LowerEntries:
+    """Numbers of a sparse symmetric matrix, on and below its diagonal: how far below, and where."""
+
+    below: NDArray[np.int64]
+    column: NDArray[np.int64]
+    entries: Floats
+
+    @property
+    def width(self) -> int:
+        """How far from the diagonal there are numbers."""
+        return int(self.below.max(initial=0))
 
 
-def _band(matrix: Any, width: int) -> Floats:
-    """Lower band (width + 1, nodes) of a sparse symmetric matrix."""
-    row, column = matrix.coords
-    below = row - column
-    lower = below >= 0
-    band = np.zeros((width + 1, matrix.shape[0]))
-    band[below[lower], column[lower]] = matrix.data[lower]
-    return band
+def _lower_entries(matrix: Any) -> _LowerEntries:
+    found = matrix.tocoo()
+    row, column = found.coords
+    lower = row >= column
+    return _LowerEntries((row - column)[lower], column[lower], found.data[lower])
+
+
+def _width_of_rows(design: Any) -> int:
+    """How far apart the nodes around one sample are numbered."""
+    last = design.indices[design.indptr[1:] - 1]
+    return int((last - design.indices[design.indptr[:-1]]).max(initial=0))
+
+
+def _sums(
+    design: Any, fitted: NDArray[np.bool_], errors: Floats, width: int
+) -> tuple[Floats, Floats]:
+    """Lower band (width + 1, nodes) of the normal equations of some samples, and their right."""
+    from algorithms.models.lut.table_kernel import add_samples  # noqa: PLC0415 - Numba
+
+    band = np.zeros((width + 1, design.shape[1]), order="F")  # as LAPACK has it
+    right = np.zeros((design.shape[1], errors.shape[1]))
+    add_samples(design.indptr, design.indices, design.data, fitted, errors, band, right)
+    return band, right
 
 
 def _factored_band(band: Floats) -> tuple[Solver, Floats]:
@@ -201,13 +237,13 @@ def _factored_band(band: Floats) -> tuple[Solver, Floats]:
 
     The band is overwritten.
     """
-    from scipy.linalg import cho_solve_banded, cholesky_banded  # noqa: PLC0415 - at the first fit
+    # not by SciPy's functions around them, whose checks take longer than small equations
+    from scipy.linalg.lapack import dpbtrf, dpbtrs  # noqa: PLC0415 - SciPy, at the first fit only
 
-    try:
-        factor = cholesky_banded(band, overwrite_ab=True, lower=True, check_finite=False)
-    except np.linalg.LinAlgError:  # singular but for rounding
+    factor, failed = dpbtrf(band, lower=True, overwrite_ab=True)
+    if failed:  # singular but for rounding
         return np.zeros_like, np.zeros(band.shape[1])
-    return partial(cho_solve_banded, (factor, True), check_finite=False), factor[0] ** 2
+    return lambda right: np.asarray(dpbtrs(factor, right, lower=True)[0]), factor[0] ** 2
 
 
 def _factored_sparse(normal: Any) -> tuple[Solver, Floats]:

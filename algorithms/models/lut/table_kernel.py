@@ -1,11 +1,15 @@
-"""Numbers between the nodes of a table, many places at a time."""
+"""Numbers between the nodes of a table, many places at a time, and the equations of the nodes."""
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+
+Places = NDArray[np.int32]
+Chosen = NDArray[np.bool_]
 
 
 @compiled
@@ -91,3 +95,61 @@ def corrected_along_rows(
                 low = (1.0 - w) * rows[i, term, k] + w * rows[i + 1, term, k] - high
                 high = before + high * twice
             out[n, k] = nominal[n, k] + (low + high * x)
+
+
+@compiled
+def add_samples(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    starts: Places,
+    nodes: Places,
+    shares: Floats,
+    chosen: Chosen,
+    errors: Floats,
+    band: Floats,
+    right: Floats,
+) -> None:
+    """Add some samples to normal equations, one after the other.
+
+    Parameters
+    ----------
+    starts, nodes, shares : ndarray, shapes (n + 1,), (E,) and (E,)
+        Of each sample the nodes around it, in ascending order, and their shares, as the rows of
+        a sparse matrix.
+    chosen : ndarray of bool, shape (n,)
+        Samples to add.
+    errors : ndarray, shape (n, 2)
+        Wanted at each sample.
+    band : ndarray, shape (W + 1, nodes)
+        Products of shares, by how far they are below the diagonal; added to.
+    right : ndarray, shape (nodes, 2)
+        Products of shares and errors; added to.
+    """
+    for sample in range(len(chosen)):
+        if not chosen[sample]:
+            continue
+        start = starts[sample]
+        for entry in range(start, starts[sample + 1]):
+            node, share = nodes[entry], shares[entry]
+            for k in range(right.shape[1]):
+                right[node, k] += share * errors[sample, k]
+            for other in range(start, entry + 1):
+                band[node - nodes[other], nodes[other]] += share * shares[other]
+
+
+@compiled
+def interpolate(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    starts: Places, nodes: Places, shares: Floats, chosen: Chosen, table: Floats, out: Floats
+) -> None:
+    """Write what nodes (nodes, 2) give at some samples, one row each, into `out` (m, 2).
+
+    The samples as `add_samples` takes them.
+    """
+    row = 0
+    for sample in range(len(chosen)):
+        if not chosen[sample]:
+            continue
+        for k in range(table.shape[1]):
+            value = 0.0
+            for entry in range(starts[sample], starts[sample + 1]):
+                value += shares[entry] * table[nodes[entry], k]
+            out[row, k] = value
+        row += 1
