@@ -7,6 +7,7 @@ processor, as those of the C library's exponential and of BLAS are not.
 from __future__ import annotations
 
 from math import factorial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +23,6 @@ LINEAR, LOG_SIGMOID, TANH = 0, 1, 2
 
 _BLOCK = 64
 """Samples whose activations stay in the first cache; inner loops run along them."""
-_ROWS = 16
-"""Rows of derivatives that stay in the first cache; a multiple of four that divides a block."""
 _TOGETHER = 8
 """Products are summed up in matrices of a multiple of so many columns."""
 _FARTHEST = 32.0
@@ -38,6 +37,24 @@ _BETTER = 0.999
 _DAMPING, _LESS, _MORE = 1e-2, 0.1, 10.0
 _LEAST, _MOST = 1e-14, 1e10
 """Damping, in units of the mean squared derivative: where it starts, how it changes, its limits."""
+
+
+class _Room(NamedTuple):
+    """Memory that the steps of a training share; the numbers between them are what it says.
+
+    `units` and `held` (blocks, sum of widths, _BLOCK): answers of all units at the weights last
+    tried, of the samples fitted and held out. `rows` (_BLOCK, outputs, >= C): derivatives of one
+    block, sample by sample and output by output, then the errors; an odd number of cache lines
+    long, so that rows do not drive each other out of the first cache. Zeros where no weight is, and
+    where a weight is of another output.
+    """
+
+    units: Floats
+    held: Floats
+    slopes: Floats
+    rows: Floats
+    products: Floats
+    factor: Floats
 
 
 @compiled
@@ -144,7 +161,8 @@ def _derivatives(  # noqa: PLR0917 - Numba takes no keyword-only ones
 ) -> None:
     """Derive one output of samples by all weights, rows (b, P): the chain rule backwards.
 
-    `units` and `slopes` (sum of widths, _BLOCK): answers, and derivatives by what they answer.
+    Rows keep what they hold of weights of other outputs, which is to be zero. `units` and `slopes`
+    (sum of widths, _BLOCK): answers, and derivatives by what they answer.
     """
     at, before, size = len(weights), len(slopes), len(rows)
     slopes[before - widths[-1] :] = 0.0
@@ -164,6 +182,8 @@ def _derivatives(  # noqa: PLR0917 - Numba takes no keyword-only ones
                     weight = weights[last_at + target * (width + 1) + unit]
                     for i in range(len(slope)):
                         slope[i] += above[i] * weight
+            elif unit != output:
+                continue  # the answer does not depend on weights of another output
             _lean(slope, units[before + unit, :size], kinds[layer])
             place = at + unit * (sources + 1)
             for source in range(sources):
@@ -180,6 +200,7 @@ def network_derivatives(
     """Write derivatives (N, O, P) of outputs by weights into `out`, as `network_values`."""
     everything = np.sum(widths)
     units, slopes = np.empty((everything, _BLOCK)), np.empty((everything, _BLOCK))
+    out[:] = 0.0
     for start in range(0, len(inputs), _BLOCK):
         size = min(_BLOCK, len(inputs) - start)
         _forward(inputs[start : start + size], weights, widths, kinds, units)
@@ -192,34 +213,35 @@ def network_derivatives(
 def _mean_square(  # noqa: PLR0917 - Numba takes no keyword-only ones
     inputs: Floats, wanted: Floats, weights: Floats, widths: Layers, kinds: Layers, units: Floats
 ) -> float:
-    """Mean over samples (n, F) of squared errors, outputs added."""
-    everything, outputs = len(units), wanted.shape[1]
-    total = 0.0
+    """Mean over samples (n, F) of squared errors, outputs added; all units' answers in `units`."""
+    outputs = wanted.shape[1]
+    first, total = units.shape[1] - outputs, 0.0
     for start in range(0, len(inputs), _BLOCK):
-        size = min(_BLOCK, len(inputs) - start)
-        _forward(inputs[start : start + size], weights, widths, kinds, units)
+        size, block = min(_BLOCK, len(inputs) - start), units[start // _BLOCK]
+        _forward(inputs[start : start + size], weights, widths, kinds, block)
         for output in range(outputs):
             for i in range(size):
-                off = units[everything - outputs + output, i] - wanted[start + i, output]
+                off = block[first + output, i] - wanted[start + i, output]
                 total += off * off
     return total / len(inputs)
 
 
 @compiled
 def _add_products(products: Floats, rows: Floats) -> None:
-    """Add products of the columns of rows (R, C) to the upper triangle (C, C).
+    """Add products of the first columns of rows (R, >= C) to the upper triangle (C, C).
 
     Four lines at a time share what is read of four rows; they start and end (C) at multiples of
     `_TOGETHER`, so that the compiler takes several elements at a time.
     """
-    for p in range(0, len(products), 4):
+    wide = len(products)
+    for p in range(0, wide, 4):
         left = p // _TOGETHER * _TOGETHER
         # sliced one by one: contiguous for the compiler
         line, line1, line2 = products[p, left:], products[p + 1, left:], products[p + 2, left:]
         line3 = products[p + 3, left:]
         for r in range(0, len(rows), 4):
-            row, row1, row2 = rows[r, left:], rows[r + 1, left:], rows[r + 2, left:]
-            row3 = rows[r + 3, left:]
+            row, row1 = rows[r, left:wide], rows[r + 1, left:wide]
+            row2, row3 = rows[r + 2, left:wide], rows[r + 3, left:wide]
             at, at1, at2, at3 = rows[r, p:], rows[r + 1, p:], rows[r + 2, p:], rows[r + 3, p:]
             a, b, c, d = at[0], at1[0], at2[0], at3[0]
             e, f, g, h = at[1], at1[1], at2[1], at3[1]
@@ -234,27 +256,27 @@ def _add_products(products: Floats, rows: Floats) -> None:
 
 
 @compiled
-def _normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    inputs: Floats, wanted: Floats, weights: Floats, widths: Layers, kinds: Layers, products: Floats
+def _normal_equations(
+    wanted: Floats, weights: Floats, widths: Layers, kinds: Layers, room: _Room
 ) -> None:
-    """Mean products (C, C; the upper triangle) of derivatives; with the errors in column P < C."""
-    count, outputs, everything = len(weights), wanted.shape[1], np.sum(widths)
+    """Mean products (C, C; the upper triangle) of derivatives; with the errors in column P < C.
+
+    At the weights whose answers `room.units` holds.
+    """
+    products, rows = room.products, room.rows
+    count, outputs, everything = len(weights), wanted.shape[1], len(room.slopes)
     products[:] = 0.0
-    rows = np.zeros((_BLOCK, outputs, len(products)))  # sample by sample, output by output
-    listed = rows.reshape(-1, len(products))
-    units, slopes = np.empty((everything, _BLOCK)), np.empty((everything, _BLOCK))
-    for start in range(0, len(inputs), _BLOCK):
-        size = min(_BLOCK, len(inputs) - start)
-        _forward(inputs[start : start + size], weights, widths, kinds, units)
+    listed = rows.reshape(-1, rows.shape[2])
+    for start in range(0, len(wanted), _BLOCK):
+        size, units = min(_BLOCK, len(wanted) - start), room.units[start // _BLOCK]
         for output in range(outputs):
             found = rows[:size, output]
-            _derivatives(units, output, weights, widths, kinds, slopes, found[:, :count])
+            _derivatives(units, output, weights, widths, kinds, room.slopes, found[:, :count])
             answer = units[everything - outputs + output, :size]
             found[:, count] = answer - wanted[start : start + size, output]
         rows[size:] = 0.0
-        for first in range(0, size * outputs, _ROWS):
-            _add_products(products, listed[first : first + _ROWS])
-    products /= len(inputs)
+        _add_products(products, listed[: (size * outputs + 3) // 4 * 4])
+    products /= len(wanted)
 
 
 @compiled
@@ -266,31 +288,44 @@ def _lower(  # noqa: PLR0917 - Numba takes no keyword-only ones
     kinds: Layers,
     cost: float,
     damping: float,
-    units: Floats,
+    room: _Room,
     trial: Floats,
 ) -> tuple[float, float]:
     """Step from weights `here` to `trial`: its mean square error, and the damping it took.
 
-    The error is `cost` itself where no step lowers it.
+    The error is `cost` itself where no step lowers it. `room.units` holds the answers at `here`,
+    then those at `trial`.
     """
-    count = len(here)
-    wide, factor = (count // _TOGETHER + 1) * _TOGETHER, np.empty((count, count))
-    products = np.empty((wide, wide))
-    _normal_equations(inputs, wanted, here, widths, kinds, products)
+    count, products = len(here), room.products
+    _normal_equations(wanted, here, widths, kinds, room)
     normal, gradient = products[:count, :count], products[:count, count].copy()
     mean = 0.0
     for p in range(count):
         mean += normal[p, p]
     mean /= count
     while damping <= _MOST:
-        if solve(normal, damping * mean, gradient, factor, trial):
+        if solve(normal, damping * mean, gradient, room.factor, trial):
             for p in range(count):
                 trial[p] = here[p] - trial[p]
-            found = _mean_square(inputs, wanted, trial, widths, kinds, units)
+            found = _mean_square(inputs, wanted, trial, widths, kinds, room.units)
             if found < cost:
                 return found, damping
         damping *= _MORE
     return cost, damping
+
+
+@compiled
+def _make_room(count: int, fitted: int, held: int, widths: Layers) -> _Room:
+    """Give memory for training `count` weights on so many samples fitted and held out."""
+    everything, wide = np.sum(widths), (count // _TOGETHER + 1) * _TOGETHER
+    return _Room(
+        np.empty((fitted // _BLOCK + 1, everything, _BLOCK)),
+        np.empty((held // _BLOCK + 1, everything, _BLOCK)),
+        np.empty((everything, _BLOCK)),
+        np.zeros((_BLOCK, widths[-1], (wide // _TOGETHER | 1) * _TOGETHER)),
+        np.empty((wide, wide)),
+        np.empty((count, count)),
+    )
 
 
 @compiled
@@ -328,21 +363,21 @@ def train(  # noqa: PLR0917 - Numba takes no keyword-only ones
     taken : int
         Steps to those weights.
     """
-    units = np.empty((np.sum(widths), _BLOCK))
+    room = _make_room(len(weights), len(inputs), len(held_inputs), widths)
     here, trial = weights.copy(), np.empty(len(weights))
-    cost = _mean_square(inputs, wanted, here, widths, kinds, units)
-    best = _mean_square(held_inputs, held_wanted, here, widths, kinds, units)
+    cost = _mean_square(inputs, wanted, here, widths, kinds, room.units)
+    best = _mean_square(held_inputs, held_wanted, here, widths, kinds, room.held)
     fitted, taken, damping, stale = cost, 0, _DAMPING, 0
     for number in range(1, steps + 1):
         if best <= goal or stale >= patience:
             break
-        found, damping = _lower(inputs, wanted, here, widths, kinds, cost, damping, units, trial)
+        found, damping = _lower(inputs, wanted, here, widths, kinds, cost, damping, room, trial)
         if not found < cost:
             break
         damping = max(damping * _LESS, _LEAST)
         here[:] = trial
         cost = found
-        held = _mean_square(held_inputs, held_wanted, here, widths, kinds, units)
+        held = _mean_square(held_inputs, held_wanted, here, widths, kinds, room.held)
         stale += 1
         if held < best:
             if held < best * _BETTER:
