@@ -72,4 +72,8 @@ def list_length(geometry: SensorGeometry, by: str) -> int:
 def _fullest(places: Floats, size: Floats) -> int:
     """Most places (A, 2) in a window of this size that is centred on one of them."""
     half = size / 2.0
-    return max(int((np.abs(places - place) <= half).all(axis=1).sum()) for place in places)
+    near = [
+        np.abs(column[:, None] - column) <= reach
+        for column, reach in zip(places.T, half, strict=True)
+    ]
+    return int((near[0] & near[1]).sum(axis=1).max())
