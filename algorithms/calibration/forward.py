@@ -52,11 +52,10 @@ class ForwardModel(ParametricModel):
 
     def turns(self, vector: Floats) -> tuple[float, float, float]:
         """Rotation about the boresight and tilts about x and y of the head, deg; 0 if not free."""
-        found = {
-            one.name: float(value)
-            for one, value in zip(self.free_parameters(), vector, strict=True)
-        }
-        rotation, tilt_x, tilt_y = (found.get(turn.name, 0.0) for turn in TURNS)
+        names = [one.name for one in self.free_parameters()]
+        rotation, tilt_x, tilt_y = (
+            float(vector[names.index(turn.name)]) if turn.name in names else 0.0 for turn in TURNS
+        )
         return rotation, tilt_x, tilt_y
 
     def slopes(self, sun: Floats) -> Floats | float:

@@ -140,7 +140,7 @@ class ParametricModel(CalibratedModel):
             reason = "no finite solution" if best is None else best.message
             raise UnusableDataError(f"{by}: the fit did not converge ({reason})")
 
-        jacobian = derivatives(best.x)
+        jacobian = best.jac
         lengths = np.linalg.norm(jacobian, axis=0)
         values = (
             np.linalg.svd(jacobian / lengths, compute_uv=False)
@@ -155,7 +155,7 @@ class ParametricModel(CalibratedModel):
             )
         moved = self._move(best.x * scales, features, sun, axes, context)
         covariance = parameter_covariance(
-            jacobian.reshape(-1, 2, count), residuals(best.x).reshape(-1, 2), moved
+            jacobian.reshape(-1, 2, count), best.fun.reshape(-1, 2), moved
         )
         self.vector_ = np.asarray(best.x * scales)
         self.covariance_ = np.asarray(covariance * np.outer(scales, scales))

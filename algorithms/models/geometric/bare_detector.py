@@ -15,6 +15,9 @@ from algorithms.calibration.projection import ProjectionModel
 from algorithms.contract import AboutModel, FeatureKind, Floats
 from algorithms.documented import documented
 
+_ELEMENTS = "h11", "h12", "h13", "h21", "h22", "h23", "h31", "h32"
+_FREE = tuple(FreeParameter(name, "", 1.0) for name in (*_ELEMENTS, "k1", "k2"))
+
 
 @documented
 @dataclass
@@ -66,8 +69,7 @@ class BareDetector(ProjectionModel, ForwardModel):
 
     def free_parameters(self) -> Sequence[FreeParameter]:
         """In focal lengths and tangents, the head's turns among them."""
-        elements = ("h11", "h12", "h13", "h21", "h22", "h23", "h31", "h32")
-        return tuple(FreeParameter(name, "", 1.0) for name in (*elements, "k1", "k2"))
+        return _FREE
 
     def starts(self, features: Floats, sun: Floats, context: Columns) -> Sequence[Sequence[float]]:
         """Give the affine map that fits best."""

@@ -137,7 +137,7 @@ class FacesFit:
                 weighing = ResidualWeights.of(
                     modelled, self._light - modelled, self._used, len(start)
                 )
-        derivatives = jacobian(solution.x)
+        derivatives = np.asarray(solution.jac, dtype=np.float64)
         lengths = np.linalg.norm(derivatives, axis=0)
         values = np.linalg.svd(derivatives / np.where(lengths > 0, lengths, 1.0), compute_uv=False)
         if not (np.isfinite(solution.x).all() and values[-1] * WORST_SOLUTION > values[0]):
