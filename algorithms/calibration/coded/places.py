@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -51,14 +53,10 @@ def offsets_of(spots: Floats, apertures: NDArray[np.int64], places: Floats) -> F
     if len(seen) < 2 or len(holes) <= len(seen):
         return offsets
     frame_of, frames = np.unique(frames, return_inverse=True)
-    share = np.zeros((len(frame_of), len(seen)))
-    np.add.at(share, (frames, index), 1.0)
-    number = share.sum(axis=1)
-    matrix = np.diag(share.sum(axis=0)) - share.T @ (share / number[:, None])
     away = _from_middle(found - own, frames)
     right = np.zeros((len(seen), 2))
     np.add.at(right, index, away)
-    values, vectors = np.linalg.eigh(matrix)
+    values, vectors = _modes(frames.tobytes(), index.tobytes())
     turned = vectors.T @ right
     freedom = max(2 * (len(holes) - len(frame_of)), 1)
     ratio, total = 1.0, float((away**2).sum())
@@ -72,6 +70,22 @@ def offsets_of(spots: Floats, apertures: NDArray[np.int64], places: Floats) -> F
         ratio = float(np.clip(noise / size, *_RATIOS)) if size > 0 else _RATIOS[1]
     offsets[seen] = vectors @ answer
     return offsets
+
+
+# what is seen is mostly what was seen the round before, whose places hardly differ
+@lru_cache(maxsize=4)
+def _modes(frames: bytes, apertures: bytes) -> tuple[Floats, Floats]:
+    """Eigenvalues (A,) and vectors (A, A) of sightings less what frames' displacements take.
+
+    By the frame and the aperture of each sighting, numbered from 0, as bytes of integers.
+    """
+    frame, aperture = (np.frombuffer(one, dtype=np.int64) for one in (frames, apertures))
+    share = np.zeros((frame.max() + 1, aperture.max() + 1))
+    np.add.at(share, (frame, aperture), 1.0)
+    number = share.sum(axis=1)
+    matrix = np.diag(share.sum(axis=0)) - share.T @ (share / number[:, None])
+    values, vectors = np.linalg.eigh(matrix)
+    return np.asarray(values), np.asarray(vectors)
 
 
 def _sightings(
