@@ -64,15 +64,16 @@ def errors_of_orders(
     """
     total, open_to_noise, count = np.zeros(len(sizes)), np.zeros(len(sizes)), 0
     for fitted, left_out in splits(fold):
-        count += int(left_out.sum())
+        asked, missed = design[left_out], wanted[left_out]
+        count += len(asked)
         q, r, usable = _factor(design[fitted], sizes)
         error = np.full(len(sizes), np.inf)
         if usable:
             aim = q.T @ wanted[fitted]
-            open_to_noise[:usable] += _variances(r, design[left_out], sizes[:usable])
+            open_to_noise[:usable] += _variances(r, asked, sizes[:usable])
         for number, size in enumerate(sizes[:usable]):
             fit = np.linalg.solve(r[:size, :size], aim[:size])
-            off = design[left_out][:, :size] @ fit - wanted[left_out]
+            off = asked[:, :size] @ fit - missed
             error[number] = float((off**2).sum())
         total += error
     error, left = total / max(count, 1), open_to_noise / max(count, 1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -299,14 +300,21 @@ def _degree(terms: int) -> int:
 
 def _as_powers(coefficients: Floats, degree: int) -> Floats:
     """Coefficients (2, n + 1, n + 1) of ``u_y^j u_x^k`` from those (2, terms) of `_powers`."""
-    monomials = np.zeros((degree + 1, degree + 1))
-    for k in range(degree + 1):
-        powers = chebyshev.cheb2poly(np.eye(degree + 1)[k])
-        monomials[: len(powers), k] = powers
+    monomials = _monomials(degree)
     products = np.zeros((2, degree + 1, degree + 1))
     for term, (i, j) in enumerate(_powers(degree)):
         products[:, j, i] = coefficients[:, term]
     return np.asarray(monomials @ products @ monomials.T)
+
+
+@lru_cache(maxsize=16)
+def _monomials(degree: int) -> Floats:
+    """Coefficients (n + 1, n + 1) of powers, by rows, in each of Chebyshev's polynomials."""
+    found = np.zeros((degree + 1, degree + 1))
+    for k in range(degree + 1):
+        powers = chebyshev.cheb2poly(np.eye(degree + 1)[k])
+        found[: len(powers), k] = powers
+    return found
 
 
 def _surface_terms(scaled: Floats, degree: int) -> Floats:

@@ -162,9 +162,9 @@ class FacesFit:
     def _split(self, vector: Floats, shapes: int) -> tuple[Floats, Floats, Floats, Floats]:
         """Gains (K,), tilts (K, 2), free coefficients (shapes, 3) and slopes (3,)."""
         faces = len(self.nominal)
-        ends = np.cumsum([faces, 2 * faces, 3 * shapes])
-        gains, tilts, shape, slopes = np.split(vector, ends)
-        return gains, tilts.reshape(faces, 2), shape.reshape(shapes, 3), slopes
+        tilts, shape = vector[faces : 3 * faces], vector[3 * faces : 3 * (faces + shapes)]
+        slopes = vector[3 * (faces + shapes) :]
+        return vector[:faces], tilts.reshape(faces, 2), shape.reshape(shapes, 3), slopes
 
     def _derivatives(self, vector: Floats, shapes: int) -> Floats:
         """(n, K, P) of the modelled signals, by central differences.
