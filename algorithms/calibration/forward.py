@@ -80,14 +80,13 @@ class ForwardModel(ParametricModel):
         context: Columns,
     ) -> Floats:
         """(n, 2) features' errors, as the drawing turns them into angles, radians."""
+        from algorithms.calibration.forward_kernel import across_axes  # noqa: PLC0415 - Numba
+
         del context
         off = features - self.cast(vector, inward(sun, self.turns(vector)))
         steps = off * self.slopes(sun) * sun[:, 2:]  # ds = s_z dt, less what runs along s
-        across = np.empty_like(steps)
-        for column, axis in enumerate(axes):
-            np.add(steps[:, 0] * axis[:, 0], steps[:, 1] * axis[:, 1], out=across[:, column])
-        across[~np.isfinite(across)] = _UNDEFINED_RAD
-        return across
+        across_axes(steps, *axes, _UNDEFINED_RAD)
+        return np.asarray(steps)
 
 
 def tangents_cast(forward: Callable[[Floats], Floats], wanted: Floats, start: Floats) -> Floats:
@@ -154,15 +153,11 @@ def inward(sun: Floats, turns: tuple[float, float, float]) -> Floats:
 
     The inverse of `outward`; NaN where the Sun is behind the head.
     """
-    x, y, z = sun.T
-    (cz, sz), (cx, sx), (cy, sy) = (circle(turn) for turn in turns)
-    y, z = cx * y + sx * z, cx * z - sx * y
-    x, z = cy * x - sy * z, sy * x + cy * z
-    x, y = cz * x + sz * y, cz * y - sz * x
-    z = np.where(z > 0, z, np.nan)
+    from algorithms.calibration.forward_kernel import tangents_in_head  # noqa: PLC0415 - Numba
+
+    rotation, tilt_x, tilt_y = (circle(turn) for turn in turns)
     tangents = np.empty((len(sun), 2))
-    np.divide(x, z, out=tangents[:, 0])
-    np.divide(y, z, out=tangents[:, 1])
+    tangents_in_head(sun, rotation, tilt_x, tilt_y, tangents)
     return tangents
 
 

@@ -85,18 +85,9 @@ class BareDetector(ProjectionModel, ForwardModel):
 
     def cast(self, vector: Floats, tangents: Floats) -> Floats:
         """(N, 2) places in px of tangents (N, 2); NaN where the detector does not reach."""
-        x, y = tangents.T
-        square = x * x + y * y
-        stretch = 1.0 + square * (vector[8] + square * vector[9])
-        x, y = x * stretch, y * stretch
-        depth = vector[6] * x + vector[7] * y + 1.0
-        with np.errstate(invalid="ignore"):
-            depth = np.where(depth > 0, depth, np.nan)
-        slope, centre = self.drawing()
-        return np.stack(
-            [
-                (vector[0] * x + vector[1] * y + vector[2]) / depth / slope + centre[0],
-                (vector[3] * x + vector[4] * y + vector[5]) / depth / slope + centre[1],
-            ],
-            axis=1,
-        )
+        from algorithms.models.geometric.projection_kernel import cast_by_homography  # noqa: PLC0415 - Numba
+
+        slope, (left, low) = self.drawing()
+        places = np.empty((len(tangents), 2))
+        cast_by_homography(tangents, vector, slope, (float(left), float(low)), places)
+        return places

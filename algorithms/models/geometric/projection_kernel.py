@@ -96,3 +96,38 @@ def project_and_turn(
             sun[start + i, 0] = (across[i] * cos_beta - one[i] * sin_beta) * level
             sun[start + i, 1] = along[i] * cos_alpha - other[i] * sin_alpha
             sun[start + i, 2] = (one[i] * cos_beta + across[i] * sin_beta) * level
+
+
+@compiled
+def cast_by_homography(
+    tangents: Floats, numbers: Floats, slope: float, centre: tuple[float, float], out: Floats
+) -> None:
+    """Places (N, 2) of stretched tangents (N, 2) on a plane behind a pinhole, into `out`.
+
+    Parameters
+    ----------
+    tangents : ndarray, shape (N, 2)
+        In the mask's frame.
+    numbers : ndarray, shape (10,)
+        The homography's first eight elements by rows, and two coefficients of the stretch.
+    slope : float
+        Tangent for one unit of place.
+    centre : tuple of two float
+        Place (x, y) on the boresight.
+    out : ndarray, shape (N, 2)
+        Overwritten; a NaN row where the plane does not reach.
+    """
+    left, low = centre
+    for i in range(len(tangents)):
+        x, y = tangents[i, 0], tangents[i, 1]
+        square = x * x + y * y
+        stretch = 1.0 + square * (numbers[8] + square * numbers[9])
+        x, y = x * stretch, y * stretch
+        depth = numbers[6] * x + numbers[7] * y + 1.0
+        if depth > 0:
+            across = (numbers[0] * x + numbers[1] * y + numbers[2]) / depth
+            along = (numbers[3] * x + numbers[4] * y + numbers[5]) / depth
+            out[i, 0] = np.divide(across, slope) + left
+            out[i, 1] = np.divide(along, slope) + low
+        else:
+            out[i, 0] = out[i, 1] = np.nan
