@@ -12,7 +12,6 @@ import numpy as np
 from algorithms.calibration.calibrated import Columns
 from algorithms.calibration.parametric import RADIAN_DEG, FreeParameter, ParametricModel
 from algorithms.contract import Floats
-from algorithms.row_arithmetic import normalise
 
 SETTLED = 1e-9
 """Last step of an inversion, in tangents of the angles, at which a direction is found: 6e-8 deg."""
@@ -80,7 +79,7 @@ class ForwardModel(ParametricModel):
         context: Columns,
     ) -> Floats:
         """(n, 2) features' errors, as the drawing turns them into angles, radians."""
-        from algorithms.calibration.forward_kernel import across_axes  # noqa: PLC0415 - Numba
+        from algorithms.calibration.parametric_kernel import across_axes  # noqa: PLC0415 - Numba
 
         del context
         off = features - self.cast(vector, inward(sun, self.turns(vector)))
@@ -138,14 +137,12 @@ def outward(tangents: Floats, turns: tuple[float, float, float]) -> Floats:
 
     ``R_x(tilt_x) R_y(tilt_y) R_z(rotation)``; a NaN row where the Sun is behind.
     """
-    x, y = tangents.T
-    (cz, sz), (cx, sx), (cy, sy) = (circle(turn) for turn in turns)
-    x, y = cz * x - sz * y, sz * x + cz * y
-    x, z = cy * x + sy, cy - sy * x
-    y, z = cx * y - sx * z, sx * y + cx * z
-    with np.errstate(invalid="ignore"):
-        z = np.where(z > 0, z, np.nan)
-    return normalise(np.stack([x, y, z], axis=1))
+    from algorithms.calibration.parametric_kernel import directions_outside  # noqa: PLC0415 - Numba
+
+    rotation, tilt_x, tilt_y = (circle(turn) for turn in turns)
+    found = np.empty((len(tangents), 3))
+    directions_outside(tangents[:, 0], tangents[:, 1], rotation, tilt_x, tilt_y, found)
+    return found
 
 
 def inward(sun: Floats, turns: tuple[float, float, float]) -> Floats:
@@ -153,7 +150,7 @@ def inward(sun: Floats, turns: tuple[float, float, float]) -> Floats:
 
     The inverse of `outward`; NaN where the Sun is behind the head.
     """
-    from algorithms.calibration.forward_kernel import tangents_in_head  # noqa: PLC0415 - Numba
+    from algorithms.calibration.parametric_kernel import tangents_in_head  # noqa: PLC0415 - Numba
 
     rotation, tilt_x, tilt_y = (circle(turn) for turn in turns)
     tangents = np.empty((len(sun), 2))

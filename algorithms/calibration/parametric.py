@@ -229,16 +229,9 @@ def across(found: Floats, sun: Floats, first: Floats, second: Floats) -> Floats:
 
     The length is the angle itself, so that a direction behind is farther off than one beside.
     """
-    off = np.empty((len(found), 2))
-    for column, axis in enumerate((first, second)):
-        off[:, column] = _dot(found, axis)
-    defined = np.isfinite(off)
-    sine = np.sqrt(off[:, 0] * off[:, 0] + off[:, 1] * off[:, 1])
-    angle = np.arctan2(sine, _dot(found, sun))
-    ratio = np.divide(angle, sine, out=np.ones_like(sine), where=sine > 0)
-    return np.where(defined, off * ratio[:, None], _UNDEFINED_RAD)
+    from algorithms.calibration.parametric_kernel import offsets_across, stretch_to_angles  # noqa: PLC0415 - Numba
 
-
-def _dot(one: Floats, other: Floats) -> Floats:
-    """Products (N,) of rows (N, 3): column by column, as rows are too short for NumPy's loops."""
-    return one[:, 0] * other[:, 0] + one[:, 1] * other[:, 1] + one[:, 2] * other[:, 2]
+    off, lengths = np.empty((len(found), 2)), np.empty((2, len(found)))
+    offsets_across(found, sun, first, second, off, lengths)
+    stretch_to_angles(off, lengths[0], np.arctan2(*lengths), _UNDEFINED_RAD)
+    return off

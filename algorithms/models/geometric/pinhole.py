@@ -19,7 +19,6 @@ from algorithms.inputs import require_samples
 from algorithms.models.nominal_projection import (
     POSITIONS,
 )
-from algorithms.row_arithmetic import normalise
 
 
 @documented
@@ -104,6 +103,8 @@ class BuiltPinhole(ProjectionModel, ParametricModel):
 
     def directions(self, vector: Floats, features: Floats, context: Columns) -> Floats:
         """(N, 3) directions of features (N, 2)."""
+        from algorithms.calibration.parametric_kernel import directions_outside  # noqa: PLC0415 - Numba
+
         del context
         focal_x, focal_y = vector[:2]
         x = (features[:, 0] - vector[5]) * (self.unit_mm / focal_x)
@@ -111,9 +112,7 @@ class BuiltPinhole(ProjectionModel, ParametricModel):
         if self.mirrored_:
             x = -x
         turns = np.radians(vector[2:5])
-        (cz, cx, cy), (sz, sx, sy) = np.cos(turns), np.sin(turns)
-        x, y = cz * x - sz * y, sz * x + cz * y
-        x, z = cy * x + sy, cy - sy * x
-        y, z = cx * y - sx * z, sx * y + cx * z
-        z[~(z > 0)] = np.nan  # behind the detector
-        return normalise(np.stack([x, y, z], axis=1))
+        rotation, tilt_x, tilt_y = zip(np.cos(turns).tolist(), np.sin(turns).tolist(), strict=True)
+        found = np.empty((len(features), 3))
+        directions_outside(x, y, rotation, tilt_x, tilt_y, found)
+        return found
