@@ -1,8 +1,8 @@
 """Fits of a slit's diffracted image to the pixels of a line, one spot at a time.
 
 Lengths are pixels of the line. An image is even about its middle: it is kept for places from 0 on,
-with its first and second integrals, `light` (3, n): what a pixel or a slanted slit averages is a
-difference of those.
+with its first and second integrals and its slope to the next place, `light` (n, 4): what a pixel or
+a slanted slit averages is a difference of those.
 """
 
 from __future__ import annotations
@@ -68,11 +68,11 @@ def _image(  # noqa: PLR0917 - Numba takes no keyword-only ones
     chords: Floats,
     table: Floats,
 ) -> None:
-    """Write what a slit of half width `half` casts, and its integrals from the middle on.
+    """Write what a slit of half width `half` casts, its integrals from the middle on and its slope.
 
     Light of wavelength l spreads over ``sqrt(l spread)``; the Sun blurs by `blur` on each side.
     """
-    n = light.shape[1]
+    n = len(light)
     sharp = np.zeros(n)
     for w in range(len(waves)):
         scale = math.sqrt(2.0 / (waves[w, 0] * spread))
@@ -83,66 +83,63 @@ def _image(  # noqa: PLR0917 - Numba takes no keyword-only ones
             if other < 0.0:
                 d, e = -d, -e
             sharp[i] += waves[w, 1] * 0.5 * ((c + d) ** 2 + (s + e) ** 2)
+    rims = chords[:, 0] * blur / step
     for i in range(n):
         total = 0.0
         for q in range(len(chords)):
-            place = abs(i + chords[q, 0] * blur / step)
+            place = abs(i + rims[q])
             k = int(place)
             if k + 1 < n:
                 total += chords[q, 1] * (sharp[k] + (place - k) * (sharp[k + 1] - sharp[k]))
-        light[0, i] = total
-    light[1, 0] = light[2, 0] = 0.0
+        light[i, 0] = total
+    light[0, 1] = light[0, 2] = light[n - 1, 3] = 0.0
     for i in range(1, n):
-        before, here = light[0, i - 1], light[0, i]
-        light[1, i] = light[1, i - 1] + 0.5 * step * (before + here)
-        rise = light[1, i - 1] * step + step * step * (before / 3.0 + here / 6.0)
-        light[2, i] = light[2, i - 1] + rise
+        before, here = light[i - 1, 0], light[i, 0]
+        light[i - 1, 3] = (here - before) / step
+        light[i, 1] = light[i - 1, 1] + 0.5 * step * (before + here)
+        rise = light[i - 1, 1] * step + step * step * (before / 3.0 + here / 6.0)
+        light[i, 2] = light[i - 1, 2] + rise
 
 
 @compiled
-def _at(light: Floats, step: float, place: float, order: int) -> float:
-    """Light (order 0) or its first or second integral at a place, linear between samples."""
+def _at(light: Floats, step: float, place: float) -> tuple[float, float, float]:
+    """Light at a place and its first and second integrals, linear between samples."""
     far = abs(place) / step
-    i, n = int(far), light.shape[1]
-    sign = -1.0 if order == 1 and place < 0.0 else 1.0
+    i, n = int(far), len(light)
     if i + 1 >= n:
-        beyond = (far - (n - 1)) * step
-        last = (0.0, light[1, n - 1], light[2, n - 1] + beyond * light[1, n - 1])
-        return float(sign * last[order])
-    t = (far - i) * step
-    here, slope = light[0, i], (light[0, i + 1] - light[0, i]) / step
-    if order == 0:
-        return float(here + slope * t)
-    if order == 1:
-        return float(sign * (light[1, i] + here * t + 0.5 * slope * t * t))
-    return float(light[2, i] + light[1, i] * t + here * t * t / 2.0 + slope * t * t * t / 6.0)
+        here, slope, t = 0.0, 0.0, 0.0
+        first = light[n - 1, 1]
+        second = light[n - 1, 2] + (far - (n - 1)) * step * first
+    else:
+        t = (far - i) * step
+        here, first, slope = light[i, 0], light[i, 1], light[i, 3]
+        second = light[i, 2] + first * t + here * t * t / 2.0 + slope * t * t * t / 6.0
+        first = first + here * t + 0.5 * slope * t * t
+    return here + slope * t, -first if place < 0.0 else first, second
 
 
 @compiled
-def _terms(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    light: Floats, step: float, place: float, width: float, slanted: bool, out: Floats
-) -> None:
-    """Write a pixel's light, and its derivatives by the spot's place and by `width`.
+def _terms(
+    light: Floats, step: float, place: float, width: float, slanted: bool
+) -> tuple[float, float, float]:
+    """Return a pixel's light, and its derivatives by the spot's place and by `width`.
 
     `width` is the part of a pixel that is sensitive or, behind a slanted slit, what the height of
     the pixels spreads its image over.
     """
     if not slanted:
-        left, right = place - 0.5 * width, place + 0.5 * width
-        low, high = _at(light, step, left, 0), _at(light, step, right, 0)
-        out[0] = _at(light, step, right, 1) - _at(light, step, left, 1)
-        out[1], out[2] = low - high, 0.5 * (low + high)
-        return
-    left, right, box = place - 0.5, place + 0.5, width
-    a, b = right + 0.5 * box, right - 0.5 * box
-    c, d = left + 0.5 * box, left - 0.5 * box
-    pa, pb = _at(light, step, a, 1), _at(light, step, b, 1)
-    pc, pd = _at(light, step, c, 1), _at(light, step, d, 1)
-    total = _at(light, step, a, 2) - _at(light, step, b, 2)
-    total -= _at(light, step, c, 2) - _at(light, step, d, 2)
-    out[0] = total / box
-    out[1] = (pb - pa + pc - pd) / box
-    out[2] = (0.5 * (pa + pb - pc - pd) - out[0]) / box
+        low, left, _ = _at(light, step, place - 0.5 * width)
+        high, right, _ = _at(light, step, place + 0.5 * width)
+        return right - left, low - high, 0.5 * (low + high)
+    pixel_left, pixel_right, box = place - 0.5, place + 0.5, width
+    _, pa, a = _at(light, step, pixel_right + 0.5 * box)
+    _, pb, b = _at(light, step, pixel_right - 0.5 * box)
+    _, pc, c = _at(light, step, pixel_left + 0.5 * box)
+    _, pd, d = _at(light, step, pixel_left - 0.5 * box)
+    total = a - b
+    total -= c - d
+    mean = total / box
+    return mean, (pb - pa + pc - pd) / box, (0.5 * (pa + pb - pc - pd) - mean) / box
 
 
 @compiled
@@ -158,34 +155,55 @@ def _pattern(  # noqa: PLR0917 - Numba takes no keyword-only ones
 ) -> None:
     """Write what slits at `centres` cast on each pixel (L, 3), and by what it changes."""
     terms[:] = 0.0
-    one = np.empty(3)
-    for k in range(len(centres)):
-        middle = math.floor(centres[k] + 0.5)
+    for centre in centres:
+        middle = math.floor(centre + 0.5)
         for x in range(max(middle - reach, 0), min(middle + reach, len(terms) - 1) + 1):
             if lit[x]:
-                _terms(light, step, x - centres[k], width, slanted, one)
-                for i in range(3):
-                    terms[x, i] += one[i]
+                cast, by_place, by_width = _terms(light, step, x - centre, width, slanted)
+                terms[x, 0] += cast
+                terms[x, 1] += by_place
+                terms[x, 2] += by_width
 
 
 @compiled
 def _equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
-    line: Floats, terms: Floats, lit: Bools, peak: float, matrix: Floats, vector: Floats
+    line: Floats,
+    terms: Floats,
+    pixels: NDArray[np.int64],
+    peak: float,
+    matrix: Floats,
+    vector: Floats,
 ) -> float:
     """Write the normal equations of light, place, width and background; return the sum of squares.
 
     Noise grows with the light that is expected, against that of `peak`.
     """
-    matrix[:], vector[:], square = 0.0, 0.0, 0.0
-    row = np.ones(4)
-    for x in np.flatnonzero(lit):
-        row[:3] = terms[x]
-        weight = 1.0 / (1.0 + _PHOTONS * max(row[0], 0.0) / peak)
-        square += weight * line[x] ** 2
-        for i in range(4):
-            vector[i] += weight * row[i] * line[x]
-            for j in range(i + 1):
-                matrix[i, j] += weight * row[i] * row[j]
+    v0 = v1 = v2 = v3 = square = 0.0
+    m00 = m10 = m11 = m20 = m21 = m22 = m30 = m31 = m32 = m33 = 0.0
+    for x in pixels:
+        cast, by_place, by_width, seen = terms[x, 0], terms[x, 1], terms[x, 2], line[x]
+        weight = 1.0 / (1.0 + _PHOTONS * max(cast, 0.0) / peak)
+        square += weight * seen**2
+        light, place, wide = weight * cast, weight * by_place, weight * by_width
+        v0 += light * seen
+        v1 += place * seen
+        v2 += wide * seen
+        v3 += weight * seen
+        m00 += light * cast
+        m10 += place * cast
+        m11 += place * by_place
+        m20 += wide * cast
+        m21 += wide * by_place
+        m22 += wide * by_width
+        m30 += weight * cast
+        m31 += weight * by_place
+        m32 += weight * by_width
+        m33 += weight
+    vector[0], vector[1], vector[2], vector[3] = v0, v1, v2, v3
+    matrix[0, 0] = m00
+    matrix[1, 0], matrix[1, 1] = m10, m11
+    matrix[2, 0], matrix[2, 1], matrix[2, 2] = m20, m21, m22
+    matrix[3, 0], matrix[3, 1], matrix[3, 2], matrix[3, 3] = m30, m31, m32, m33
     return float(square)
 
 
@@ -209,13 +227,14 @@ def _shift(  # noqa: C901, PLR0917 - one fit; Numba takes no keyword-only ones
     for start in starts:
         middle = math.floor(start + 0.5)
         lit[max(middle - reach, 0) : middle + reach + 1] = True
+    pixels = np.flatnonzero(lit)
     width, least, most = widths
     shift, last, part, bright, firm, held = 0.0, 0.0, 1.0, 0.0, 0.0, not slanted
-    matrix, vector, row = np.empty((4, 4)), np.empty(4), np.empty(3)
-    _terms(light, step, 0.0, width, slanted, row)
+    matrix, vector = np.empty((4, 4)), np.empty(4)
+    peak, _, _ = _terms(light, step, 0.0, width, slanted)
     for turn in range(_STEPS):
         _pattern(terms, lit, starts + shift, reach + 1, width, slanted, light, step)
-        square = _equations(line, terms, lit, row[0], matrix, vector)
+        square = _equations(line, terms, pixels, peak, matrix, vector)
         if not slanted:
             matrix[2, 2] += _HELD * matrix[0, 0] if held else firm
             vector[2] += firm * bright * (1.0 - width)
@@ -230,7 +249,7 @@ def _shift(  # noqa: C901, PLR0917 - one fit; Numba takes no keyword-only ones
             held = True  # light and width cannot be distinguished: a pixel is as wide as it is
             continue
         if turn < _WEIGHED:
-            noise = max(square - (explained * vector).sum(), 0.0) / max(lit.sum() - 4, 1)
+            noise = max(square - (explained * vector).sum(), 0.0) / max(len(pixels) - 4, 1)
             firm = noise / (bright * _WIDTH) ** 2
         move = max(-1.0, min(1.0, vector[1] / vector[0]))
         wider = max(-0.3 * width, min(0.3 * width, vector[2] / vector[0]))
@@ -286,7 +305,7 @@ def add_shifts(  # noqa: PLR0917 - Numba takes no keyword-only ones
             slanted = mine[0, 2] > 0.0
             step = min(0.25, math.sqrt(shortest * spread) / 24.0)
             length = 2.0 * reach + 4.0 if slanted else reach + 3.0
-            light = np.empty((3, int(length / step) + 2))
+            light = np.empty((int(length / step) + 2, 4))
             _image(light, step, half, spread, blur, waves, chords, table)
             widths = (0.5 * half, 0.05, 2.0 * reach) if slanted else _WIDTHS
             starts = mine[:, 0] + shifts[r, g]
