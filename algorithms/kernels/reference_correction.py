@@ -25,16 +25,16 @@ def correct(  # noqa: PLR0917 - a kernel has no keywords
     Readings from `full_scale` on become `plateau`.
     """
     count, height, width = readings.shape
-    for n in range(count):
-        left, top = origin[n, 0], origin[n, 1]
-        for y in range(height):
+    for y in range(height):  # of all windows: one detector's rows of dark and gain stay at hand
+        for n in range(count):
+            left, top = origin[n, 0], origin[n, 1]
+            read, light = readings[n, y], out[n, y]
+            lightless = dark[top + y, left : left + width]
+            response = gain[top + y, left : left + width]
             for x in range(width):
-                value = float(readings[n, y, x])
-                if value >= full_scale:
-                    out[n, y, x] = plateau
-                else:
-                    row, column = top + y, left + x
-                    out[n, y, x] = (value - dark[row, column]) / gain[row, column]
+                value = float(read[x])
+                corrected = (value - lightless[x]) / response[x]
+                light[x] = plateau if value >= full_scale else corrected
 
 
 @compiled

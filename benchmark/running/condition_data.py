@@ -33,9 +33,10 @@ _KEPT = 2
 #: Bytes of kept observations from which on only one dataset is: a worker stays below 1.5 GB.
 _KEPT_BYTES = 128 * 2**20
 #: Bytes from which on corrected observations are not kept but made again for each extractor, some
-#: samples at a time.
+#: samples at a time: so few that they are still in a processor's cache when they are looked at,
+#: and that their memory is used again (glibc returns blocks of 32 MiB to the system).
 _CORRECTED_BYTES = 256 * 2**20
-_BATCH_BYTES = 32 * 2**20
+_BATCH_BYTES = 8 * 2**20
 
 
 @dataclass(frozen=True)
