@@ -76,20 +76,49 @@ def image_type(
 
 
 @compiled
-def _reach(
-    places: Floats, groups: Counts, halves: Floats, amplitudes: int, around: Floats
-) -> tuple[float, float]:
-    """Return where the first and the last pixel of any spot may lie; nothing for no spots."""
-    first, last = math.inf, -1.0
-    for i in range(places.size):
-        middle = places[i] + around[amplitudes + groups[i]]
-        first = min(first, middle - _FAR * halves[i])
-        last = max(last, middle + _FAR * halves[i])
-    return min(first, last + 1.0), last
+def _pixels(place: float, around: float, far: float, length: int) -> tuple[int, int]:
+    """First pixel within `far` of a spot whose shift is `around`, and the one after the last."""
+    middle = place + around
+    first, end = max(math.floor(middle - far), 0), min(math.floor(middle + far) + 2, length)
+    while first < end and abs(first - place - around) > far:
+        first += 1
+    while first < end and abs(end - 1 - place - around) > far:
+        end -= 1
+    return first, end
 
 
 @compiled
-def normal_equations(  # noqa: C901, PLR0917 - one pass over the pixels; Numba takes no keyword-only ones
+def _product(one: Floats, other: Floats) -> float:
+    """Sum of products, pixel by pixel."""
+    total = 0.0
+    for n in range(one.size):
+        total += one[n] * other[n]
+    return total
+
+
+@compiled
+def _add_image(  # noqa: PLR0917 - Numba takes no keyword-only ones
+    pixels: Floats,
+    place: float,
+    shift: float,
+    half: float,
+    amplitude: float,
+    kind: int,
+    c: Floats,
+    model: Floats,
+    by_amplitude: Floats,
+    by_shift: Floats,
+) -> None:
+    """Add a spot to the model at some pixels, and to its derivatives."""
+    for n in range(pixels.size):
+        value, slope = image_of((pixels[n] - place - shift) / half, kind, c)
+        model[n] += amplitude * value
+        by_amplitude[n] += value
+        by_shift[n] -= amplitude * slope / half
+
+
+@compiled
+def normal_equations(  # noqa: PLR0917 - Numba takes no keyword-only ones
     row: Floats,
     floor: float,
     places: Floats,
@@ -109,54 +138,47 @@ def normal_equations(  # noqa: C901, PLR0917 - one pass over the pixels; Numba t
     pixels are those within `_FAR` of its place at the parameters `around`.
     """
     size = found.size
-    matrix[:size, :size] = 0.0
-    right[:size] = 0.0
     amplitudes = column.max() + 1
-    q = np.zeros(size)
-    touched = np.empty(size, dtype=np.int64)
-    met = np.zeros(size, dtype=np.bool_)
-    first, last = _reach(places, groups, halves, amplitudes, around)
     middles = np.empty(places.size)
+    spans = np.empty((places.size, 2), dtype=np.int64)
+    begin, end = row.size, 0
     for i in range(places.size):
-        middles[i] = places[i] + around[amplitudes + groups[i]]
-    order = np.argsort(middles)
-    widest = _FAR * halves.max()
-    nearest = 0
-    for n in range(max(math.floor(first), 0), min(math.ceil(last) + 1, row.size)):
-        model = 0.0
-        count = 0
-        # spots from left to right: a pixel asks those whose light may reach it
-        while nearest < places.size and middles[order[nearest]] + widest + 1.0 < n:
-            nearest += 1
-        for k in range(nearest, places.size):
-            i = order[k]
-            if middles[i] - widest - 1.0 > n:
-                break
-            group = amplitudes + groups[i]
-            if abs(n - places[i] - around[group]) <= _FAR * halves[i]:
-                u = (n - places[i] - found[group]) / halves[i]
-                value, slope = image_of(u, kind, c)
-                a = found[column[i]]
-                model += a * value
-                for one in (column[i], group):
-                    if not met[one]:
-                        met[one] = True
-                        touched[count] = one
-                        count += 1
-                q[column[i]] += value
-                q[group] -= a * slope / halves[i]
-        if count == 0:
-            continue
-        beta = row[n] - floor - model
-        for k in range(count):
-            i = touched[k]
-            right[i] += q[i] * beta
-            for m in range(k + 1):
-                j = touched[m]
-                matrix[max(i, j), min(i, j)] += q[i] * q[j]
-        for k in range(count):
-            q[touched[k]] = 0.0
-            met[touched[k]] = False
+        shift = around[amplitudes + groups[i]]
+        middles[i] = places[i] + shift
+        spans[i] = _pixels(places[i], shift, _FAR * halves[i], row.size)
+        if spans[i, 0] < spans[i, 1]:
+            begin, end = min(begin, spans[i, 0]), max(end, spans[i, 1])
+    wide = max(end - begin, 0)
+    pixels = np.arange(begin, begin + wide).astype(np.float64)
+    model, q = np.zeros(wide), np.zeros((size, wide))
+    # pixels from the first to the last one that depends on each parameter
+    firsts, ends = np.full(size, wide), np.zeros(size, dtype=np.int64)
+    for i in np.argsort(middles):
+        first, last = spans[i, 0] - begin, spans[i, 1] - begin
+        if first < last:
+            one, group = column[i], amplitudes + groups[i]
+            here = slice(first, last)
+            _add_image(
+                pixels[here],
+                places[i],
+                found[group],
+                halves[i],
+                found[one],
+                kind,
+                c,
+                model[here],
+                q[one, here],
+                q[group, here],
+            )
+            for parameter in (one, group):
+                firsts[parameter] = min(firsts[parameter], first)
+                ends[parameter] = max(ends[parameter], last)
+    beta = row[begin : begin + wide] - floor - model
+    for i in range(size):
+        right[i] = _product(q[i, firsts[i] : ends[i]], beta[firsts[i] : ends[i]])
+        for j in range(i + 1):
+            first, last = max(firsts[i], firsts[j]), min(ends[i], ends[j])
+            matrix[i, j] = _product(q[i, first:last], q[j, first:last]) if first < last else 0.0
 
 
 @compiled
