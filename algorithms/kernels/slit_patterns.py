@@ -128,6 +128,26 @@ def _best_pair(  # noqa: PLR0917 - Numba takes no keyword-only ones
 
 
 @compiled
+def box_means(lines: Floats, width: int, out: Floats) -> None:
+    """Write means over `width` (odd) pixels about each; minus infinity where they leave the line.
+
+    They are differences of a line's sums from its first pixel on.
+    """
+    rows, length = lines.shape
+    half = width // 2
+    sums = np.empty(length + 1)
+    for r in range(rows):
+        out[r] = -np.inf
+        total = 0.0
+        for n in range(length):
+            sums[n] = total
+            total += lines[r, n]
+        sums[length] = total
+        for n in range(length - width + 1):
+            out[r, half + n] = (sums[n + width] - sums[n]) / width
+
+
+@compiled
 def match(  # noqa: PLR0917 - Numba takes no keyword-only ones
     scores: Floats,
     floors: Floats,

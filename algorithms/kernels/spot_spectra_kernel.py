@@ -46,11 +46,13 @@ def cross_spectra(  # noqa: PLR0917 - Numba takes no keyword-only ones
     """
     rows, length = lines.shape
     spots, frequencies = reference.shape
-    cosine = np.empty(period)
-    sine = np.empty(period)
-    for n in range(period):
-        cosine[n] = math.cos(2 * math.pi * n / period)
-        sine[n] = math.sin(2 * math.pi * n / period)
+    cosine, sine = np.empty((2, 2 * half + 1, frequencies))
+    for n in range(2 * half + 1):
+        for k in range(frequencies):
+            place = (n - half) * k % period
+            cosine[n, k] = math.cos(2 * math.pi * place / period)
+            sine[n, k] = math.sin(2 * math.pi * place / period)
+    real, imaginary = np.empty((2, frequencies))
     for r in range(rows):
         out[r] = 0.0
         for i in range(spots):
@@ -63,20 +65,17 @@ def cross_spectra(  # noqa: PLR0917 - Numba takes no keyword-only ones
             if centre < half or centre > length - 1 - half:
                 out[r, g] = np.nan
                 continue
+            real[:] = 0.0
+            imaginary[:] = 0.0
+            for n in range(2 * half + 1):
+                u = lines[r, centre - half + n] - floors[r]
+                for k in range(frequencies):
+                    real[k] += u * cosine[n, k]
+                    imaginary[k] -= u * sine[n, k]
             for k in range(frequencies):
-                real = 0.0
-                imaginary = 0.0
-                place = (-half * k) % period
-                for n in range(centre - half, centre + half + 1):
-                    u = lines[r, n] - floors[r]
-                    real += u * cosine[place]
-                    imaginary -= u * sine[place]
-                    place += k
-                    if place >= period:
-                        place -= period
                 angle = 2 * math.pi * k * (at - centre) / period
                 turn = complex(math.cos(angle), math.sin(angle))
-                out[r, g, k] += complex(real, imaginary) * turn * reference[i, k]
+                out[r, g, k] += complex(real[k], imaginary[k]) * turn * reference[i, k]
 
 
 @compiled
@@ -223,6 +222,28 @@ def as_series(vectors: Floats, out: NDArray[np.complex128]) -> None:
 
 
 @compiled
+def _refined_shift(signal: NDArray[np.complex128], step: float, shift: float) -> float:
+    """Return where the tone of `signal` (K) is strongest, by Newton's method from a shift near."""
+    for _ in range(_NEWTON):
+        value = complex(0.0, 0.0)
+        slope = complex(0.0, 0.0)
+        bend = complex(0.0, 0.0)
+        for k in range(signal.size):
+            angle = step * k * shift
+            turn = complex(math.cos(angle), -math.sin(angle))
+            term = signal[k] * turn
+            value += term
+            slope += complex(0.0, -step * k) * term
+            bend -= (step * k) * (step * k) * term
+        first = (value.conjugate() * slope).real
+        second = (slope.conjugate() * slope + value.conjugate() * bend).real
+        if not second < 0:
+            break
+        shift -= first / second
+    return shift
+
+
+@compiled
 def least_projections(
     signals: NDArray[np.complex128], powers: Floats, period: int, reach: float, out: Floats
 ) -> None:
@@ -235,38 +256,27 @@ def least_projections(
     rows, kinds, frequencies = signals.shape
     step = 2 * math.pi / period
     tries = math.ceil(reach * _STEPS)
+    turns = np.empty((2 * tries + 1, frequencies), dtype=np.complex128)
+    for t in range(-tries, tries + 1):
+        for k in range(frequencies):
+            angle = step * k * (t / _STEPS)
+            turns[t + tries, k] = complex(math.cos(angle), -math.sin(angle))
+    signal = np.empty(frequencies, dtype=np.complex128)
     for r in range(rows):
         for g in range(kinds):
             out[r, g] = np.nan
+            for k in range(frequencies):
+                signal[k] = signals[r, g, k].conjugate() * powers[k]
             best = 0.0
             most = -1.0
             for t in range(-tries, tries + 1):
-                shift = t / _STEPS
                 total = complex(0.0, 0.0)
                 for k in range(frequencies):
-                    angle = step * k * shift
-                    turn = complex(math.cos(angle), -math.sin(angle))
-                    total += signals[r, g, k].conjugate() * powers[k] * turn
+                    total += signal[k] * turns[t + tries, k]
                 size = total.real * total.real + total.imag * total.imag
                 if size > most:
                     most = size
-                    best = shift
-            shift = best
-            for _ in range(_NEWTON):
-                value = complex(0.0, 0.0)
-                slope = complex(0.0, 0.0)
-                bend = complex(0.0, 0.0)
-                for k in range(frequencies):
-                    angle = step * k * shift
-                    turn = complex(math.cos(angle), -math.sin(angle))
-                    term = signals[r, g, k].conjugate() * powers[k] * turn
-                    value += term
-                    slope += complex(0.0, -step * k) * term
-                    bend -= (step * k) * (step * k) * term
-                first = (value.conjugate() * slope).real
-                second = (slope.conjugate() * slope + value.conjugate() * bend).real
-                if not second < 0:
-                    break
-                shift -= first / second
+                    best = t / _STEPS
+            shift = _refined_shift(signal, step, best)
             if most > 0 and abs(shift - best) <= 1.0 / _STEPS:
                 out[r, g] = shift

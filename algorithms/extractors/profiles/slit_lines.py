@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, Self, cast
+from typing import ClassVar, Literal, Self, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -313,10 +313,8 @@ def box_means(lines: Floats, width: int) -> Floats:
     """Means over `width` (odd) pixels about each; minus infinity where they leave the line."""
     if width == 1:
         return lines
-    means = np.full(lines.shape, -np.inf)
-    if width <= lines.shape[1]:
-        sums: NDArray[Any] = np.zeros((len(lines), lines.shape[1] + 1))
-        np.cumsum(lines, axis=1, out=sums[:, 1:])
-        half = width // 2
-        means[:, half : lines.shape[1] - half] = (sums[:, width:] - sums[:, :-width]) / width
+    from algorithms.kernels import slit_patterns  # noqa: PLC0415 - Numba, at first use
+
+    means = np.empty(lines.shape)
+    slit_patterns.box_means(lines, width, means)
     return means
