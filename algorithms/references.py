@@ -109,14 +109,15 @@ class ReferenceCorrection:
         # profiles and currents are frames of one row
         rows = (1, *shape)[-2:]
         windows = given.reshape(len(given), *((1, *given.shape[1:])[-2:]))
-        found = np.empty(windows.shape, dtype=np.float64)
+        found = np.empty(given.shape, dtype=np.float64)
+        light = found.reshape(windows.shape)
         scale = np.inf if self.full_scale is None else self.full_scale
         dark, gain = self.dark.reshape(rows), self.gain.reshape(rows)
-        correct(windows, origin, dark, gain, scale, scale - self._level, found)
+        correct(windows, origin, dark, gain, scale, scale - self._level, light)
         if len(self._places):
             reach = (1, 1) if len(shape) == _FRAME else (0, 2)
-            replace_bad(found, origin, self.bad.reshape(rows), self._places, *reach)
-        return found.reshape(given.shape)
+            replace_bad(light, origin, self.bad.reshape(rows), self._places, *reach)
+        return found
 
     @cached_property
     def _level(self) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from fake_atlas import Currents, Diodes, FakeBound, FakeSamples
 
+from algorithms.extractors.frames.multi_spot.pattern_memory import found_once, shared_patterns
 from algorithms.references import ReferenceCorrection
 from benchmark.running import condition_data
 from benchmark.running.condition_data import ConditionData, RenderedData
@@ -57,6 +58,16 @@ def test_readings_are_corrected_at_once_where_memory_allows(
     np.testing.assert_array_equal(observations, READ if later else BY.correct(READ))
     assert data.correction is (BY if later else None)
     assert not observations.flags.writeable
+
+
+def test_what_one_method_finds_in_corrected_readings_another_need_not_search() -> None:
+    preset: Any = Diodes()
+    data = condition_data.correct_readings(RenderedData(read(), BY), preset)
+    observations, searches = np.asarray(data.splits["test"].observations), []
+    with shared_patterns():
+        for _ in range(2):
+            found_once(observations, "settings", lambda: searches.append("search"))
+    assert searches == ["search"]
 
 
 def test_bounds_of_who_does_not_know_the_unit_stand_where_there_are_any() -> None:
