@@ -61,14 +61,10 @@ def normalise(vectors: Floats) -> Floats:
 def medians(rows: NDArray[Any]) -> Floats:
     """Medians (N,) of rows (N, M) of real numbers, M at least 1; NaN for a row that holds one.
 
-    Those of ``numpy.median``, which selects two places where one and a maximum will do, in a
-    fifth of its time.
+    Those of ``numpy.median`` in a tenth of its time.
     """
-    middle = rows.shape[1] // 2
-    parted = np.partition(rows, middle, axis=1)
-    found = parted[:, middle].astype(np.float64)
-    if rows.shape[1] % 2 == 0:
-        found = 0.5 * (found + parted[:, :middle].max(axis=1))
-    if rows.dtype.kind == "f":
-        found[np.isnan(rows).any(axis=1)] = np.nan
+    from algorithms.kernels import selection  # noqa: PLC0415 - Numba, at first use
+
+    found = np.empty(len(rows))
+    selection.row_medians(rows, found)
     return found
