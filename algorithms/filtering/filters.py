@@ -47,6 +47,11 @@ class Belief:
     log_likelihood: Floats
     weights: Floats
 
+    def moved(self, states: Floats, covariance: Floats) -> Belief:
+        """Return the belief with other estimates."""
+        squared, likelihood = self.squared_innovation, self.log_likelihood
+        return Belief(states, covariance, self.noise, squared, likelihood, self.weights)
+
 
 def initial_state(space: StateSpace, states: Floats, covariance: Floats) -> Belief:
     """Belief before anything is read; covariance (B, n, n) or (n, n)."""
@@ -61,16 +66,6 @@ def initial_state(space: StateSpace, states: Floats, covariance: Floats) -> Beli
         nothing,
         np.ones(count),
     )
-
-
-def spread_over(noise: Floats, steps: Floats) -> Floats:
-    """Covariance (B, m, m) that white errors would have to tell as little as correlated ones.
-
-    A mean of many readings whose errors are correlated over some steps has as many times the
-    variance that it would have of white ones.
-    """
-    root = np.sqrt(steps)
-    return np.asarray(noise * (root[:, None] * root))
 
 
 class Filter(Protocol):
@@ -131,26 +126,22 @@ class ExtendedKalman(_OneBelief):
 
     def predict(self, space: StateSpace, belief: Belief, known: Floats, step_s: float) -> Belief:
         """Belief one step on."""
-        transition = space.transition(belief.states, known, step_s)
+        states, transition = space.advance(belief.states, known, step_s)
         covariance = algebra.predict(belief.covariance, transition, space.process_noise(step_s))
-        states = space.propagate(belief.states, known, step_s)
-        return replace(belief, states=states, covariance=covariance)
+        return belief.moved(states, covariance)
 
     def update(self, space: StateSpace, belief: Belief, read: Floats, known: Floats) -> Belief:
         """Belief with readings (B, m)."""
-        sensitivity = space.sensitivity(belief.states, known)
-        innovation = read - space.predict_readings(belief.states, known)
-        noise = self.weigh(belief, sensitivity, innovation)
+        foretold, sensitivity = space.observe(belief.states, known)
+        innovation = read - foretold
         step, covariance, squared, likelihood = algebra.update(
             belief.covariance,
             sensitivity,
-            spread_over(noise, space.correlate()),
+            self.weigh(belief, sensitivity, innovation),
+            space.correlate(),
             innovation,
             _estimate(space.errors, self.considered),
         )
-        if (space.correlate() > 1.0).any():  # a reading is as far off as readings are
-            spread = algebra.innovation_covariance(belief.covariance, sensitivity, noise)
-            squared, likelihood = algebra.innovation_likelihood(spread, innovation)
         states = space.add_errors(belief.states, step)
         after = Belief(states, covariance, belief.noise, squared, likelihood, belief.weights)
         return self.adapt(space, after, read, known, sensitivity)
@@ -307,7 +298,7 @@ class SigmaPointKalman(_OneBelief):
         )
         covariance = algebra.cross(off, off, spreads)
         covariance += space.process_noise(step_s)
-        return replace(belief, states=states, covariance=covariance)
+        return belief.moved(states, covariance)
 
     def update(self, space: StateSpace, belief: Belief, read: Floats, known: Floats) -> Belief:
         """Belief with readings (B, m), by the points' readings."""
@@ -316,15 +307,14 @@ class SigmaPointKalman(_OneBelief):
         count, number, size = points.shape
         seen = space.predict_readings(points.reshape(-1, size), known).reshape(count, number, -1)
         mean, off = algebra.centre(seen, means)
-        spread = algebra.cross(off, off, spreads)
         step, covariance, squared, likelihood = algebra.update_by_points(
             belief.covariance,
             algebra.cross(errors, off, spreads),
-            spread + spread_over(belief.noise, space.correlate()),
+            algebra.cross(off, off, spreads),
+            belief.noise,
+            space.correlate(),
             read - mean,
         )
-        if (space.correlate() > 1.0).any():
-            squared, likelihood = algebra.innovation_likelihood(spread + belief.noise, read - mean)
         if self.considered:  # what is known of them stays; of all the rest the gain is the best
             kept = np.ix_(range(count), self.considered, self.considered)
             covariance[kept] = belief.covariance[kept]

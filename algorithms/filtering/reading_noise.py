@@ -106,13 +106,12 @@ def _likeliest(
     mean_likelihoods, followed = [], []
     for share in shares:
         space = model.space(noise=np.maximum(share * model.noise_, least))
+        tried = space.states_towards(model.starts_)
         belief: Belief | None = None
         total, rows = 0.0, 0
         for row, read in enumerate(features):
             if belief is None or not np.isfinite(apart_s[row]):
-                belief = space.start_belief(
-                    by, model.starts_, read, known[row], model.considered_errors()
-                )
+                belief = space.start_belief(by, tried, read, known[row], model.considered_errors())
                 continue
             belief = by.predict(space, belief, known[row], float(apart_s[row]))
             belief = by.update(space, belief, read[None], known[row])

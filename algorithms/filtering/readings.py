@@ -34,8 +34,13 @@ class Readings(Protocol):
         """Temperature, kelvin, from which warmth counts."""
         ...
 
-    def at(self, states: Floats, chosen: Floats, known: Floats) -> tuple[Floats, Floats]:
-        """Give readings (B, m) and their derivatives (B, m, n)."""
+    def at(
+        self, states: Floats, chosen: Floats, known: Floats, turn: int = 0
+    ) -> tuple[Floats, Floats]:
+        """Give readings (B, m) and their derivatives (B, m, n).
+
+        The head's turn is in a state from `turn` on; there is none where that is 0.
+        """
         ...
 
     def settings(self) -> dict[str, Setting]:
@@ -70,9 +75,13 @@ class FaceReadings:
         """One a face."""
         return len(self.design)
 
-    def at(self, states: Floats, chosen: Floats, known: Floats) -> tuple[Floats, Floats]:
+    def at(
+        self, states: Floats, chosen: Floats, known: Floats, turn: int = 0
+    ) -> tuple[Floats, Floats]:
         """Signals (B, K) and their derivatives."""
-        found: tuple[Floats, Floats] = kernel.faces(states, chosen, known, self.design, self.albedo)
+        found: tuple[Floats, Floats] = kernel.faces(
+            states, chosen, known, turn, self.design, self.albedo
+        )
         return found
 
     def settings(self) -> dict[str, Setting]:
@@ -169,10 +178,12 @@ class SpotReadings:
         """A column and a row."""
         return 2
 
-    def at(self, states: Floats, chosen: Floats, known: Floats) -> tuple[Floats, Floats]:
+    def at(
+        self, states: Floats, chosen: Floats, known: Floats, turn: int = 0
+    ) -> tuple[Floats, Floats]:
         """Spots (B, 2) and their derivatives."""
         found: tuple[Floats, Floats] = kernel.spots(
-            states, chosen, known, self.powers, self.design, self.warm
+            states, chosen, known, turn, self.powers, self.design, self.warm
         )
         return found
 

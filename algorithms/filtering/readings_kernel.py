@@ -1,7 +1,8 @@
 """What a sensor reads of a direction, and how that changes: faces with albedo, and spots.
 
 States as `algorithms.filtering.sun_kernel` has them. `chosen` (p,) says which parameter of the
-sensor each of a state's is; all others are 0. Known are rate (3), nadir (3) and warmth (1).
+sensor each of a state's is; all others are 0. Known are rate (3), nadir (3) and warmth (1). The
+three numbers of a state from `turn` on are the head's turn; there is none where that is 0.
 """
 
 from __future__ import annotations
@@ -10,13 +11,15 @@ import numpy as np
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
+from algorithms.filtering.sun_kernel import heading_slopes, turn_heading
 
 
 @compiled
-def faces(  # noqa: PLR0915 - values and derivatives together
+def faces(  # noqa: PLR0915, PLR0917 - values and derivatives together
     states: Floats,
     chosen: Floats,
     known: Floats,
+    turn: int,
     design: Floats,
     albedo: Floats,
 ) -> tuple[Floats, Floats]:
@@ -29,6 +32,7 @@ def faces(  # noqa: PLR0915 - values and derivatives together
     ``w``, ``w u`` and ``w z``: z the cosine of the Sun's zenith distance below the satellite, u the
     face's towards nadir, w towards the Sun's side of it.
     """
+    states = turn_heading(states, turn)
     count, number = len(states), len(design)
     n, sensor = states.shape[1] - 7, 2 + 3 * number
     signals = np.empty((count, number))
@@ -86,12 +90,19 @@ def faces(  # noqa: PLR0915 - values and derivatives together
                 each[2 + number + 2 * k + a] = steep * towards
             for p in range(len(chosen)):
                 slopes[b, k, 5 + p] = each[int(chosen[p])]
+    heading_slopes(states, slopes, turn)
     return signals, slopes
 
 
 @compiled
-def spots(  # noqa: C901, PLR0912, PLR0917 - values and derivatives together
-    states: Floats, chosen: Floats, known: Floats, powers: Floats, design: Floats, warm: Floats
+def spots(  # noqa: C901, PLR0912, PLR0915, PLR0917 - values and derivatives together
+    states: Floats,
+    chosen: Floats,
+    known: Floats,
+    turn: int,
+    powers: Floats,
+    design: Floats,
+    warm: Floats,
 ) -> tuple[Floats, Floats]:
     """Spots (B, 2), px, and their derivatives (B, 2, n); NaN where the Sun is not in front.
 
@@ -100,6 +111,7 @@ def spots(  # noqa: C901, PLR0912, PLR0917 - values and derivatives together
     coefficients, px; the first of them is of 1, the centre. `warm` (3, 2) are of 1 and the
     tangents, times warmth. The focal length's scale is ``design`` of the first tangent.
     """
+    states = turn_heading(states, turn)
     count, n = len(states), states.shape[1] - 7
     found, slopes = np.empty((count, 2)), np.zeros((count, 2, n))
     values, each = np.empty(5), np.empty(5)
@@ -161,4 +173,5 @@ def spots(  # noqa: C901, PLR0912, PLR0917 - values and derivatives together
             each[3 + axis] = scale
             for p in range(len(chosen)):
                 slopes[b, axis, 5 + p] = each[int(chosen[p])]
+    heading_slopes(states, slopes, turn)
     return found, slopes

@@ -304,6 +304,7 @@ class SunFilter(Model):
         self, found: Floats, time_s: Floats, known: Floats, usable: NDArray[np.bool_]
     ) -> Track:
         space, by = self.space(), self.rule()
+        tried = space.states_towards(self.starts_)
         drifts = len(self.drifts()) + len(self.uncertain(0.0))
         known = known - np.array([0.0] * 6 + [self.readings_.middle_k])
         count = len(found)
@@ -323,7 +324,7 @@ class SunFilter(Model):
                 belief = by.predict(space, belief, known[row], float(steps[row]))
             if usable[row] and belief is None:
                 belief = space.start_belief(
-                    by, self.starts_, found[row], known[row], self.considered_errors()
+                    by, tried, found[row], known[row], self.considered_errors()
                 )
                 read[row] = belief is not None
             elif usable[row] and belief is not None:

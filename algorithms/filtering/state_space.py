@@ -32,8 +32,8 @@ class StateSpace(Protocol):
         """States (B, S) one step on, without noise: f."""
         ...
 
-    def transition(self, states: Floats, known: Floats, step_s: float) -> Floats:
-        """(B, n, n) how errors before the step go into errors after it: f's Jacobian F."""
+    def advance(self, states: Floats, known: Floats, step_s: float) -> tuple[Floats, Floats]:
+        """Propagate states as `propagate` does, and give f's Jacobian F (B, n, n), of errors."""
         ...
 
     def process_noise(self, step_s: float) -> Floats:
@@ -44,8 +44,8 @@ class StateSpace(Protocol):
         """(B, m) readings without noise: h."""
         ...
 
-    def sensitivity(self, states: Floats, known: Floats) -> Floats:
-        """(B, m, n) change of readings with errors: h's Jacobian H."""
+    def observe(self, states: Floats, known: Floats) -> tuple[Floats, Floats]:
+        """Give readings as `predict_readings` does, and h's Jacobian H (B, m, n), of errors."""
         ...
 
     def measurement_noise(self) -> Floats:
@@ -107,10 +107,10 @@ class LinearStateSpace:
         del known, step_s
         return np.asarray(states @ self.dynamics.T)
 
-    def transition(self, states: Floats, known: Floats, step_s: float) -> Floats:
-        """F."""
-        del known, step_s
-        return np.broadcast_to(self.dynamics, (len(states), *self.dynamics.shape)).copy()
+    def advance(self, states: Floats, known: Floats, step_s: float) -> tuple[Floats, Floats]:
+        """``F x``, and F."""
+        each = np.broadcast_to(self.dynamics, (len(states), *self.dynamics.shape)).copy()
+        return self.propagate(states, known, step_s), each
 
     def process_noise(self, step_s: float) -> Floats:
         """Q."""
@@ -122,10 +122,10 @@ class LinearStateSpace:
         del known
         return np.asarray(states @ self.observation.T)
 
-    def sensitivity(self, states: Floats, known: Floats) -> Floats:
-        """H."""
-        del known
-        return np.broadcast_to(self.observation, (len(states), *self.observation.shape)).copy()
+    def observe(self, states: Floats, known: Floats) -> tuple[Floats, Floats]:
+        """``H x``, and H."""
+        each = np.broadcast_to(self.observation, (len(states), *self.observation.shape)).copy()
+        return self.predict_readings(states, known), each
 
     def measurement_noise(self) -> Floats:
         """R."""

@@ -50,10 +50,10 @@ def propagate(states: Floats, rate: Floats, step_s: float) -> Floats:
 
 
 @compiled
-def transition(states: Floats, after: Floats, rate: Floats, step_s: float) -> Floats:
-    """Jacobian (B, n, n) of `propagate`, whose outcome is `after`."""
+def advance(states: Floats, rate: Floats, step_s: float) -> tuple[Floats, Floats]:
+    """States as `propagate` gives them, and its Jacobian (B, n, n)."""
     count, n = len(states), states.shape[1] - 7
-    out = np.zeros((count, n, n))
+    after, out = propagate(states, rate, step_s), np.zeros((count, n, n))
     turn = np.empty(3)
     for b in range(count):
         for i in range(n):
@@ -83,7 +83,7 @@ def transition(states: Floats, after: Floats, rate: Floats, step_s: float) -> Fl
             out[b, row, 2] = sign * step_s * (u + first * cu + second * du)
             out[b, row, 3] = sign * step_s * (v + first * cv + second * dv)
             out[b, row, 4] = sign * step_s * (w + first * cw + second * dw)
-    return out
+    return after, out
 
 
 @compiled
@@ -116,7 +116,12 @@ def add_errors(states: Floats, errors: Floats) -> Floats:
 
 @compiled
 def turn_heading(states: Floats, first: int) -> Floats:
-    """States (B, S) as a head sees them that is turned by their three numbers from `first` on."""
+    """States (B, S) as a head sees them that is turned by their three numbers from `first` on.
+
+    The states themselves where `first` is 0.
+    """
+    if first == 0:
+        return states
     out = states.copy()
     for b in range(len(states)):
         x, y, z = states[b, first], states[b, first + 1], states[b, first + 2]
@@ -131,8 +136,10 @@ def heading_slopes(states: Floats, slopes: Floats, first: int) -> None:
     """Write into `slopes` (B, m, n) how readings change with the head's small turns.
 
     A turn about an axis moves the direction by their cross product; by the axes across the
-    direction, ``a x s = (a.e2) e1 - (a.e1) e2``.
+    direction, ``a x s = (a.e2) e1 - (a.e1) e2``. Nothing where `first` is 0.
     """
+    if first == 0:
+        return
     for b in range(len(states)):
         for i in range(slopes.shape[1]):
             for k in range(3):

@@ -58,7 +58,7 @@ class SunSpace:
         self._chosen = np.array([drift.place for drift in drifts], dtype=np.float64)
         turns = [turn] * 3 if turn else []
         self._steps = np.ones(len(noise)) if steps is None else np.asarray(steps)
-        self._turn = MOTION + len(drifts) if turn else 0
+        self._turn = MOTION + len(drifts) + 7 if turn else 0
         self.errors = MOTION + len(drifts) + len(turns)
         first = [_FIRST_RAD] * 2 + [gyroscope.bias] * 3 + [drift.deviation for drift in drifts]
         self._first = np.diag(np.square([*first, *turns]))
@@ -76,10 +76,9 @@ class SunSpace:
         found: Floats = motion.propagate(states, known, step_s)
         return found
 
-    def transition(self, states: Floats, known: Floats, step_s: float) -> Floats:
-        """Jacobian of `propagate`."""
-        after = motion.propagate(states, known, step_s)
-        found: Floats = motion.transition(states, after, known, step_s)
+    def advance(self, states: Floats, known: Floats, step_s: float) -> tuple[Floats, Floats]:
+        """States after the body turned, and the Jacobian."""
+        found: tuple[Floats, Floats] = motion.advance(states, known, step_s)
         return found
 
     def process_noise(self, step_s: float) -> Floats:
@@ -95,18 +94,11 @@ class SunSpace:
 
     def predict_readings(self, states: Floats, known: Floats) -> Floats:
         """Give readings without noise."""
-        return self._read(states, known)[0]
+        return self.observe(states, known)[0]
 
-    def sensitivity(self, states: Floats, known: Floats) -> Floats:
-        """Jacobian of `predict_readings`."""
-        return self._read(states, known)[1]
-
-    def _read(self, states: Floats, known: Floats) -> tuple[Floats, Floats]:
-        seen = motion.turn_heading(states, self._turn + 7) if self._turn else states
-        values, slopes = self._readings.at(seen, self._chosen, known)
-        if self._turn:
-            motion.heading_slopes(seen, slopes, self._turn + 7)
-        return values, slopes
+    def observe(self, states: Floats, known: Floats) -> tuple[Floats, Floats]:
+        """Give readings without noise, and the Jacobian."""
+        return self._readings.at(states, self._chosen, known, self._turn)
 
     def measurement_noise(self) -> Floats:
         """Covariance of readings."""
@@ -138,12 +130,12 @@ class SunSpace:
     def start_belief(
         self,
         by: Filter,
-        starts: Floats,
+        tried: Floats,
         read: Floats,
         known: Floats,
         considered: tuple[int, ...] = (),
     ) -> Belief | None:
-        """Belief after a first reading (m,), from the best of directions (G, 3); None without one.
+        """Belief after a first reading (m,), from the best of states (G, S); None without one.
 
         A reading that no direction explains begins nothing: squares of what is left are chi-square,
         in units of the noise and of what is considered.
@@ -151,26 +143,27 @@ class SunSpace:
         Gauss-Newton steps of the update, all from the same prior (iterated Kalman update).
         """
         scale = np.sqrt(np.diagonal(self._noise))
-        tried = self.states_towards(starts)
         off = (read - self.predict_readings(tried, known)) / scale
         cost = (off**2).sum(axis=1)
         if not np.isfinite(cost).any():
             return None
         first = tried[[int(np.nanargmin(cost))]]
         state, step = first, np.zeros((1, self.errors))
-        noise = np.diag(np.diagonal(self._noise) * self._steps)[None]
+        noise, white = np.diag(np.diagonal(self._noise) * self._steps)[None], np.ones(len(read))
         estimated = np.ones(self.errors)
         estimated[list(considered)] = 0.0
         prior = self._first[None].copy()
         covariance = prior
         for _ in range(_STEPS):
-            values, slopes = self._read(state, known)
+            values, slopes = self.observe(state, known)
             innovation = read - values + (slopes @ step[0])
             if not np.isfinite(innovation).all():
                 return None
-            step, covariance, _, _ = algebra.update(prior, slopes, noise, innovation, estimated)
+            step, covariance, _, _ = algebra.update(
+                prior, slopes, noise, white, innovation, estimated
+            )
             state = self.add_errors(first, step)
-        left, slopes = self._read(state, known)
+        left, slopes = self.observe(state, known)
         unsure = slopes[0][:, list(considered)] ** 2 @ np.diagonal(prior[0])[list(considered)]
         left = (read - left[0]) ** 2 / (np.diagonal(noise[0]) + unsure)
         if not left.sum() <= len(left) + _FAR * np.sqrt(2.0 * len(left)):

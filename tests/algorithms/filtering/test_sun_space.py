@@ -70,9 +70,10 @@ def test_derivatives_are_those_of_differences(name: str) -> None:
     space = SPACES[name]
     states = some_states(space)
     n, step = space.errors, 1e-6
-    transition = space.transition(states, KNOWN, STEP_S)
-    sensitivity = space.sensitivity(states, KNOWN)
-    after = space.propagate(states, KNOWN, STEP_S)
+    after, transition = space.advance(states, KNOWN, STEP_S)
+    seen, sensitivity = space.observe(states, KNOWN)
+    np.testing.assert_array_equal(after, space.propagate(states, KNOWN, STEP_S))
+    np.testing.assert_array_equal(seen, space.predict_readings(states, KNOWN))
     for column in range(n):
         error = np.zeros((len(states), n))
         error[:, column] = step
@@ -214,7 +215,7 @@ def test_readings_slope_with_the_heads_turn_as_differences_do() -> None:
     space = SPACES["turned"]
     states = some_states(space)
     states[:, -3:] = 0.0
-    sensitivity = space.sensitivity(states, KNOWN)
+    sensitivity = space.observe(states, KNOWN)[1]
     for column in range(5, 8):
         error = np.zeros((len(states), space.errors))
         error[:, column] = 1e-6
@@ -263,7 +264,7 @@ def test_a_reading_that_no_direction_explains_begins_nothing() -> None:
     sun = np.array([[0.6, 0.0, 0.8]])
     known = np.r_[np.zeros(3), 1.0, 0.0, 0.0, 0.0]
     read = space.predict_readings(space.states_towards(sun), known)[0]
-    starts = np.vstack([np.eye(3), -np.eye(3), sun])
+    starts = space.states_towards(np.vstack([np.eye(3), -np.eye(3), sun]))
     begun = space.start_belief(by, starts, read, known)
     assert begun is not None
     np.testing.assert_allclose(begun.states[0, 6:9], sun[0], atol=2e-3)
@@ -279,8 +280,9 @@ def test_what_is_considered_explains_a_first_reading_that_its_noise_does_not() -
     known = np.r_[np.zeros(3), 1.0, 0.0, 0.0, 0.0]
     read = space.predict_readings(space.states_towards(sun), known)[0]
     read *= np.array([1.02, 1.0, 1.0, 1.0, 0.98, 1.0])  # aged by a deviation each
-    assert space.start_belief(by, sun, read, known, considered) is not None
-    assert space.start_belief(by, sun, read + 5.0 * np.eye(6)[1], known, considered) is None
+    starts = space.states_towards(sun)
+    assert space.start_belief(by, starts, read, known, considered) is not None
+    assert space.start_belief(by, starts, read + 5.0 * np.eye(6)[1], known, considered) is None
 
 
 def test_gains_that_drift_are_found_by_the_filter_that_has_them_in_its_state() -> None:
