@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import hashlib
-import pickle
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from algorithms.contract import Floats
+from algorithms.filtering.recall import recalled
 
 if TYPE_CHECKING:
-    from algorithms.filtering.filters import Belief
     from algorithms.filtering.sun_space import SunSpace
 
 #: Longest correlation of residuals that is looked for, in steps.
@@ -20,9 +19,6 @@ _LAGS = 200
 _QUIETEST, _SHARES = 1e-3, 13
 #: Of the readings that any share follows, how many one must: a series may begin a row later.
 _FOLLOWED = 0.99
-#: Answers kept of `heard`, by a digest of what they depend on, and the latest so many.
-_heard: dict[bytes, Floats] = {}
-_KEPT = 16
 
 
 class FittedFilter(Protocol):
@@ -87,40 +83,20 @@ def estimate_noise(
     """
     # all that the answer depends on: filters that differ in their rule of update alone share it
     given = model.space(noise=model.noise_), model.starts_, model.considered_errors()
-    key = hashlib.sha256(pickle.dumps((*given, features, known, apart_s, least))).digest()
-    if key not in _heard:
-        while len(_heard) >= _KEPT:
-            _heard.pop(next(iter(_heard)), None)
-        _heard[key] = _likeliest(model, features, known, apart_s, least)
-    return _heard[key].copy()
+    return recalled(
+        (_likeliest, *given, features, known, apart_s, least),
+        lambda: _likeliest(model, features, known, apart_s, least),
+    )
 
 
 def _likeliest(
     model: FittedFilter, features: Floats, known: Floats, apart_s: Floats, least: Floats
 ) -> Floats:
-    """Return what `heard` does, worked out."""
-    from algorithms.filtering.filters import ExtendedKalman  # noqa: PLC0415 - Numba
-
-    by = ExtendedKalman(model.considered_errors())
+    """Return what `estimate_noise` does, worked out."""
     shares = np.geomspace(_QUIETEST, 1.0, _SHARES)
-    mean_likelihoods, followed = [], []
-    for share in shares:
-        space = model.space(noise=np.maximum(share * model.noise_, least))
-        tried = space.states_towards(model.starts_)
-        belief: Belief | None = None
-        total, rows = 0.0, 0
-        for row, read in enumerate(features):
-            if belief is None or not np.isfinite(apart_s[row]):
-                belief = space.start_belief(by, tried, read, known[row], model.considered_errors())
-                continue
-            belief = by.predict(space, belief, known[row], float(apart_s[row]))
-            belief = by.update(space, belief, read[None], known[row])
-            if np.isfinite(belief.log_likelihood[0]):
-                total += float(belief.log_likelihood[0])
-                rows += 1
-        mean_likelihoods.append(total / max(rows, 1))
-        followed.append(rows)
-    likely = np.where(np.array(followed) >= _FOLLOWED * max(followed), mean_likelihoods, -np.inf)
+    noises = np.maximum(shares[:, None] * model.noise_, least)
+    mean_likelihoods, followed = _foretold(model, noises, features, known, apart_s)
+    likely = np.where(followed >= _FOLLOWED * followed.max(), mean_likelihoods, -np.inf)
     best = min(max(int(np.argmax(likely)), 1), _SHARES - 2)
     before, here, after = likely[best - 1 : best + 2]
     bend = before - 2.0 * here + after
@@ -128,3 +104,38 @@ def _likeliest(
     step = np.log(shares[1] / shares[0])
     share = min(float(shares[best] * np.exp(np.clip(shift, -1.0, 1.0) * step)), 1.0)
     return np.asarray(np.maximum(share * model.noise_, least))
+
+
+def _foretold(
+    model: FittedFilter, noises: Floats, features: Floats, known: Floats, apart_s: Floats
+) -> tuple[Floats, NDArray[np.int64]]:
+    """Give the mean log-likelihood of readings with each noise (B, m), and of how many (B,).
+
+    One belief has a run for each noise; it is NaN until one is begun, as are its likelihoods.
+    """
+    from algorithms.filtering.filters import ExtendedKalman, initial_state  # noqa: PLC0415 - Numba
+
+    count, considered = len(noises), model.considered_errors()
+    by = ExtendedKalman(considered)
+    spaces = [model.space(noise=noise) for noise in noises]
+    tried, n = spaces[0].states_towards(model.starts_), spaces[0].errors
+    belief = initial_state(spaces[0], np.full((count, tried.shape[1]), np.nan), np.zeros((n, n)))
+    begun = np.zeros(count, dtype=np.bool_)
+    totals, rows = np.zeros(count), np.zeros(count, dtype=np.int64)
+    for row, read in enumerate(features):
+        begun &= np.isfinite(apart_s[row])
+        due = np.flatnonzero(~begun)
+        if begun.any():
+            belief = by.predict(spaces[0], belief, known[row], float(apart_s[row]))
+            belief = by.update(spaces[0], belief, np.tile(read, (count, 1)), known[row])
+            heard = begun & np.isfinite(belief.log_likelihood)
+            totals[heard] += belief.log_likelihood[heard]
+            rows += heard
+        for run in due:
+            first = spaces[run].start_belief(by, tried, read, known[row], considered)
+            begun[run] = first is not None
+            belief.states[run] = np.nan
+            if first is not None:
+                belief.states[run], belief.covariance[run] = first.states[0], first.covariance[0]
+                belief.noise[run] = first.noise[0]
+    return totals / np.maximum(rows, 1), rows

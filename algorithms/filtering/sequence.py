@@ -15,7 +15,8 @@ from algorithms.calibration.quality import FitQuality, data_digest
 from algorithms.context import Context, as_context, complete
 from algorithms.contract import FeatureKind, Floats, Model, SensorGeometry, UnusableDataError
 from algorithms.filtering.drift import GAINS, HEAD_SHIFTS, LEVEL, MOTION, Drift, Gyroscope
-from algorithms.filtering.reading_noise import correlated_steps, estimate_noise
+from algorithms.filtering.reading_noise import estimate_noise
+from algorithms.filtering.recall import recalled
 from algorithms.filtering.track import Track
 from algorithms.inputs import as_calibration_rows, as_features, require_fitted, require_samples
 from algorithms.models.geometric.detector_faces import Normals, require_normals
@@ -32,8 +33,6 @@ CONTEXT = ("time_s", "rate_deg_s", "eclipse", "nadir", "temperature_K")
 FEWEST = 60
 """Calibration samples below which nothing is learnt."""
 
-#: Directions tried at a series' first reading.
-_STARTS = 256
 #: Steps, in units of the calibration's, from which on a series is broken off.
 _LONGEST = 1.5
 #: Readings after which a series is answered: one alone is the static calibration's.
@@ -211,38 +210,28 @@ class SunFilter(Model):
 
     def learn(self, features: Floats, sun: Floats, columns: dict[str, Floats]) -> None:
         """Set readings, their noise, and what series begin from."""
-        from algorithms.filtering.readings import (  # noqa: PLC0415 - Numba, at the first fit only
-            FaceReadings,
-            SpotReadings,
+        from algorithms.filtering.learning import (  # noqa: PLC0415 - Numba, at the first fit only
+            Learnt,
+            least_variance,
         )
 
-        by, known = self.about.name, _known(columns)
-        if self.face_normals:
-            normals = np.asarray(self.face_normals, dtype=np.float64)
-            self.readings_ = FaceReadings.from_calibration(normals, features, sun, known, by)
-        else:
-            self.readings_ = SpotReadings.from_calibration(features, sun, known, by)
-        residuals = features - self._explain(sun, known)
-        apart = np.diff(columns["time_s"])
-        self.step_s_ = float(np.median(apart))
-        if not self.step_s_ > 0:
-            raise UnusableDataError(f"{by}: the calibration's samples must follow each other")
-        self.calibrated_s_ = float(columns["time_s"].mean())
-        size = float(np.abs(features).max())
-        least = (1e-9 * size) ** 2
-        self.noise_ = np.maximum((residuals**2).mean(axis=0), least)
-        self.steps_ = correlated_steps(residuals)
-        chosen = np.linspace(0, len(sun) - 1, min(_STARTS, len(sun))).round().astype(int)
-        self.starts_ = sun[chosen]
+        known, normals = _known(columns), np.asarray(self.face_normals, dtype=np.float64)
+        given = normals, features, sun, known, columns["time_s"]
+        learnt = recalled(
+            (Learnt, *given), lambda: Learnt.from_calibration(*given, by=self.about.name)
+        )
+        self.readings_, self.noise_, self.steps_ = learnt.readings, learnt.noise, learnt.steps
+        self.calibrated_s_, self.step_s_ = learnt.calibrated_s, learnt.step_s
+        self.starts_ = learnt.starts
         if (self.steps_ <= _WHITE).all():
             gaps = np.diff(columns["time_s"], prepend=-np.inf)
             apart = np.where((gaps > 0) & (gaps <= _LONGEST * self.step_s_), gaps, np.inf)
-            quiet = np.maximum(_QUIET * self.noise_, least)
+            quiet = np.maximum(_QUIET * self.noise_, least_variance(features))
             self.noise_ = estimate_noise(self, features, self._known(columns), apart, quiet)
 
     def assess(self, features: Floats, sun: Floats, columns: dict[str, Floats]) -> None:
         """Set `quality_`: UnusableDataError where the filter does not follow its calibration."""
-        found = self._answers(self.track(features, columns))
+        found = self._answers(self._track(features, columns, _FEWEST_READ))
         error = separation_deg(found, sun)
         answered = error[np.isfinite(error)]
         residual = float(np.sqrt(np.mean(answered**2))) if len(answered) else np.inf
@@ -263,24 +252,28 @@ class SunFilter(Model):
     def predict(self, features: ArrayLike, context: Context | None = None) -> Floats:
         """Sun unit vectors (N, 3) of rows in the order of time; NaN where nothing was read."""
         require_fitted(self, "quality_")
-        return self._answers(self.track(features, context))
+        return self._answers(self._track(features, context, _FEWEST_READ))
 
     def deviation_deg(self, features: ArrayLike, context: Context | None = None) -> Floats:
         """1-sigma (N,) of each answer's errors along a tangent axis, degrees."""
         require_fitted(self, "quality_")
-        track = self.track(features, context)
+        track = self._track(features, context, _FEWEST_READ)
         answered = np.isfinite(self._answers(track)[:, 0])
         return np.where(answered, track.deviation_deg, np.nan)
 
     def track(self, features: ArrayLike, context: Context | None = None) -> Track:
         """Follow the Sun through rows, those in the dark too, with what the filter thinks of it."""
         require_fitted(self, "starts_")
+        return self._track(features, context, 1)
+
+    def _track(self, features: ArrayLike, context: Context | None, fewest: int) -> Track:
+        """Follow the Sun; series that have fewer rows to read are not begun, nor answered."""
         found = as_features(features, self.columns(), self.about.name)
         columns = as_context(context, self.about.context, len(found), self.about.name)
         usable = complete(columns, len(found)) & np.isfinite(found).all(axis=1)
         usable &= columns["eclipse"] == 0
         usable &= np.where(usable, self.readings_.is_sunlit(found), 0.0) > 0
-        return self._follow(found, columns["time_s"], _known(columns), usable)
+        return self._follow(found, columns["time_s"], _known(columns), usable, fewest)
 
     def space(self, years: float = 0.0, noise: Floats | None = None) -> SunSpace:
         """State space of the sensor so long after its calibration, of its noise or another."""
@@ -301,7 +294,12 @@ class SunFilter(Model):
         )
 
     def _follow(
-        self, found: Floats, time_s: Floats, known: Floats, usable: NDArray[np.bool_]
+        self,
+        found: Floats,
+        time_s: Floats,
+        known: Floats,
+        usable: NDArray[np.bool_],
+        fewest: int,
     ) -> Track:
         space, by = self.space(), self.rule()
         tried = space.states_towards(self.starts_)
@@ -314,6 +312,8 @@ class SunFilter(Model):
         moving = np.isfinite(known[:, :3]).all(axis=1)
         steps = np.diff(time_s, prepend=-np.inf)
         follows = moving & (steps > 0) & (steps <= _LONGEST * self.step_s_)
+        series = np.cumsum(~follows) - 1
+        usable = usable & (np.bincount(series[usable], minlength=count)[series] >= fewest)
         belief: Belief | None = None
         for row in range(count):
             if not follows[row]:  # a series, as old as its first row
@@ -340,7 +340,7 @@ class SunFilter(Model):
             deviation_deg=np.degrees(np.sqrt(0.5 * (variance[:, 0] + variance[:, 1]))),
             is_read=read,
             squared_innovation=squared,
-            series=np.cumsum(~follows) - int(count > 0 and not follows[0]),
+            series=series,
             drift=states[:, 12 : 12 + drifts],
             drift_deviation=np.sqrt(variance[:, MOTION : MOTION + drifts]),
             bias_deg_h=np.degrees(states[:, 9:12]) * _HOUR_S,
@@ -359,16 +359,6 @@ class SunFilter(Model):
     def _known(self, columns: dict[str, Floats]) -> Floats:
         """(N, 7) what states and readings go by, warmth counted from the calibration's middle."""
         return np.asarray(_known(columns) - np.array([0.0] * 6 + [self.readings_.middle_k]))
-
-    def _explain(self, sun: Floats, known: Floats) -> Floats:
-        """Give readings (n, m) of known Suns."""
-        from algorithms.filtering.sun_space import SunSpace  # noqa: PLC0415 - Numba
-
-        space = SunSpace(self.readings_, np.eye(self.columns()), Gyroscope(1.0, 1.0, 1.0), ())
-        states = space.states_towards(sun)
-        known = known - np.array([0.0] * 6 + [self.readings_.middle_k])
-        rows = [space.predict_readings(states[n : n + 1], known[n]) for n in range(len(sun))]
-        return np.concatenate(rows)
 
 
 def _known(columns: dict[str, Floats]) -> Floats:

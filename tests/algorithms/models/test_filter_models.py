@@ -11,7 +11,7 @@ import pytest
 from algorithms.angles import separation_deg
 from algorithms.contract import FeatureKind, UnsuitableDesignError
 from algorithms.discovery import discover_models
-from algorithms.filtering import reading_noise
+from algorithms.filtering import recall
 from algorithms.filtering.reading_noise import correlated_steps
 from algorithms.filtering.readings import FaceReadings, SpotReadings, earth_columns
 from algorithms.models.filters import (
@@ -160,17 +160,17 @@ def test_what_is_considered_stays_and_makes_the_filter_less_sure(geometry) -> No
     assert (track.deviation_deg[20:] > sure[20:]).all()
 
 
-def test_noise_is_heard_once_by_filters_of_one_space_and_anew_by_others(
+def test_a_sensor_is_learnt_once_by_filters_of_one_space_and_anew_by_others(
     geometry, monkeypatch
 ) -> None:
     flight = flights.flight(FeatureKind.SPOT, geometry)
     alone = UnscentedKalmanFilter().fit(**flight).noise_
-    monkeypatch.setattr(reading_noise, "_heard", {})
-    heard = reading_noise._heard
+    monkeypatch.setattr(recall, "_recalled", {})
+    learnt = recall._recalled
     noise = {}
     for model in (ExtendedKalmanFilter(), UnscentedKalmanFilter(), RobustKalmanFilter()):
         noise[type(model)] = model.fit(**flight).noise_
-    assert len(heard) == 1
+    assert len(learnt) == 2  # how the sensor reads a Sun, and with what noise
     assert all(one.tobytes() == alone.tobytes() for one in noise.values())
     ExtendedKalmanFilter(bias_deg_h=3.0).fit(**flight)
-    assert len(heard) == 2
+    assert len(learnt) == 3
