@@ -216,10 +216,12 @@ def update_by_points(  # noqa: C901, PLR0917 - one pass, nothing allocated betwe
     noise: Floats,
     steps: Floats,
     innovation: Floats,
+    estimated: Floats,
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """As `update`, of sigma points: ``K = C S^-1``, ``P - K S K'``; C (B, n, m).
 
-    S is `spread` (B, m, m) of the points' readings, and the noise.
+    S is `spread` (B, m, m) of the points' readings, and the noise. What is known of errors that
+    are only considered stays; of all the rest the gain is the best.
     """
     count, n, m = crossed.shape
     step, out = np.zeros((count, n)), covariance.copy()
@@ -239,8 +241,12 @@ def update_by_points(  # noqa: C901, PLR0917 - one pass, nothing allocated betwe
             forward(root, half[i])
             for j in range(m):
                 step[b, i] += half[i, j] * white[j]
+            if estimated[i] == 0.0:
+                step[b, i] = 0.0
         for i in range(n):
             for j in range(i + 1):
+                if estimated[i] == 0.0 and estimated[j] == 0.0:
+                    continue
                 total = covariance[b, i, j]
                 for k in range(m):
                     total -= half[i, k] * half[j, k]

@@ -7,7 +7,7 @@ batch axis B are Monte-Carlo runs, or the hypotheses of `algorithms.filtering.hy
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Protocol
 
@@ -15,6 +15,7 @@ import numpy as np
 
 from algorithms.contract import Floats
 from algorithms.filtering import algebra_kernel as algebra
+from algorithms.filtering.noise_kernel import adapted, raised
 from algorithms.filtering.state_space import StateSpace
 
 
@@ -197,19 +198,19 @@ class AdaptiveKalman(ExtendedKalman):
         self, space: StateSpace, after: Belief, read: Floats, known: Floats, sensitivity: Floats
     ) -> Belief:
         """Belief with its noise moved towards that of the residuals."""
-        residual = read - space.predict_readings(after.states, known)
-        heard = np.isfinite(residual).all(axis=1) & np.isfinite(after.squared_innovation)
-        left = residual[:, :, None] * residual[:, None, :]
-        found = algebra.innovation_covariance(after.covariance, sensitivity, left)
-        noise = after.noise + (found - after.noise) / self.window
         own = np.diagonal(space.measurement_noise())
-        place = np.arange(space.readings)
-        # rows and columns together: what is lowered on the diagonal alone has no root
-        high = np.sqrt(np.minimum(self.most * own / noise[:, place, place], 1.0))
-        noise *= high[:, :, None] * high[:, None, :]
-        noise[:, place, place] = np.maximum(noise[:, place, place], self.least * own)
-        noise[~heard] = after.noise[~heard]
-        return replace(after, noise=noise)
+        noise = adapted(
+            after.noise,
+            after.covariance,
+            sensitivity,
+            read - space.predict_readings(after.states, known),
+            after.squared_innovation,
+            self.window,
+            self.least * own,
+            self.most * own,
+        )
+        squared, likelihood = after.squared_innovation, after.log_likelihood
+        return Belief(after.states, after.covariance, noise, squared, likelihood, after.weights)
 
 
 @dataclass(frozen=True)
@@ -241,14 +242,8 @@ class RobustKalman(ExtendedKalman):
 
     def weigh(self, belief: Belief, sensitivity: Floats, innovation: Floats) -> Floats:
         """Give the readings' covariance, raised where they are far off."""
-        spread = algebra.innovation_covariance(belief.covariance, sensitivity, belief.noise)
-        variance = np.diagonal(spread, axis1=1, axis2=2)
-        size = np.abs(innovation) / np.sqrt(variance)
-        excess = np.where(size > self.limit, size / self.limit - 1.0, 0.0)
-        noise = belief.noise.copy()
-        place = np.arange(noise.shape[1])
-        noise[:, place, place] += variance * excess
-        return noise
+        found: Floats = raised(belief.noise, belief.covariance, sensitivity, innovation, self.limit)
+        return found
 
 
 @dataclass(frozen=True)
@@ -314,11 +309,8 @@ class SigmaPointKalman(_OneBelief):
             belief.noise,
             space.correlate(),
             read - mean,
+            _estimate(space.errors, self.considered),
         )
-        if self.considered:  # what is known of them stays; of all the rest the gain is the best
-            kept = np.ix_(range(count), self.considered, self.considered)
-            covariance[kept] = belief.covariance[kept]
-            step[:, list(self.considered)] = 0.0
         states = space.add_errors(belief.states, step)
         return Belief(states, covariance, belief.noise, squared, likelihood, belief.weights)
 

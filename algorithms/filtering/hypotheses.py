@@ -8,6 +8,7 @@ import numpy as np
 
 from algorithms.contract import Floats
 from algorithms.filtering.filters import Belief, ExtendedKalman, initial_state
+from algorithms.filtering.noise_kernel import mixture
 from algorithms.filtering.state_space import StateSpace
 
 
@@ -82,8 +83,5 @@ class MultipleModels:
         likely = belief.states.reshape(len(weights), number, -1)[runs, weights.argmax(axis=1)]
         apart = space.errors_between(belief.states, np.repeat(likely, number, axis=0))
         apart = apart.reshape(-1, number, n)
-        mean = (weights[:, :, None] * apart).sum(axis=1)
-        apart = apart - mean[:, None, :]
-        both = belief.covariance.reshape(-1, number, n, n)
-        both = both + apart[:, :, :, None] * apart[:, :, None, :]
-        return space.add_errors(likely, mean), (weights[:, :, None, None] * both).sum(axis=1)
+        mean, covariance = mixture(weights, apart, belief.covariance.reshape(-1, number, n, n))
+        return space.add_errors(likely, mean), covariance
