@@ -67,13 +67,17 @@ class MultipleModels:
             space, belief, np.repeat(read, number, axis=0), known
         )
         # readings whose errors are correlated tell as much as fewer would
-        log_likelihood = after.log_likelihood.reshape(-1, number) / space.correlate().mean()
+        steps = space.correlate()
+        log_likelihood = after.log_likelihood.reshape(-1, number) / (steps.sum() / len(steps))
         best = log_likelihood.max(axis=1, keepdims=True)
         likelihood = np.where(np.isfinite(best), np.exp(log_likelihood - best), 1.0)
         weights = after.weights.reshape(-1, number) * likelihood
         weights = np.maximum(weights / weights.sum(axis=1, keepdims=True), self.least)
         weights /= weights.sum(axis=1, keepdims=True)
-        return replace(after, weights=weights.ravel())
+        squared, likelihoods = after.squared_innovation, after.log_likelihood
+        return Belief(
+            after.states, after.covariance, after.noise, squared, likelihoods, weights.ravel()
+        )
 
     def estimate(self, space: StateSpace, belief: Belief) -> tuple[Floats, Floats]:
         """Mean of the hypotheses, and its covariance: theirs and what they are apart."""

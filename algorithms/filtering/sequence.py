@@ -314,23 +314,24 @@ class SunFilter(Model):
         follows = moving & (steps > 0) & (steps <= _LONGEST * self.step_s_)
         series = np.cumsum(~follows) - 1
         usable = usable & (np.bincount(series[usable], minlength=count)[series] >= fewest)
+        years = (np.abs(time_s - self.calibrated_s_) / _YEAR_S).tolist()
         belief: Belief | None = None
-        for row in range(count):
-            if not follows[row]:  # a series, as old as its first row
-                belief = None
-                if np.isfinite(time_s[row]):
-                    space = self.space(abs(float(time_s[row]) - self.calibrated_s_) / _YEAR_S)
+        first = 0
+        turns = zip(follows.tolist(), steps.tolist(), usable.tolist(), strict=True)
+        for row, (goes_on, step_s, is_usable) in enumerate(turns):
+            if not goes_on:
+                belief, first = None, row
             elif belief is not None:
-                belief = by.predict(space, belief, known[row], float(steps[row]))
-            if usable[row] and belief is None:
+                belief = by.predict(space, belief, known[row], step_s)
+            if is_usable and belief is None:
+                space = self.space(years[first])  # a series is as old as its first row
                 belief = space.start_belief(
                     by, tried, found[row], known[row], self.considered_errors()
                 )
                 read[row] = belief is not None
-            elif usable[row] and belief is not None:
+            elif is_usable and belief is not None:
                 belief = by.update(space, belief, found[row : row + 1], known[row])
-                likeliest = int(belief.weights.argmax())
-                squared[row] = belief.squared_innovation[likeliest]
+                squared[row] = belief.squared_innovation[belief.weights.argmax()]
                 read[row] = squared[row] == squared[row]  # not NaN
             if belief is not None:
                 best, covariance = by.estimate(space, belief)
