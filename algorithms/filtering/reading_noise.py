@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -122,12 +124,12 @@ def _foretold(
     belief = initial_state(spaces[0], np.full((count, tried.shape[1]), np.nan), np.zeros((n, n)))
     begun = np.zeros(count, dtype=np.bool_)
     totals, rows = np.zeros(count), np.zeros(count, dtype=np.int64)
-    for row, read in enumerate(features):
-        begun &= np.isfinite(apart_s[row])
-        due = np.flatnonzero(~begun)
-        if begun.any():
-            belief = by.predict(spaces[0], belief, known[row], float(apart_s[row]))
-            belief = by.update(spaces[0], belief, np.tile(read, (count, 1)), known[row])
+    for row, (read, step_s) in enumerate(zip(features, apart_s.tolist(), strict=True)):
+        begun &= math.isfinite(step_s)
+        due: Sequence[int] = () if begun.all() else np.flatnonzero(~begun)
+        if len(due) < count:
+            belief = by.predict(spaces[0], belief, known[row], step_s)
+            belief = by.update(spaces[0], belief, read[None], known[row])
             heard = begun & np.isfinite(belief.log_likelihood)
             totals[heard] += belief.log_likelihood[heard]
             rows += heard
