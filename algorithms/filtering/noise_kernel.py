@@ -45,7 +45,7 @@ def adapted(  # noqa: PLR0917 - one pass
             for j in range(m):
                 out[b, i, j] = noise[b, i, j] + (out[b, i, j] - noise[b, i, j]) / window
             ratio = most[i] / out[b, i, i] if out[b, i, i] != 0.0 else np.inf
-            high[i] = math.sqrt(min(ratio, 1.0))
+            high[i] = np.sqrt(min(ratio, 1.0))
         for i in range(m):
             # rows and columns together: what is lowered on the diagonal alone has no root
             for j in range(m):
@@ -63,7 +63,7 @@ def raised(
     spread = innovation_covariance(covariance, sensitivity, noise)
     for b in range(len(innovation)):
         for i in range(innovation.shape[1]):
-            deviation = math.sqrt(spread[b, i, i])
+            deviation = np.sqrt(spread[b, i, i])
             size = abs(innovation[b, i]) / deviation if deviation != 0.0 else np.inf
             if size > limit:
                 out[b, i, i] += spread[b, i, i] * (size / limit - 1.0)

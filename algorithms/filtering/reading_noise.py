@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -126,7 +125,7 @@ def _foretold(
     totals, rows = np.zeros(count), np.zeros(count, dtype=np.int64)
     for row, (read, step_s) in enumerate(zip(features, apart_s.tolist(), strict=True)):
         begun &= math.isfinite(step_s)
-        due: Sequence[int] = () if begun.all() else np.flatnonzero(~begun)
+        due = np.flatnonzero(~begun)
         if len(due) < count:
             belief = by.predict(spaces[0], belief, known[row], step_s)
             belief = by.update(spaces[0], belief, read[None], known[row])

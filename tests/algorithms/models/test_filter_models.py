@@ -174,3 +174,20 @@ def test_a_sensor_is_learnt_once_by_filters_of_one_space_and_anew_by_others(
     assert all(one.tobytes() == alone.tobytes() for one in noise.values())
     ExtendedKalmanFilter(bias_deg_h=3.0).fit(**flight)
     assert len(learnt) == 3
+
+
+def test_a_row_alone_is_followed_where_a_track_is_asked_for_and_not_begun_for_an_answer(
+    geometry,
+) -> None:
+    flight = flights.flight(FeatureKind.SPOT, geometry)
+    model = ExtendedKalmanFilter().fit(**flight)
+    context = {name: column[10:20] for name, column in flight["context"].items()}
+    apart = {**context, "time_s": 1e4 * np.arange(10.0)}
+    features = flight["features"][10:20]
+    assert model.track(features, apart).is_read.all()
+    assert np.isnan(model.predict(features, apart)).all()
+    track, found = model.track(features, context), model.predict(features, context)
+    assert track.is_read.sum() > 2
+    answered = np.isfinite(found[:, 0])
+    assert answered.sum() == track.is_read.sum() - 1
+    np.testing.assert_array_equal(found[answered], track.sun[answered])
