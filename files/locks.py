@@ -9,13 +9,10 @@ end: no lock file stays beside data in a checkout.
 
 from __future__ import annotations
 
-import logging
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-
-_LOG = logging.getLogger("sunatlas")
 
 
 class LockedError(RuntimeError):
@@ -68,7 +65,9 @@ def lock_path(place: Path) -> Path:
 
 @contextmanager
 def _lock(place: Path, *, wait: bool) -> Iterator[None]:
-    from filelock import FileLock, Timeout  # noqa: PLC0415 - as slow to load as a command's help
+    import logging  # noqa: PLC0415 - with the next, as slow to load as a command's help
+
+    from filelock import FileLock, Timeout  # noqa: PLC0415
 
     file = lock_path(place)
     # filelock would make the directory, and try for ever where no file can be made
@@ -79,7 +78,8 @@ def _lock(place: Path, *, wait: bool) -> Iterator[None]:
     except Timeout as error:
         if not wait:
             raise LockedError(_holder(file), place) from error
-        _LOG.warning("waiting for another %s, which writes to %s", _holder(file), place)
+        said = "waiting for another %s, which writes to %s"
+        logging.getLogger("sunatlas").warning(said, _holder(file), place)
         lock.acquire()
     try:
         with suppress(OSError):  # Windows lets nobody write to, read or remove a locked file

@@ -7,13 +7,15 @@ times - and is made anew where that has changed. It may be deleted at any time.
 
 from __future__ import annotations
 
+import gc
 import hashlib
-import json
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
+
+from pydantic_core import from_json, to_json
 
 from api.cli.working import working_directory
 from files.atomic import replace_file
@@ -37,13 +39,16 @@ def measure() -> Measurements:
     """Return what is measured of every pipeline, times of this machine included."""
     directory = working_directory()
     path, key = directory / FILE, digest(directory)
-    rows = _keep(path, key)
-    if rows is None:
-        rows = _made(directory)
-        with suppress(OSError):  # no room, or not ours to write: then it is made at every call
-            text = json.dumps({"key": key, "rows": list(map(_plain, rows))})
-            replace_file(path, text)
-    return Measurements(rows)
+    gc.disable()  # it would walk all that is read again and again, of which nothing goes
+    try:
+        rows = _keep(path, key)
+        if rows is None:
+            rows = _made(directory)
+            with suppress(OSError):  # no room, or not ours to write: then it is made at every call
+                replace_file(path, to_json({"key": key, "rows": list(map(_plain, rows))}).decode())
+        return Measurements(rows)
+    finally:
+        gc.enable()
 
 
 def digest(directory: Path) -> str:
@@ -81,7 +86,7 @@ def _made(directory: Path) -> list[MeasuredPipeline]:
 
 def _keep(path: Path, key: str) -> list[MeasuredPipeline] | None:
     try:
-        document = json.loads(path.read_bytes())
+        document = from_json(path.read_bytes())
         return [_row(row) for row in document["rows"]] if document["key"] == key else None
     except (OSError, ValueError, TypeError, KeyError):
         return None  # none yet, or not what was written

@@ -41,6 +41,7 @@ def query_as(model: type[Asked]) -> Callable[[Request], Coroutine[Any, Any, Aske
     ----------
     model : of the query; members that may be given several times have lists by default
     """
+    model.model_rebuild()  # so that no question waits for it
     lists = {name for name, field in model.model_fields.items() if field.default_factory is list}
 
     async def read(request: Request) -> Asked:

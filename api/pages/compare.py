@@ -18,8 +18,8 @@ from api.pages.plots.line_chart import Line, LineChart
 from api.pages.sensors import best_built
 from api.pages.serving import PageRouter, View
 from api.schema import words
+from api.schema.base import OfEdition
 from api.schema.parameters import GIVEN, Several, several
-from api.schema.studies import OfEdition
 from benchmark.metrics.score import AVAILABLE
 from registry.taxonomy import InvalidValueError
 

@@ -16,8 +16,8 @@ from api.pages import boards
 from api.pages.editions import edition_shown
 from api.pages.serving import PageRouter, View
 from api.schema import words
+from api.schema.base import OfEdition
 from api.schema.requirements import RequirementsQuery
-from api.schema.studies import OfEdition
 from benchmark.leaderboard.architectures import architectures
 from registry.studies import Study
 

@@ -10,6 +10,7 @@ from pydantic_core import CoreSchema
 from api.schema.parameters import DEFAULT_PAGE, FIELDS, GIVEN, SORT, Cursor, Limit, OneOf, Several
 from api.schema.table import Model, columns_of, sortable
 from api.schema.vocabulary import meaning
+from survey_data.editions import Choice
 
 
 class Described(BaseModel):
@@ -56,6 +57,15 @@ class Question(BaseModel):
 
 class NoParameters(Question):
     """The query of an endpoint that takes none."""
+
+
+class OfEdition(Question):
+    """Of which edition of the studies."""
+
+    edition: Choice = Field(
+        "survey",
+        description="Studies of the survey, or all, including added ones.",
+    )
 
 
 class TableQuestion(Question):

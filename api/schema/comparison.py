@@ -7,9 +7,8 @@ from typing import Annotated, Literal, TypeVar
 from pydantic import AfterValidator, ConfigDict, Field
 
 from api.comparing import FEWEST, MOST, SEPARATOR
-from api.schema.base import Shape, TableQuestion
+from api.schema.base import OfEdition, Shape, TableQuestion
 from api.schema.parameters import GIVEN, OneOf
-from api.schema.studies import OfEdition
 from api.schema.words import Condition, DatasetName
 from registry.measured_pipelines import FINER
 from registry.studies import facts

@@ -7,9 +7,8 @@ from typing import Annotated, Any
 from pydantic import ConfigDict, Field
 
 from api.schema import words
-from api.schema.base import TableQuestion
+from api.schema.base import OfEdition, TableQuestion
 from api.schema.parameters import LARGEST_PAGE, NUMBER, WHOLE, Several, several
-from api.schema.studies import OfEdition
 from registry.ranking import Sort
 
 
@@ -26,6 +25,8 @@ Number = Annotated[float | None, NUMBER]
 
 class Requirements(OfEdition):
     """Requirements on a sensor and its calibration."""
+
+    model_config = ConfigDict(defer_build=True)  # the command line reads the fields alone
 
     task: Several[words.Task] = _wanted("task")
     error: Several[words.Error] = _wanted("error")
@@ -136,6 +137,7 @@ class RequirementsBody(Requirements, strict=True):
     """Requirements in a request body."""
 
     model_config = ConfigDict(
+        defer_build=False,
         json_schema_extra={
             "examples": [
                 {
@@ -146,5 +148,5 @@ class RequirementsBody(Requirements, strict=True):
                     "calibrations": 1,
                 }
             ]
-        }
+        },
     )

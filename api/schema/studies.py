@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field
 
 from api.schema import words
-from api.schema.base import CitedQuestion, Listing, Question, Shape, SortedQuestion, TableQuestion
+from api.schema.base import CitedQuestion, Listing, OfEdition, Shape, SortedQuestion, TableQuestion
 from api.schema.parameters import (
     GIVEN,
     WHOLE,
@@ -18,7 +18,6 @@ from api.schema.table import AS_TEXT, ColumnEach
 from registry.fidelity.particulars import Purpose
 from registry.sensors import Basis
 from registry.taxonomy import ATTRIBUTES
-from survey_data.editions import Choice
 
 REPORTED = ("accuracy_deg", "accuracy_kind", "precision_deg", "precision_kind", "fov_deg")
 """Attributes of studies that are numbers, and the statistics of these."""
@@ -28,15 +27,6 @@ Grade = Literal["faithful", "close", "stand-in", "none"]
 
 def _filter(attribute: str, more: str = "") -> Any:
     return several(f"Only studies with one of these values of {attribute}{more}.")
-
-
-class OfEdition(Question):
-    """Of which edition of the studies."""
-
-    edition: Choice = Field(
-        "survey",
-        description="Studies of the survey, or all, including added ones.",
-    )
 
 
 class StudyFilters(OfEdition, TableQuestion):

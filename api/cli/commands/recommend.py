@@ -13,9 +13,7 @@ from api.cli.prepared_measurements import measure
 from api.cli.table_output import Format, FormatOption, emit, emit_json, line_width
 from api.cli.wrong_call import refuse
 from api.recommending import rows
-from api.schema.recommendations import RecommendationRow
 from api.schema.requirements import Requirements
-from api.schema.table import columns_of
 from registry.recommendation import recommend as ranked
 from registry.requirements import PARAMETERS, SETTINGS
 from registry.studies import facts
@@ -45,6 +43,9 @@ def recommend(
         emit_json(document)
         return
     if form is Format.CSV:
+        from api.schema.recommendations import RecommendationRow  # noqa: PLC0415 - many models
+        from api.schema.table import columns_of  # noqa: PLC0415 - beside its model
+
         emit(list(rows(document)), columns_of(RecommendationRow), form)
     else:
         typer.echo(architectures.text(document, line_width()), nl=False)
