@@ -177,14 +177,13 @@ def _broken_sets(question: Question, names: tuple[str, ...]) -> frozenset[int]:
         {bit[name]: has for name, has in question.designs_with.items()}
     )
     by_row = arrays.broken_by_place(by_design, _broken_by_rows(question, bit))
-    by_limit = [
-        sum(bit[n] for n in question.limits if not question.studies_within(n) >> at & 1)
-        for at in range(len(by_study))
-    ]
+    by_study_and_limit = by_study
+    for name in question.limits:
+        by_study_and_limit = _split(by_study_and_limit, bit[name], question.studies_within(name))
     included = [n for n in OF_STUDIES if n in question.requirements.include]
     found: set[int] = set()
     for number, place in enumerate(question.table.places):
-        ways = {bits for at in positions(place.studies) for bits in by_study[at]}
+        ways = {bits for bits, studies in by_study.items() if studies & place.studies}
         unadvised = [n for n in included if not question.is_advised(place, [n])]
         # Advice speaks for what is asked for; of what is excluded only studies tell.
         if len(unadvised) < len(included):
@@ -193,9 +192,8 @@ def _broken_sets(question: Question, names: tuple[str, ...]) -> frozenset[int]:
             ways.add(sum(bit[n] for n in included))
         found.update(bits | way for bits in by_row[number] for way in ways)
     for design_at in arrays.unmeasured_designs.tolist():
-        bits = int(by_design[design_at])
-        for at in positions(arrays.designs[design_at].users):
-            found.update(bits | by_limit[at] | way for way in by_study[at])
+        bits, users = int(by_design[design_at]), arrays.designs[design_at].users
+        found.update(bits | way for way, studies in by_study_and_limit.items() if studies & users)
     return frozenset(found)
 
 
@@ -236,31 +234,39 @@ def _within_limits(arrays: DesignArrays, asked: Requirements) -> Flags:
 
 def _broken_by_studies(
     question: Question, names: tuple[str, ...], bit: Mapping[str, int]
-) -> list[set[int]]:
-    """Return, of each study, the sets that it breaks of what is asked of studies.
+) -> dict[int, int]:
+    """Return the studies (bits) by the set that they break of what is asked of studies.
 
     A task asked for and one excluded are judged together: one of its tasks must be asked for and
-    not excluded.
+    not excluded. So a study may have several sets.
     """
     asked = [n for n in names if n.removeprefix(EXCLUDE) in OF_STUDIES]
     tasks = [n for n in asked if n.removeprefix(EXCLUDE) == "task"]
-    everyone = range(len(question.table.facts.keys))
-    alone = [n for n in asked if n not in tasks]
-    broken = [0 for _ in everyone]
-    for name in alone:
-        matching = Question(question.table, _only(question.requirements, [name])).studies
-        for at in everyone:
-            broken[at] |= 0 if matching >> at & 1 else bit[name]
-    found: list[set[int]] = [set() for _ in everyone]
+    broken: dict[int, int] = {}
     for size in range(len(tasks) + 1):
         for dropped in itertools.combinations(tasks, size):
-            kept = [n for n in tasks if n not in dropped]
-            matching = Question(question.table, _only(question.requirements, kept)).studies
             given_up = sum(bit[n] for n in dropped)
-            for at in everyone:
-                if matching >> at & 1 and not any(b & given_up == b for b in found[at]):
-                    found[at].add(given_up)
-    return [{bits | broken[at] for bits in found[at]} for at in everyone]
+            matching = _studies_with(question, [n for n in tasks if n not in dropped])
+            for less, studies in broken.items():
+                if given_up & less == less:
+                    matching &= ~studies  # less is enough
+            broken[given_up] = matching
+    for name in asked:
+        if name not in tasks:
+            broken = _split(broken, bit[name], _studies_with(question, [name]))
+    return broken
+
+
+def _split(broken: Mapping[int, int], bit: int, matching: int) -> dict[int, int]:
+    """Add a requirement to the sets of those studies that do not match it."""
+    parts = [(bits, studies & matching) for bits, studies in broken.items()]
+    parts += [(bits | bit, studies & ~matching) for bits, studies in broken.items()]
+    return {bits: studies for bits, studies in parts if studies}
+
+
+def _studies_with(question: Question, names: Collection[str]) -> int:
+    """Return the studies (bits) that meet some of the requirements alone."""
+    return Question(question.table, _only(question.requirements, names)).studies
 
 
 def _only(requirements: Requirements, names: Collection[str]) -> Requirements:
@@ -306,7 +312,7 @@ def _nearest_limit(table: DesignTable, requirements: Requirements, limit: str) -
         "min_availability": question.errors.availability,
         "max_latency_us": arrays.latency_us,
     }[limit][rows]
-    numbers: list[float] = [n for n in values.tolist() if math.isfinite(n) and n > 0]
+    numbers: list[float] = values[(values > 0.0) & (values < math.inf)].tolist()
     if limit == "max_error_deg":
         numbers += _stated_numbers(question, "accuracy_deg")
     if not numbers:
@@ -334,8 +340,11 @@ def _widest(table: DesignTable, requirements: Requirements) -> float | None:
     rows = rest.matching_designs[arrays.design_of]
     widest = 0.0
     for half, has_error in arrays.cone_edges:
+        among = rows & has_error
+        if not among.any():
+            continue
         over = requirements.with_value("min_fov_deg", 2.0 * half)
-        if (rows & has_error & _within_limits(arrays, over)).any():
+        if (among & _within_limits(arrays, over)).any():
             widest = 2.0 * half
             break
     return max(widest, *_stated_numbers(Question(table, requirements), "fov_deg"), 0.0) or None

@@ -223,10 +223,17 @@ class Requirements:
 
     def without(self, *names: str) -> Requirements:
         """Return these requirements without some parameters."""
-        changed = self
-        for name in names:
-            changed = changed.with_value(name, None)
-        return changed
+        changed: dict[str, object] = {
+            name: () if name in LISTS or name == "exclude_needs" else None
+            for name in names
+            if name in LIMITS or name in LISTS or name == "exclude_needs"
+        }
+        for side, prefix in (("include", ""), ("exclude", EXCLUDE)):
+            values = getattr(self, side)
+            kept = {n: asked for n, asked in values.items() if prefix + n not in names}
+            if len(kept) < len(values):
+                changed[side] = MappingProxyType(kept)
+        return replace(self, **changed) if changed else self  # type: ignore[arg-type]  # of fields
 
     def with_value(self, name: str, value: tuple[str, ...] | float | None) -> Requirements:
         """Return these requirements with one parameter replaced (dropped if None or empty)."""
