@@ -58,6 +58,7 @@ class BestPipelines:
         self.row[has] = first
         self.error = np.full(len(arrays.designs), np.inf)
         self.error[has] = self.errors.error_deg[first]
+        self._unbacked = lru_cache(None)(self._unbacked_keys)
         self.rank = np.unique(self.error, return_inverse=True)[1]
         key = ((self.rank << 1 | ~arrays.is_measured) << arrays.design_bits) | arrays.numbers
         key.sort()
@@ -86,22 +87,34 @@ class BestPipelines:
             _, with_model_stated, taken_stated = arrays.count_studies(stated)
             with_model = np.where(arrays.is_measured, with_model, with_model_stated)
             taken = np.where(arrays.is_measured, taken, taken_stated)
+        unbacked, shift, designs = self._unbacked(sort)
         backing = many[arrays.place_of] * with_model * taken
-        backed = ((1 << arrays.support_bits) - 1 - backing, arrays.support_bits)
-        error, advised = (self.rank, arrays.rank_bits), (arrays.not_advised, 1)
-        parts = {
-            "measured": (error, advised, backed),
-            "support": ((arrays.not_specified, 1), backed, error, advised),
-            "advice": (error, advised, backed),
-        }[sort]
-        key = arrays.place_of.astype(np.int64)
-        for values, bits in (*parts, (self.order, arrays.design_bits)):
-            key = (key << bits) | values
-        key.sort()
+        key = unbacked - (backing[designs] << shift)
+        key.sort(kind="stable")  # most are in order already
         every = self.at_order[key & ((1 << arrays.design_bits) - 1)]
         used = every[(arrays.is_measured & (taken > 0))[every]]
         by_use = np.lexsort((self.rank[used], -taken[used], arrays.place_of[used]))
         return every, used[by_use]
+
+    def _unbacked_keys(self, sort: Sort) -> tuple[Positions, int, Positions]:
+        """Return keys of designs that no study backs, ascending, and the design of each.
+
+        A design's support is to be subtracted from its key, shifted by the second of the three.
+        """
+        arrays = self.arrays
+        backed = ((1 << arrays.support_bits) - 1, arrays.support_bits)
+        error, advised = (self.rank, arrays.rank_bits), (arrays.not_advised, 1)
+        by_error, order = (error, advised), (self.order, arrays.design_bits)
+        before, after = {
+            "measured": (by_error, (order,)),
+            "support": (((arrays.not_specified, 1),), (*by_error, order)),
+            "advice": (by_error, (order,)),
+        }[sort]
+        key = arrays.place_of.astype(np.int64)
+        for values, bits in (*before, backed, *after):
+            key = (key << bits) | values
+        designs = key.argsort()
+        return key[designs], sum(bits for _, bits in after), designs
 
     @cached_property
     def repeatability_deg(self) -> Numbers:
@@ -161,7 +174,11 @@ class DesignArrays(PipelineTable):
         self.unmeasured_designs = np.flatnonzero(~self.is_measured)
         self.place_studies = self.words_of(place.studies for place in places)
         with_model = self.words_of(design.with_model for design in self.designs)
-        self._study_sets = np.concatenate((self.place_studies, with_model, self.users), axis=1)
+        sets = np.concatenate((self.place_studies, with_model, self.users), axis=1)
+        self._with_studies = np.flatnonzero(sets.any(axis=0))
+        self._study_sets = sets[:, self._with_studies]
+        self._set_count = sets.shape[1]
+        self._unmeasured_users = self.users[:, self.unmeasured_designs]
         self.without_studies = np.array([not place.studies for place in places], bool)
         self.best_pipelines = lru_cache(MOST_BEST)(self._best_pipelines)
         self.rank_designs = lru_cache(MOST_RANKED)(BestPipelines.rank_designs)
@@ -214,6 +231,10 @@ class DesignArrays(PipelineTable):
         found: Flags = np.bitwise_or.reduce(words, axis=0) != 0
         return found
 
+    def count_places(self, designs: Flags) -> int:
+        """Return how many architectures have one of some designs."""
+        return int(np.count_nonzero(begins(self.place_of[designs])))
+
     def words_of(self, sets: Iterable[int]) -> Words:
         """Return sets of studies as words, shape (words, sets)."""
         size = 8 * self.words
@@ -227,14 +248,15 @@ class DesignArrays(PipelineTable):
         too.
         """
         found = np.bitwise_count(self._study_sets & self.words_of([studies]))
-        counts = found.sum(axis=0, dtype=np.int64)
+        counts = np.zeros(self._set_count, np.int64)
+        counts[self._with_studies] = found.sum(axis=0)
         first, second = len(self.places), len(self.places) + len(self.designs)
         return counts[:first], counts[first:second], counts[second:]
 
     def _unmeasured_designs_of(self, studies: int) -> Flags:
         """Return the designs that nothing measures and one of some studies (bits) used."""
         found = np.zeros(len(self.designs), bool)
-        taken = self.users[:, self.unmeasured_designs] & self.words_of([studies])
+        taken = self._unmeasured_users & self.words_of([studies])
         found[self.unmeasured_designs] = taken.any(axis=0)
         return found
 

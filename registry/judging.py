@@ -143,7 +143,7 @@ class Question:
 
     def count(self) -> int:
         """Return how many architectures meet the requirements."""
-        return len(set(self.arrays.place_of[self.matching_designs].tolist()))
+        return self.arrays.count_places(self.matching_designs)
 
     @cached_property
     def finest_partial_answers(self) -> Mapping[int, int]:
