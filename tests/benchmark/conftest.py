@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 
 from algorithms.contract import Observation
+from benchmark.leaderboard.board import board_of
+from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import condition_data
 from benchmark.sweeps import plan as sweep_plan
 
@@ -14,6 +16,12 @@ FAKES = Path(__file__).parent / "fakes"
 # Importable by name, so that worker processes (which inherit sys.path) find the same classes.
 if str(FAKES) not in sys.path:
     sys.path.append(str(FAKES))
+
+
+@pytest.fixture(scope="session")
+def published_board():
+    """The board of the committed record; to look at, not to change."""
+    return board_of(Store(PUBLISHED))
 
 
 @pytest.fixture(scope="module")

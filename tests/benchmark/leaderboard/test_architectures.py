@@ -6,10 +6,10 @@ import pytest
 
 from benchmark import datasets
 from benchmark.leaderboard.architectures import architectures
-from benchmark.leaderboard.board import board_of, build
+from benchmark.leaderboard.board import build
 from benchmark.leaderboard.summaries import best_per_architecture_table, tally
 from benchmark.metrics.score import METRICS
-from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.store import PUBLISHED
 
 
 def row(model, rms, *, unit=0, dataset="d", bound=1.0, se=0.01, **more):
@@ -44,8 +44,8 @@ def record():
 
 
 @pytest.fixture(scope="module")
-def found():
-    return {(r["detector"], r["mask"]): r for r in architectures(board_of(Store(PUBLISHED)))}
+def found(published_board):
+    return {(r["detector"], r["mask"]): r for r in architectures(published_board)}
 
 
 @pytest.mark.slow

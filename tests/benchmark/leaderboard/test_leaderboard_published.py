@@ -9,7 +9,6 @@ import pytest
 from benchmark import datasets
 from benchmark.contract import ON_BENCH
 from benchmark.datasets import Preset
-from benchmark.leaderboard.board import board_of
 from benchmark.leaderboard.check import check, compare_scores
 from benchmark.leaderboard.scope import BEHIND, CLOSE, MOST, UNITS, UNITS_BEHIND, published_scope
 from benchmark.leaderboard.update import update
@@ -77,9 +76,9 @@ def test_it_is_small_and_holds_nothing_that_can_be_derived():
     sampled = [path for path in files() if path.parent.name == "samples"]
     assert sum(path.stat().st_size for path in sampled) < 7e6
     assert sum(path.stat().st_size for path in files() if path not in sampled) < 4.5e6
-    tables = {f"scores/{cell.dataset}.csv" for cell in plan.cells()}
-    names = {path.relative_to(PUBLISHED).as_posix() for path in files()}
     sets = {cell.dataset for cell in plan.cells()}
+    tables = {f"scores/{name}.csv" for name in sets}
+    names = {path.relative_to(PUBLISHED).as_posix() for path in files()}
     errors = {f"samples/{name}{kind}.parquet" for name in sets for kind in ("", ".directions")}
     assert names == {
         *tables, *errors, "pins.csv", "sweeps.csv", "sweeps.json", "claims.json", "curves.json",
@@ -116,19 +115,22 @@ def test_no_data_or_bound_changed_in_silence(published, name):
     assert pinning.changed_heads(pins, [preset]) == {}
 
 
-def boards(published):
-    for dataset in board_of(published)["datasets"]:
-        for condition, rows in groupby(dataset["rows"], key=lambda row: row["condition"]):
-            # As ranked: the board itself lists the best of each extractor first.
-            yield dataset["name"], condition, sorted(rows, key=by_rank)
+@pytest.fixture(scope="module")
+def boards(published_board):
+    """Data set, condition and rows as ranked: the board lists the best of each extractor first."""
+    return [
+        (dataset["name"], condition, sorted(rows, key=by_rank))
+        for dataset in published_board["datasets"]
+        for condition, rows in groupby(dataset["rows"], key=lambda row: row["condition"])
+    ]
 
 
 def by_rank(row):
     return row["rank"] is None, row["rank"] or 0, row["rms_deg"] or 0.0
 
 
-def test_nothing_that_answers_too_seldom_is_before_anything_that_answers(published):
-    for name, condition, rows in boards(published):
+def test_nothing_that_answers_too_seldom_is_before_anything_that_answers(boards):
+    for name, condition, rows in boards:
         ranked = [row for row in rows if row["rank"] is not None]
         answering = [(row["availability"] or 0.0) >= 0.95 for row in ranked]
         assert answering == sorted(answering, reverse=True), (name, condition)
@@ -136,10 +138,10 @@ def test_nothing_that_answers_too_seldom_is_before_anything_that_answers(publish
             assert ranked[0]["availability"] >= 0.95, (name, condition)
 
 
-def test_the_leading_pipelines_of_each_first_condition_carry_the_spread_of_units(published):
+def test_the_leading_pipelines_of_each_first_condition_carry_the_spread_of_units(boards):
     """As many units as the rule says, and a rank is shared within a group and nowhere else."""
     shared = 0
-    for name, condition, rows in boards(published):
+    for name, condition, rows in boards:
         ranked = [row for row in rows if row["rank"] is not None]
         if condition != datasets.get(name).conditions[0]:
             assert {len(row["unit_rms_deg"]) for row in ranked} == {1}

@@ -4,17 +4,17 @@ import pandas as pd
 import pytest
 
 from benchmark import datasets
-from benchmark.leaderboard.board import board_of, build
+from benchmark.leaderboard.board import build
 from benchmark.leaderboard.overview import SAYS, overview
 from benchmark.metrics.score import METRICS
-from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.store import PUBLISHED
 
 LIMITS = {"1_5": 1.5, "3": 3.0, "10": 10.0}
 
 
 @pytest.fixture(scope="module")
-def found():
-    return overview(board_of(Store(PUBLISHED)))
+def found(published_board):
+    return overview(published_board)
 
 
 @pytest.fixture(scope="module")

@@ -10,10 +10,15 @@ import textwrap
 import time
 from pathlib import Path
 
+import fake_plan
 import pytest
+from fake_atlas import Diodes
 
+from benchmark.plan import combinations as plan
+from benchmark.progress import silent
 from benchmark.results.record import Record
 from benchmark.results.store import Store
+from benchmark.running import runner
 
 ROOT = Path(__file__).parents[3]
 PROGRAM = """
@@ -78,12 +83,18 @@ def contents(store):
     }
 
 
+def run_here(store):
+    """Measure what is missing in this process; return how many cells there are and were missing."""
+    parts = fake_plan.parts(presets=(Diodes(), Diodes(name="fake-second")))
+    summary = runner.run(plan.cells(parts=parts), store, progress=silent, parts=parts)
+    return [summary.planned, summary.computed]
+
+
 @pytest.fixture(scope="module")
 def uninterrupted(tmp_path_factory):
-    directory = tmp_path_factory.mktemp("whole")
-    log = tmp_path_factory.mktemp("log") / "log"
-    assert finish(start(directory, 1, log, 0)) == [8, 8]
-    return Store(directory)
+    store = Store(tmp_path_factory.mktemp("whole"))
+    assert run_here(store) == [8, 8]
+    return store
 
 
 @pytest.mark.slow
@@ -150,5 +161,5 @@ def test_what_is_told_to_end_at_any_moment_ends_and_is_no_result(
     kept = [json.loads(line)["score"] for line in lines]
     assert 1 <= len(kept) < 8
     assert "failed" not in journal.read_text()
-    assert finish(start(store.directory, 1, tmp_path / "log2", 0)) == [8, 8 - len(kept)]
+    assert run_here(store) == [8, 8 - len(kept)]
     assert contents(store) == contents(uninterrupted)

@@ -135,7 +135,7 @@ def run(times: Times, durations: Durations, workers: int, *, kept: bool = True) 
 
     def following(dataset: str) -> Callable[[Collection[TaskResult]], list[Task]]:
         mine = [task for task in times.tasks if task.preset.name == dataset]
-        before = {task for task in mine if task in first}
+        before = {task for task in first if task.preset.name == dataset}
         after = [task for task in mine if task not in before]
         return lambda results: after if before <= {one.task for one in results} else []
 

@@ -22,7 +22,7 @@ def kill(number: float) -> float:
     return number
 
 
-@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize("workers", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_every_item_is_done_once(workers: int) -> None:
     items = [float(number) for number in range(9)]
     expected = [math.sqrt(number) for number in items]
