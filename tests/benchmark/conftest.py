@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from algorithms.contract import Observation
+from benchmark.leaderboard import scope
 from benchmark.leaderboard.board import board_of
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import condition_data
@@ -26,8 +27,9 @@ def published_board():
 
 @pytest.fixture(scope="module")
 def readings_only():
-    """Sweeps without frames: drawing those costs seconds, and fakes learn nothing from them."""
+    """Sweeps without frames, and fakes that no study used: to find that out costs seconds."""
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(scope, "studied_pipelines", lambda _parts: frozenset())
         patch.setattr(sweep_plan, "_SERIES_OF", dict.fromkeys(Observation, ()))
         yield
 

@@ -16,7 +16,11 @@ METHODS = (PeakDetection, LinearPhase, EigenAnalysis)
 
 @pytest.mark.parametrize(
     "name",
-    [name for name in datasets.names() if datasets.get(name).observation == "profiles"],
+    [
+        pytest.param(name, marks=pytest.mark.slow if "orbit" in name else ())
+        for name in datasets.names()
+        if datasets.get(name).observation == "profiles"
+    ],
 )
 def test_simulated_suns_are_found_where_light_falls(name):
     """To a few percent of the mask's height: assembly, or what a cubic leaves of the glass."""

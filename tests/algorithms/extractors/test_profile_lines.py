@@ -125,7 +125,7 @@ def noisy(profiles: np.ndarray, sigma: float = 20.0, dark: float = 40.0) -> np.n
 @pytest.mark.parametrize("name", DESIGNS)
 def test_a_shadow_is_reported_where_it_falls(name, method):
     design = DESIGNS[name]
-    moved = displacements(60)
+    moved = displacements(20)
     found = method.for_sensor(design).extract(soft_shadow(design, moved))
     # Of slits of two slants the second coordinate is a difference of two shifts.
     tolerance = FINE_PX[method] * (1 if len(design.line_axes) == 2 else 2.5)

@@ -186,8 +186,15 @@ def test_speed_up_is_near_ideal_and_data_are_made_once(
     assert ideal / hands.now >= 0.8, f"{workers} workers: {hands.now:.1f} s; ideal {ideal:.1f} s"
 
 
-@pytest.mark.parametrize("workers", [2, 16, 64])
-@pytest.mark.parametrize("share", [0.0, 0.5])
+@pytest.mark.parametrize(
+    ("workers", "share"),
+    [
+        (2, 0.0),
+        (16, 0.5),
+        (64, 0.0),
+        *(pytest.param(*rest, marks=pytest.mark.slow) for rest in ((2, 0.5), (16, 0.0), (64, 0.5))),
+    ],
+)
 def test_data_are_made_once_where_times_are_not_known(
     times: Times, known: Durations, workers: int, share: float
 ) -> None:

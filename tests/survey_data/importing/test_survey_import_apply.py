@@ -80,7 +80,7 @@ def test_applying_raises_the_basis_and_keeps_what_was_said_before(copy: Any) -> 
     ("column", "said", "kind"),
     [
         ("", "", "unspecified"),  # 3 sigma was said of the number that is gone
-        (";Accuracy kind", ";RMS", "rms"),
+        pytest.param(";Accuracy kind", ";RMS", "rms", marks=pytest.mark.slow),
         (";Accuracy kind", ";3-sigma", "3sigma"),
     ],
 )

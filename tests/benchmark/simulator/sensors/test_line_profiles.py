@@ -172,13 +172,13 @@ def test_profiles_agree_with_a_dense_ray_count(theta: float, case: str) -> None:
     slits = np.array([(0.125, 8.0, at, math.radians(slant)) for at, slant in placed])
     sun = incident(theta, azimuth)
     lit = sensor.lit(scene_of(sun))[0]
+    all_rays = np.array(
+        [(x, y, z, w * fresnel(z, glass[1])) for x, y, z, w in sun_rays(sun[0], 45, 54)]
+    )
     for number, axis in enumerate(sensor.axes):
         part = lit[number * COLUMNS : (number + 1) * COLUMNS]
         pixels = np.flatnonzero(np.convolve(part > 1e-9, np.ones(5), "same"))
-        rays = np.array(
-            [(x, y, z, w * fresnel(z, glass[1])) for x, y, z, w in sun_rays(sun[0], 45, 54)]
-        )
-        turn = math.radians(errors[0])
+        rays, turn = all_rays, math.radians(errors[0])
         if axis == "y":
             rays, turn = rays[:, [1, 0, 2, 3]], -turn
         plate = (H_MM, thickness, math.radians(errors[1]), turn)
