@@ -23,7 +23,14 @@ def place(copy: Any, study: str, attribute: str) -> int:
     return next(i for i, cells in enumerate(rows, 1) if cells[:2] == [study, attribute])
 
 
-@pytest.mark.parametrize(("filed", "number"), [("FSS", "0.01"), ("VFSS", "0.0167"), ("CSS", "0.3")])
+@pytest.mark.parametrize(
+    ("filed", "number"),
+    [
+        ("FSS", "0.01"),
+        pytest.param("VFSS", "0.0167", marks=pytest.mark.slow),
+        pytest.param("CSS", "0.3", marks=pytest.mark.slow),
+    ],
+)
 def test_a_class_that_its_number_contradicts_is_refused(filed: str, number: str, copy: Any) -> None:
     copy.set("attributes", place(copy, "Xie2012", "accuracy_deg"), "value", number)
     row = place(copy, "Xie2012", "accuracy")
@@ -31,8 +38,15 @@ def test_a_class_that_its_number_contradicts_is_refused(filed: str, number: str,
     assert located(copy.found("attributes.csv"), row, "value")
 
 
-@pytest.mark.parametrize("basis", ["survey-text", "authors-table"])
-@pytest.mark.parametrize("attribute", ["accuracy", "accuracy_deg"])
+@pytest.mark.parametrize(
+    ("basis", "attribute"),
+    [
+        ("survey-text", "accuracy"),
+        ("authors-table", "accuracy_deg"),
+        pytest.param("survey-text", "accuracy_deg", marks=pytest.mark.slow),
+        pytest.param("authors-table", "accuracy", marks=pytest.mark.slow),
+    ],
+)
 def test_a_printed_class_or_number_may_contradict_the_other(
     basis: str, attribute: str, copy: Any
 ) -> None:

@@ -154,11 +154,14 @@ def test_every_module_of_the_folder_is_an_experiment() -> None:
     assert found.keys() - recorded == {"networks", "regret", "selection"}
 
 
-def test_calls_that_make_no_sense_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+def test_calls_that_make_no_sense_are_refused(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(running, "experiments", lambda: {"squares": Squares})
     for call, said in (
-        (["error_budgett"], "did you mean"),
-        (["error_budget", "--workers", "0"], "--workers"),
-        (["error_budget", "ccd-slitt"], "ccd-slitt"),
+        (["squaress"], "did you mean"),
+        (["squares", "--workers", "0"], "--workers"),
+        (["squares", "33"], "33"),
     ):
         with pytest.raises(SystemExit):
             command.main(call)

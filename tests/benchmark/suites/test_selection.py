@@ -53,6 +53,7 @@ def test_quick_needs_nothing_that_is_not_published_anyway(quick: list[Cell]) -> 
     assert {cell.unit for cell in quick} == {0}
 
 
+@pytest.mark.slow
 def test_standard_is_all_that_is_published() -> None:
     published = Store(PUBLISHED).scores()
     assert suite("standard").select(published, installed_parts()) == sorted(published)
