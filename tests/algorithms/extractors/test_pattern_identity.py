@@ -72,7 +72,9 @@ class Scenes:
         return wrong.mean(), answered[np.array(self.whole)].mean()
 
 
-every_grid = pytest.mark.parametrize(("side", "pitch"), [(2, 16.37), (5, 16.0), (5, 16.37)])
+every_grid = pytest.mark.parametrize(
+    ("side", "pitch"), [(2, 16.37), (5, 16.0), pytest.param(5, 16.37, marks=pytest.mark.slow)]
+)
 
 
 @every_grid

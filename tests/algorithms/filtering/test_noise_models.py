@@ -19,7 +19,7 @@ def through(kalman, space, read):
     return belief
 
 
-@pytest.mark.parametrize("reported", [0.1, 1.0, 10.0])
+@pytest.mark.parametrize("reported", [0.1, pytest.param(1.0, marks=pytest.mark.slow), 10.0])
 def test_the_adaptive_filter_finds_the_noise_whatever_it_was_told(reported: float) -> None:
     _, read = history(runs=60, steps=1500)
     space = LinearStateSpace(CART.dynamics, CART.process, CART.observation, reported * CART.noise)

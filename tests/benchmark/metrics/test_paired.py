@@ -37,7 +37,9 @@ def leader(logs):
     return int(np.argmin(logs.mean(axis=1)))
 
 
-@pytest.mark.parametrize("spread", [0.01, 0.03, 0.1, 0.3])
+@pytest.mark.parametrize(
+    "spread", [0.01, *(pytest.param(s, marks=pytest.mark.slow) for s in (0.03, 0.1)), 0.3]
+)
 @pytest.mark.parametrize(("shared", "uneven"), [(0.0, 0.0), (0.5, 0.0), (0.9, 0.0), (0.0, 0.5)])
 def test_of_twenty_equal_methods_one_is_separated_on_at_most_one_board_in_twenty(
     spread, shared, uneven
@@ -61,7 +63,10 @@ def test_counting_the_comparisons_with_the_leader_alone_would_not_hold():
     assert falsely > 3 * LEVEL * BOARDS
 
 
-@pytest.mark.parametrize("spread", [0.01, 0.02, 0.03])  # 1.4 to 4.2 % between two methods
+#: 1.4 to 4.2 % between two methods.
+@pytest.mark.parametrize(
+    "spread", [*(pytest.param(s, marks=pytest.mark.slow) for s in (0.01, 0.02)), 0.03]
+)
 @pytest.mark.parametrize("shared", [0.0, 0.5])
 def test_a_difference_of_ten_percent_is_told_apart(spread, shared):
     """One method worse than the nineteen others, and one better than they are."""

@@ -159,7 +159,7 @@ def test_one_wavelength_of_a_point_is_fresnels_pattern() -> None:
     assert (np.abs(found - true)[far] <= skirt[far]).all()
 
 
-@pytest.mark.parametrize("axis", ["x", "y"])
+@pytest.mark.parametrize("axis", ["x", pytest.param("y", marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     "case",
     [

@@ -150,7 +150,7 @@ RAY_CASES = {
 }
 
 
-@pytest.mark.parametrize("theta", [0.0, 30.0, 60.0])
+@pytest.mark.parametrize("theta", [0.0, pytest.param(30.0, marks=pytest.mark.slow), 60.0])
 @pytest.mark.parametrize(
     "case",
     [

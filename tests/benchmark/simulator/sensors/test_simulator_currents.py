@@ -243,7 +243,7 @@ def test_full_earth_from_far_away_shines_like_a_lambert_sphere() -> None:
     assert light[0, 1] == 0.0
 
 
-@pytest.mark.parametrize("phase_deg", [0.0, 60.0, 100.0])
+@pytest.mark.parametrize("phase_deg", [pytest.param(0.0, marks=pytest.mark.slow), 60.0, 100.0])
 def test_earthlight_is_the_sum_over_the_visible_lit_ground(phase_deg: float) -> None:
     earth = Earth(rings=24, spokes=96)
     phase = math.radians(phase_deg)
