@@ -6,11 +6,13 @@ hot, aged, with other noise. Conditions that change only light or mounting share
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
 from algorithms.references import ReferenceCorrection
 from benchmark.contract import Preset, Samples
+from benchmark.simulator.light.memory import memory
+from benchmark.simulator.readout.references import References
 from benchmark.simulator.sensor import UnitSpread
 
 #: Where a simulated sensor keeps what its references depend on.
@@ -33,14 +35,38 @@ def correction(preset: Preset, condition: str) -> ReferenceCorrection | None:
     condition
         Under which the readings were taken.
     """
-    readings = preset.references(reference_condition(preset, condition))
+    shared, known = preset.conditions[0], reference_condition(preset, condition)
+    found = cast("Any", preset)
+    unit = _Unit(
+        (*found.streams, found.unit, known), found.condition(known).sensor, found.offered, preset
+    )
+    return _shared(unit) if known == shared else _made(unit)
+
+
+@dataclass(frozen=True)
+class _Unit:
+    """A unit under one condition, by all that its references depend on."""
+
+    names: tuple[str | int, ...]
+    sensor: Any
+    offered: References
+    preset: Preset = field(compare=False)
+
+
+def _made(unit: _Unit) -> ReferenceCorrection | None:
+    condition = str(unit.names[-1])
+    readings = unit.preset.references(condition)
     dark = next((r for name, r in readings.items() if name.startswith("dark_")), None)
     flat = next((r for name, r in readings.items() if name.startswith("flat_")), None)
     if dark is None or flat is None:
         return None
     pixels = "dark_dn" in readings
-    scale = float(_sensor(preset, condition).detector.full_scale_dn) if pixels else None
+    scale = float(_sensor(unit.preset, condition).detector.full_scale_dn) if pixels else None
     return ReferenceCorrection(dark, flat, scale, pixels)
+
+
+#: Of the first condition, whose references most others share: made once for all of them.
+_shared = memory.tables(1)(_made)
 
 
 def correct(by: ReferenceCorrection | None, samples: Samples) -> Samples:

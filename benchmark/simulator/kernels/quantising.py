@@ -21,6 +21,10 @@ FINE, COARSE, _ROWS = 0.2, 0.8, 121
 _COLUMNS = 257
 #: From this distance on, in deviations, an end of the scale takes less than 1e-6 away.
 _FAR = 4.5
+#: A little more than that: no rounding of a quotient makes it less.
+_SURELY_FAR = 1.02 * _FAR
+#: A deviation below which information is far above the least that counts.
+_LARGEST = 1e100
 #: Ends of the scale are summed code by code up to this deviation, then by the normal distribution.
 _SUMMED = 6.0
 
@@ -49,19 +53,25 @@ def add_up(mean: float, sigma: float, lowest: float, highest: float) -> float:
         nearest = min(max(math.floor(mean + 0.5), lowest), highest)
         first, last = max(nearest - 1.0, lowest), min(nearest + 1.0, highest)
     total = 0.0
-    phi_below, upper_below, lower_below = 0.0, 1.0, 0.0
+    phi_below, lower_below, z_below = 0.0, 0.0, -math.inf
+    # from the middle on what lies above, of which less is left
+    upper_below, middle = 1.0, False
     code = first
     while code <= last:
-        if code < last:
-            z = (code + 0.5 - mean) / sigma
-            phi, upper, lower = _density(z), _upper(z), _upper(-z)
-        else:
-            phi, upper, lower = 0.0, 0.0, 1.0
+        z = math.inf if code == last else (code + 0.5 - mean) / sigma
+        phi = _density(z) if code < last else 0.0
         # the difference of the smaller tails keeps its digits
-        chance = upper_below - upper if lower > 0.5 else lower - lower_below
+        lower = 1.0 if z > 1.0 else _upper(-z)
+        if lower > 0.5:
+            if not middle:
+                upper_below, middle = _upper(z_below), True
+            upper = _upper(z) if code < last else 0.0
+            chance, upper_below = upper_below - upper, upper
+        else:
+            chance = lower - lower_below
         if chance > 1e-290:
             total += (phi_below - phi) ** 2 / chance
-        phi_below, upper_below, lower_below = phi, upper, lower
+        phi_below, lower_below, z_below = phi, lower, z
         code += 1.0
     return float(total)
 
@@ -106,6 +116,27 @@ def _keep(z: float) -> float:
 
 
 @compiled
+def _variance(mu: float, sigma: float, ends: tuple[float, float], table: Floats) -> float:
+    """Inverse information of one reading of any mean and deviation."""
+    lowest, highest = ends
+    information = 0.0
+    if sigma > 0.0:
+        below = (mu - lowest - 0.5) / sigma
+        above = (highest - 0.5 - mu) / sigma
+        ended = min(below, above) < _FAR
+        if sigma < FINE or (ended and sigma < _SUMMED):
+            information = add_up(mu, sigma, lowest, highest) / (sigma * sigma)
+        elif sigma < COARSE:
+            fraction = abs(mu - math.floor(mu + 0.5))
+            information = _tabulate(fraction, sigma, table) / (sigma * sigma)
+        else:
+            information = 1.0 / (sigma * sigma + 1.0 / 12.0)
+            if ended:
+                information *= max(_keep(below) + _keep(above) - 1.0, 0.0)
+    return 1.0 / information if information > 1e-290 else math.inf
+
+
+@compiled
 def reading_variances(
     out: Floats, mean: Floats, deviation: Floats, ends: tuple[float, float], table: Floats
 ) -> None:
@@ -123,20 +154,11 @@ def reading_variances(
         `table`.
     """
     lowest, highest = ends
+    # all as if noise were above a code and the ends far off, which the processor does side by side
+    for n in range(out.shape[0]):
+        out[n] = 1.0 / (1.0 / (deviation[n] * deviation[n] + 1.0 / 12.0))
     for n in range(out.shape[0]):
         mu, sigma = mean[n], deviation[n]
-        information = 0.0
-        if sigma > 0.0:
-            below = (mu - lowest - 0.5) / sigma
-            above = (highest - 0.5 - mu) / sigma
-            ended = min(below, above) < _FAR
-            if sigma < FINE or (ended and sigma < _SUMMED):
-                information = add_up(mu, sigma, lowest, highest) / (sigma * sigma)
-            elif sigma < COARSE:
-                fraction = abs(mu - math.floor(mu + 0.5))
-                information = _tabulate(fraction, sigma, table) / (sigma * sigma)
-            else:
-                information = 1.0 / (sigma * sigma + 1.0 / 12.0)
-                if ended:
-                    information *= max(_keep(below) + _keep(above) - 1.0, 0.0)
-        out[n] = 1.0 / information if information > 1e-290 else math.inf
+        room = min(mu - lowest - 0.5, highest - 0.5 - mu)
+        if not (room > _SURELY_FAR * sigma and COARSE <= sigma < _LARGEST):
+            out[n] = _variance(mu, sigma, ends, table)

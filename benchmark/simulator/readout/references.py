@@ -16,7 +16,7 @@ import numpy as np
 
 from algorithms.contract import Floats
 from benchmark.simulator.readout.detectors import PixelArray
-from benchmark.simulator.readout.noise import NoiseStreams, draw_counts
+from benchmark.simulator.readout.noise import GAUSSIAN_FROM, NoiseStreams
 from benchmark.simulator.readout.quantisation import ROUNDING, reading_variance
 
 #: Fractions of a code over which readings of a calibration are spread.
@@ -196,16 +196,33 @@ def _mean_reading(
     streams: NoiseStreams,
     column_e: Floats | None,
 ) -> Floats:
-    total, errors = np.zeros(electrons.shape), detector.errors
+    from benchmark.simulator.kernels.reference_readings import add_reading  # noqa: PLC0415 - Numba
+
+    errors, columns = detector.errors, electrons.shape[-1]
+    total, mean = np.zeros(electrons.shape), np.ascontiguousarray(electrons)
+    # as `draw_counts`, with all that is the same in every reading computed once
+    few = ~(mean >= GAUSSIAN_FROM)
+    means = np.maximum(mean[few], 0.0)
+    deviation = np.sqrt(np.where(few, 0.0, mean) + detector.read_noise_e**2)
+    offsets, shared = np.zeros(columns) if column_e is None else column_e, np.zeros(columns)
+    numbers = (
+        detector.full_well_e,
+        errors.nonlinearity / detector.full_well_e,
+        detector.gain_e_per_dn,
+        float(detector.offset_dn),
+        float(detector.full_scale_dn),
+    )
+    rows = (-1, columns)
     for _ in range(count):
-        read = np.minimum(
-            draw_counts(electrons, detector.read_noise_e, streams), detector.full_well_e
-        )
-        read = errors.read(read, detector.full_well_e)
-        if column_e is not None:
-            read += column_e
+        normal = streams.gaussian.standard_normal(mean.shape, dtype=np.float32)
+        counted = streams.poisson.poisson(means) - means if len(means) else means
         if errors.column_noise_e:
-            read += streams.column_noise(errors.column_noise_e, electrons.shape[-1:])
-        codes = np.rint(detector.offset_dn + read / detector.gain_e_per_dn)
-        total += np.clip(codes, 0, detector.full_scale_dn)
+            shared = streams.column_noise(errors.column_noise_e, electrons.shape[-1:])
+        add_reading(
+            total.reshape(rows),
+            (mean.reshape(rows), deviation.reshape(rows)),
+            (normal.reshape(rows), counted),
+            (offsets, shared),
+            (GAUSSIAN_FROM, *numbers),
+        )
     return total / count

@@ -194,7 +194,11 @@ class LitPixels:
 
     def variance(self, expected: Floats) -> Floats:
         """Squared digital numbers; 1 where a row has no such pixel."""
-        return self._of_mean(self.sensor.variance(expected))
+        # where there is no pixel, a level whose variance is soon found: it is replaced
+        levels = expected.copy()
+        detector = self.sensor.detector
+        levels[:, : -self._means][self._nowhere] = detector.offset_dn + detector.last_code_dn / 2.0
+        return self._of_mean(self.sensor.variance(levels))
 
     def unit_variance(self, expected: Floats, scene: Scene, references: References) -> Floats:  # noqa: ARG002 - the protocol's
         """Squared digital numbers that the unknown unit adds; 1 where a row has no such pixel."""
