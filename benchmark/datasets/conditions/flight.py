@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import lru_cache
 from typing import Any, cast
 
@@ -47,7 +47,7 @@ BOUND_NOTE = (
 )
 
 
-#: Flights and splits whose directions of the Sun are kept: every condition of a data set has one.
+#: Flights and splits whose legs are kept: conditions and units of a data set fly the same ones.
 MOST_FLIGHTS = 16
 
 
@@ -130,7 +130,13 @@ class Flight:
         return span.step_s * np.arange(span.samples, dtype=np.float64)
 
     def leg(self, split: Split) -> Leg:
-        """Fly a split."""
+        """Fly a split; arrays are the caller's own."""
+        known = _leg(self, split)
+        found = {part.name: getattr(known, part.name) for part in fields(Leg)}
+        own = {name: part.copy() for name, part in found.items() if isinstance(part, np.ndarray)}
+        return replace(known, **own)
+
+    def _fly(self, split: Split) -> Leg:
         span = self.span(split)
         since = self._since(span)
         start_s = span.start_day * DAY_S
@@ -160,7 +166,7 @@ class Flight:
     def sun(self, split: Split, generator: np.random.Generator) -> Floats:
         """(N, 3) unit vectors of a split, body frame; nothing is random."""
         del generator
-        return _sun_body(self, split).copy()
+        return self.leg(split).sun_body
 
     def card(self) -> dict[str, dict[str, Any]]:
         """By split: size, times and motion."""
@@ -184,8 +190,8 @@ class Flight:
 
 
 @lru_cache(MOST_FLIGHTS)
-def _sun_body(flight: Flight, split: Split) -> Floats:
-    return flight.leg(split).sun_body
+def _leg(flight: Flight, split: Split) -> Leg:
+    return flight._fly(split)  # noqa: SLF001 - cached here: a dataclass method cannot be
 
 
 @dataclass(frozen=True)

@@ -84,6 +84,7 @@ def many_spots(
         },
         directions=directions,
         repeats=FEW,
+        batch=8,
         follows=follows,
         description=description,
         regime={

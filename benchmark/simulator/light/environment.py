@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from algorithms.contract import Floats
+from benchmark.simulator.light.memory import digest_of, memory
 from benchmark.simulator.light.sun_disc import tangent_axes
 from benchmark.simulator.readout.detectors import RESPONSES, Response
 
@@ -109,6 +110,13 @@ class Earth:
         element's angular response, integrated over the solid angle of the visible disc. Only
         photodiodes facing a patch see it (eq:mnoise, with light counted positive).
         """
+        # splits and conditions see the same Earth
+        return memory.render(
+            ("Earth.response", self, response, digest_of(sun, nadir, normals)),
+            lambda: self._response(sun, nadir, normals, response),
+        )
+
+    def _response(self, sun: Floats, nadir: Floats, normals: Floats, response: Response) -> Floats:
         nodes, shares = np.polynomial.legendre.leggauss(self.rings)
         edge = math.cos(math.radians(self.half_angle_deg))
         cos_eta = edge + (1.0 - edge) * (nodes + 1.0) / 2.0

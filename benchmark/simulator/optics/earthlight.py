@@ -20,6 +20,7 @@ import numpy as np
 
 from algorithms.contract import Floats
 from benchmark.simulator.light.environment import Earth
+from benchmark.simulator.light.memory import digest_of, memory
 from benchmark.simulator.masks.apertures import Aperture
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.diffraction_tables import landing_points, layers
@@ -145,6 +146,18 @@ def on_points(
     swapped
         Whether x and y of the mask and the grid are the sensor's y and x.
     """
+    grid = points.steps_mm, points.rows, points.columns, rays, swapped
+    seen = digest_of(points.first_mm, view.nadir, view.sun)
+    # splits and conditions see the same Earth
+    return memory.render(
+        ("on_points", camera, grid, view.earth, seen),
+        lambda: _on_points(camera, points, view, rays, swapped=swapped),
+    )
+
+
+def _on_points(
+    camera: Camera, points: Points, view: EarthInView, rays: int, *, swapped: bool
+) -> Floats:
     from benchmark.simulator.kernels.earth import behind_mask  # noqa: PLC0415 - Numba on demand
 
     assembly, mask = camera.assembly, camera.mask

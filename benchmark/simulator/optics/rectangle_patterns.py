@@ -208,7 +208,9 @@ class RectanglePattern:
         rectangle, where corners across from each other are near, and about both across it. U is
         0 where they are far apart. The incidences are those of `place`.
         """
-        return _corners(self), _ends(self), _sides(self), _per_root()
+        # a corner by itself does not know how far the others are
+        alone = replace(self, half_mm=(0.0, 0.0), thickness_mm=0.0, reach_mm=0.0)
+        return _corners(alone), _ends(self), _sides(self), _per_root()
 
     @property
     def softness(self) -> float:
