@@ -56,17 +56,13 @@ class _Holes:
         """Of the hole as drawn."""
         return self.sizes[1]
 
-    @cached_property
-    def _tables(self) -> tuple[Floats, Floats, Floats]:
-        small, drawn, large = self.sizes
-        return small.tables(), drawn.tables(), large.tables()
-
     def tables(self, shares: Floats) -> tuple[Floats, Floats, Floats]:
         """Return the three sizes'; holes as drawn need no others: theirs three times."""
+        # not kept: holes live as long as their data set, tables while it is looked at
+        small, drawn, large = self.sizes
         if not shares[:, ::2].any():
-            drawn = self.drawn.tables()
-            return drawn, drawn, drawn
-        return self._tables
+            small = large = drawn
+        return small.tables(), drawn.tables(), large.tables()
 
     def shares(self, radii_mm: Floats) -> Floats:
         """Return (A, 3) weights of the tables for holes of these radii: Lagrange's parabola.
@@ -356,6 +352,10 @@ class RoundLight:
     boxes: Integers
     patterns: tuple[tuple[Floats, ...], tuple[Floats, ...]]
 
+    @cached_property
+    def _tables(self) -> tuple[tuple[Floats, Floats, Floats], ...]:
+        return tuple(group.tables(self.shares[group.mine]) for group in self.groups)
+
     def add(self, frame: Floats, n: int) -> Integers:
         """Add the light of sample n to a frame (rows, columns).
 
@@ -370,14 +370,14 @@ class RoundLight:
 
         boxes = self.boxes[n]
         lit = (boxes[:, 1] > boxes[:, 0]) & (boxes[:, 3] > boxes[:, 2])
-        for group, numbers, axes in zip(self.groups, *self.patterns, strict=True):
+        kinds = zip(self.groups, self._tables, *self.patterns, strict=True)
+        for group, tables, numbers, axes in kinds:
             mine = group.mine[lit[group.mine]]
             if not len(mine):
                 continue
             sample, shares = (self.head[n], numbers[n], axes[n]), self.shares[mine]
             rows = np.column_stack([self.holes_mm[mine], self.passed[n, mine], shares])
             holes = rows, np.ascontiguousarray(boxes[mine])
-            tables = group.tables(shares)
             if group.lattice:
                 optics = self.layers, group.nodes, group.lattice
                 add_spots_alike(frame, tables, sample, holes, optics)
