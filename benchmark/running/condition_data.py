@@ -181,6 +181,8 @@ def _rendered_or_kept(
     started = time.process_time()
     made = render(preset, condition, unit, all_observable=all_observable)
     seconds = time.process_time() - started
+    # extractors and models need the room
+    memory.release_mapped()
     release_free_memory()
     # a preset is the caller's own: it is not kept, but taken from who asks
     bare = replace(made.data, preset=cast("Preset", None))

@@ -48,6 +48,7 @@ class LightMemory:
         self._owner: Hashable = None
         self._family: Hashable = None
         self._tables: list[Callable[[], None]] = []
+        self._mapped: list[Callable[[], None]] = []
         self._kept: dict[Hashable, _Kept] = {}
         self._runs: dict[Hashable, Runs] = {}
         self._latest: OrderedDict[Hashable, Runs] = OrderedDict()
@@ -66,15 +67,26 @@ class LightMemory:
                 let_go()
             self._family = family
 
-    def tables(self, most: int) -> Callable[[Function], Function]:
-        """Keep what a function made for its last so many arguments until `cache_for` lets go."""
+    def tables(self, most: int, *, mapped: bool = False) -> Callable[[Function], Function]:
+        """Keep what a function made for its last so many arguments until `cache_for` lets go.
+
+        What it has from `mapped` goes with `release_mapped`, too.
+        """
 
         def kept(function: Function) -> Function:
             known = lru_cache(maxsize=most)(function)
             self._tables.append(known.cache_clear)
+            if mapped:
+                self._mapped.append(known.cache_clear)
             return cast("Function", known)
 
         return kept
+
+    def release_mapped(self) -> None:
+        """Let go of tables that the shared directory holds; who asks again has them from there."""
+        if self._directory is not None:
+            for let_go in self._mapped:
+                let_go()
 
     def share_tables(self, directory: Path) -> None:
         """Keep in a directory what `mapped` makes, for all processes that share it.

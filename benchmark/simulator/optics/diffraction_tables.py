@@ -353,7 +353,7 @@ class RoundPattern:
         return shifts, weights, (corner * self.cell_mm * per_mm, share)
 
 
-@memory.tables(40)
+@memory.tables(40, mapped=True)
 def _tables(pattern: RoundPattern) -> Floats:
     return memory.mapped(pattern, partial(_filled, pattern))
 
