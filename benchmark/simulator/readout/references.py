@@ -215,7 +215,7 @@ def _mean_reading(
     rows = (-1, columns)
     for _ in range(count):
         normal = streams.gaussian.standard_normal(mean.shape, dtype=np.float32)
-        counted = streams.poisson.poisson(means) - means if len(means) else means
+        counted = np.asarray(streams.poisson.poisson(means) - means, dtype=np.float64)
         if errors.column_noise_e:
             shared = streams.column_noise(errors.column_noise_e, electrons.shape[-1:])
         add_reading(
