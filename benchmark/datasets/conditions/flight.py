@@ -133,7 +133,9 @@ class Flight:
         """Fly a split; arrays are the caller's own."""
         known = _leg(self, split)
         found = {part.name: getattr(known, part.name) for part in fields(Leg)}
-        own = {name: part.copy() for name, part in found.items() if isinstance(part, np.ndarray)}
+        own: dict[str, Any] = {
+            name: part.copy() for name, part in found.items() if isinstance(part, np.ndarray)
+        }
         return replace(known, **own)
 
     def _fly(self, split: Split) -> Leg:
