@@ -15,7 +15,7 @@ import numpy as np
 
 from algorithms.contract import Floats
 from algorithms.filtering import algebra_kernel as algebra
-from algorithms.filtering.noise_kernel import adapted, raised
+from algorithms.filtering.noise_kernel import adapt, raise_noise
 from algorithms.filtering.state_space import StateSpace
 
 
@@ -48,7 +48,7 @@ class Belief:
     log_likelihood: Floats
     weights: Floats
 
-    def moved(self, states: Floats, covariance: Floats) -> Belief:
+    def with_estimate(self, states: Floats, covariance: Floats) -> Belief:
         """Return the belief with other estimates."""
         squared, likelihood = self.squared_innovation, self.log_likelihood
         return Belief(states, covariance, self.noise, squared, likelihood, self.weights)
@@ -129,7 +129,7 @@ class ExtendedKalman(_OneBelief):
         """Belief one step on."""
         states, transition = space.advance(belief.states, known, step_s)
         covariance = algebra.predict(belief.covariance, transition, space.process_noise(step_s))
-        return belief.moved(states, covariance)
+        return belief.with_estimate(states, covariance)
 
     def update(self, space: StateSpace, belief: Belief, read: Floats, known: Floats) -> Belief:
         """Belief with readings (B, m)."""
@@ -199,7 +199,7 @@ class AdaptiveKalman(ExtendedKalman):
     ) -> Belief:
         """Belief with its noise moved towards that of the residuals."""
         own = np.diagonal(space.measurement_noise())
-        noise = adapted(
+        noise = adapt(
             after.noise,
             after.covariance,
             sensitivity,
@@ -242,7 +242,9 @@ class RobustKalman(ExtendedKalman):
 
     def weigh(self, belief: Belief, sensitivity: Floats, innovation: Floats) -> Floats:
         """Give the readings' covariance, raised where they are far off."""
-        found: Floats = raised(belief.noise, belief.covariance, sensitivity, innovation, self.limit)
+        found: Floats = raise_noise(
+            belief.noise, belief.covariance, sensitivity, innovation, self.limit
+        )
         return found
 
 
@@ -293,7 +295,7 @@ class SigmaPointKalman(_OneBelief):
         )
         covariance = algebra.cross(off, off, spreads)
         covariance += space.process_noise(step_s)
-        return belief.moved(states, covariance)
+        return belief.with_estimate(states, covariance)
 
     def update(self, space: StateSpace, belief: Belief, read: Floats, known: Floats) -> Belief:
         """Belief with readings (B, m), by the points' readings."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from algorithms.contract import Floats
 from algorithms.filtering.filters import Belief, ExtendedKalman, initial_state
-from algorithms.filtering.noise_kernel import mixture
+from algorithms.filtering.noise_kernel import mix
 from algorithms.filtering.state_space import StateSpace
 
 
@@ -87,5 +87,5 @@ class MultipleModels:
         likely = belief.states.reshape(len(weights), number, -1)[runs, weights.argmax(axis=1)]
         apart = space.errors_between(belief.states, np.repeat(likely, number, axis=0))
         apart = apart.reshape(-1, number, n)
-        mean, covariance = mixture(weights, apart, belief.covariance.reshape(-1, number, n, n))
+        mean, covariance = mix(weights, apart, belief.covariance.reshape(-1, number, n, n))
         return space.add_errors(likely, mean), covariance

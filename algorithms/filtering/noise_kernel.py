@@ -15,7 +15,7 @@ from algorithms.filtering.algebra_kernel import innovation_covariance
 
 
 @compiled
-def adapted(  # noqa: PLR0917 - one pass
+def adapt(  # noqa: PLR0917 - one pass
     noise: Floats,
     covariance: Floats,
     sensitivity: Floats,
@@ -55,7 +55,7 @@ def adapted(  # noqa: PLR0917 - one pass
 
 
 @compiled
-def raised(
+def raise_noise(
     noise: Floats, covariance: Floats, sensitivity: Floats, innovation: Floats, limit: float
 ) -> Floats:
     """Noise (B, m, m), raised where an innovation is beyond `limit` standard deviations (Huber)."""
@@ -71,7 +71,7 @@ def raised(
 
 
 @compiled
-def mixture(weights: Floats, errors: Floats, covariance: Floats) -> tuple[Floats, Floats]:
+def mix(weights: Floats, errors: Floats, covariance: Floats) -> tuple[Floats, Floats]:
     """Mean (B, n) of hypotheses, and its covariance: theirs, and of what they are apart.
 
     Weights (B, H), errors (B, H, n), covariances (B, H, n, n).

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.contract import Floats
-from algorithms.filtering.recall import recalled
+from algorithms.filtering.shared_results import compute_once
 
 if TYPE_CHECKING:
     from algorithms.filtering.sun_space import SunSpace
@@ -84,7 +84,7 @@ def estimate_noise(
     """
     # all that the answer depends on: filters that differ in their rule of update alone share it
     given = model.space(noise=model.noise_), model.starts_, model.considered_errors()
-    return recalled(
+    return compute_once(
         (_likeliest, *given, features, known, apart_s, least),
         lambda: _likeliest(model, features, known, apart_s, least),
     )

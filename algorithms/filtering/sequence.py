@@ -16,7 +16,7 @@ from algorithms.context import Context, as_context, complete
 from algorithms.contract import FeatureKind, Floats, Model, SensorGeometry, UnusableDataError
 from algorithms.filtering.drift import GAINS, HEAD_SHIFTS, LEVEL, MOTION, Drift, Gyroscope
 from algorithms.filtering.reading_noise import estimate_noise
-from algorithms.filtering.recall import recalled
+from algorithms.filtering.shared_results import compute_once
 from algorithms.filtering.track import Track
 from algorithms.inputs import as_calibration_rows, as_features, require_fitted, require_samples
 from algorithms.models.geometric.detector_faces import Normals, require_normals
@@ -210,15 +210,16 @@ class SunFilter(Model):
 
     def learn(self, features: Floats, sun: Floats, columns: dict[str, Floats]) -> None:
         """Set readings, their noise, and what series begin from."""
-        from algorithms.filtering.learning import (  # noqa: PLC0415 - Numba, at the first fit only
-            Learnt,
+        from algorithms.filtering.filter_calibration import (  # noqa: PLC0415 - Numba, at the first fit only
+            FilterCalibration,
             least_variance,
         )
 
         known, normals = _known(columns), np.asarray(self.face_normals, dtype=np.float64)
         given = normals, features, sun, known, columns["time_s"]
-        learnt = recalled(
-            (Learnt, *given), lambda: Learnt.from_calibration(*given, by=self.about.name)
+        learnt = compute_once(
+            (FilterCalibration, *given),
+            lambda: FilterCalibration.from_calibration(*given, by=self.about.name),
         )
         self.readings_, self.noise_, self.steps_ = learnt.readings, learnt.noise, learnt.steps
         self.calibrated_s_, self.step_s_ = learnt.calibrated_s, learnt.step_s

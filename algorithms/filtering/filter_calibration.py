@@ -1,4 +1,4 @@
-"""`Learnt`: what all filters of a sensor learn alike of its calibration."""
+"""What all filters of a sensor learn alike of its calibration."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _STARTS = 256
 
 
 @dataclass(frozen=True)
-class Learnt:
+class FilterCalibration:
     """How a sensor reads a Sun, how far its calibration is off that, and when it was.
 
     Attributes
@@ -49,7 +49,7 @@ class Learnt:
         time_s: Floats,
         *,
         by: str,
-    ) -> Learnt:
+    ) -> FilterCalibration:
         """Learn of features (n, m) of Suns (n, 3), with what is known (n, 7), in order of time.
 
         Parameters
