@@ -262,15 +262,7 @@ def test_windows_of_a_frame_are_registered_like_frames():
     assert (found.flags == 0).all()
 
 
-@pytest.mark.parametrize(
-    ("dtype", "masked"),
-    [
-        (np.uint16, True),
-        (np.float64, False),
-        pytest.param(np.uint16, False, marks=pytest.mark.slow),
-        pytest.param(np.float64, True, marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.parametrize(("dtype", "masked"), [(np.uint16, True), (np.float64, False)])
 def test_a_frame_has_the_same_answer_alone_and_in_any_company(dtype, masked):
     """To the bit, whatever the others' windows are like: work space is shared."""
     rng = np.random.default_rng(50)
