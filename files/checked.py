@@ -71,13 +71,25 @@ def write_checked(path: Path, content: bytes) -> None:
         file.write(content)
 
 
-def read_checked(path: Path) -> memoryview | None:
-    """Return what `write_checked` wrote; None where there is no such file, or a damaged one."""
+@contextmanager
+def reading_checked(path: Path) -> Iterator[BinaryIO | None]:
+    """Yield a file that was written so, to be read from front to back behind its digest.
+
+    None where there is no such file, or a damaged one. It is never in memory as a whole.
+    """
     try:
-        held = path.read_bytes()
+        file = path.open("rb")
     except OSError:
-        return None
-    content = memoryview(held)[_DIGEST_BYTES:]
-    if hashlib.sha256(content).digest() != held[:_DIGEST_BYTES]:
-        return None
-    return content
+        yield None
+        return
+    with file:
+        written = file.read(_DIGEST_BYTES)
+        whole = hashlib.file_digest(file, "sha256").digest() == written
+        file.seek(_DIGEST_BYTES)
+        yield file if whole else None
+
+
+def read_checked(path: Path) -> bytes | None:
+    """Return what `write_checked` wrote; None where there is no such file, or a damaged one."""
+    with reading_checked(path) as file:
+        return None if file is None else file.read()

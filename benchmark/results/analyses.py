@@ -77,5 +77,5 @@ class Analyses:
 
 def _read(file: Path | None) -> dict[str, Any]:
     content = None if file is None else read_checked(file)
-    held: dict[str, Any] = {} if content is None else json.loads(bytes(content))
+    held: dict[str, Any] = {} if content is None else json.loads(content)
     return held["files"] if held.get("version") == VERSION else {}

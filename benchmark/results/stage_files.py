@@ -19,11 +19,11 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 
-from files.checked import CheckedFile, read_checked, writing_checked
+from files.checked import CheckedFile, reading_checked, writing_checked
 from files.locks import LockedError, lock_or_refuse
 
 #: Bytes that the stages of a store may take; another number of gigabytes by this variable.
@@ -77,13 +77,15 @@ class StageFiles:
     def get(self, key: str) -> Any:
         """Return a result; None where it is not kept, or damaged."""
         path = self._find(key)
-        content = None if path is None else read_checked(path)
-        if path is None or content is None:
+        if path is None:
             return None
-        try:
-            found = _unpacked(content)
-        except Exception:  # noqa: BLE001 - of a class that is another by now: as if not there
-            return None
+        with reading_checked(path) as file:
+            if file is None:
+                return None
+            try:
+                found = _unpack(file)
+            except Exception:  # noqa: BLE001 - of a class that is another by now: as if not there
+                return None
         with suppress(OSError):
             os.utime(path)
         return found
@@ -204,8 +206,8 @@ def _pack(value: Any, file: CheckedFile) -> None:
         _Pickler(stream, protocol=5).dump(value)
 
 
-def _unpacked(content: memoryview) -> Any:
-    from pyarrow import BufferReader, CompressedInputStream  # noqa: PLC0415 - as above
+def _unpack(file: BinaryIO) -> Any:
+    from pyarrow import CompressedInputStream  # noqa: PLC0415 - as above
 
-    stream: Any = CompressedInputStream(BufferReader(content), "zstd")
+    stream: Any = CompressedInputStream(file, "zstd")
     return pickle.load(io.BufferedReader(stream))  # noqa: S301 - our own, in a user's cache

@@ -48,7 +48,7 @@ class KeptAnswer:
     def recall(self) -> Any:
         """Return the answer; None where it is not known."""
         content = read_checked(self._file)
-        held = {} if content is None else json.loads(bytes(content))
+        held = {} if content is None else json.loads(content)
         return held["answer"] if held.get("of") == self._fingerprint else None
 
     def keep(self, answer: Any) -> None:

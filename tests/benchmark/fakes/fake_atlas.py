@@ -105,6 +105,11 @@ class Diodes:
     dark: float = 0.0
     unit: int = 0
     repeats: FakeRepeats = FakeRepeats()
+    offered: None = None
+
+    @property
+    def streams(self) -> tuple[str, int]:
+        return self.name, self.version
 
     @property
     def geometry(self) -> SensorGeometry:

@@ -48,6 +48,11 @@ class Plane:
     context_columns: tuple[str, ...] = ()
     poses: int = 400
     unit: int = 0
+    offered: None = None
+
+    @property
+    def streams(self) -> tuple[str, int]:
+        return self.name, self.version
 
     @property
     def geometry(self) -> SensorGeometry:
