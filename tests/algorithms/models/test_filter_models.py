@@ -11,7 +11,7 @@ import pytest
 from algorithms.angles import separation_deg
 from algorithms.contract import FeatureKind, UnsuitableDesignError
 from algorithms.discovery import discover_models
-from algorithms.filtering import recall
+from algorithms.filtering import shared_results
 from algorithms.filtering.reading_noise import correlated_steps
 from algorithms.filtering.readings import FaceReadings, SpotReadings, earth_columns
 from algorithms.models.filters import (
@@ -165,8 +165,8 @@ def test_a_sensor_is_learnt_once_by_filters_of_one_space_and_anew_by_others(
 ) -> None:
     flight = flights.flight(FeatureKind.SPOT, geometry)
     alone = UnscentedKalmanFilter().fit(**flight).noise_
-    monkeypatch.setattr(recall, "_recalled", {})
-    learnt = recall._recalled
+    monkeypatch.setattr(shared_results, "_results", {})
+    learnt = shared_results._results
     noise = {}
     for model in (ExtendedKalmanFilter(), UnscentedKalmanFilter(), RobustKalmanFilter()):
         noise[type(model)] = model.fit(**flight).noise_
