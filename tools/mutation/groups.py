@@ -101,7 +101,10 @@ GROUPS: Mapping[str, Group] = {
             "benchmark/running/experiment.py": _in(_RUNNING, "experiment"),
             "benchmark/running/workers.py": _in(_RUNNING, "workers"),
             "benchmark/plan/*": _in(_RUNNING, "plan"),
-            "benchmark/running/*": _in(_RUNNING, "backend", "runner"),
+            "benchmark/running/schedule.py": _in(_RUNNING, "backend", "schedule"),
+            "benchmark/running/*": _in(
+                _RUNNING, "backend", "runner", "on_bench", "kept_stages", "schedule"
+            ),
         },
     ),
     "results": Group(
@@ -146,6 +149,9 @@ GROUPS: Mapping[str, Group] = {
             "registry/catalogue.py": _in("registry", "catalogue", "resolution"),
             "registry/*": _in(
                 "registry",
+                "draws",
+                "task_measures",
+                "recommendation_order_of_questions",
                 "recommendation_measured",
                 "relaxation",
                 "requirements",
@@ -186,23 +192,34 @@ GROUPS: Mapping[str, Group] = {
     "models": Group(
         50,
         {
-            "algorithms/models/multiplex/*": _in(_MODELS, "model_limits", "code_dial_models"),
-            "algorithms/models/neural_network/*": _in(_MODELS, "networks"),
+            "algorithms/models/multiplex/*": _in(
+                _MODELS, "model_limits", "rulers", "code_dial_models", "coded_masks"
+            ),
+            "algorithms/models/neural_network/*": _in(
+                _MODELS, "networks", "network_training_step", "selection"
+            ),
             "algorithms/models/non_physical/fourier_phase.py": _in(
                 _MODELS, "model_limits", "code_dial_models"
             ),
-            "algorithms/models/non_physical/*": _in(_MODELS, "model_limits", "fitted_models"),
-            "algorithms/models/lut/*": _in(_MODELS, "model_limits", "fitted_models"),
-            "algorithms/models/geometric/panoramic.py": _in(
-                _MODELS, "model_limits", "fusion_models"
+            "algorithms/models/non_physical/*": _in(
+                _MODELS,
+                "model_limits",
+                "fitted_models",
+                "regression_models",
+                "panel_models",
+                "selection",
             ),
-            "algorithms/models/geometric/pyramidal.py": _in(
-                _MODELS, "model_limits", "fusion_models"
+            "algorithms/models/lut/*": _in(_MODELS, "model_limits", "fitted_models", "selection"),
+            "algorithms/models/geometric/p[ay]*.py": _in(
+                _MODELS, "model_limits", "fusion_models", "undisturbed_fusion_models"
             ),
             "algorithms/models/geometric/solar_panel.py": _in(
-                _MODELS, "model_limits", "fusion_models"
+                _MODELS, "model_limits", "fusion_models", "undisturbed_fusion_models"
             ),
-            "algorithms/models/filters.py": _in(_MODELS, "filter_models", "fusion_models"),
+            "algorithms/models/filters.py": (
+                *_in(_MODELS, "filter_models", "fusion_models"),
+                *_in("algorithms/filtering", "linear_gaussian", "noise_models", "sun_space"),
+            ),
             "algorithms/models/geometric/*slit*.py": _in(
                 _MODELS, "model_limits", "geometric_models", "slit_models"
             ),
@@ -213,7 +230,7 @@ GROUPS: Mapping[str, Group] = {
                 _MODELS, "model_limits", "assembled_faces", "faces_weighing"
             ),
             "algorithms/models/*": _in(
-                _MODELS, "model_limits", "geometric_models", "fusion_models"
+                _MODELS, "model_limits", "geometric_models", "camera_models", "fusion_models"
             ),
         },
     ),
@@ -237,17 +254,25 @@ GROUPS: Mapping[str, Group] = {
             "algorithms/extractors/frames/energy_filter*.py": _in(
                 _EXTRACTORS, "energy_filter_kernel", "energy_filtering"
             ),
-            "algorithms/extractors/frames/multi_spot/aperture*.py": _in(
-                _EXTRACTORS, "aperture_grid", "multi_spot_oracles", "multi_spot"
+            "algorithms/extractors/frames/mirror/*": _in(
+                f"{_EXTRACTORS}/frames/mirror", "mirror", "mirror_slit"
             ),
             "algorithms/extractors/frames/multi_spot/*": _in(
-                _EXTRACTORS, "extractor_limits", "multi_spot_oracles", "multi_spot"
+                _EXTRACTORS,
+                "aperture_grid",
+                "extractor_limits",
+                "multi_spot_oracles",
+                "multi_spot",
+                "weighted_spots",
+                "pattern_identity",
             ),
             "algorithms/extractors/frames/template*.py": _in(
                 _EXTRACTORS, "template_grey", "single_spots"
             ),
-            "algorithms/extractors/frames/*": _in(
-                _EXTRACTORS, "extractor_limits", "frame_kernels", "centroids", "single_spots"
+            "algorithms/extractors/frames/*": (
+                *_in(_EXTRACTORS, "extractor_limits", "frame_kernels", "centroids"),
+                *_in(_EXTRACTORS, "single_spots"),
+                *_in(f"{_EXTRACTORS}/frames", "single_light"),
             ),
             "algorithms/extractors/profiles/linear_phase.py": _in(
                 _EXTRACTORS, "extractor_limits", "profile_lines", "frame_variants"
@@ -258,6 +283,7 @@ GROUPS: Mapping[str, Group] = {
             "algorithms/extractors/profiles/peak_*.py": _in(
                 _EXTRACTORS, "extractor_limits", "peak_position", "profile_lines"
             ),
+            "algorithms/extractors/profiles/slit_image*.py": _in(_EXTRACTORS, "slit_image"),
             "algorithms/extractors/profiles/*": _in(
                 _EXTRACTORS, "extractor_limits", "profile_lines"
             ),
