@@ -50,6 +50,16 @@ def test_units_are_paired_so_that_what_is_hard_for_all_separates_nothing_less():
     assert 1.03 < found.smallest_ratio < 1.2
 
 
+def test_what_is_not_distinguished_is_listed_by_own_error():
+    hard = units(1.0, 0.5, 1)
+    _, found = board(a=1.001 * hard * units(1.0, 0.02, 2), b=0.999 * hard * units(1.0, 0.02, 3))
+    own = [UnitErrors(tuple(hard * more)).own_deg for more in (
+        1.001 * units(1.0, 0.02, 2), 0.999 * units(1.0, 0.02, 3)
+    )]  # fmt: skip
+    assert {place.group for place in found.places} == {1}
+    assert list(found.order) == sorted((0, 1), key=own.__getitem__) == [1, 0]
+
+
 def test_what_was_scored_on_one_unit_is_behind_all_groups():
     places, _ = board(a=units(1.0, 0.02, 1), lucky=[0.5], b=units(1.3, 0.02, 2))
     assert (places["a"].rank, places["b"].rank, places["lucky"].rank) == (1, 2, 3)
