@@ -145,6 +145,12 @@ GROUPS: Mapping[str, Group] = {
                 "recommendation_survey",
                 "recommendation",
             ),
+            "registry/evidence.py": _in("api/figures", "evidence_map"),
+            "registry/possibility.py": _in("api/figures", "evidence_map"),
+            "registry/contradiction.py": (
+                *_in("registry", "recommendation_measured", "recommendation"),
+                *_in("api/cli", "cli_recommend"),
+            ),
             "registry/fidelity/*": _in("registry", "fidelity", "resolution"),
             "registry/catalogue.py": _in("registry", "catalogue", "resolution"),
             "registry/*": _in(

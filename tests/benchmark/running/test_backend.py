@@ -11,17 +11,20 @@ from typing import Any
 import fake_atlas
 import fake_cluster
 import fake_plan
+import numpy as np
 import pytest
 
 from benchmark.contract import Cell, UnknownNameError
 from benchmark.plan.combinations import cells
 from benchmark.progress import silent
+from benchmark.results.samples import CONDITION
 from benchmark.results.store import Store
 from benchmark.running import backend, runner
 from benchmark.running.cluster import WorkerLostError
 from benchmark.running.durations import Durations
+from benchmark.running.planned import samples_of
 from benchmark.running.schedule import bundles
-from benchmark.running.task import Task, TaskResult, measure
+from benchmark.running.task import Outcome, Task, TaskResult, measure
 
 
 def tasks(count: int, **named: Any) -> list[Task]:
@@ -176,3 +179,16 @@ def test_cells_are_measured_once_each_and_the_time_is_told(tmp_path: Any) -> Non
     assert (done.planned, done.already_stored, done.computed) == (1, 0, 1)
     assert 0.0 < done.seconds < 600.0
     assert done.store == tmp_path
+
+
+def test_errors_of_samples_are_kept_of_the_condition_that_shows_them_and_of_no_failure() -> None:
+    (task,) = tasks(1, preset=fake_atlas.Diodes(conditions=(CONDITION,)), condition=CONDITION)
+    errors, found = np.array([0.1, 0.2]), np.array([True, True])
+    good = Outcome("fake-least-squares", "", sample_errors_deg=errors, found=found)
+    result = TaskResult(task, (), (good, replace(good, sample_errors_deg=None)))
+    (kept,) = samples_of(replace(result, outcomes=(good,))).cells.values()
+    (cell,) = samples_of(result).cells
+    assert cell == Cell("fake-diodes", CONDITION, "fake-currents", "fake-least-squares")
+    np.testing.assert_allclose(kept.error_deg, errors, rtol=1e-3)
+    elsewhere = replace(result, task=replace(task, condition="noisy"))
+    assert samples_of(elsewhere).cells == {}
