@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from registry.draws import BENCHES, bench_for, one_at_confidence, unit_ratios
+from registry.draws import BENCHES, bench_for, one_at_confidence, unit_errors, unit_ratios
 from registry.measured_pipelines import MeasuredPipeline, Score
 from registry.recommendation import recommend
 
@@ -34,6 +34,18 @@ def test_the_error_is_the_smallest_that_so_many_draws_keep_within(own, bench, sp
     keeping = sum(draw <= found * (1 + 1e-12) for draw in draws)
     below = sum(draw < found * (1 - 1e-12) for draw in draws)
     assert below < share * len(draws) <= keeping + 1e-9
+
+
+@pytest.mark.parametrize("share", [0.5, 0.9, 0.93, 0.999])
+def test_each_unit_keeps_the_smallest_error_on_so_many_of_the_benches(share):
+    own, bench = np.array([0.01, np.inf]), np.array([0.03, 0.03])
+    ratios = np.array([unit_ratios((1.0,), 0.3)] * 2)
+    found, nothing = unit_errors(own, ratios, bench, share)
+    assert np.isinf(nothing).all()
+    for error, ratio in zip(found, ratios[0], strict=True):
+        draws = np.hypot(own[0] * ratio, bench[0] * np.array(BENCHES))
+        enough = [draw for draw in draws if np.mean(draws <= draw) >= share - 1e-9]
+        assert error == pytest.approx(min(enough), rel=1e-12)
 
 
 def test_ratios_of_measured_units_are_theirs_and_of_few_those_of_the_spread():

@@ -5,7 +5,7 @@ from statistics import median
 
 import pytest
 
-from registry.ranking import TaskMeasure, joint_cost
+from registry.ranking import TaskMeasure, joint_cost, key_of
 from registry.recommendation import recommend
 from registry.studies import facts
 from survey_data.hardware import hardware
@@ -58,3 +58,21 @@ def test_several_tasks_go_by_the_geometric_mean_and_unknown_is_last() -> None:
     assert TaskMeasure("Power", "mW", 0.0, 5).cost == 1.0
     assert "nothing published of built sensors" in TaskMeasure("Power", "mW", None).words
     assert TaskMeasure("Volume", "g", 30.0, 2).words.endswith("of 2 built sensors")
+
+
+def test_what_is_backed_and_measured_comes_first_then_what_is_backed_alone() -> None:
+    both = key_of("advice", True, 0.0, 0.5)
+    studied = key_of("advice", False, 3.0, 0.6)
+    alone = key_of("advice", True, 0.0, math.inf)
+    rest = [key_of("advice", False, 0.0, error) for error in (0.01, math.inf)]
+    assert sorted([*rest, alone, studied, both]) == [both, studied, alone, *rest]
+    assert key_of("advice", False, 1.0, 0.3, of_errors=True) > key_of(
+        "advice", True, 0.0, math.inf, of_errors=True
+    )
+
+
+def test_the_field_of_view_is_measured_as_a_full_angle() -> None:
+    row = measured_pipeline("CMOS", "Slit", 0.1)
+    answer = recommend({"task": "FOV"}, [row], facts=facts())
+    found = [m for a in answer.architectures for m in a.measures if m["value"] is not None]
+    assert [one["value"] for one in found] == [120.0]
