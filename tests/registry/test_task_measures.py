@@ -72,7 +72,8 @@ def test_what_is_backed_and_measured_comes_first_then_what_is_backed_alone() -> 
 
 
 def test_the_field_of_view_is_measured_as_a_full_angle() -> None:
-    row = measured_pipeline("CMOS", "Slit", 0.1)
+    advised = recommend({"task": "FOV"}, facts=facts()).architectures[0]
+    row = measured_pipeline(advised.detector, advised.mask, 0.1)
     answer = recommend({"task": "FOV"}, [row], facts=facts())
-    found = [m for a in answer.architectures for m in a.measures if m["value"] is not None]
-    assert [one["value"] for one in found] == [120.0]
+    found = [one["value"] for a in answer.architectures for one in a.measures]
+    assert [value for value in found if value is not None] == [2.0 * row.half_fov_deg]
