@@ -202,7 +202,7 @@ GROUPS: Mapping[str, Group] = {
                 _MODELS, "model_limits", "rulers", "code_dial_models", "coded_masks"
             ),
             "algorithms/models/neural_network/*": _in(
-                _MODELS, "networks", "network_training_step", "selection"
+                _MODELS, "network_training_data", "networks", "network_training_step", "selection"
             ),
             "algorithms/models/non_physical/fourier_phase.py": _in(
                 _MODELS, "model_limits", "code_dial_models"

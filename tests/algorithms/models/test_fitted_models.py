@@ -48,6 +48,12 @@ def test_linear_fit_of_tangents_inverts_a_pinhole_exactly(geometry, field):
     assert separation_deg(model.predict(spot), field).max() < 1e-10
 
 
+@pytest.mark.parametrize(("target", "unit"), [("angle", "deg"), ("tangent", "")])
+def test_linear_parameters_are_degrees_of_angles_and_plain_numbers_of_tangents(target, unit):
+    model = LinearFit(target=target).fit(grid(), sun_from_angles(grid()[:, ::-1]))
+    assert {parameter.unit for parameter in model.fitted_parameters()} == {unit}
+
+
 @pytest.mark.parametrize("degree", [1, 3, 6, 11])
 def test_axis_polynomial_is_numpys_own_fit(degree):
     features = scattered() * 10 + 1000
@@ -71,6 +77,21 @@ def test_axis_polynomial_holds_a_polynomial_of_its_degree_exactly():
     model = AxisPolynomial(degree=6).fit(np.column_stack([x, y]), sun_from_angles(angles))
     predicted = angles_from_sun(model.predict(np.column_stack([x, y])))
     np.testing.assert_allclose(predicted, angles, atol=1e-10)
+
+
+@pytest.mark.parametrize("bent", [0, 1])
+def test_axis_polynomials_take_the_degree_that_either_axis_needs(bent):
+    angles = grid()[:, ::-1].copy()
+    angles[:, bent] += 1e-7 * angles[:, bent] ** 5
+    model = AxisPolynomial().fit(grid(), sun_from_angles(angles))
+    np.testing.assert_allclose(angles_from_sun(model.predict(grid())), angles, atol=1e-6)
+
+
+@pytest.mark.parametrize("degree", [1, 2, 9, 15])
+def test_surface_polynomial_states_the_degree_it_was_given(degree):
+    features = grid(steps=17)
+    model = SurfacePolynomial(degree=degree).fit(features, sun_from_angles(response(features)))
+    assert model.settings() == {"degree": degree}
 
 
 @pytest.mark.parametrize("degree", [1, 2, 4])

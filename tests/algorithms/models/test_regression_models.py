@@ -170,15 +170,15 @@ def test_sigmoid_holds_a_straight_line_where_a_logistic_has_no_numbers():
     assert SigmoidBalance().fit(noisy, sun).quality_.residual_rms_deg < 0.1
 
 
-@pytest.mark.parametrize("way", [1, -1])
-def test_sigmoid_holds_a_square_apertures_tangent(way):
-    """Bent the other way than any logistic: ``tan(t)`` is its bend -1 exactly."""
+@pytest.mark.parametrize(("way", "root"), [(1, 1.0), (-1, 1.0), (1, 1.2)])
+def test_sigmoid_holds_a_square_apertures_tangent(way, root):
+    """Bent the other way than any logistic: ``tan(p t)`` is its bend ``-p^2`` exactly."""
     angles = grid()
     sun = sun_from_angles(angles)
-    balances = way * np.tan(np.radians(angles[:, ::-1])) / 1.3
+    balances = way * np.tan(root * np.radians(angles[:, ::-1])) / 1.3
     model = SigmoidBalance().fit(balances, sun)
     assert separation_deg(model.predict(balances), sun).max() < 1e-6
-    assert model.quality_.parameter("bend_alpha").value == pytest.approx(-1, abs=1e-6)
+    assert model.quality_.parameter("bend_alpha").value == pytest.approx(-(root**2), abs=1e-6)
 
 
 def test_sigmoid_refuses_what_turns_back_or_does_not_belong():

@@ -122,3 +122,13 @@ def test_each_ruler_refuses_the_others_slits():
         OpticalVernier.for_sensor(RETICLE, FeatureKind.SIGNALS)
     with pytest.raises(UnsuitableDesignError, match="raster"):
         ReticlePhase.for_sensor(design([0.0, 0.4, 0.9, 1.2], 0.2, 700, 0.014, 1.2), "signals")
+
+
+def test_a_verniers_slits_stand_at_least_three_pixels_apart():
+    three, two = (
+        design([pitch * (k - 7.5) for k in range(16) if k not in {2, 11}], 0.15, 104, 0.1, 1.0)
+        for pitch in (0.32, 0.22)
+    )
+    assert OpticalVernier.for_sensor(three, FeatureKind.SIGNALS).line_pixels == 104
+    with pytest.raises(UnsuitableDesignError, match="three whole pixels"):
+        OpticalVernier.for_sensor(two, FeatureKind.SIGNALS)
