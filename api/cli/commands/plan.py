@@ -115,7 +115,7 @@ def _count(missing: int, planned: int) -> str:
 
 
 def _time(estimate: Estimate, workers: int) -> str:
-    if estimate.unknown == estimate.tasks:
+    if 0 < estimate.tasks == estimate.unknown:
         return "how long that takes is known here once it has been run"
     known = f"about {estimate.seconds / workers:.2g} s on {workers} workers"
     rest = f", and {estimate.unknown} of {estimate.tasks} tasks whose like never ran here"
