@@ -21,7 +21,7 @@ from benchmark.leaderboard.scope import published_scope
 from benchmark.plan.combinations import cells, scorable_plan
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running import times
+from benchmark.running import runner, times
 from benchmark.running.runner import RunInterruptedError, stale
 from registry.catalogue import catalogue
 from registry.fidelity.grading import Fidelity
@@ -155,7 +155,7 @@ def test_ctrl_c_says_what_is_kept(unpublished, monkeypatch):
     def interrupted(*_arguments, **_options):
         raise RunInterruptedError(reason)
 
-    monkeypatch.setattr(measuring, "run", interrupted)
+    monkeypatch.setattr(runner, "run", interrupted)
     shown = sunatlas("benchmark", *CHEAP)
     assert shown.exit_code == 130
     assert shown.stderr == f"sunatlas: {reason}\n"
