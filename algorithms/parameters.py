@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import get_args
+from collections.abc import Callable, Mapping
+from typing import Any, get_args
 
 
 def require_positive(by: str, **parameters: float) -> None:
@@ -27,9 +28,9 @@ def require_positive(by: str, **parameters: float) -> None:
     Traceback (most recent call last):
     ValueError: spm: unit_mm must be positive and finite; got 0.0
     """
-    for name, value in parameters.items():
-        if not (math.isfinite(value) and value > 0):
-            raise ValueError(f"{by}: {name} must be positive and finite; got {value!r}")
+    _require(
+        by, parameters, lambda value: math.isfinite(value) and value > 0, "positive and finite"
+    )
 
 
 def require_within(by: str, interval: str, **parameters: float) -> None:
@@ -56,11 +57,13 @@ def require_within(by: str, interval: str, **parameters: float) -> None:
     ValueError: mean-shift: similarity must be in [0, 1); got 1.0
     """
     low, high = (float(end) for end in interval[1:-1].split(","))
-    for name, value in parameters.items():
+
+    def inside(value: float) -> bool:
         above = low <= value if interval[0] == "[" else low < value
         below = value <= high if interval[-1] == "]" else value < high
-        if not (above and below):
-            raise ValueError(f"{by}: {name} must be in {interval}; got {value!r}")
+        return above and below
+
+    _require(by, parameters, inside, f"in {interval}")
 
 
 def require_at_least(by: str, least: float, **parameters: float) -> None:
@@ -86,9 +89,7 @@ def require_at_least(by: str, least: float, **parameters: float) -> None:
     Traceback (most recent call last):
     ValueError: bscm: loops must be at least 1; got 0
     """
-    for name, value in parameters.items():
-        if not value >= least:
-            raise ValueError(f"{by}: {name} must be at least {least}; got {value!r}")
+    _require(by, parameters, lambda value: value >= least, f"at least {least}")
 
 
 def require_order(by: str, most: int, **parameters: int | None) -> None:
@@ -114,9 +115,12 @@ def require_order(by: str, most: int, **parameters: int | None) -> None:
     Traceback (most recent call last):
     ValueError: polynomial: degree must be from 1 to 7, or None; got 8
     """
-    for name, value in parameters.items():
-        if value is not None and not 1 <= value <= most:
-            raise ValueError(f"{by}: {name} must be from 1 to {most}, or None; got {value!r}")
+    _require(
+        by,
+        parameters,
+        lambda value: value is None or 1 <= value <= most,
+        f"from 1 to {most}, or None",
+    )
 
 
 def require_choice(by: str, choices: object, **parameters: object) -> None:
@@ -143,7 +147,14 @@ def require_choice(by: str, choices: object, **parameters: object) -> None:
     Traceback (most recent call last):
     ValueError: bcm: background must be one of none, median; got 'mean'
     """
+    allowed = get_args(choices)
+    _require(by, parameters, lambda value: value in allowed, f"one of {', '.join(allowed)}")
+
+
+def _require(
+    by: str, parameters: Mapping[str, object], holds: Callable[[Any], bool], what: str
+) -> None:
+    """Raise ValueError for the first parameter that a condition does not hold of."""
     for name, value in parameters.items():
-        if value not in get_args(choices):
-            allowed = ", ".join(get_args(choices))
-            raise ValueError(f"{by}: {name} must be one of {allowed}; got {value!r}")
+        if not holds(value):
+            raise ValueError(f"{by}: {name} must be {what}; got {value!r}")

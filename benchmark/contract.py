@@ -99,6 +99,29 @@ class Repeats(Protocol):
         ...
 
 
+class References(Protocol):
+    """How many readings of even light and of none a calibration offers."""
+
+    @property
+    def darks(self) -> int:
+        """Readings without light."""
+        ...
+
+    @property
+    def flats(self) -> int:
+        """Readings of even light."""
+        ...
+
+
+class Observed(Protocol):
+    """What a condition is of, as far as the runner asks."""
+
+    @property
+    def sensor(self) -> Any:
+        """Its simulated sensor."""
+        ...
+
+
 class Preset(Protocol):
     """A standard dataset."""
 
@@ -150,6 +173,20 @@ class Preset(Protocol):
     @property
     def repeats(self) -> Repeats:
         """Poses and passes of the split ``repeat``."""
+        ...
+
+    @property
+    def streams(self) -> tuple[str | int, ...]:
+        """Names that its random streams begin with."""
+        ...
+
+    @property
+    def offered(self) -> References:
+        """Readings of the unit that methods are given beside a calibration."""
+        ...
+
+    def condition(self, name: str) -> Observed:
+        """Return a condition; LookupError where there is none of the name."""
         ...
 
     def geometry_for(self, condition: str) -> SensorGeometry:

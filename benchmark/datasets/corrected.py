@@ -10,9 +10,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
 from algorithms.references import ReferenceCorrection
-from benchmark.contract import Preset, Samples
+from benchmark.contract import Preset, References, Samples
 from benchmark.simulator.light.memory import memory
-from benchmark.simulator.readout.references import References
 from benchmark.simulator.sensor import UnitSpread
 
 #: Where a simulated sensor keeps what its references depend on.
@@ -36,10 +35,8 @@ def correction(preset: Preset, condition: str) -> ReferenceCorrection | None:
         Under which the readings were taken.
     """
     shared, known = preset.conditions[0], reference_condition(preset, condition)
-    found = cast("Any", preset)
-    unit = _Unit(
-        (*found.streams, found.unit, known), found.condition(known).sensor, found.offered, preset
-    )
+    names = (*preset.streams, preset.unit, known)
+    unit = _Unit(names, preset.condition(known).sensor, preset.offered, preset)
     return _shared(unit) if known == shared else _made(unit)
 
 
@@ -81,7 +78,7 @@ def correct(by: ReferenceCorrection | None, samples: Samples) -> Samples:
 
 def references_used(preset: Preset) -> str:
     """Say which references of the unit a data set's methods are given, in a few words."""
-    sensor, offered = _sensor(preset, preset.conditions[0]), cast("Any", preset).offered
+    sensor, offered = _sensor(preset, preset.conditions[0]), preset.offered
     if not isinstance(sensor, UnitSpread):
         return "nothing (lens cameras and event arrays have no dark and flat readings)"
     pixels = getattr(getattr(sensor, "detector", None), "full_scale_dn", None) is not None
@@ -91,7 +88,7 @@ def references_used(preset: Preset) -> str:
 
 def _sensor(preset: Preset, condition: str) -> Any:
     """Return the sensor itself, without what moves or ages it."""
-    sensor = cast("Any", preset).condition(condition).sensor
+    sensor = preset.condition(condition).sensor
     while not any(hasattr(sensor, name) for name in _PARTS) and hasattr(sensor, "sensor"):
         sensor = sensor.sensor
     return sensor

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -11,11 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import AboutExtractor, FeatureKind, Floats, Observation
 from algorithms.documented import documented
-from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, dark_level
+from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines
 from algorithms.extractors.profiles.spot_spectra import SpotSpectra, require_frequencies
-
-#: Searches in turn, each in windows about the shift found before: the second already stays.
-_PASSES = 2
 
 
 @documented
@@ -80,40 +78,31 @@ class EigenAnalysis(SlitLines):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in profiles (N, A L); ValueError on wrong input."""
-        from algorithms.kernels import spot_spectra_kernel  # noqa: PLC0415 - Numba, at first use
-
-        lines = self.lines(observations)
-        floors = dark_level(lines)
         spectra = SpotSpectra.behind(self, padded=True)
-        shifts = self.locate(lines, floors)
-        last = np.full(shifts.shape, min(self.frequencies or 0, spectra.reference.shape[1] - 1))
-        for _ in range(_PASSES):
-            cross = spectra.cross(lines, floors, shifts)
-            if self.frequencies is None:
-                spot_spectra_kernel.bands(*spectra.light(cross), last)
-            shifts = shifts + self._steps(spectra, cross, last)
-        return self.spots(shifts)
+        return self.spots(spectra.shifts(self, observations, partial(self._steps, spectra)))
 
-    def _steps(
-        self, spectra: SpotSpectra, cross: NDArray[np.complex128], last: NDArray[np.int64]
-    ) -> Floats:
-        """Shifts (R, G) of least projection of cross-spectra (R, G, K) up to `last` (R, G)."""
+    def _steps(self, spectra: SpotSpectra, cross: NDArray[np.complex128]) -> Floats:
+        """Shifts (R, G) of least projection of cross-spectra (R, G, K)."""
         from algorithms.kernels import spot_spectra_kernel  # noqa: PLC0415 - Numba, at first use
 
+        rows, kinds, count = cross.shape
+        last = np.full((rows, kinds), min(self.frequencies or 0, count - 1))
+        if self.frequencies is None:
+            spot_spectra_kernel.bands(*spectra.light(cross), last)
         reach = max(slit[2] for slit in self.slits) / 2.0 + 1.0
         steps = np.empty(last.shape)
-        for size, group in itertools.product(np.unique(last) + 1, range(last.shape[1])):
-            rows = np.flatnonzero(last[:, group] + 1 == size)
-            part = np.ascontiguousarray(cross[rows, group : group + 1, :size])
+        for size, group in itertools.product(np.unique(last) + 1, range(kinds)):
+            chosen = np.flatnonzero(last[:, group] + 1 == size)
+            part = np.ascontiguousarray(cross[chosen, group : group + 1, :size])
             covariance = np.empty((*part.shape, size))
             spot_spectra_kernel.frequency_correlations(part, covariance)
             # LAPACK takes one matrix at a time, so each profile's result is its own.
             vectors = np.ascontiguousarray(np.linalg.eigh(covariance)[1][..., -1])
             strongest = np.empty(part.shape, dtype=np.complex128)
             spot_spectra_kernel.as_series(vectors, strongest)
-            found = np.empty((len(rows), 1))
+            found = np.empty((len(chosen), 1))
             powers = np.ascontiguousarray(spectra.powers[group, :size])
             spot_spectra_kernel.least_projections(strongest, powers, spectra.period, reach, found)
-            steps[rows, group] = found[:, 0]
+            steps[chosen, group] = found[:, 0]
         steps[~np.isfinite(cross).all(axis=-1)] = np.nan
         return steps

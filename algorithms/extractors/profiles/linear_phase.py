@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar, Literal, Self
+from functools import partial
+from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,15 +21,15 @@ from algorithms.contract import (
 )
 from algorithms.documented import documented
 from algorithms.extractors.profiles.single_spot import require_one_spot, spot_size_px
-from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, box_means, dark_level
-from algorithms.extractors.profiles.spot_spectra import SpotSpectra, require_frequencies
+from algorithms.extractors.profiles.slit_lines import NEEDS, SlitLines, box_means
+from algorithms.extractors.profiles.spot_spectra import (
+    PASSES,
+    Shape,
+    SpotSpectra,
+    require_frequencies,
+)
 from algorithms.inputs import as_frames
 from algorithms.parameters import require_choice, require_positive
-
-Shape = Literal["round", "square"]
-
-#: Fits in turn, each in windows about the shift found before: the second already stays.
-_PASSES = 2
 
 
 @documented
@@ -91,14 +92,9 @@ class LinearPhase(SlitLines):
 
     def extract(self, observations: ArrayLike) -> Floats:
         """Positions (N, 2) in profiles (N, A L); ValueError on wrong input."""
-        lines = self.lines(observations)
-        floors = dark_level(lines)
         spectra = SpotSpectra.behind(self, padded=False)
-        shifts = self.locate(lines, floors)
-        for _ in range(_PASSES):
-            cross = spectra.cross(lines, floors, shifts)
-            shifts = shifts + spectra.slopes(cross, self.frequencies)
-        return self.spots(shifts)
+        step = partial(spectra.slopes, last=self.frequencies)
+        return self.spots(spectra.shifts(self, observations, step))
 
 
 @documented
@@ -214,7 +210,7 @@ class FrameLinearPhase(Extractor):
         )
         windows = np.empty((count, 2, 2 * half + 1))
         none = np.zeros(2 * count)
-        for _ in range(_PASSES):
+        for _ in range(PASSES):
             unseen = np.isnan(found).any(axis=1)
             found[unseen] = -1.0  # a window about no pixel leaves the frame
             centres = np.rint(found).astype(np.int64)

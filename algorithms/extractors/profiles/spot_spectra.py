@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, Self
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import Floats
-from algorithms.extractors.profiles.slit_lines import SlitLines
+from algorithms.extractors.profiles.slit_lines import SlitLines, dark_level
 
 #: First zero of a spectrum, in cycles a width: of a slit's even light, and of a disc's summed one.
 FIRST_ZERO = {"square": 1.0, "round": 1.2196699}
 
+#: Steps in turn, each in windows about the shift found before: the second already stays.
+PASSES = 2
+
 Shape = Literal["round", "square"]
+_Step = Callable[[NDArray[np.complex128]], Floats]
 
 
 @dataclass(frozen=True)
@@ -69,6 +74,18 @@ class SpotSpectra:
             [width * _spectrum(frequencies * width, shape) for width in widths]
         ) * np.sinc(frequencies)
         return cls(places, groups, half_px, period, reference, FIRST_ZERO[shape] / max(widths))
+
+    def shifts(self, slits: SlitLines, observations: ArrayLike, step: _Step) -> Floats:
+        """Shifts (R, G), px, of the lines of observations, improved by a step, `PASSES` times.
+
+        Each step goes from cross-spectra in windows about the shifts found before.
+        """
+        lines = slits.lines(observations)
+        floors = dark_level(lines)
+        shifts = slits.locate(lines, floors)
+        for _ in range(PASSES):
+            shifts = shifts + step(self.cross(lines, floors, shifts))
+        return shifts
 
     @property
     def powers(self) -> Floats:

@@ -67,11 +67,6 @@ class DriftingQuadrantSensor(QuadrantSensor):
             np.concatenate([part.light for part in parts]),
         )
 
-    def lit(self, scene: Scene) -> Floats:
-        """(N, 4) light on the quadrants, as `QuadrantSensor` has it."""
-        area = self._areas(self.project(scene), scene)
-        return np.asarray(area / sum(a.area_mm2 for a in self.camera.mask.apertures))
-
     def earth_through(
         self, earth: Earth, nadir: Floats, scene: Scene, pattern: FixedPattern
     ) -> Floats:

@@ -67,6 +67,16 @@ def _spline(cycles: float) -> float:
 
 
 @compiled
+def _nodes(size: int, spread: float, per_root: float) -> Floats:
+    """Places (M,) of nodes about 0, so many to the root of a spread."""
+    places = np.empty(size)
+    for i in range(size):
+        at = (i - (size - 1) / 2.0) / per_root
+        places[i] = at * math.sqrt(spread)
+    return places
+
+
+@compiled
 def _waves(tall: int, step: float, y: Floats) -> tuple[Floats, Floats]:
     """Cosines and sines (2 tall, M) of waves at places y.
 
@@ -111,10 +121,7 @@ def corner_patches(
     step_x, step_y, most = grid
     size = out.shape[1]
     reach, tall = int(most / step_x), int(most / step_y)
-    x, y = np.empty(size), np.empty(size)
-    for i in range(size):
-        at = (i - (size - 1) / 2.0) / per_root
-        x[i], y[i] = at * math.sqrt(jw), at * math.sqrt(jv)
+    x, y = _nodes(size, jw, per_root), _nodes(size, jv, per_root)
     node_x, node_y = x[1] - x[0], y[1] - y[0]
     cosines, sines = _waves(tall, step_y, y)
     sums = np.zeros((4, reach, size))
@@ -179,10 +186,7 @@ def end_patch(out: Floats, design: Floats, spectrum: Floats, radial: Floats, gri
     longest = 0.0
     for m in range(spectrum.shape[0]):
         longest = max(longest, spectrum[m, 0])
-    x, y = np.empty(size), np.empty(size)
-    for i in range(size):
-        at = (i - (size - 1) / 2.0) / per_root
-        x[i], y[i] = at * math.sqrt(jw), at * math.sqrt(jv)
+    x, y = _nodes(size, jw, per_root), _nodes(size, jv, per_root)
     node_x, node_y = x[1] - x[0], y[1] - y[0]
     cosines, sines = _waves(tall, step_y, y)
     sums = np.zeros((2, reach, size))

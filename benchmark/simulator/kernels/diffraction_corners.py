@@ -11,7 +11,7 @@ import numpy as np
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
-from benchmark.simulator.kernels.fresnel import cubic_shares
+from benchmark.simulator.kernels.fresnel import between_nodes, cubic_shares, is_inside
 
 Complex = tuple[float, float]
 Four = tuple[float, float, float, float]
@@ -49,20 +49,12 @@ def _weights(fraction: float) -> Four:
 
 
 @compiled
-def _cubic(table: Floats, x: float, y: float) -> float:
+def _spline(table: Floats, x: float, y: float) -> float:
     """Value of the spline of (rows, columns) coefficients at column x, row y; 0 outside."""
-    column, row = math.floor(x), math.floor(y)
-    if column < 1 or row < 1 or column > table.shape[1] - 3 or row > table.shape[0] - 3:
+    if not is_inside(table, x, y):
         return 0.0
-    a, b, c, d = _weights(x - column)
-    shares = _weights(y - row)
-    total = 0.0
-    for i in range(4):
-        line = table[row - 1 + i]
-        total += shares[i] * (
-            a * line[column - 1] + b * line[column] + c * line[column + 1] + d * line[column + 2]
-        )
-    return total
+    column, row = math.floor(x), math.floor(y)
+    return between_nodes(table, (column, row), _weights(x - column), _weights(y - row))
 
 
 @compiled
@@ -137,7 +129,7 @@ def _add_patch(out: Floats, patch: Floats, turn: Four, first: Four, ways: Four) 
         for column in range(out.shape[1]):
             dx, dy = x + column * pitch, y + row * pitch
             w, v = c * dx + s * dy, c * dy - s * dx
-            out[row, column] += _cubic(patch, start_x + along_x * w, start_y + along_y * v)
+            out[row, column] += _spline(patch, start_x + along_x * w, start_y + along_y * v)
 
 
 @compiled

@@ -11,7 +11,7 @@ import numpy as np
 
 from algorithms.compiled import compiled
 from algorithms.contract import Floats
-from benchmark.simulator.kernels.fresnel import cubic_shares
+from benchmark.simulator.kernels.fresnel import between_nodes, cubic_shares, is_inside
 
 Complex = tuple[float, float]
 Four = tuple[float, float, float, float]
@@ -191,18 +191,10 @@ def _products(
 @compiled
 def _cubic(table: Floats, x: float, y: float) -> float:
     """Value of a (rows, columns) table at column x, row y (Lagrange's cubic); 0 outside."""
-    column, row = math.floor(x), math.floor(y)
-    if column < 1 or row < 1 or column > table.shape[1] - 3 or row > table.shape[0] - 3:
+    if not is_inside(table, x, y):
         return 0.0
-    a, b, c, d = cubic_shares(x - column)
-    shares = cubic_shares(y - row)
-    total = 0.0
-    for i in range(4):
-        line = table[row - 1 + i]
-        total += shares[i] * (
-            a * line[column - 1] + b * line[column] + c * line[column + 1] + d * line[column + 2]
-        )
-    return total
+    column, row = math.floor(x), math.floor(y)
+    return between_nodes(table, (column, row), cubic_shares(x - column), cubic_shares(y - row))
 
 
 @compiled

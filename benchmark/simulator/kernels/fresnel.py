@@ -28,6 +28,27 @@ def cubic_shares(fraction: float) -> Four:
 
 
 @compiled
+def is_inside(table: Floats, x: float, y: float) -> bool:
+    """Say whether (rows, columns) have all four nodes a side about column x, row y."""
+    column, row = math.floor(x), math.floor(y)
+    return bool(1 <= column <= table.shape[1] - 3 and 1 <= row <= table.shape[0] - 3)
+
+
+@compiled
+def between_nodes(table: Floats, at: tuple[int, int], along: Four, down: Four) -> float:
+    """Sum of 4 x 4 values of (rows, columns) about a column and a row, by weights of both."""
+    column, row = at
+    a, b, c, d = along
+    total = 0.0
+    for i in range(4):
+        line = table[row - 1 + i]
+        total += down[i] * (
+            a * line[column - 1] + b * line[column] + c * line[column + 1] + d * line[column + 2]
+        )
+    return total
+
+
+@compiled
 def fresnel(u: float, table: Table) -> Four:
     """Fresnel's C and S of u by their smooth auxiliary functions, and ``exp(i pi u^2 / 2)``.
 

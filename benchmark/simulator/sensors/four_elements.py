@@ -11,7 +11,8 @@ import numpy as np
 from algorithms.contract import Floats
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.optics.earthlight import EarthInView, on_elements
-from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.optics.ghosts import Ghost
+from benchmark.simulator.optics.projection import Camera, ProjectedLight
 from benchmark.simulator.readout.currents import CurrentSensor, currents, element_gains
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensor import FixedPattern
@@ -68,3 +69,31 @@ class FourElements(CurrentSensor):
     def expected(self, scene: Scene, pattern: FixedPattern) -> Floats:
         """(N, 4) mean microamperes."""
         return currents(self.readout, self.receive(scene), pattern)
+
+
+class LitAreas(FourElements):
+    """Four elements that give what area of them is lit. Its subclasses have a field `ghost`."""
+
+    ghost: Ghost | None
+
+    @abstractmethod
+    def areas(self, projected: ProjectedLight, scene: Scene) -> Floats:
+        """(N, 4) lit areas of the elements, mm^2, times the light."""
+        ...
+
+    @property
+    @abstractmethod
+    def open_mm2(self) -> float:
+        """Area of the openings, mm^2: what all elements get at normal incidence."""
+        ...
+
+    def project(self, scene: Scene) -> ProjectedLight:
+        """Return what the camera shows of a scene."""
+        return self.camera.project(scene.sun)
+
+    def lit(self, scene: Scene) -> Floats:
+        """(N, 4) light on the elements, in units of the openings at normal incidence."""
+        out = self.areas(self.project(scene), scene)
+        if self.ghost is not None:
+            out += self.areas(self.ghost.project(self.camera, scene.sun), scene)
+        return np.asarray(out / self.open_mm2)

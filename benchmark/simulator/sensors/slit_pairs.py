@@ -13,7 +13,7 @@ from benchmark.simulator.optics.ghosts import Ghost
 from benchmark.simulator.optics.projection import ProjectedLight
 from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.scene import Scene
-from benchmark.simulator.sensors.four_elements import QUADRANTS, FourElements
+from benchmark.simulator.sensors.four_elements import QUADRANTS, LitAreas
 
 _DIAGONAL = math.sqrt(0.5)  # sine and cosine of 45 deg
 
@@ -50,7 +50,7 @@ class DiodePair:
 
 
 @dataclass(frozen=True)
-class SlitPairSensor(FourElements):
+class SlitPairSensor(LitAreas):
     """Two equal slits at right angles, 45 deg to the sensor's axes, over a pair of diodes each.
 
     One pair measures along u = (x + y) / sqrt(2), the other along v = (y - x) / sqrt(2); a wall
@@ -75,14 +75,12 @@ class SlitPairSensor(FourElements):
                 f"the mask must be the one slit that both pairs have; got {apertures!r}"
             )
 
-    def lit(self, scene: Scene) -> Floats:
-        """(N, 4) light on the diodes, in units of both whole slits at normal incidence."""
-        out = self._areas(self.camera.project(scene.sun), scene)
-        if self.ghost is not None:
-            out += self._areas(self.ghost.project(self.camera, scene.sun), scene)
-        return np.asarray(out / (2.0 * self.camera.mask.apertures[0].area_mm2))
+    @property
+    def open_mm2(self) -> float:
+        """Area of both whole slits, mm^2."""
+        return 2.0 * self.camera.mask.apertures[0].area_mm2
 
-    def _areas(self, projected: ProjectedLight, scene: Scene) -> Floats:
+    def areas(self, projected: ProjectedLight, scene: Scene) -> Floats:
         """(N, 4) lit areas of the diodes, mm^2, times the light."""
         from benchmark.simulator.kernels.areas import lit_boxes  # noqa: PLC0415 - Numba on demand
 
