@@ -67,7 +67,7 @@ def update(
     kept = kept_beside(store, components)
     with open_record(store) as record:
         pinned = store.pins()
-        _require_heads(store, known, components)
+        _require_heads(store, known, components, workers)
 
         def measured(
             wanted: Iterable[Cell], follow_ups: Mapping[str, FollowUp] | None = None
@@ -130,10 +130,10 @@ def _follow_ups(
     }
 
 
-def _require_heads(store: Store, parts: Parts, components: Components) -> None:
+def _require_heads(store: Store, parts: Parts, components: Components, workers: int) -> None:
     """Compare the first samples of datasets whose code has changed with what was pinned of them."""
     changed = pinning.presets_of_other_code(store, parts, components)
-    heads = pinning.changed_heads(store.pins(), changed)
+    heads = pinning.changed_heads(store.pins(), changed, workers)
     if heads:
         raise pinning.UnversionedChangeError(heads)
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections import OrderedDict
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
@@ -26,17 +27,19 @@ from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.metrics.score import store
 from benchmark.processes import release_free_memory
 from benchmark.running.kept_stages import DATA, TRUTH, KeptStages
-from benchmark.simulator.light.memory import memory
+from benchmark.simulator.light.memory import LIMIT_BYTES, memory
 
 #: Datasets under one condition kept per process: the plan hands out a dataset's tasks in a row.
 _KEPT = 2
-#: Bytes of kept observations from which on only one dataset is: a worker stays below 1.5 GB.
+#: Bytes of kept observations from which on only one dataset is: a worker stays below 1.2 GB.
 _KEPT_BYTES = 128 * 2**20
 #: Bytes from which on corrected observations are not kept but made again for each extractor, some
 #: samples at a time: so few that they are still in a processor's cache when they are looked at,
 #: and that their memory is used again (glibc returns blocks of 32 MiB to the system).
 _CORRECTED_BYTES = 256 * 2**20
 _BATCH_BYTES = 8 * 2**20
+#: Bytes of frames beyond which light that is kept makes room for them.
+_FRAME_BYTES = 128 * 2**20
 
 
 @dataclass(frozen=True)
@@ -143,15 +146,29 @@ def truth(
 def render(preset: Preset, condition: str, unit: int, *, all_observable: bool) -> RenderedData:
     """Generate data from nothing. Parameters as `generate`."""
     # the conditions of a dataset see the same Suns, its units look up the same tables
+    memory.limit_bytes = LIMIT_BYTES
     memory.cache_for((preset.name, unit), preset.name)
     seen_by = preset.for_unit(unit) if unit else preset
     wanted = SPLITS if not unit else ("calibration", "test")
-    splits = {split: seen_by.generate(condition, split) for split in wanted}
+    splits: dict[str, Samples] = {}
+    for split in wanted:
+        splits[split] = seen_by.generate(condition, split)
+        _leave_room(splits, (preset.name, unit), preset.name)
     if unit:
         data = _of_another_unit(preset, condition, splits, all_observable)
     else:  # its bound, which scores need, tells what is observable
         data = _of_unit_zero(preset, condition, splits)
     return RenderedData(data, correction(seen_by, condition))
+
+
+def _leave_room(splits: Mapping[str, Samples], *owner: Hashable) -> None:
+    """Keep less light where frames take much memory themselves."""
+    beyond = max(0, _bytes_of(splits.values()) - _FRAME_BYTES)
+    memory.limit_bytes = max(LIMIT_BYTES - beyond, LIMIT_BYTES // 16)
+    if memory.kept_bytes > memory.limit_bytes:
+        memory.forget()
+        memory.cache_for(*owner)
+        release_free_memory()
 
 
 def correct_readings(made: RenderedData, preset: Preset) -> ConditionData:
@@ -328,5 +345,8 @@ def _make_room(dataset: str) -> None:
 
 
 def _kept_bytes() -> int:
-    splits = [split for data in _kept.values() for split in data.splits.values()]
+    return sum(_bytes_of(data.splits.values()) for data in _kept.values())
+
+
+def _bytes_of(splits: Iterable[Samples]) -> int:
     return sum(np.asarray(split.observations).nbytes for split in splits)

@@ -11,6 +11,7 @@ import time
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import closing, nullcontext
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 
 from benchmark.contract import SPLITS, Preset, UnknownNameError
@@ -25,6 +26,7 @@ from benchmark.running.condition_data import generated_pins, rms_bound
 from benchmark.running.task import reason_of
 from benchmark.running.threads import one_thread
 from benchmark.running.workers import as_completed
+from benchmark.simulator.light.memory import memory
 
 Condition = tuple[str, str]  # (dataset, condition)
 
@@ -97,23 +99,30 @@ def require_versions(pinned: Mapping[Place, Pin], made: Iterable[Pin]) -> None:
         raise UnversionedChangeError(changes)
 
 
-def changed_heads(pinned: Mapping[Place, Pin], presets: Iterable[Preset]) -> dict[str, list[str]]:
+def changed_heads(
+    pinned: Mapping[Place, Pin], presets: Iterable[Preset], workers: int = 1
+) -> dict[str, list[str]]:
     """Generate the first samples of every split and say what is not as pinned, by dataset.
 
     A check in seconds: of each split `benchmark.results.digests.HEAD` samples, and their bound.
     Presets of another version than their pins are not looked at.
+
+    Parameters
+    ----------
+    pinned
+        By dataset, condition and split.
+    presets
+        Datasets.
+    workers
+        Number of processes; tables that they make for this serve what they measure afterwards.
     """
-    found: dict[str, list[str]] = {}
-    with one_thread():
-        for preset in presets:
-            for condition in preset.conditions:
-                for split in SPLITS:
-                    pin = pinned.get((preset.name, condition, split))
-                    if pin is None or pin.version != preset.version:
-                        continue
-                    if said := _changed_head(pin, preset):
-                        found.setdefault(preset.name, []).append(f"{condition} {split}: {said}")
-    return found
+    wanted = []
+    for preset in presets:
+        places = product((preset.name,), preset.conditions, SPLITS)
+        pins = [pinned[place] for place in places if place in pinned]
+        wanted.append((preset, [pin for pin in pins if pin.version == preset.version]))
+    with closing(as_completed(_changed_heads, wanted, min(workers, len(wanted) or 1))) as found:
+        return dict(sorted((name, lines) for name, lines in found if lines))
 
 
 def presets_of_other_code(store: Store, parts: Parts, components: Components) -> list[Preset]:
@@ -127,6 +136,15 @@ def presets_of_other_code(store: Store, parts: Parts, components: Components) ->
         or name not in stored.datasets
         or stored.digest("datasets", name) != components.digest("datasets", name)
     ]
+
+
+def _changed_heads(wanted: tuple[Preset, list[Pin]]) -> tuple[str, list[str]]:
+    """Return a dataset's name, and a line for each split whose first samples are not as pinned."""
+    preset, pins = wanted
+    memory.cache_for((preset.name, preset.unit), preset.name)
+    with one_thread():
+        said = {f"{pin.condition} {pin.split}": _changed_head(pin, preset) for pin in pins}
+    return preset.name, [f"{place}: {change}" for place, change in said.items() if change]
 
 
 def _changed_head(pin: Pin, preset: Preset) -> str:
