@@ -94,7 +94,7 @@ class AnswerTexts:
         self._ends = lru_cache(MOST_TEXTS)(_ends_text)
         self._design = lru_cache(None)(self._design_text)
         self._best_rows = lru_cache(MOST_TEXTS)(self._rows_on_datasets)
-        self._pipeline = lru_cache(MOST_TEXTS)(self._pipeline_text)
+        self._judged = lru_cache(2 * MOST_TEXTS)(self._judged_text)
 
     @cached_property
     def digest(self) -> bytes:
@@ -139,8 +139,10 @@ class AnswerTexts:
         parts: list[bytes] = []
         for at, shown in enumerate(self._pack_designs(answer, answer.places[:limit], calibrations)):
             begun, ended = self._architecture(shown)
-            flag = b"true" if at in unbeaten else b"false"
-            parts += (b'%b{"rank":%d,' % (b"," if at else b"", at + 1), begun, flag, ended)
+            parts.append(_rank_text(at + 1))
+            parts += begun
+            parts.append(b"true" if at in unbeaten else b"false")
+            parts += ended
         return parts
 
     def _pack_designs(
@@ -172,17 +174,19 @@ class AnswerTexts:
                 tuple([units[first_row[one] : first_row[one + 1]] for one in counted]),
             )
 
-    def _architecture_text(self, of: _ShownArchitecture) -> tuple[bytes, bytes]:
-        """Return an architecture in two parts, between them whether none beats it."""
+    def _architecture_text(self, of: _ShownArchitecture) -> tuple[list[bytes], list[bytes]]:
+        """Return the parts of an architecture before and behind whether none beats it."""
         errors, studies = of.errors, of.studies
         measured, stated = self._ends(of.judged, bool(studies))
         designs, rows = (of.best, *_unpacked(of.designs)), (of.row, *_unpacked(of.rows))
         units = of.units or (b"",) * len(designs)
         best, *listed = (
-            self._calibration(design, row, of.stated, studies) + stated
+            (self._calibration(design, row, of.stated, studies), stated)
             if row < 0
-            else self._calibration(design, row, studies, studies, errors, of.finer, within)
-            + measured
+            else (
+                self._calibration(design, row, studies, studies, errors, of.finer, within),
+                measured,
+            )
             for design, row, within in zip(designs, rows, units, strict=True)
         )
         contradiction = b"null"
@@ -191,12 +195,15 @@ class AnswerTexts:
             contradiction = self._contradiction(errors, studies, *of.usual, *first)
         head = self._head(of.number, studies, of.advising)
         measures = to_json_bytes([measure.to_dict() for measure in of.measures])
-        texts = b",".join([b'{"rank":%d%b' % ranked for ranked in enumerate(listed, 1)])
-        return (
-            b'%b{"rank":%d%b,"pareto":' % (head, of.rank_of_best, best),
-            b',"contradiction":%b,"measures":%b,"count":%d,"calibrations":[%b]}'
-            % (contradiction, measures, of.total, texts),
-        )
+        ended = [
+            b',"contradiction":%b,"measures":%b,"count":%d,"calibrations":['
+            % (contradiction, measures, of.total)
+        ]
+        for rank, texts in enumerate(listed, 1):
+            ended.append(_rank_text(rank))
+            ended += texts
+        ended.append(b"]}")
+        return [b",", head, _rank_text(of.rank_of_best, first=True), *best, b',"pareto":'], ended
 
     def _head_text(
         self, number: int, studies: int, advising: tuple[tuple[str, ...] | None, ...]
@@ -277,7 +284,7 @@ class AnswerTexts:
             for at in self._best_rows(design, row, errors):
                 units = units_within[at - first] if units_within else NOT_COUNTED
                 number = b"null" if units == NOT_COUNTED else b"%d" % units
-                measured.append(number.join(self._pipeline(at, errors, finer)))
+                measured.append(number.join(self._facts[at]) + self._judged(at, errors, finer))
         return b'%b%b],"with_model":%d,"support":%b,"measured":%b,"other_datasets":[%b]' % (
             self._design(design),
             self._studies(taken),
@@ -309,10 +316,16 @@ class AnswerTexts:
         del others[arrays.rows[row].dataset]
         return row, *others.values()
 
-    def _pipeline_text(self, row: int, errors: PipelineErrors, finer: int) -> list[bytes]:
-        """Return a pipeline in two parts, between them the number of units that keep a limit."""
-        text = to_json_bytes(errors.document(row, finer))
-        return text.replace(b'"within_limit":null', b'"within_limit":\0').split(b"\0")
+    @cached_property
+    def _facts(self) -> list[list[bytes]]:
+        """Of each pipeline its first members, in two parts about how many units keep a limit."""
+        texts = [to_json_bytes(row.facts())[:-1] for row in self.arrays.rows]
+        counted, between = b'"within_limit":null', b'"within_limit":\0'
+        return [text.replace(counted, between).split(b"\0") for text in texts]
+
+    def _judged_text(self, row: int, errors: PipelineErrors, finer: int) -> bytes:
+        """Return the other members of a pipeline."""
+        return b",%b" % to_json_bytes(errors.document(row, finer))[1:]
 
     def _studies_text(self, studies: int) -> bytes:
         """Return the keys of studies (bits), with commas between them."""
@@ -323,6 +336,12 @@ class AnswerTexts:
 def _unpacked(positions: bytes) -> list[int]:
     found: list[int] = np.frombuffer(positions, np.int64).tolist()
     return found
+
+
+@lru_cache(None)
+def _rank_text(rank: int, *, first: bool = False) -> bytes:
+    """Return how a member of a list begins, which ranks begin with 1, or the `first` of one."""
+    return b'%b{"rank":%d' % (b"" if first or rank == 1 else b",", rank)
 
 
 def _ends_text(judged: tuple[str, ...], studied: bool) -> tuple[bytes, bytes]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Generic, TypeVar
@@ -251,17 +251,42 @@ class MeasuredPipeline:
         share = self.availability(names)
         return None if judged or share is None else PartialAnswer(max(errors), share, self)
 
-    def to_dict(
+    def facts(self) -> dict[str, object]:
+        """Return the members of the HTTP answer that no question changes.
+
+        But for ``units.within_limit``, which is None here.
+        """
+        units = self.unit_own_deg
+        return {
+            "dataset": self.dataset,
+            "extractor": self.extractor,
+            "model": self.model,
+            "nominal": self.nominal.to_dict(),
+            "fov_deg": None if self.half_fov_deg is None else 2 * self.half_fov_deg,
+            "latency_us": self.latency_us,
+            "needs": list(self.needs),
+            "units": {
+                "count": len(units),
+                "least_deg": min(units),
+                "largest_deg": max(units),
+                "within_limit": None,
+                "of": UNITS,
+            }
+            if units
+            else None,
+        }
+
+    def judged(
         self,
         judged: PipelineJudgement,
         own: PipelineJudgement,
-        hazards: Iterable[str] = (),
+        hazards: Sequence[str] = (),
         half_field_deg: float | None = None,
         *,
         bench_deg: float | None = None,
         partly: Iterable[PartialAnswer[MeasuredPipeline]] = (),
     ) -> dict[str, object]:
-        """Return the pipeline as in the HTTP answer, without the count of units within a limit.
+        """Return the members of the HTTP answer that a question decides.
 
         Parameters
         ----------
@@ -274,37 +299,23 @@ class MeasuredPipeline:
         partly
             Pipelines on the same sensor below the availability limit; one may be far more accurate.
         """
-        names, units = tuple(hazards), self.unit_own_deg
-        nominal = self.over(self.nominal, half_field_deg) if names else own
+        error, own_error = _finite(judged.error_deg), _finite(own.error_deg)
+        nominal = own_error
+        if hazards:
+            nominal = _finite(self.over(self.nominal, half_field_deg).error_deg)
         return {
-            "dataset": self.dataset,
-            "extractor": self.extractor,
-            "model": self.model,
-            "error_deg": _finite(judged.error_deg),
+            "error_deg": error,
             "condition": judged.condition,
-            "field_deg": judged.field_deg if math.isfinite(judged.error_deg) else None,
-            "nominal_deg": _finite(nominal.error_deg),
-            "nominal": self.nominal.to_dict(),
+            "field_deg": None if error is None else judged.field_deg,
+            "nominal_deg": nominal,
             "conditions": {
                 score.condition: _finite(self.over(score, half_field_deg).error_deg)
-                for name in names
+                for name in hazards
                 for score in self.hazards.get(name, ())
             },
-            "fov_deg": None if self.half_fov_deg is None else 2 * self.half_fov_deg,
-            "availability": self.availability(names),
-            "latency_us": self.latency_us,
-            "own_deg": _finite(own.error_deg),
+            "availability": self.availability(hazards),
+            "own_deg": own_error,
             "bench_deg": self.bench_deg if bench_deg is None else bench_deg,
-            "needs": list(self.needs),
-            "units": {
-                "count": len(units),
-                "least_deg": min(units),
-                "largest_deg": max(units),
-                "within_limit": None,
-                "of": UNITS,
-            }
-            if units
-            else None,
             "finer": _finer(finer_for(judged.error_deg, partly)),
         }
 

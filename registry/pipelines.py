@@ -309,7 +309,7 @@ class PipelineErrors:
         return dict(zip(places[first].tolist(), rows[first].tolist(), strict=True))
 
     def document(self, row: int, finer: int) -> dict[str, object]:
-        """Return one pipeline as in the HTTP answer, without the count of units within a limit.
+        """Return the members of a pipeline in the HTTP answer that a question decides.
 
         Parameters
         ----------
@@ -318,7 +318,7 @@ class PipelineErrors:
         """
         rows, field = self.table.rows, (self.hazards, self.half)
         partly = None if finer < 0 else rows[finer].partial_answer(*field)
-        return rows[row].to_dict(
+        return rows[row].judged(
             self.judgement(row),
             self.own_judgement(row),
             *field,
