@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -143,6 +145,20 @@ def test_intervals_hold_the_truth_as_often_as_they_say(name, coverage_of):
     sun = field(steps=7)
     spots = model.cast(np.array(truth), inward(sun, model.turns(np.array(truth))))
     assert 0.93 <= coverage_of(model, spots, sun, truth) <= 0.97
+
+
+@pytest.mark.parametrize("unit_mm", [1e-6, 1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("name", BUILT)
+def test_a_sensor_is_found_whatever_unit_its_spots_are_counted_in(name, unit_mm):
+    sun, (model, truth) = field(), BUILT[name]
+    pixels = model.cast(np.array(truth), inward(sun, model.turns(np.array(truth))))
+    counted = replace(model, unit_mm=unit_mm, centre=tuple(PITCH / unit_mm * np.array(CENTRE)))
+    counted.fit(PITCH / unit_mm * pixels, sun)
+    assert separation_deg(counted.predict(PITCH / unit_mm * pixels), sun).max() < 1e-6
+    found = {one.name: one.value for one in counted.quality_.parameters}
+    for one, value in zip(model.free_parameters(), truth, strict=True):
+        length = unit_mm / PITCH if one.unit == "px" else 1.0
+        assert length * found[one.name] == pytest.approx(value, abs=1e-6)
 
 
 @pytest.mark.parametrize("name", BUILT)

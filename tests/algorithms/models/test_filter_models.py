@@ -160,6 +160,15 @@ def test_what_is_considered_stays_and_makes_the_filter_less_sure(geometry) -> No
     assert (track.deviation_deg[20:] > sure[20:]).all()
 
 
+def test_gains_that_changed_since_the_calibration_are_found_face_by_face(geometry) -> None:
+    flight = flights.flight(FeatureKind.SIGNALS, geometry)
+    model = AssemblyDriftFilter.for_sensor(geometry, FeatureKind.SIGNALS).fit(**flight)
+    changes = np.array([0.02, -0.015, 0.01, -0.02, 0.015, -0.01])  # a common one is the light's
+    track = model.track((1.0 + changes) * flight["features"], flight["context"])
+    found = track.drift[-1, 1:7]  # behind the light's strength
+    np.testing.assert_allclose(found - found.mean(), changes, atol=2e-3)
+
+
 def test_a_sensor_is_learnt_once_by_filters_of_one_space_and_anew_by_others(
     geometry, monkeypatch
 ) -> None:

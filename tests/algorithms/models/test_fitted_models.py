@@ -197,6 +197,18 @@ def test_error_table_nodes_are_the_errors_sampled_on_them():
     np.testing.assert_allclose(table.table_deg_[:21, :21].reshape(-1, 2), errors[order], atol=1e-6)
 
 
+@pytest.mark.parametrize("long", [0, 1])
+def test_a_table_reaches_as_far_along_each_axis_as_the_samples_do(long):
+    """One sample on every node of an oblong field: the table holds any errors there."""
+    axes = [np.arange(-3.0, 6.0), np.arange(-3.0, 6.0)]
+    axes[long] = np.arange(-12.0, 9.0)
+    nominal = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
+    sun = sun_from_angles(nominal + np.random.default_rng(4).normal(0, 0.1, nominal.shape))
+    features = np.tan(np.radians(nominal[:, ::-1]))
+    table = ErrorTable(focal_length_mm=1.0, unit_mm=1.0, smoothing=1e-9).fit(features, sun)
+    assert separation_deg(table.predict(features), sun).max() < 1e-5
+
+
 def test_error_table_is_bilinear_between_its_nodes():
     nominal = grid(5.0, 11)
     errors = np.random.default_rng(4).normal(0, 0.1, nominal.shape)

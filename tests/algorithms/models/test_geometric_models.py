@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from known_truths import rotation_about
 
 from algorithms.angles import separation_deg, sun_from_angles, sun_from_rotations
-from algorithms.contract import FeatureKind, SensorGeometry
+from algorithms.contract import FeatureKind, SensorGeometry, UnusableDataError
 from algorithms.models.geometric.least_squares import LeastSquaresGeometry, rotation_angles
 from algorithms.models.geometric.multisensor_fusion import SixFaces
 from algorithms.models.geometric.pinhole import BuiltPinhole
@@ -156,6 +156,20 @@ def test_lsq_refuses_samples_that_do_not_settle_it(geometry, features):
         model.fit(features, sun)
     with pytest.raises(ValueError, match="on one line"):
         model.fit(features[:2], sun[:2])
+
+
+def test_four_poses_settle_a_built_pinhole_and_three_do_not(geometry):
+    """Two angles a pose against seven numbers."""
+    sun = sun_from_angles([[-30.0, -20.0], [25.0, -35.0], [40.0, 30.0], [-20.0, 35.0]])
+    head = sun @ rotation_about(2, 3.0) @ rotation_about(0, 0.7)
+    spots = pinhole(head, 2.1, geometry.pixel_pitch_mm, (203.0, 141.0))
+    model = BuiltPinhole.for_sensor(geometry, FeatureKind.SPOT).fit(spots, sun)
+    between = sun_from_angles(turntable(15.0, 3))
+    head = between @ rotation_about(2, 3.0) @ rotation_about(0, 0.7)
+    asked = pinhole(head, 2.1, geometry.pixel_pitch_mm, (203.0, 141.0))
+    assert separation_deg(model.predict(asked), between).max() < 1e-6
+    with pytest.raises(UnusableDataError, match="at least 4 samples"):
+        model.fit(spots[:3], sun[:3])
 
 
 def test_planar_models_refuse_a_sun_behind_the_detector(geometry):

@@ -230,8 +230,39 @@ def test_rims_of_a_thick_mask_are_one_height_or_one_a_side(share):
     model = BUILT["multi-slit"][0].fit(spots, sun)
     assert separation_deg(model.predict(spots), sun).max() < 1e-6
     found = {parameter.name: parameter.value for parameter in model.quality_.parameters}
-    assert found["focal_length_1"] == pytest.approx(h + t / 2, abs=1e-7)
+    for line in "12":  # under one mask
+        assert found[f"focal_length_{line}"] == pytest.approx(h + t / 2, abs=1e-7)
     assert found["sides_differ"] == pytest.approx((1 - 2 * share) * t, abs=1e-7)
+
+
+@pytest.mark.parametrize("glass", [(), GLASS])
+@pytest.mark.parametrize("slant", [45.0, -30.0])
+def test_rows_of_two_slants_over_one_line_are_found_from_traced_rays(slant, glass):
+    sun, height = field(50.0), 1.24
+    head = sun @ (rotation_about(2, 0.5) @ rotation_about(1, -0.7) @ rotation_about(0, 1.0)).T
+    line = np.array([0.0, 0.0, -height]), np.array([0.0, 1.0, 0.0])
+    slits = ((-3.0, 0.0, 0.1), (-1.0, 0.0, 0.1), (1.0, slant, 0.1), (2.5, slant, 0.1))
+    shifts = []
+    for position, off, _ in slits:
+        way = np.array([np.cos(np.radians(off)), -np.sin(np.radians(off)), 0.0])
+        place = met(head, (np.array([0.0, position, 0.0]), way), line, glass)
+        shifts.append(place - position)
+    square, slanted = np.mean(shifts[:2], axis=0), np.mean(shifts[2:], axis=0)
+    across = (slanted - square) / np.tan(np.radians(slant))
+    spots = MIDDLE + np.column_stack([across, square]) / PITCH
+    model = MultiSlit(focal_length_mm=1.2, slits=slits, cover_glass=glass, **ONE_LINE)
+    model.fit(spots, sun)
+    assert separation_deg(model.predict(spots), sun).max() < 1e-6
+    np.testing.assert_allclose(
+        model.vector_, [height, 0.0, height, 0.0, 0.0, -0.5, -1.0, 0.7], atol=1e-6
+    )
+
+
+@pytest.mark.parametrize("slant", [-45.0, -1.0, 1.0, 60.0])
+def test_an_n_may_slant_either_way(slant):
+    slits = ((-3.0, slant, 0.1), (0.0, 0.0, 0.1), (3.0, slant, 0.1))
+    geometry = SensorGeometry(focal_length_mm=1.2, slits=slits, line_axes=("y",), **PIXELS)
+    assert NSlit.for_sensor(geometry, FeatureKind.SPOT).slits == slits
 
 
 @pytest.mark.parametrize("name", BUILT)
@@ -258,6 +289,7 @@ def test_poses_that_do_not_settle_a_sensor_are_refused(name):
         (VSlit, ("y",), ((-1.0, -45.0, 0.1), (1.0, 45.0, 0.1))),
         (NSlit, ("y",), V),
         (NSlit, ("y",), ((-3.0, 45.0, 0.1), (0.0, 0.0, 0.1), (3.0, -45.0, 0.1))),
+        (NSlit, ("y",), ((-3.0, 0.0, 0.1), (0.0, 0.0, 0.1), (3.0, 5e-7, 0.1))),
         (NSlit, ("y",), ()),
     ],
 )
@@ -271,6 +303,17 @@ def test_other_architectures_are_refused(kind, axes, slits):
     )
     with pytest.raises(ValueError, match=f"{kind.about.name} needs"):
         kind.for_sensor(geometry, FeatureKind.SPOT)
+
+
+@pytest.mark.parametrize("wrong", [0.0, -0.5])
+def test_pairs_refuse_a_height_that_cannot_be_and_say_which(wrong):
+    geometry = SensorGeometry(
+        focal_length_mm=wrong,
+        aperture_width_mm=4.0,
+        slits=((0.0, 45.0, 2.8), (0.0, -45.0, 2.8)),
+    )
+    with pytest.raises(ValueError, match=f"focal_length_mm .* {wrong}$"):
+        DeflectedSlitPairs.for_sensor(geometry, FeatureKind.BALANCE)
 
 
 @pytest.mark.parametrize("glass", [((0.5, 0.9),), ((0.0, 1.5),), ((1.0, 1.5), (0.9, 1.5))])

@@ -97,6 +97,14 @@ def test_a_dark_face_is_told_by_the_others():
     assert np.isnan(model.predict(3.0 * lit(rings(40), normals))).all()  # x and y beyond one
 
 
+def test_one_sun_off_the_boresight_that_lights_all_faces_is_enough():
+    normals, sun = pyramid(4, 30.0), np.vstack([rings(20)[:1], rings(75)])
+    assert (lit(sun, normals) > 0).all(axis=1).sum() == 1
+    model = SteadyPyramid(as_design(normals), extrapolation=math.inf)
+    model.fit(1.7 * lit(sun, normals), sun)
+    assert model.coefficient_ == pytest.approx(1 / 1.7)
+
+
 def test_pyramids_that_nothing_is_learnt_of_are_refused():
     normals = pyramid(4, 30.0)
     model = SteadyPyramid(as_design(normals), extrapolation=math.inf)
@@ -148,6 +156,24 @@ def test_warm_cells_are_found_with_their_coefficient():
         residuals, [*np.ones(16), 0.0], x_scale=[*np.ones(16), 1e-3], xtol=1e-14
     )
     assert model.coefficient_ == pytest.approx(solution.x[-1], abs=1e-8)
+
+
+def test_the_coefficients_standard_error_is_least_squares_own():
+    """By SciPy: the residuals' squares over what samples are left beyond the numbers fitted."""
+    from scipy.optimize import curve_fit
+
+    normals, sun = pyramid(4, 30.0), rings(10, 30, step_deg=60)
+    warmth = np.tile([-40.0, 25.0, 40.0], 4)
+    cosines, rng = lit(sun, normals), np.random.default_rng(5)
+    signals = cosines * (1 - 0.0045 * warmth[:, None]) + rng.normal(0, 0.01, cosines.shape)
+
+    def fitted(_, *p):
+        return (cosines * p[:-1] * (1 - p[-1] * warmth[:, None])).ravel()
+
+    found, covariance = curve_fit(fitted, None, signals.ravel(), [1.0, 1.0, 1.0, 1.0, 0.0])
+    model = WarmCells(as_design(normals)).fit(signals, sun, {"temperature_K": T_0 + warmth})
+    assert model.coefficient_ == pytest.approx(found[-1], rel=1e-6)
+    assert model.coefficient_deviation_ == pytest.approx(math.sqrt(covariance[-1, -1]), rel=1e-4)
 
 
 def test_cells_calibrated_cold_and_flown_warm_need_their_temperature():
