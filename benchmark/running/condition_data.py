@@ -38,8 +38,8 @@ _KEPT_BYTES = 128 * 2**20
 #: and that their memory is used again (glibc returns blocks of 32 MiB to the system).
 _CORRECTED_BYTES = 256 * 2**20
 _BATCH_BYTES = 8 * 2**20
-#: Bytes of frames beyond which light that is kept makes room for them.
-_FRAME_BYTES = 128 * 2**20
+#: Bytes of light that frames are generated beside, and of frames beyond which it gives way to them.
+_LIGHT_BYTES, _FRAME_BYTES = LIMIT_BYTES * 5 // 8, 192 * 2**20
 
 
 @dataclass(frozen=True)
@@ -149,26 +149,31 @@ def render(preset: Preset, condition: str, unit: int, *, all_observable: bool) -
     memory.limit_bytes = LIMIT_BYTES
     memory.cache_for((preset.name, unit), preset.name)
     seen_by = preset.for_unit(unit) if unit else preset
+    # while no frames take memory; its bound, which scores need, tells what is observable
+    bound = None if unit else preset.bound(condition, "test")
+    memory.limit_bytes = _LIGHT_BYTES
     wanted = SPLITS if not unit else ("calibration", "test")
     splits: dict[str, Samples] = {}
     for split in wanted:
         splits[split] = seen_by.generate(condition, split)
         _leave_room(splits, (preset.name, unit), preset.name)
-    if unit:
+    if bound is None:
         data = _of_another_unit(preset, condition, splits, all_observable)
-    else:  # its bound, which scores need, tells what is observable
-        data = _of_unit_zero(preset, condition, splits)
+    else:
+        data = _of_unit_zero(preset, condition, splits, bound)
     return RenderedData(data, correction(seen_by, condition))
 
 
 def _leave_room(splits: Mapping[str, Samples], *owner: Hashable) -> None:
     """Keep less light where frames take much memory themselves."""
-    beyond = max(0, _bytes_of(splits.values()) - _FRAME_BYTES)
-    memory.limit_bytes = max(LIMIT_BYTES - beyond, LIMIT_BYTES // 16)
+    beyond = _bytes_of(splits.values()) - _FRAME_BYTES
+    if beyond <= 0:
+        return
+    memory.limit_bytes = max(_LIGHT_BYTES - beyond, LIMIT_BYTES // 16)
     if memory.kept_bytes > memory.limit_bytes:
         memory.forget()
         memory.cache_for(*owner)
-        release_free_memory()
+    release_free_memory()
 
 
 def correct_readings(made: RenderedData, preset: Preset) -> ConditionData:
@@ -284,8 +289,9 @@ def _place_of(preset: Preset, condition: str, unit: int) -> _Place:
     return preset.name, condition, unit, digest(preset.parameters(condition))
 
 
-def _of_unit_zero(preset: Preset, condition: str, splits: dict[str, Samples]) -> ConditionData:
-    bound = preset.bound(condition, "test")
+def _of_unit_zero(
+    preset: Preset, condition: str, splits: dict[str, Samples], bound: Bound
+) -> ConditionData:
     angle, observable = np.asarray(bound.angle_deg), np.asarray(bound.observable, dtype=np.bool_)
     pins = tuple(_pin(preset, condition, split, splits[split], bound) for split in SPLITS)
     unit = bound.unit_angle_deg
