@@ -261,6 +261,15 @@ def test_the_best_calibration_is_shown_where_no_study_used_it(
     assert [c.model for c in turned.calibrations] == ["SPM", "LUT"]
 
 
+def test_what_answers_too_seldom_is_contradicted_with_the_share_that_it_answers(
+    facts_of: Callable[[Rows], Facts],
+) -> None:
+    seldom = pipeline(rms_deg=0.1, is_available=False, availability=0.7)
+    other = pipeline(model="lut", stages=("LUT",), rms_deg=0.02)
+    said = only(recommend({}, [seldom, other], facts=one_study(facts_of))).contradiction or ""
+    assert "0.1 deg RMS at 70 % availability" in said
+
+
 def test_errors_that_hardly_differ_contradict_nothing(facts_of: Callable[[Rows], Facts]) -> None:
     rows = [pipeline(), pipeline(model="lut", stages=("LUT",), rms_deg=0.092)]
     assert only(recommend({}, rows, facts=one_study(facts_of))).contradiction is None

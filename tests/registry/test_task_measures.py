@@ -77,3 +77,4 @@ def test_the_field_of_view_is_measured_as_a_full_angle() -> None:
     answer = recommend({"task": "FOV"}, [row], facts=facts())
     found = [one["value"] for a in answer.architectures for one in a.measures]
     assert [value for value in found if value is not None] == [120.0]
+    assert {one["built"] for a in answer.architectures for one in a.measures} == {0}

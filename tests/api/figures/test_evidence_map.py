@@ -17,7 +17,7 @@ from api.http.measurements import Measurements
 from benchmark.plan.combinations import cells
 from benchmark.results.store import PUBLISHED, Store
 from registry.catalogue import catalogue
-from registry.evidence import Evidence
+from registry.evidence import Evidence, PipelineRun
 from registry.fitting import stages
 from registry.possibility import GIVES, TELLS
 from registry.studies import facts
@@ -157,6 +157,20 @@ def test_pairs_that_no_extractor_can_read_are_impossible_where_no_study_has_them
     }
     # Merchan2023 has both an event sensor's method and CMOS; Post2013 two sensors.
     assert against == {("CMOS", "ESCM"): ["Merchan2023"], ("PVA", "BCTM"): ["Post2013"]}
+
+
+def test_what_can_be_scored_and_was_not_tried_is_named_for_both_its_values() -> None:
+    plan = {("CMOS", "Single-Ap."): {("bcm", "spm"): ("cmos-single-aperture",)}}
+    run = PipelineRun("cmos-single-aperture", "bcm", "spm")
+    untried = Evidence(catalogue(), (), plan)
+    for pair in (
+        (("detector", "CMOS"), ("mask", "Single-Ap.")),
+        (("mask", "Single-Ap."), ("model", "SPM")),
+        (("extractor", "BCM"), ("model", "SPM")),
+    ):
+        assert untried.of(*pair, (), ()).possible_run == run
+    elsewhere = untried.of(("detector", "CCD"), ("model", "SPM"), (), ())
+    assert (elsewhere.possible_run, elsewhere.nearest_dataset) == (None, "cmos-single-aperture")
 
 
 @pytest.mark.slow

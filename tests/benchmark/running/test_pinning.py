@@ -218,6 +218,13 @@ def test_generating_again_tells_what_is_not_as_pinned_and_writes_nothing(store):
     assert all(line.endswith("OSError: no data today") for line in gone)
 
 
+def test_each_condition_that_is_generated_again_is_counted(store):
+    there, seen = parts(Diodes()), []
+    update(store, parts=there)
+    pinning.differences(store, progress=lambda *said: seen.append(said), parts=there)
+    assert seen == [(1, 2, "fake-diodes quiet"), (2, 2, "fake-diodes noisy")]
+
+
 def test_data_that_cannot_be_made_are_told_and_the_rest_is_pinned(store):
     done = update(store, parts=parts(Missing(), Diodes()))
     named = [line.partition(": ")[0] for line in done.warnings]

@@ -69,6 +69,14 @@ def test_repeatability_is_of_the_answers_to_the_repeated_poses(store):
     assert row["repeatability_deg"] == pytest.approx(row["bound_deg"], rel=0.2)
 
 
+def test_errors_stand_beside_the_bound_of_who_does_not_know_the_unit_too(store):
+    parts = fake_plan.parts(presets=(fake_atlas.Diodes(unit_share=1.5),))
+    measure(store, parts)
+    row = store.query(condition="noisy", extractor="fake-currents")[0]
+    assert row["bound_unit_deg"] == pytest.approx(1.5 * row["bound_deg"], rel=1e-4)
+    assert row["over_bound_unit"] == pytest.approx(row["over_bound"] / 1.5, rel=1e-4)
+
+
 def test_what_cannot_be_observed_is_left_to_false_suns(store):
     """The first eighth of the test split is dark, three of the repeated poses among it."""
     parts = fake_plan.parts(presets=(fake_atlas.Diodes(dark=0.125),))
