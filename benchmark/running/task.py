@@ -22,6 +22,7 @@ from benchmark.datasets.benches import report
 from benchmark.datasets.method_bound import method_bound_deg
 from benchmark.datasets.pins import Pin
 from benchmark.metrics.score import Score, score, separation_deg
+from benchmark.processes import release_free_memory
 from benchmark.running.condition_data import ConditionData, found_features, generate, truth
 from benchmark.running.kept_stages import FEATURES, PREDICTIONS, KeptStages
 from benchmark.running.threads import one_thread
@@ -206,6 +207,8 @@ def _features(task: Task, kept: KeptStages | None) -> dict[str, Floats]:
     data, extractor = _data(task, generate, kept), _extractor(task)
     started = time.process_time()
     found = {split: found_features(data, extractor, split) for split in data.splits}
+    if data.correction is not None:  # of frames that leave little room for what is free
+        release_free_memory()
     if kept is not None:
         kept.put(FEATURES, cell, found, time.process_time() - started)
     return found
