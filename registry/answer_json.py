@@ -139,10 +139,8 @@ class AnswerTexts:
         parts: list[bytes] = []
         for at, shown in enumerate(self._pack_designs(answer, answer.places[:limit], calibrations)):
             begun, ended = self._architecture(shown)
-            parts.append(_rank_text(at + 1))
-            parts += begun
-            parts.append(b"true" if at in unbeaten else b"false")
-            parts += ended
+            flag = b"true" if at in unbeaten else b"false"
+            parts += (_rank_text(at + 1), *begun, flag, *ended)
         return parts
 
     def _pack_designs(
@@ -179,14 +177,11 @@ class AnswerTexts:
         errors, studies = of.errors, of.studies
         measured, stated = self._ends(of.judged, bool(studies))
         designs, rows = (of.best, *_unpacked(of.designs)), (of.row, *_unpacked(of.rows))
-        units = of.units or (b"",) * len(designs)
+        units, counted = of.units or (b"",) * len(designs), (errors, of.finer)
         best, *listed = (
             (self._calibration(design, row, of.stated, studies), stated)
             if row < 0
-            else (
-                self._calibration(design, row, studies, studies, errors, of.finer, within),
-                measured,
-            )
+            else (self._calibration(design, row, studies, studies, *counted, within), measured)
             for design, row, within in zip(designs, rows, units, strict=True)
         )
         contradiction = b"null"
@@ -200,8 +195,7 @@ class AnswerTexts:
             % (contradiction, measures, of.total)
         ]
         for rank, texts in enumerate(listed, 1):
-            ended.append(_rank_text(rank))
-            ended += texts
+            ended += (_rank_text(rank), *texts)
         ended.append(b"]}")
         return [b",", head, _rank_text(of.rank_of_best, first=True), *best, b',"pareto":'], ended
 
