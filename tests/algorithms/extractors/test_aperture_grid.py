@@ -145,6 +145,21 @@ def test_the_displacement_is_the_mean_of_the_matched(frame, place):
     assert partners == [1, 3, 0, 2]
 
 
+def test_a_start_one_and_a_half_tolerances_off_is_left_for_the_mean_of_the_spots():
+    """The first round reaches two of them; the rounds after it find every spot in its place."""
+    tolerance, start, place = 1.0, np.array([51.1, 18.9]), np.array([52.3, 18.0])
+    spots = np.column_stack([TABLE[:, :2] + place, np.ones((4, 2))])
+    partner, distance = np.empty(4, dtype=np.int64), np.empty(4)
+    met = np.empty(4, dtype=np.int64)
+    x, y, quality, number = kernel._fit(
+        spots, lattice(APERTURES), *start, tolerance, partner, distance, met
+    )
+    np.testing.assert_allclose((x, y), place, rtol=1e-12)
+    assert partner.tolist() == [0, 1, 2, 3]
+    assert number == 4
+    assert quality == pytest.approx(4.0)
+
+
 def test_what_lies_outside_a_frame_wider_than_high_is_not_missed():
     """Two of four apertures are off the frame to the right: those two are no gaps."""
     place = np.array([87.0, 15.0])

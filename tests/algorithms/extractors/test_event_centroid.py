@@ -116,6 +116,16 @@ def test_a_hot_pixel_does_not_move_a_spot(width):
     np.testing.assert_allclose(method.extract(hot), method.extract(clean), atol=1e-9)
 
 
+@pytest.mark.parametrize("width", [4.0, 7.0])
+def test_two_hot_pixels_do_not_move_a_spot_that_lights_many(width):
+    """What light a lit pixel has, more pixels tell than two are."""
+    light = np.outer(cover(20, 10.2, width), cover(20, 9.7, width))
+    clean = events_of(light)
+    hot = np.concatenate([[[[2.0, 15.0, 0.3], [3.0, 2.0, 0.3]]], clean], axis=1)
+    method = EventCentroid(width_px=width, layout="spot")
+    np.testing.assert_allclose(method.extract(hot), method.extract(clean), atol=1e-9)
+
+
 def test_the_offset_of_the_slits_is_taken_off():
     method = EventCentroid.for_sensor(L_SLIT)
     assert method.width_px == pytest.approx(3.0)

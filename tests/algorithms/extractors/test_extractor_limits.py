@@ -8,6 +8,9 @@ from scipy.special import jn_zeros
 
 from algorithms.contract import SensorGeometry, UnsuitableDesignError
 from algorithms.extractors.frames.multi_spot import mean_shift_kernel
+from algorithms.extractors.frames.multi_spot.aperture_design import design_pattern
+from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
+from algorithms.extractors.frames.multi_spot.spot_list import SpotList
 from algorithms.extractors.frames.threshold_average import MultipleThresholdCentroid
 from algorithms.extractors.frames.windows import follow_spot
 from algorithms.extractors.profiles.linear_phase import FrameLinearPhase
@@ -86,6 +89,34 @@ def test_spectra_reach_to_half_the_sampling(shape, padded):
 
 def test_published_accuracies_are_the_defaults():
     assert MultipleThresholdCentroid().accuracy_px == 0.01
+
+
+def test_a_mask_is_intact_unless_said_otherwise():
+    assert MultipleCentroids(((0.0, 0.0, 5.0), (20.0, 3.0, 5.0))).faulty_lines == 0
+
+
+@pytest.mark.parametrize("edge", [20.0, 55.0])
+def test_a_mask_s_field_ends_two_degrees_beyond_the_field_of_view(edge):
+    """A Sun there, along an axis, casts the pattern's middle as far off as the field reaches."""
+    geometry = SensorGeometry(
+        focal_length_mm=5.0,
+        pixel_pitch_mm=0.01,
+        centre_px=(300.0, 310.0),
+        aperture_width_mm=0.2,
+        aperture_shape="round",
+        half_fov_deg=edge,
+    )
+    x, y, reach = design_pattern(geometry, "test")["field_px"]
+    assert (x, y) == (300.0, 310.0)
+    assert np.rad2deg(np.arctan2(reach * 0.01, 5.0)) == pytest.approx(edge + 2.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("width", [4, 12, 24])
+def test_a_spot_as_large_as_its_aperture_is_listed_however_wide(width):
+    frame = np.zeros((1, 60, 90))
+    frame[0, 20 : 20 + width, 50 : 50 + width] = 500.0
+    found = SpotList(((0.0, 0.0, float(width)),), spots=1).extract(frame)[0]
+    assert found[:2].tolist() == pytest.approx([49.5 + width / 2, 19.5 + width / 2])
 
 
 @pytest.mark.parametrize(

@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.special import fresnel
 
 from algorithms.contract import SensorGeometry, UnsuitableDesignError
+from algorithms.extractors.profiles import slit_image_kernel
 from algorithms.extractors.profiles.eigen_analysis import EigenAnalysis
 from algorithms.extractors.profiles.linear_phase import LinearPhase
 from algorithms.extractors.profiles.slit_image import SlitImage
@@ -66,6 +68,18 @@ def profiles() -> NDArray[np.float64]:
 
 def expected() -> NDArray[np.float64]:
     return (PIXELS - 1) / 2 + HEIGHT / PITCH * np.array(PLACES)
+
+
+def test_fresnel_s_integrals_are_scipys_between_samples_and_beyond() -> None:
+    samples = np.arange(4 * slit_image_kernel.FRESNEL_STEPS) / slit_image_kernel.FRESNEL_STEPS
+    phase = 0.5 * np.pi * samples**2
+    table = np.column_stack([*fresnel(samples)[::-1], np.cos(phase), np.sin(phase)])
+    for u in np.random.default_rng(5).uniform(0.0, samples[-1], 300):
+        s, c = fresnel(u)
+        np.testing.assert_allclose(slit_image_kernel._fresnel(u, table), (c, s), atol=1e-8)
+    for u in (5.0, 30.0):
+        s, c = fresnel(u)
+        np.testing.assert_allclose(slit_image_kernel._fresnel(u, table), (c, s), atol=2e-4)
 
 
 @pytest.mark.slow

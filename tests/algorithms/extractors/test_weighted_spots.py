@@ -232,3 +232,24 @@ def test_other_light_around_a_spot_is_told_as_the_written_steps_tell_it(each):
     assert noises[0] == pytest.approx(noises[1], rel=1e-12)
     np.testing.assert_allclose(compiled[2], written[2], rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(lights[0], lights[1], rtol=1e-9)
+
+
+def test_the_slope_of_the_background_is_that_of_all_pixels_within_four_deviations():
+    """Least squares over the ring, one of whose pixels stands out by more than three."""
+    rng = np.random.default_rng(12)
+    rows, columns = np.mgrid[:17, :19].reshape(2, -1).astype(np.float64)
+    far = np.hypot(columns - 9.0, rows - 8.0)
+    light = 40.0 + 0.1 * columns - 0.06 * rows + rng.uniform(-1.0, 1.0, far.size)
+    light[far < 4.0] += 300.0
+    ring = far > 6.0
+    light[0] = light[ring].mean() + 3.7 * light[ring].std()
+    away = abs(light[0] - light[ring].mean()) / light[ring].std()
+    assert 3.2 < away < 3.9
+    pixels = np.zeros((6, far.size))
+    pixels[:4] = columns, rows, light, far
+    spot_pixels_kernel._flatten(pixels, np.array([far.size]), 6.0, np.empty(1))
+    design = np.column_stack([columns, rows, np.ones(far.size)])
+    slope = np.linalg.lstsq(design[ring], light[ring], rcond=None)[0][:2]
+    middle = np.column_stack([columns, rows]) - (9.0, 8.0)
+    expected = light - light[ring].mean() - middle @ slope
+    np.testing.assert_allclose(pixels[2], expected, rtol=0, atol=1e-9)

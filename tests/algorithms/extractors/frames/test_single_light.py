@@ -117,6 +117,18 @@ def test_designs_without_a_hole_take_any_light_but_no_hot_pixel():
     assert np.isnan(GaussianFit().extract(frames)).all()
 
 
+@pytest.mark.parametrize(("side", "answered"), [(4, False), (5, True)])
+def test_frames_narrower_than_five_pixels_hold_no_light(side, answered):
+    """Two lit pixels and a border on either side leave nothing else to tell them from."""
+    frames = np.random.default_rng(775).uniform(19.0, 21.0, (1, side, 30))
+    frames[0, 1:3, 10:16] += np.array([40.0, 300.0, 600.0, 600.0, 300.0, 40.0])
+    frames = np.rint(frames).astype(np.uint16)
+    for light in (frames, frames.swapaxes(1, 2)):
+        found = GaussianFit(light="any").measure(light)
+        assert np.isfinite(found.features).all() == answered
+        assert found.flags[0] == (0 if answered else int(QualityFlag.NO_SPOT))
+
+
 def test_parameters_that_are_none_are_refused():
     with pytest.raises(ValueError, match=r"gaussian-fit.*'all'"):
         GaussianFit(light="all")

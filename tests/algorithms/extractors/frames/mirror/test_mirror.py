@@ -9,7 +9,7 @@ import pytest
 from scipy.special import j1, ndtr
 
 from algorithms.contract import SensorGeometry, UnsuitableDesignError
-from algorithms.extractors.frames.mirror import fit_kernel
+from algorithms.extractors.frames.mirror import fit_kernel, shape_kernel
 from algorithms.extractors.frames.mirror import taps as filters
 from algorithms.extractors.frames.mirror.extractor import MirrorRegistration
 from algorithms.extractors.frames.mirror.registration import register
@@ -181,6 +181,17 @@ def test_a_weaker_light_upon_a_spot_without_outlines_makes_it_skew():
     assert (found.flags & int(QualityFlag.NOT_SYMMETRIC) != 0).mean() > 0.9
 
 
+@pytest.mark.parametrize("power", range(5))
+def test_the_sharpest_weighting_is_the_slope_of_polynomials_to_the_fourth_power(power):
+    """Along its own axis; along the other one it is a mean: of a parabola, a third more."""
+    line = np.arange(-2.0, 3.0) ** power
+    taps = np.array([-filters.SLOPE_2, -filters.SLOPE_1, 0.0, filters.SLOPE_1, filters.SLOPE_2])
+    assert taps @ line == pytest.approx(1.0 if power == 1 else 0.0, abs=1e-12)
+    beside = np.array([filters.BESIDE, filters.MIDDLE, filters.BESIDE])
+    mean = {0: 1.0, 1: 0.0, 2: 1.0 / 3.0, 3: 0.0, 4: 1.0 / 3.0}
+    assert beside @ line[1:4] == pytest.approx(mean[power], abs=1e-12)
+
+
 def test_what_the_weighting_and_the_slopes_have_in_common_is_known_at_every_displacement():
     """White noise through both: the mean of their product."""
     rng = np.random.default_rng(49)
@@ -252,6 +263,55 @@ def test_pixels_known_as_bad_are_left_out_whatever_they_hold():
     np.testing.assert_array_equal(
         MirrorRegistration().measure(spoilt, bad).features, found.features
     )
+
+
+@pytest.mark.parametrize("known", [False, True])
+def test_a_hot_pixel_has_the_light_expected_of_its_partner_in_its_place(known):
+    """Without noise, wherever it is on a spot whose middle is on no pixel: the same centre."""
+    clean = DARK + PEAK * render(gaussian, (31.2, 30.7))
+    lit = np.argwhere(clean > DARK + 0.1 * PEAK)[::3]
+    found = []
+    for row, column in lit:
+        hot, bad = clean.copy(), np.zeros(clean.shape, dtype=np.bool_)
+        hot[row, column] += 800.0
+        bad[row, column] = known
+        found.append(register(hot[None], bad if known else None).features[0])
+    np.testing.assert_allclose(found - register(clean[None]).features, 0.0, rtol=0, atol=1e-3)
+
+
+def test_the_unit_of_the_light_does_not_matter():
+    """Powers of two leave every digit as it is."""
+    frames, _, _ = spots(disc, 3, 51)
+    here = register(frames.astype(np.float64))
+    assert np.isfinite(here.features).all()
+    for unit in (2.0**-20, 2.0**20):
+        there = register(frames * unit)
+        np.testing.assert_allclose(there.features, here.features, rtol=0, atol=1e-6)
+        np.testing.assert_array_equal(there.flags, here.flags)
+
+
+def test_what_neighbours_miss_alike_is_counted_above_what_chance_makes_alike():
+    """Products of what lit neighbours miss, along rows or columns, less five deviations of them."""
+    rng, stride, rows = np.random.default_rng(52), 24, 16
+    n = stride * rows
+    mean = rng.uniform(0.0, 1.0, n).astype(np.float32)
+    keep = (rng.uniform(size=n) < 0.9).astype(np.float32)
+    missed = (0.02 + rng.normal(0.0, 0.02, n)).astype(np.float32)
+    share, light = shape_kernel._alike(
+        mean,
+        keep,
+        missed,
+        stride,
+        np.empty(n + stride + 1, dtype=np.float32),
+        np.empty(n, dtype=np.float32),
+        np.empty(12 * 32, dtype=np.float32),
+    )
+    lit = keep * (mean > 0.3)
+    own = (lit * missed).astype(np.float64)
+    alike = max(own[:-1] @ own[1:], own[:-stride] @ own[stride:])
+    chance = 5.0 * (own @ own) / math.sqrt(lit.sum())
+    assert share == pytest.approx((alike - chance) / (lit @ mean**2), rel=1e-4)
+    assert light == pytest.approx(keep @ mean, rel=1e-5)
 
 
 def test_windows_of_a_frame_are_registered_like_frames():
