@@ -146,7 +146,7 @@ def test_the_displacement_is_the_mean_of_the_matched(frame, place):
 
 
 def test_a_start_one_and_a_half_tolerances_off_is_left_for_the_mean_of_the_spots():
-    """The first round reaches two of them; the rounds after it find every spot in its place."""
+    """The first round reaches two tolerances, and the rounds after it one from the mean."""
     tolerance, start, place = 1.0, np.array([51.1, 18.9]), np.array([52.3, 18.0])
     spots = np.column_stack([TABLE[:, :2] + place, np.ones((4, 2))])
     partner, distance = np.empty(4, dtype=np.int64), np.empty(4)
