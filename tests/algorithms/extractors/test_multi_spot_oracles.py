@@ -17,6 +17,7 @@ from algorithms.extractors.frames.multi_spot.image_correlation import (
 )
 from algorithms.extractors.frames.multi_spot.mean_shift import MeanShift
 from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
+from algorithms.extractors.frames.multi_spot.own_threshold_kernel import own_threshold
 from algorithms.extractors.frames.multi_spot.records import Seen
 from algorithms.extractors.frames.multi_spot.spots_kernel import segment
 
@@ -86,6 +87,20 @@ def test_the_nearest_distance_is_that_of_all_pairs(points):
     table = np.array([(x, y, 1.0) for x, y in points])
     pairs = [math.dist(a, b) for a, b in itertools.combinations(points, 2)]
     assert nearest_distance(table) == min(pairs, default=math.inf)
+
+
+# BCTM
+
+
+def test_the_brightest_quarter_of_a_few_pixels_is_the_brightest_of_them():
+    """Own level 0.3 of 10 where 10, 8 and 6 are lit: 7, 5 and 3 rise above it."""
+    frames = np.zeros((1, 9, 9), dtype=np.uint16)
+    frames[0, 4, 3:6] = 10, 8, 6
+    frames.setflags(write=False)  # as extractors pass them: compiled already
+    counts, spots = np.ones(1, dtype=np.int64), np.array([[[4.0, 4.0, 24.0]]])
+    own_threshold(frames, np.zeros(1), np.ones(1), 0.3, 2.0, 20.0, counts, spots)
+    assert counts[0] == 1
+    np.testing.assert_allclose(spots[0, 0], ((7 * 3 + 5 * 4 + 3 * 5) / 15, 4.0, 15.0))
 
 
 # MCAM
