@@ -360,6 +360,7 @@ def test_a_score_says_its_bound_its_answers_and_its_spread_over_units() -> None:
         "count": 3, "least_deg": 0.05, "largest_deg": 0.3, "within_limit": None, "of": 10,
     }  # fmt: skip
     assert place.best.measured["latency_us"] == 3.0
+    assert place.best.measured["fov_deg"] == 120.0
     nominal = place.best.measured["nominal"]
     assert isinstance(nominal, dict)
     assert (nominal["bound_deg"], nominal["over_bound"]) == (0.05, 2.0)

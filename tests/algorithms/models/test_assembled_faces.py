@@ -117,6 +117,31 @@ def test_a_direction_is_the_least_squares_one():
         assert cost(found * np.linalg.norm(solution.x)) < cost(solution.x) + 1e-4
 
 
+def test_a_variance_is_that_of_the_normal_equations_at_the_answer():
+    """Mean of the variances of both components across, of numeric derivatives of the residuals."""
+    nominal = pyramid(5, 35.0)
+    normals, gains = mounted(nominal)
+    sun = spread(300, 40.0)
+    rng = np.random.default_rng(2)
+    noisy = read(sun, normals, gains) + rng.normal(0, 2e-3, (300, 5))
+    model = AssembledFaces(nominal).fit(noisy, sun)
+    asked = spread(4, 30.0, seed=4)
+
+    def residuals(vector):
+        level = np.linalg.norm(vector)
+        faces = zip(model.normals_, model.responses_, model.noise_, strict=True)
+        light = [bend_and_slope(vector @ n / level, r, noise / 2)[0] for n, r, noise in faces]
+        return np.append(level * np.array(light) / model.noise_, level / model.level_spread)
+
+    seen = [model.dark_ + model.noise_ * residuals(vector)[:-1] for vector in asked]
+    for vector, variance in zip(asked, model.variance(np.array(seen), {}), strict=True):
+        steps = 1e-6 * np.eye(3)
+        slopes = [(residuals(vector + step) - residuals(vector - step)) / 2e-6 for step in steps]
+        covariance = np.linalg.inv(np.array(slopes) @ np.array(slopes).T)
+        across = (np.trace(covariance) - vector @ covariance @ vector) / 2.0
+        assert variance == pytest.approx(across, rel=1e-6)
+
+
 def test_unequal_light_of_the_lamp_does_not_tilt_the_faces():
     normals, gains = mounted(CUBE, error_deg=0.3)
     sun = spread(600)
