@@ -50,7 +50,7 @@ class Regret(Report[int]):
 
     def passes(self, rows: Mapping[int, Row]) -> bool:
         """Say whether every answer tells the regret that brute force finds."""
-        return all(one.kept for row in rows.values() for one in row["drawn"])
+        return all(one.is_consistent for row in rows.values() for one in row["drawn"])
 
 
 def _lines(seed: int, found: Sequence[DrawnRequirement]) -> Iterator[str]:
