@@ -201,9 +201,9 @@ def _flight(preset: Preset, condition: str) -> Sheet:
     context = samples.context or {}
     minutes = (context["time_s"] - context["time_s"][0]) / 60.0
     said = f"signals over minutes of the test split; grey: eclipse; {_unit(preset)}"
-    sheet = _sheet(preset, condition, said, 470)
-    area = (_LEFT + 50, _TOP + 14, _WIDTH - _LEFT - 90, 320)
     signals = samples.observations
+    sheet = _sheet(preset, condition, said, 450 + 20 * math.ceil(signals.shape[1] / len(LINES)))
+    area = (_LEFT + 50, _TOP + 14, _WIDTH - _LEFT - 90, 320)
     plot = sheet.plot(*area)
     plot.set(xlim=(0.0, float(minutes[-1])), ylim=_range(signals))
     dark = np.flatnonzero(np.diff(np.concatenate([[0], context["eclipse"].astype(int), [0]])))
@@ -271,7 +271,10 @@ def _unit(preset: Preset) -> str:
 
 
 def _legend(sheet: Sheet, count: int) -> None:
+    """Name signals, as many a row as there are colours, above the lower edge."""
+    rows = math.ceil(count / len(LINES))
     for k in range(count):
-        x, y = _LEFT + 50 + 110 * k, sheet.height - 16
+        row, column = divmod(k, len(LINES))
+        x, y = _LEFT + 50 + 110 * column, sheet.height - 16 - 20 * (rows - 1 - row)
         sheet.box(x, y - 6, 20, 4, LINES[k % len(LINES)])
         sheet.text(x + 26, y, f"signal {k + 1}", 12)
