@@ -314,6 +314,25 @@ def test_what_neighbours_miss_alike_is_counted_above_what_chance_makes_alike():
     assert light == pytest.approx(keep @ mean, rel=1e-5)
 
 
+@pytest.mark.parametrize(("more", "symmetric"), [(0.0, True), (0.4, False)])
+def test_light_that_is_more_in_three_directions_is_not_symmetric_even_within_the_noise(
+    more, symmetric
+):
+    """On average a tenth of the light, less than a pixel's noise: but neighbours miss it alike."""
+    rng = np.random.default_rng(60)
+    centres = rng.uniform(29, 34, (8, 2))
+
+    def lobed(x, y):
+        return disc(x, y, 14.0) * (1 + more * np.imag((x + 1j * y) ** 3) / 14.0**3).clip(0)
+
+    light = np.stack([DARK + 100.0 * render(lobed, c) for c in centres])
+    # Of a design whose spots are long: their outlines, and their skewness, say nothing.
+    found = register(noisy(light, rng), longest_px=40.0)
+    flags = found.flags & int(QualityFlag.NOT_SYMMETRIC)
+    assert ((flags == 0) == symmetric).all()
+    assert (np.isfinite(found.features).all(axis=1) == symmetric).all()
+
+
 def test_windows_of_a_frame_are_registered_like_frames():
     frames, centres, _ = spots(gaussian, 6, 47)
     windows = frames[:, 8:56, 10:58]
