@@ -1,0 +1,75 @@
+"""`sunatlas rank`: an algorithm checked, measured and shown among the others."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from api.cli import contract
+from api.cli.command_line import app
+from api.cli.contract import ContractResult, name_of
+from api.cli.wrong_call import WrongCallError
+from benchmark.contract import UnknownNameError
+
+NAME, DATASET = "voltage-balance", "qpd-single-aperture"
+
+
+def test_an_algorithm_is_named_by_its_name_or_by_its_file(tmp_path: Path) -> None:
+    assert name_of(NAME) == NAME
+    folder = contract.ROOT / "algorithms"
+    assert (
+        name_of(str(folder / "extractors" / "profiles" / "eigen_analysis.py")) == "eigen-analysis"
+    )
+    with pytest.raises(UnknownNameError, match=NAME):
+        name_of("voltage-balanse")
+    with pytest.raises(WrongCallError, match="no such file"):
+        name_of(str(tmp_path / "none.py"))
+    with pytest.raises(WrongCallError, match="one of them"):
+        name_of(str(folder / "extractors" / "currents" / "photodiode.py"))
+    with pytest.raises(WrongCallError, match="no public class"):
+        name_of(str(folder / "angles.py"))
+
+
+@pytest.mark.slow
+def test_the_checks_of_the_contract_are_those_of_the_common_suite() -> None:
+    result = contract.check_contract(NAME)
+    assert result is not None
+    assert result.failures == ()
+    assert result.ran > 10
+
+
+@pytest.mark.slow
+def test_an_algorithm_is_shown_on_the_board_of_a_data_set(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("api.cli.commands.rank.check_contract", lambda _: ContractResult(12, ()))
+    page = tmp_path / "board.html"
+    asked = ["rank", NAME, "--dataset", DATASET, "--store", str(tmp_path / "store")]
+    answer = CliRunner().invoke(app, [*asked, "--out", str(page), "--format", "json"])
+    assert answer.exit_code == 0, answer.output
+    assert "12 checks passed" in answer.stderr
+    rows = json.loads(answer.stdout)["items"]
+    assert {row["extractor"] for row in rows if row["new"]} == {NAME}
+    assert {row["dataset"] for row in rows} == {DATASET}
+    assert NAME in page.read_text()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("result", [ContractResult(5, ("it is slow: 9 s",)), None])
+def test_what_fails_a_check_is_named_and_not_measured(
+    result: ContractResult | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("api.cli.commands.rank.check_contract", lambda _: result)
+    asked = ["rank", NAME, "--dataset", DATASET, "--store", str(tmp_path / "store")]
+    answer = CliRunner().invoke(app, [*asked, "--out", str(tmp_path / "board.html")])
+    if result is None:
+        assert answer.exit_code == 0
+        assert "not checked" in answer.stderr
+    else:
+        assert answer.exit_code == 1
+        assert "it is slow: 9 s" in answer.stderr
+        assert "fails 1 of 5 checks" in answer.stderr
+        assert not (tmp_path / "board.html").exists()

@@ -1,0 +1,64 @@
+"""Leaders of boards on units that no board is made of."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from statistics import geometric_mean
+
+import pytest
+
+from benchmark.contract import Cell
+from benchmark.leaderboard import fresh_units
+from benchmark.leaderboard.fresh_units import FRESH, FreshUnitResult, first_groups
+from benchmark.leaderboard.scope import UNITS
+from benchmark.plan.parts import Parts, installed_parts
+from benchmark.results.store import PUBLISHED, Store
+
+NAME = "qpd-single-aperture"
+
+
+@pytest.fixture(scope="module")
+def parts() -> Parts:
+    known = installed_parts()
+    return Parts({NAME: known.presets[NAME]}, known.extractors, known.models)
+
+
+def test_a_first_group_has_the_least_geometric_mean_over_the_units_of_the_board(
+    parts: Parts,
+) -> None:
+    scores = Store(PUBLISHED).scores()
+    (leader, *others), behind = first_groups(scores, parts)[NAME]
+
+    def mean(cell: Cell) -> float:
+        units = [scores.get(replace(cell, unit=unit)) for unit in range(UNITS)]
+        return geometric_mean([row["charged_deg"] for row in units if row is not None])
+
+    assert mean(leader) <= min(map(mean, [*others, *behind]))
+    assert 0 < len(behind) <= fresh_units.BEHIND
+    assert [mean(one) for one in behind] == sorted(mean(one) for one in behind)
+
+
+@pytest.mark.slow
+def test_leaders_are_scored_on_units_that_no_board_has(parts: Parts) -> None:
+    assert min(FRESH) == UNITS
+    (found,) = fresh_units.score_fresh_units(Store(PUBLISHED), parts=parts)
+    (leader, *others), _ = first_groups(Store(PUBLISHED).scores(), parts)[NAME]
+    assert (found.dataset, found.leader, found.first) == (NAME, leader, 1 + len(others))
+    assert found.first <= found.pipelines
+    assert found.over >= 1.0
+    assert found.holds or found.over > 1.0
+
+
+@pytest.mark.parametrize(("behind", "code"), [(2, 0), (3, 1)])
+def test_it_fails_where_more_than_a_twentieth_of_the_leaders_are_behind(
+    behind: int, code: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cell = Cell("d", "nominal", "e", "m")
+    boards = [FreshUnitResult(f"d{n}", 20, 1, cell, n >= behind, 1.25) for n in range(40)]
+    monkeypatch.setattr(fresh_units, "score_fresh_units", lambda *_: boards)
+    assert fresh_units.main([]) == code
+    said = capsys.readouterr().out
+    assert "d0: 1 of 20 in the first group; e + m is behind on fresh units, 1.250" in said
+    assert f"{40 - behind} of 40 leaders" in said
+    with pytest.raises(SystemExit):
+        fresh_units.main(["--workers", "0"])
