@@ -109,3 +109,26 @@ def test_spans_fly_the_same_orbit_for_other_times(monkeypatch):
     rows = list(networks.spans(trained_days=(0.5, 2.0), tested_days=(7.0,)))
     assert flown == [(1440, 7.0), (5760, 7.0)]
     assert [row.rms_deg for row in rows] == [0.0] * 4
+
+
+@pytest.mark.slow
+def test_a_network_answers_where_it_was_trained_and_nowhere_else():
+    """On a mask of many spots: where all of them are seen, or wherever some are."""
+    found = {(one.method, one.case): one for one in networks.fields()}
+    assert set(found) == {
+        (f"ann, {mode}", case)
+        for mode in ("S-FOV", "X-FOV")
+        for case in ("all spots", "some spots")
+    }
+    assert found["ann, S-FOV", "some spots"].answered == 0.0
+    assert found["ann, X-FOV", "all spots"].answered == 1.0
+    assert found["ann, X-FOV", "some spots"].answered == 1.0
+    assert found["ann, X-FOV", "some spots"].rms_deg < 0.01
+
+
+@pytest.mark.slow
+def test_every_method_is_tried_on_orbits_that_it_was_not_calibrated_on():
+    found = list(networks.orbits(conditions=["nominal"]))
+    assert [one.method for one in found] == list(networks.METHODS)
+    assert {(one.question, one.case) for one in found} == {("orbits", "nominal")}
+    assert all(one.answered > 0.5 for one in found)
