@@ -112,7 +112,7 @@ GROUPS: Mapping[str, Group] = {
         {
             "benchmark/results/closure.py": _in(_RESULTS, "closure"),
             "benchmark/results/analyses.py": _in(_RESULTS, "closure"),
-            "benchmark/results/definitions.py": _in(_RESULTS, "closure"),
+            "benchmark/results/definitions.py": _in(_RESULTS, "closure", "closure_spelling"),
             "benchmark/results/syntax.py": _in(_RESULTS, "closure"),
             "benchmark/results/pipelines.py": _in(_RESULTS, "pipelines"),
             "benchmark/results/parquet_tables.py": _in(_RESULTS, "row_file", "samples"),
@@ -261,7 +261,7 @@ GROUPS: Mapping[str, Group] = {
                 _EXTRACTORS, "energy_filter_kernel", "energy_filtering"
             ),
             "algorithms/extractors/frames/mirror/*": _in(
-                f"{_EXTRACTORS}/frames/mirror", "mirror", "mirror_slit"
+                f"{_EXTRACTORS}/frames/mirror", "mirror_taps", "mirror", "mirror_slit"
             ),
             "algorithms/extractors/frames/multi_spot/*": _in(
                 _EXTRACTORS,

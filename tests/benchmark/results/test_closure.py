@@ -1,6 +1,5 @@
 """Which code a digest is of: what is reached moves it, and nothing else does."""
 
-import hashlib
 import importlib
 import sys
 from pathlib import Path
@@ -119,25 +118,6 @@ def test_what_is_reached_changes_a_digest(plug_in, module, old, new):
     assert old in texts[module]
     plug_in(**{module: texts[module].replace(old, new, 1)})
     assert digest() != before
-
-
-def test_digests_of_records_are_of_syntax_trees_spelt_alike_for_good(plug_in):
-    """Spelt here by hand: were it done otherwise, no record kept so far would fit its code."""
-
-    def short(text):
-        return hashlib.sha256(text.encode()).hexdigest()[:32]
-
-    plug_in(top="from math import sin\n\nHALF = 0.5\n\ndef work():\n    return sin(HALF)\n")
-    half = "(Assign targets=[(Name id=str:'HALF'),] value=(Constant value=float:0.5))"
-    sine = "(Call func=(Name id=str:'sin') args=[(Name id=str:'HALF'),])"
-    work = f"(FunctionDef name=str:'work' args=(arguments) body=[(Return value={sine}),])"
-    lines = [
-        f"plugged_pkg.top:HALF {short(half)}",
-        "plugged_pkg.top:sin math.sin",
-        f"plugged_pkg.top:work {short(work)}",
-    ]
-    assert digest("top:HALF") == short(lines[0])
-    assert digest("top:work") == short("\n".join(lines))
 
 
 #: Ways to reach ``far.value``, by the texts of modules on the way.

@@ -9,8 +9,6 @@ import pytest
 from scipy.special import j1, ndtr
 
 from algorithms.contract import SensorGeometry, UnsuitableDesignError
-from algorithms.extractors.frames.mirror import fit_kernel, shape_kernel
-from algorithms.extractors.frames.mirror import taps as filters
 from algorithms.extractors.frames.mirror.extractor import MirrorRegistration
 from algorithms.extractors.frames.mirror.registration import register
 from algorithms.measurement import QualityFlag
@@ -103,16 +101,6 @@ def test_a_noiseless_spot_is_found_to_a_thousandth_of_a_pixel(shape):
     np.testing.assert_allclose(MirrorRegistration().extract(frames), centres, atol=2e-3)
 
 
-def test_the_filter_of_the_slopes_is_the_tangent():
-    """2 sum t_n sin(2 pi k n) = 2 tan(pi k d) / d, up to where soft rims have no light left."""
-    k = np.linspace(0.01, 0.3, 30)
-    for d in (0.0, 0.2, 0.5):
-        taps = sum(fit_kernel.TAPS[q] * d ** (2 * q) for q in range(4))
-        response = 2 * np.sin(2 * np.pi * np.outer(k, np.arange(1, 7))) @ taps
-        tangent = 2 * np.tan(np.pi * k * d) / d if d else 2 * np.pi * k
-        np.testing.assert_allclose(response, tangent, rtol=6e-3)
-
-
 def test_turning_or_transposing_the_frame_does_so_with_the_answer():
     frames, _, _ = spots(ellipse, 8, 34)
     found = MirrorRegistration().extract(frames)
@@ -179,31 +167,6 @@ def test_a_weaker_light_upon_a_spot_without_outlines_makes_it_skew():
     found = register(noisy(np.stack(light), rng))
     assert np.isnan(found.features).all()
     assert (found.flags & int(QualityFlag.NOT_SYMMETRIC) != 0).mean() > 0.9
-
-
-@pytest.mark.parametrize("power", range(5))
-def test_the_sharpest_weighting_is_the_slope_of_polynomials_to_the_fourth_power(power):
-    """Along its own axis; along the other one it is a mean: of a parabola, a third more."""
-    line = np.arange(-2.0, 3.0) ** power
-    taps = np.array([-filters.SLOPE_2, -filters.SLOPE_1, 0.0, filters.SLOPE_1, filters.SLOPE_2])
-    assert taps @ line == pytest.approx(1.0 if power == 1 else 0.0, abs=1e-12)
-    beside = np.array([filters.BESIDE, filters.MIDDLE, filters.BESIDE])
-    mean = {0: 1.0, 1: 0.0, 2: 1.0 / 3.0, 3: 0.0, 4: 1.0 / 3.0}
-    assert beside @ line[1:4] == pytest.approx(mean[power], abs=1e-12)
-
-
-def test_what_the_weighting_and_the_slopes_have_in_common_is_known_at_every_displacement():
-    """White noise through both: the mean of their product."""
-    rng = np.random.default_rng(49)
-    line, taps = rng.normal(size=100_000), np.arange(1, 7)
-    for d in (0.0, 0.5):
-        t = sum(filters.TAPS[q] * d ** (2 * q) for q in range(4))
-        slope = sum(t[n - 1] * (np.roll(line, -n) - np.roll(line, n)) for n in taps)
-        sharp = filters.SLOPE_1 * (np.roll(line, -1) - np.roll(line, 1))
-        sharp += filters.SLOPE_2 * (np.roll(line, -2) - np.roll(line, 2))
-        products = filters.noise_of_levels()[1][0]
-        expected = sum(products[q] * d ** (2 * q) for q in range(4))
-        assert filters.MIDDLE * np.mean(slope * sharp) == pytest.approx(expected, rel=0.03)
 
 
 @pytest.mark.slow
@@ -288,30 +251,6 @@ def test_the_unit_of_the_light_does_not_matter():
         there = register(frames * unit)
         np.testing.assert_allclose(there.features, here.features, rtol=0, atol=1e-6)
         np.testing.assert_array_equal(there.flags, here.flags)
-
-
-def test_what_neighbours_miss_alike_is_counted_above_what_chance_makes_alike():
-    """Products of what lit neighbours miss, along rows or columns, less five deviations of them."""
-    rng, stride, rows = np.random.default_rng(52), 24, 16
-    n = stride * rows
-    mean = rng.uniform(0.0, 1.0, n).astype(np.float32)
-    keep = (rng.uniform(size=n) < 0.9).astype(np.float32)
-    missed = (0.02 + rng.normal(0.0, 0.02, n)).astype(np.float32)
-    share, light = shape_kernel._alike(
-        mean,
-        keep,
-        missed,
-        stride,
-        np.empty(n + stride + 1, dtype=np.float32),
-        np.empty(n, dtype=np.float32),
-        np.empty(12 * 32, dtype=np.float32),
-    )
-    lit = keep * (mean > 0.3)
-    own = (lit * missed).astype(np.float64)
-    alike = max(own[:-1] @ own[1:], own[:-stride] @ own[stride:])
-    chance = 5.0 * (own @ own) / math.sqrt(lit.sum())
-    assert share == pytest.approx((alike - chance) / (lit @ mean**2), rel=1e-4)
-    assert light == pytest.approx(keep @ mean, rel=1e-5)
 
 
 @pytest.mark.parametrize(("more", "symmetric"), [(0.0, True), (0.4, False)])
@@ -445,19 +384,6 @@ def test_the_longest_spot_of_a_design_follows_its_shadow_or_its_diffraction():
     assert MirrorRegistration.for_sensor(SensorGeometry(focal_length_mm=2.0)).longest_px is None
     with pytest.raises(ValueError, match=r"longest_px.*0"):
         MirrorRegistration(longest_px=0.0)
-
-
-def test_the_noise_of_the_slopes_is_known_at_every_displacement():
-    """White noise through the slopes: its variance, and what two neighbours have in common."""
-    rng = np.random.default_rng(51)
-    line, taps = rng.normal(size=200_000), np.arange(1, 7)
-    own, common = filters.noise_of_slopes()
-    for d in (0.0, 0.5):
-        t = sum(filters.TAPS[q] * d ** (2 * q) for q in range(4))
-        slope = sum(t[n - 1] * (np.roll(line, -n) - np.roll(line, n)) for n in taps)
-        said = [2.0 * np.polyval(given[::-1], d**2) for given in (own, common)]
-        measured = [np.mean(slope**2), np.mean(slope * np.roll(slope, 1))]
-        np.testing.assert_allclose(measured, said, atol=0.03)
 
 
 @pytest.mark.slow
