@@ -240,6 +240,7 @@ def _settings() -> dict[str, Any]:
         "html_css_files": ["guide.css"],
         "html_favicon": os.fspath(_HERE.parent / "static" / "icon.svg"),
         "html_copy_source": False,
+        "html_domain_indices": False,  # a list of modules beside the search says nothing more
         "html_show_sphinx": False,
         "html_show_copyright": False,
         "html_use_index": False,
