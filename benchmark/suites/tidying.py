@@ -59,7 +59,10 @@ def tidy(store: Store, *, parts: Parts | None = None) -> TidyResult:
         there = len(record.scores), len(record.pins)
 
         def is_current(cell: Cell) -> bool:
-            read = data_condition(known.preset(cell.dataset), cell.condition)
+            preset = known.presets.get(cell.dataset)
+            if preset is None:
+                return False
+            read = data_condition(preset, cell.condition)
             if replace(cell, unit=0, condition=read) not in planned:
                 return False
             return record.why_outdated(cell, components) in ((), ("failed",))

@@ -57,6 +57,17 @@ def dropped(found: TidyResult) -> tuple[int, int, int]:
     return found.scores, found.pins, found.times
 
 
+def test_results_of_a_data_set_that_is_gone_are_dropped(store: Store) -> None:
+    every = parts()
+    left = replace(every, presets={"fake-diodes": every.presets["fake-diodes"]})
+    there = store.scores()
+    gone = sum(cell.dataset == "fake-second" for cell in there)
+    done = tidy(store, parts=left)
+    assert (done.scores, done.kept) == (gone, len(there) - gone)
+    assert {cell.dataset for cell in store.scores()} == {"fake-diodes"}
+    assert {place[0] for place in store.pins()} <= {"fake-diodes"}
+
+
 def test_a_store_of_today_s_code_stays_as_it_is(store: Store) -> None:
     before = contents(store)
     for do in (would_tidy, tidy):
