@@ -18,6 +18,7 @@ from algorithms.chain import Chain, Scored
 from algorithms.contract import Extractor, Observation, UnusableDataError
 from algorithms.pipeline import Pipeline, extract_features
 from benchmark.contract import Preset
+from benchmark.datasets.corrected import correct, correction
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback, silent
@@ -42,7 +43,8 @@ class _Data:
 
     def __call__(self) -> None:
         first, *others = self.preset.conditions
-        self.preset.generate(first, "calibration", _MADE)
+        made = self.preset.generate(first, "calibration", _MADE)
+        correct(correction(self.preset, first), made)
         for condition in (first, *(name for name in others if name in _OWN_KERNELS)):
             self.preset.generate(condition, "test", _MADE)
             self.preset.bound(condition, "test", _MADE)
