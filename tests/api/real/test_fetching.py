@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
+import http.client
+import io
 from pathlib import Path
+from urllib.error import URLError
 
 import numpy as np
 import pytest
 
+from api.real import fetching
 from api.real.fetching import FetchError, fetch
 from api.real.sets import SETS, Block, RealSet, Source
 
@@ -67,3 +72,35 @@ def test_the_runs_of_the_box_are_those_that_lie_here():
     header = (SHARED / "cubesatbox" / first.written).read_text().splitlines()[0]
     assert header.split(",") == columns
     assert len(table) == first.blocks[0].rows
+
+
+@pytest.mark.parametrize(
+    ("reply", "said"),
+    [
+        (io.BytesIO(b"x" * 11), "at most 10 bytes"),
+        (URLError("no route"), "no route"),
+        (http.client.IncompleteRead(b""), "IncompleteRead"),
+    ],
+)
+def test_an_answer_that_is_too_long_or_none_is_refused(reply, said, monkeypatch, tmp_path):
+    def urlopen(request, timeout):
+        if isinstance(reply, Exception):
+            raise reply
+        return reply
+
+    monkeypatch.setattr(fetching, "urlopen", urlopen)
+    monkeypatch.setattr(fetching, "_LARGEST", 10)
+    with pytest.raises(FetchError, match=said):
+        fetch(STAND_IN, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_only_what_is_sent_under_https_is_fetched(monkeypatch, tmp_path):
+    def urlopen(request, timeout):
+        return io.BytesIO(HELD[request.full_url])
+
+    monkeypatch.setattr(fetching, "urlopen", urlopen)
+    assert len(fetch(STAND_IN, tmp_path / "out")) == 3
+    plain = dataclasses.replace(STAND_IN, address="http://example.org/v1/")
+    with pytest.raises(FetchError, match="expected an address of https"):
+        fetch(plain, tmp_path / "other")

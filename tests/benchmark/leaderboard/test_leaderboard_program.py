@@ -1,0 +1,27 @@
+"""The program that brings a record up to date in a process of its own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from benchmark.leaderboard import __main__ as program
+
+
+def test_directory_and_workers_are_handed_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    called: list[tuple[str, int]] = []
+    monkeypatch.setattr(program, "update", lambda *given: called.append(given))
+    monkeypatch.setattr("sys.argv", ["benchmark.leaderboard", "record", "3"])
+    assert program.main() == 0
+    assert called == [("record", 3)]
+
+
+@pytest.mark.parametrize("given", [[], ["record"], ["record", "two"], ["record", "1", "more"]])
+def test_anything_else_is_no_call(
+    given: list[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(program, "update", lambda *_: pytest.fail("it was measured"))
+    monkeypatch.setattr("sys.argv", ["benchmark.leaderboard", *given])
+    with pytest.raises(ValueError, match=r"unpack|invalid literal"):
+        program.main()
