@@ -114,7 +114,7 @@ class References(Protocol):
 
 
 class Observed(Protocol):
-    """What a condition is of, as far as the runner asks."""
+    """A condition of a data set, as far as the runner asks."""
 
     @property
     def sensor(self) -> Any:
@@ -186,7 +186,7 @@ class Preset(Protocol):
         ...
 
     def condition(self, name: str) -> Observed:
-        """Return a condition; LookupError where there is none of the name."""
+        """Return a condition; ValueError where there is none of the name."""
         ...
 
     def geometry_for(self, condition: str) -> SensorGeometry:

@@ -142,8 +142,11 @@ def _changed_heads(wanted: tuple[Preset, list[Pin]]) -> tuple[str, list[str]]:
     """Return a dataset's name, and a line for each split whose first samples are not as pinned."""
     preset, pins = wanted
     memory.cache_for((preset.name, preset.unit), preset.name)
-    with one_thread():
-        said = {f"{pin.condition} {pin.split}": _changed_head(pin, preset) for pin in pins}
+    try:
+        with one_thread():
+            said = {f"{pin.condition} {pin.split}": _changed_head(pin, preset) for pin in pins}
+    finally:
+        memory.forget()  # light of a few samples; tables stay
     return preset.name, [f"{place}: {change}" for place, change in said.items() if change]
 
 

@@ -18,14 +18,15 @@ def test_a_file_and_a_directory_change_places(tmp_path: Path) -> None:
     one.write_text("text")
     other.mkdir()
     (other / "inside").touch()
-    if exchange(one, other):
-        assert [path.name for path in one.iterdir()] == ["inside"]
-        assert other.read_text() == "text"
+    if not exchange(one, other):
+        pytest.skip("this file system cannot exchange two entries")
+    assert [path.name for path in one.iterdir()] == ["inside"]
+    assert other.read_text() == "text"
     with pytest.raises(OSError, match="none"):
         exchange(one, tmp_path / "none")
 
 
-@pytest.mark.parametrize("cannot", sorted(module._CANNOT))
+@pytest.mark.parametrize("cannot", [errno.EINVAL, errno.ENOSYS, errno.EXDEV, errno.EOPNOTSUPP])
 def test_where_the_system_cannot_it_says_so_and_does_nothing(
     cannot: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from benchmark.canonical import to_plain
 
-#: A worker's data, tables and code take up to 1.2 GB; with this it stays below 1.5 GB.
+#: Large frames take from it (`benchmark.running.condition_data`): a worker stays below 1.2 GB.
 LIMIT_BYTES = 256 * 2**20
 #: Shares of it: what runs may take, and what the latest of them take besides where they find none.
 _OF_RUNS, _LATEST = 0.625, 0.0625

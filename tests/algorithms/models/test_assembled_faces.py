@@ -87,14 +87,19 @@ def test_intervals_hold_what_was_put_in():
     assert 0.93 <= np.mean(held) <= 0.97
 
 
-def test_a_direction_is_the_least_squares_one():
-    """SciPy's own minimiser, over direction and strength, one sample at a time."""
+def calibrated():
+    """A pyramid of five faces fitted to noisy signals; its true normals and gains, and the draw."""
     nominal = pyramid(5, 35.0)
     normals, gains = mounted(nominal)
     sun = spread(300, 40.0)
     rng = np.random.default_rng(2)
     noisy = read(sun, normals, gains) + rng.normal(0, 2e-3, (300, 5))
-    model = AssembledFaces(nominal).fit(noisy, sun)
+    return AssembledFaces(nominal).fit(noisy, sun), normals, gains, rng
+
+
+def test_a_direction_is_the_least_squares_one():
+    """SciPy's own minimiser, over direction and strength, one sample at a time."""
+    model, normals, gains, rng = calibrated()
     asked = spread(6, 35.0, seed=4)
     seen = read(asked, normals, gains) + rng.normal(0, 5e-3, (6, 5))
     for signal, found in zip(seen, model.predict(seen), strict=True):
@@ -119,12 +124,7 @@ def test_a_direction_is_the_least_squares_one():
 
 def test_a_variance_is_that_of_the_normal_equations_at_the_answer():
     """Mean of the variances of both components across, of numeric derivatives of the residuals."""
-    nominal = pyramid(5, 35.0)
-    normals, gains = mounted(nominal)
-    sun = spread(300, 40.0)
-    rng = np.random.default_rng(2)
-    noisy = read(sun, normals, gains) + rng.normal(0, 2e-3, (300, 5))
-    model = AssembledFaces(nominal).fit(noisy, sun)
+    model, *_ = calibrated()
     asked = spread(4, 30.0, seed=4)
 
     def residuals(vector):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from benchmark.leaderboard import __main__ as program
@@ -15,13 +13,3 @@ def test_directory_and_workers_are_handed_on(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr("sys.argv", ["benchmark.leaderboard", "record", "3"])
     assert program.main() == 0
     assert called == [("record", 3)]
-
-
-@pytest.mark.parametrize("given", [[], ["record"], ["record", "two"], ["record", "1", "more"]])
-def test_anything_else_is_no_call(
-    given: list[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    monkeypatch.setattr(program, "update", lambda *_: pytest.fail("it was measured"))
-    monkeypatch.setattr("sys.argv", ["benchmark.leaderboard", *given])
-    with pytest.raises(ValueError, match=r"unpack|invalid literal"):
-        program.main()
