@@ -136,10 +136,24 @@ class Answer:
                 own, measures = facts.measures(number, tasks, best.errors, row, error)
             backing = has.bit_count()
             key = key_of(sort, bool(advice), backing, error, own, of_errors=of_errors)
+            within = place.studies & stated
+            rank = at - start + 1
             found.append(
                 RankedPlace(
-                    *(key, number, place, has, place.studies & stated, start, end),
-                    *(design, row, at - start + 1, error, advice, advised_tasks, measures),
+                    key,
+                    number,
+                    place,
+                    has,
+                    within,
+                    start,
+                    end,
+                    design,
+                    row,
+                    rank,
+                    error,
+                    advice,
+                    advised_tasks,
+                    measures,
                 )
             )
         return found

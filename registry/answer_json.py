@@ -7,67 +7,26 @@ a path or a node is written once and kept by all that it depends on.
 from __future__ import annotations
 
 import hashlib
+import math
 import weakref
-from collections.abc import Iterator, Sequence
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple
 
 import numpy as np
-from pydantic_core import to_json
 
-from registry.answer import Answer, RankedPlace
+from registry.answer import Answer
 from registry.contradiction import against_advice, against_literature, regret_words
 from registry.design_arrays import design_arrays
-from registry.designs import DesignTable
+from registry.designs import DesignTable, Limits
 from registry.judging import OF_STUDIES, Question, advice_for
-from registry.path_texts import PathTexts
 from registry.paths import path_table
-from registry.pipelines import NOT_COUNTED, PipelineErrors
-from registry.ranking import TaskMeasure, support
+from registry.pipelines import PipelineErrors
+from registry.ranking import TaskMeasure
 from registry.requirements import CONFIDENCE, Requirements
+from registry.texts.calibrations import MOST_TEXTS, CalibrationTexts, StudyTexts, to_json_bytes
+from registry.texts.paths import PathTexts
 
-#: Texts that are kept of each kind, some 16 MB of calibrations and 20 MB of architectures.
-MOST_TEXTS, MOST_ARCHITECTURES = 8192, 3072
-
-
-class _ShownArchitecture(NamedTuple):
-    """All that the text of an architecture depends on but its rank and what none beats.
-
-    Attributes
-    ----------
-    errors : of all pipelines
-    judged, advising : what is judged and what advice is asked for (`Question`)
-    number : position of the architecture
-    studies, stated, measures, rank_of_best : as in `RankedPlace`
-    total : how many of its designs meet the requirements
-    finer : pipeline that answers too seldom and is named; -1 for none
-    usual : the design that most studies used and its pipeline; -1 for none
-    best, row : the design with the smallest error and its pipeline; -1 for none
-    designs, rows : those that are listed and their pipelines, packed
-    units : of all pipelines of all these how many units keep the limit; none without one
-    """
-
-    errors: PipelineErrors
-    judged: tuple[str, ...]
-    advising: tuple[tuple[str, ...] | None, ...]
-    number: int
-    studies: int
-    stated: int
-    measures: tuple[TaskMeasure, ...]
-    rank_of_best: int
-    total: int
-    finer: int
-    usual: tuple[int, int]
-    best: int
-    row: int
-    designs: bytes
-    rows: bytes
-    units: tuple[bytes, ...]
-
-
-def to_json_bytes(value: Any) -> bytes:
-    """Return a value as JSON, what is not finite as null."""
-    return to_json(value, inf_nan_mode="null")
+#: Architectures whose texts are kept, some 7 kB each.
+MOST_ARCHITECTURES = 3072
 
 
 class AnswerTexts:
@@ -84,17 +43,14 @@ class AnswerTexts:
         paths = path_table(table.facts)
         self._left_out = to_json_bytes([left.to_dict() for left in paths.left_out])
         self._places = table.places
-        self._keys = [to_json_bytes(key) for key in table.facts.keys]
-        self._studies = lru_cache(MOST_TEXTS)(self._studies_text)
+        studies = StudyTexts(table.facts.keys)
+        self._studies = studies.text
+        self.calibrations = CalibrationTexts(self.arrays, studies)
         self._paths = PathTexts(paths, self.arrays, self._studies).text
         self._head = lru_cache(MOST_TEXTS)(self._head_text)
         self._architecture = lru_cache(MOST_ARCHITECTURES)(self._architecture_text)
         self._contradiction = lru_cache(MOST_TEXTS)(self._contradiction_text)
-        self._calibration = lru_cache(MOST_TEXTS)(self._calibration_text)
         self._ends = lru_cache(MOST_TEXTS)(_ends_text)
-        self._design = lru_cache(None)(self._design_text)
-        self._best_rows = lru_cache(MOST_TEXTS)(self._rows_on_datasets)
-        self._judged = lru_cache(2 * MOST_TEXTS)(self._judged_text)
 
     @cached_property
     def digest(self) -> bytes:
@@ -135,69 +91,104 @@ class AnswerTexts:
     def _architectures(
         self, answer: Answer, limit: int | None, calibrations: int | None
     ) -> list[bytes]:
-        unbeaten = answer.pareto
-        parts: list[bytes] = []
-        for at, shown in enumerate(self._pack_designs(answer, answer.places[:limit], calibrations)):
-            begun, ended = self._architecture(shown)
-            flag = b"true" if at in unbeaten else b"false"
-            parts += (_rank_text(at + 1), *begun, flag, *ended)
-        return parts
-
-    def _pack_designs(
-        self, answer: Answer, places: Sequence[RankedPlace], calibrations: int | None
-    ) -> Iterator[_ShownArchitecture]:
-        """Yield what the text of each architecture depends on."""
         question, best, first_row = answer.question, answer.best, self.arrays.first_row
-        asked = best.errors, question.judged_requirements, question.advice_key
-        finer, usual, limit = (
-            question.finest_partial_answers,
-            answer.usual,
-            question.requirements.largest_deg,
-        )
-        units = b"" if limit is None else best.errors.units_within(limit).tobytes()
+        errors, judged, advising = best.errors, question.judged_requirements, question.advice_key
+        finer, usual, unbeaten = question.finest_partial_answers, answer.usual, answer.pareto
+        largest = question.requirements.largest_deg
+        within = b"" if largest is None else errors.units_within(largest).tobytes()
+        # As bytes, which are quicker to cut and to compare than lists of numbers.
         designs, rows = answer.designs.tobytes(), best.row[answer.designs].tobytes()
         size = answer.designs.itemsize
-        for place in places:
-            end = place.end if calibrations is None else place.start + calibrations
-            listed = slice(size * place.start, size * min(end, place.end))
-            counted = () if limit is None else (place.best, *_unpacked(designs[listed]))
-            yield _ShownArchitecture(
-                *(*asked, place.number, place.studies, place.studies_within_limits, place.measures),
-                *(place.rank_of_best, place.end - place.start),
-                *(finer.get(place.number, -1), usual.get(place.number, (-1, -1))),
+        units: tuple[bytes, ...] = ()
+        parts: list[bytes] = []
+        for at, place in enumerate(answer.places[:limit]):
+            total = place.end - place.start
+            shown = total if calibrations is None else min(calibrations, total)
+            listed = slice(size * place.start, size * (place.start + shown))
+            if within:
+                of_units = place.best, *_unpacked(designs[listed])
+                units = tuple([within[first_row[one] : first_row[one + 1]] for one in of_units])
+            head, best_text, between, listed_text = self._architecture(
+                errors,
+                judged,
+                advising,
+                place.number,
+                place.studies,
+                place.studies_within_limits,
+                place.measures,
+                finer.get(place.number, -1),
+                usual.get(place.number),
                 place.best,
                 place.row,
                 designs[listed],
                 rows[listed],
-                tuple([units[first_row[one] : first_row[one + 1]] for one in counted]),
+                units,
             )
+            parts += (_rank_text(at + 1), head, _rank_text(place.rank_of_best, first=True))
+            parts += (*best_text, b',"pareto":true' if at in unbeaten else b',"pareto":false')
+            parts += (between, b"%d" % total, *listed_text)
+        return parts
 
-    def _architecture_text(self, of: _ShownArchitecture) -> tuple[list[bytes], list[bytes]]:
-        """Return the parts of an architecture before and behind whether none beats it."""
-        errors, studies = of.errors, of.studies
-        measured, stated = self._ends(of.judged, bool(studies))
-        designs, rows = (of.best, *_unpacked(of.designs)), (of.row, *_unpacked(of.rows))
-        units, counted = of.units or (b"",) * len(designs), (errors, of.finer)
-        best, *listed = (
-            (self._calibration(design, row, of.stated, studies), stated)
-            if row < 0
-            else (self._calibration(design, row, studies, studies, *counted, within), measured)
-            for design, row, within in zip(designs, rows, units, strict=True)
-        )
+    def _architecture_text(  # noqa: PLR0917 - by these it is kept
+        self,
+        errors: PipelineErrors,
+        judged: tuple[str, ...],
+        advising: tuple[tuple[str, ...] | None, ...],
+        number: int,
+        studies: int,
+        stated: int,
+        measures: tuple[TaskMeasure, ...],
+        finer: int,
+        usual: tuple[int, int] | None,
+        best: int,
+        row_of_best: int,
+        designs: bytes,
+        rows: bytes,
+        units: tuple[bytes, ...],
+    ) -> tuple[bytes, tuple[bytes, bytes], bytes, list[bytes]]:
+        """Return four parts of an architecture, what changes with every question left out.
+
+        Left out are its rank, behind the first part the rank of its best calibration, behind the
+        second whether none beats it, and behind the third how many of its designs meet the
+        requirements.
+
+        Parameters
+        ----------
+        errors : of all pipelines
+        judged, advising : what is judged and what advice is asked for (`Question`)
+        number : position of the architecture
+        studies, stated, measures : as in `RankedPlace`
+        finer : pipeline that answers too seldom and is named; -1 for none
+        usual : the measured design that most studies used and its pipeline
+        best, row_of_best : the design with the smallest error and its pipeline; -1 for none
+        designs, rows : those that are listed and their pipelines, packed
+        units : of all pipelines of all these how many units keep the limit; none without one
+        """
+        of_measured, of_stated = self._ends(judged, bool(studies))
+        text = self.calibrations.text
+        pairs = zip((best, *_unpacked(designs)), (row_of_best, *_unpacked(rows)), strict=True)
+        calibrations = []
+        for at, (design, row) in enumerate(pairs):
+            if row < 0:
+                calibrations.append((text(design, row, stated, studies), of_stated))
+            else:
+                within = units[at] if units else b""
+                measured = text(design, row, studies, studies, errors, finer, within)
+                calibrations.append((measured, of_measured))
+        best_text, *listed = calibrations
         contradiction = b"null"
-        if of.usual[0] >= 0:
-            first = of.best, of.row, studies if of.row >= 0 else of.stated
-            contradiction = self._contradiction(errors, studies, *of.usual, *first)
-        head = self._head(of.number, studies, of.advising)
-        measures = to_json_bytes([measure.to_dict() for measure in of.measures])
-        ended = [
-            b',"contradiction":%b,"measures":%b,"count":%d,"calibrations":['
-            % (contradiction, measures, of.total)
-        ]
-        for rank, texts in enumerate(listed, 1):
-            ended += (_rank_text(rank), *texts)
-        ended.append(b"]}")
-        return [b",", head, _rank_text(of.rank_of_best, first=True), *best, b',"pareto":'], ended
+        if usual is not None:
+            first = best, row_of_best, studies if row_of_best >= 0 else stated
+            contradiction = self._contradiction(errors, studies, *usual, *first)
+        between = b',"contradiction":%b,"measures":%b,"count":' % (
+            contradiction,
+            to_json_bytes([one.to_dict() for one in measures]),
+        )
+        texts = [b',"calibrations":[']
+        for rank, calibration in enumerate(listed, 1):
+            texts += (_rank_text(rank), *calibration)
+        texts.append(b"]}")
+        return self._head(number, studies, advising), best_text, between, texts
 
     def _head_text(
         self, number: int, studies: int, advising: tuple[tuple[str, ...] | None, ...]
@@ -222,7 +213,10 @@ class AnswerTexts:
             "advised": bool(advice),
             "advice": [one.to_dict() for one in advice],
         }
-        return b'%b,"studies":[%b],"best":' % (to_json_bytes(members)[1:-1], self._studies(studies))
+        return b',%b,"studies":[%b],"best":' % (
+            to_json_bytes(members)[1:-1],
+            self._studies(studies),
+        )
 
     def _contradiction_text(  # noqa: PLR0917 - by these it is kept
         self,
@@ -247,84 +241,6 @@ class AnswerTexts:
             (designs[best].users & best_studies).bit_count(),
         )
         return to_json_bytes(said)
-
-    def _calibration_text(  # noqa: PLR0917 - by these it is kept
-        self,
-        design: int,
-        row: int,
-        studies: int,
-        of_place: int,
-        errors: PipelineErrors | None = None,
-        finer: int = -1,
-        units_within: bytes = b"",
-    ) -> bytes:
-        """Return the members of a calibration between its rank and the basis.
-
-        Parameters
-        ----------
-        design, row : its position, and that of its best pipeline; -1 for none
-        studies : studies of its architecture that count (bits)
-        of_place : studies of its architecture with what is asked of studies (bits)
-        errors, finer : as `PipelineErrors.document` takes them; errors are None for no pipeline
-        units_within : units of each of its pipelines that keep the limit, nothing without one
-        """
-        of = self.arrays.designs[design]
-        with_model, taken = of.with_model & studies, of.users & studies
-        counts = (of_place.bit_count(), with_model.bit_count(), taken.bit_count())
-        measured = [b"null"]
-        if errors is not None:
-            first = self.arrays.first_row[design]
-            measured = []
-            for at in self._best_rows(design, row, errors):
-                units = units_within[at - first] if units_within else NOT_COUNTED
-                number = b"null" if units == NOT_COUNTED else b"%d" % units
-                measured.append(number.join(self._facts[at]) + self._judged(at, errors, finer))
-        return b'%b%b],"with_model":%d,"support":%b,"measured":%b,"other_datasets":[%b]' % (
-            self._design(design),
-            self._studies(taken),
-            counts[1],
-            to_json_bytes(round(support(*counts), 4)),
-            measured[0],
-            b",".join(measured[1:]),
-        )
-
-    def _design_text(self, design: int) -> bytes:
-        of = self.arrays.designs[design]
-        members = {
-            "extractor": of.extractor,
-            "compensations": of.stages[:-1],
-            "model": of.model,
-            "advised": [advice.id for advice in of.advice],
-        }
-        return b',%b,"studies":[' % to_json_bytes(members)[1:-1]
-
-    def _rows_on_datasets(self, design: int, row: int, errors: PipelineErrors) -> tuple[int, ...]:
-        """Return a pipeline of a calibration, and its best on each other data set."""
-        arrays = self.arrays
-        others: dict[str, int] = {}
-        for at in range(arrays.first_row[design], arrays.first_row[design + 1]):
-            dataset = arrays.rows[at].dataset
-            known = others.get(dataset)
-            if known is None or errors.error_deg[at] < errors.error_deg[known]:
-                others[dataset] = at
-        del others[arrays.rows[row].dataset]
-        return row, *others.values()
-
-    @cached_property
-    def _facts(self) -> list[list[bytes]]:
-        """Of each pipeline its first members, in two parts about how many units keep a limit."""
-        texts = [to_json_bytes(row.facts())[:-1] for row in self.arrays.rows]
-        counted, between = b'"within_limit":null', b'"within_limit":\0'
-        return [text.replace(counted, between).split(b"\0") for text in texts]
-
-    def _judged_text(self, row: int, errors: PipelineErrors, finer: int) -> bytes:
-        """Return the other members of a pipeline."""
-        return b",%b" % to_json_bytes(errors.document(row, finer))[1:]
-
-    def _studies_text(self, studies: int) -> bytes:
-        """Return the keys of studies (bits), with commas between them."""
-        flags = bin(studies)[:1:-1]
-        return b",".join([key for key, flag in zip(self._keys, flags, strict=False) if flag == "1"])
 
 
 def _unpacked(positions: bytes) -> list[int]:
@@ -372,9 +288,14 @@ def answer_json(answer: Answer, limit: int | None = None, calibrations: int | No
 def prepare(table: DesignTable) -> None:
     """Make what answers about a table share, so that no question has to wait for it."""
     texts = _texts(table)
-    _ = texts.digest
-    for half in (None, *texts.arrays.edges):
-        _ = texts.arrays.errors((), half, (None, CONFIDENCE)).unit_errors_deg
+    texts.calibrations.prepare()
+    arrays = texts.arrays
+    for half in (None, *arrays.edges, math.inf):
+        _ = arrays.errors((), half, (None, CONFIDENCE)).unit_errors_deg
+        arrays.best_pipelines(Limits(half_field_deg=half, draws=(0.0, CONFIDENCE)))
+    tasks = table.facts.taxonomy.values("task")
+    Answer(Question(table, Requirements({"task": tasks})), "advice")
+    _ = texts.digest, arrays.cone_edges
 
 
 def answer_digest(answer: Answer, *shown: object) -> bytes:

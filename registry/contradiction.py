@@ -95,12 +95,10 @@ def against_advice(answer: Answer, tasks: Sequence[str]) -> tuple[str, ...]:
     for task, values_of, scale, unit in _MEASURED:
         if tasks and task not in tasks:
             continue
-        sides: tuple[list[int], list[int]] = ([], [])
-        for at, place in enumerate(places):
-            sides[task in place.advised_tasks].append(at)
-        others, advised = sides
-        if not advised or not others:
+        advised = [at for at, place in enumerate(places) if task in place.advised_tasks]
+        if not 0 < len(advised) < len(places):
             continue
+        others = [at for at, place in enumerate(places) if task not in place.advised_tasks]
         values = values_of(answer)
         reached = answer.least_by_place(values)
         first, other = (min(side, key=reached.__getitem__) for side in (advised, others))

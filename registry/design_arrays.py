@@ -10,6 +10,7 @@ import itertools
 import weakref
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property, lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,10 +28,25 @@ Words = NDArray[np.uint64]
 WORD_BITS = 64
 _LARGEST_KEY = 63
 _REQUIREMENT_BITS = 32  # more than there are requirements
-#: Questions whose best pipelines are kept, some 60 kB each.
-MOST_BEST = 64
+#: Questions whose best pipelines are kept, some 60 kB each, and sets of studies that are counted.
+MOST_BEST, MOST_COUNTED = 128, 256
 #: Orders of designs that are kept, some 30 kB each.
 MOST_RANKED = 512
+
+
+class UsedDesigns(NamedTuple):
+    """Designs that some studies use.
+
+    Attributes
+    ----------
+    designs : their positions
+    with_model : how many of the studies use the compensations and model of each
+    taken : how many of these use its extractor, too
+    """
+
+    designs: Positions
+    with_model: Positions
+    taken: Positions
 
 
 class BestPipelines:
@@ -82,22 +98,22 @@ class BestPipelines:
         sort : what comes first
         """
         arrays = self.arrays
-        many, with_model, taken = arrays.count_studies(studies)
-        if stated != studies:
-            _, with_model_stated, taken_stated = arrays.count_studies(stated)
-            with_model = np.where(arrays.is_measured, with_model, with_model_stated)
-            taken = np.where(arrays.is_measured, taken, taken_stated)
-        unbacked, shift, designs = self._unbacked(sort)
-        backing = many[arrays.place_of] * with_model * taken
-        key = unbacked - (backing[designs] << shift)
+        of_place, used, _ = arrays.count_studies(studies)
+        others = arrays.count_studies(stated)[2]
+        unbacked, shift, place_in = self._unbacked(sort)
+        key = unbacked.copy()
+        for of in (used, others):
+            backing = of_place[arrays.place_of[of.designs]] * of.with_model * of.taken
+            key[place_in[of.designs]] -= backing << shift
+        key_of_used = key[place_in[used.designs]]
         key.sort(kind="stable")  # most are in order already
         every = self.at_order[key & ((1 << arrays.design_bits) - 1)]
-        used = every[(arrays.is_measured & (taken > 0))[every]]
-        by_use = np.lexsort((self.rank[used], -taken[used], arrays.place_of[used]))
-        return every, used[by_use]
+        place_of_used, rank = arrays.place_of[used.designs], self.rank[used.designs]
+        by_use = np.lexsort((key_of_used, rank, -used.taken, place_of_used))
+        return every, used.designs[by_use]
 
     def _unbacked_keys(self, sort: Sort) -> tuple[Positions, int, Positions]:
-        """Return keys of designs that no study backs, ascending, and the design of each.
+        """Return keys of designs that no study backs, ascending, and the place of each in them.
 
         A design's support is to be subtracted from its key, shifted by the second of the three.
         """
@@ -114,7 +130,9 @@ class BestPipelines:
         for values, bits in (*before, backed, *after):
             key = (key << bits) | values
         designs = key.argsort()
-        return key[designs], sum(bits for _, bits in after), designs
+        place_in = np.empty_like(designs)
+        place_in[designs] = arrays.numbers
+        return key[designs], sum(bits for _, bits in after), place_in
 
     @cached_property
     def repeatability_deg(self) -> Numbers:
@@ -171,7 +189,8 @@ class DesignArrays(PipelineTable):
         self.not_specified = np.array(
             [not design.is_specified for design in self.designs], np.int64
         )
-        self.unmeasured_designs = np.flatnonzero(~self.is_measured)
+        self.is_other = ~self.is_measured
+        self.unmeasured_designs = np.flatnonzero(self.is_other)
         self.place_studies = self.words_of(place.studies for place in places)
         with_model = self.words_of(design.with_model for design in self.designs)
         sets = np.concatenate((self.place_studies, with_model, self.users), axis=1)
@@ -182,8 +201,8 @@ class DesignArrays(PipelineTable):
         self.without_studies = np.array([not place.studies for place in places], bool)
         self.best_pipelines = lru_cache(MOST_BEST)(self._best_pipelines)
         self.rank_designs = lru_cache(MOST_RANKED)(BestPipelines.rank_designs)
-        self.count_studies = lru_cache(MOST_BEST)(self._count_studies)
-        self.unmeasured_designs_of = lru_cache(MOST_BEST)(self._unmeasured_designs_of)
+        self.count_studies = lru_cache(MOST_COUNTED)(self._count_studies)
+        self.unmeasured_designs_of = lru_cache(MOST_COUNTED)(self._unmeasured_designs_of)
         self.untested_architectures = lru_cache(None)(self._untested_architectures)
         self.design_bits = max(1, len(self.designs).bit_length())
         self.rank_bits = len(self.designs).bit_length()
@@ -205,7 +224,7 @@ class DesignArrays(PipelineTable):
                 *(("model", stage) for stage in design.stages),
             ):
                 found.setdefault(key, np.zeros(len(self.designs), bool))[at] = True
-        return found
+        return _read_only(found)
 
     @cached_property
     def _advised_places(self) -> Mapping[tuple[str, str], Flags]:
@@ -215,7 +234,7 @@ class DesignArrays(PipelineTable):
             for advice in place.advice:
                 key = (advice.requirement, advice.value)
                 found.setdefault(key, np.zeros(len(self.places), bool))[at] = True
-        return found
+        return _read_only(found)
 
     def designs_with(self, attribute: str, values: Iterable[str]) -> Flags:
         """Return the designs with one of some values of detector, mask, extractor, model."""
@@ -241,17 +260,22 @@ class DesignArrays(PipelineTable):
         data = b"".join(bits.to_bytes(size, "little") for bits in sets)
         return np.ascontiguousarray(np.frombuffer(data, "<u8").reshape(-1, self.words).T)
 
-    def _count_studies(self, studies: int) -> tuple[Positions, Positions, Positions]:
+    def _count_studies(self, studies: int) -> tuple[Positions, UsedDesigns, UsedDesigns]:
         """Return how many of some studies (bits) have each architecture, and use each design.
 
-        Of designs first those that use compensations and model, then those that use the extractor,
-        too.
+        Measured designs come before others; those that none of the studies uses are left out.
         """
         found = np.bitwise_count(self._study_sets & self.words_of([studies]))
         counts = np.zeros(self._set_count, np.int64)
         counts[self._with_studies] = found.sum(axis=0)
         first, second = len(self.places), len(self.places) + len(self.designs)
-        return counts[:first], counts[first:second], counts[second:]
+        with_model, taken = counts[first:second], counts[second:]
+        used = taken > 0
+        measured, others = (
+            UsedDesigns(at, with_model[at], taken[at])
+            for at in (np.flatnonzero(used & flags) for flags in (self.is_measured, self.is_other))
+        )
+        return counts[:first], measured, others
 
     def _unmeasured_designs_of(self, studies: int) -> Flags:
         """Return the designs that nothing measures and one of some studies (bits) used."""
@@ -302,14 +326,22 @@ class DesignArrays(PipelineTable):
         return tuple(p.architecture for at, p in enumerate(self.places) if at not in tried)
 
 
+def _read_only(masks: dict[tuple[str, str], Flags]) -> dict[tuple[str, str], Flags]:
+    """Return masks that answers share, so that none can change what the next one reads."""
+    for flags in masks.values():
+        flags.setflags(write=False)
+    return masks
+
+
 def _one_of(
     designs_with: Mapping[tuple[str, str], Flags], name: str, values: Iterable[str], size: int
 ) -> Flags:
+    known = [designs_with[name, value] for value in values if (name, value) in designs_with]
+    if len(known) == 1:
+        return known[0]
     found = np.zeros(size, bool)
-    for value in values:
-        flags = designs_with.get((name, value))
-        if flags is not None:
-            found |= flags
+    for flags in known:
+        found |= flags
     return found
 
 

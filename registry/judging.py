@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import bisect
 from collections.abc import Iterable, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, reduce
+from operator import and_
 from typing import TYPE_CHECKING
 
 from pydantic_core import to_json
@@ -116,9 +117,7 @@ class Question:
             found |= arrays.without_studies
             return found
         advised = [arrays.advised_for(name, self.requirements.include[name]) for name in included]
-        for places in advised[1:]:
-            advised[0] &= places
-        found |= advised[0]
+        found |= reduce(and_, advised)
         return found
 
     @cached_property

@@ -46,6 +46,16 @@ class PartialAnswer(Generic[Of]):
     availability: float
     subject: Of
 
+    def is_finer(self, error_deg: float) -> bool:
+        """Return whether it is far more accurate than a given error, of at least half the samples.
+
+        Parameters
+        ----------
+        error_deg : infinite for none, than which nothing is more accurate
+        """
+        often = self.availability >= LEAST_ANSWERED
+        return often and FINER * self.error_deg < error_deg < math.inf
+
 
 def finer_for(error_deg: float, partly: Iterable[PartialAnswer[Of]]) -> PartialAnswer[Of] | None:
     """Return the most accurate partial answer, if it is far more accurate than a given error.
@@ -62,11 +72,8 @@ def finer_for(error_deg: float, partly: Iterable[PartialAnswer[Of]]) -> PartialA
     PartialAnswer or None
         The first of equals; None unless `error_deg` is more than `FINER` times its error.
     """
-    often = (one for one in partly if one.availability >= LEAST_ANSWERED)
-    finest = min(often, key=lambda one: one.error_deg, default=None)
-    if finest is None or math.isinf(error_deg) or not error_deg > FINER * finest.error_deg:
-        return None
-    return finest
+    finer = (one for one in partly if one.is_finer(error_deg))
+    return min(finer, key=lambda one: one.error_deg, default=None)
 
 
 @dataclass(frozen=True)
@@ -284,9 +291,8 @@ class MeasuredPipeline:
         half_field_deg: float | None = None,
         *,
         bench_deg: float | None = None,
-        partly: Iterable[PartialAnswer[MeasuredPipeline]] = (),
     ) -> dict[str, object]:
-        """Return the members of the HTTP answer that a question decides.
+        """Return the members of the HTTP answer that a question decides, but for ``finer``.
 
         Parameters
         ----------
@@ -296,8 +302,6 @@ class MeasuredPipeline:
             Hazards and half field of view of both errors.
         bench_deg
             Fixed error of the calibration bench; None for the data set's own.
-        partly
-            Pipelines on the same sensor below the availability limit; one may be far more accurate.
         """
         error, own_error = _finite(judged.error_deg), _finite(own.error_deg)
         nominal = own_error
@@ -316,13 +320,11 @@ class MeasuredPipeline:
             "availability": self.availability(hazards),
             "own_deg": own_error,
             "bench_deg": self.bench_deg if bench_deg is None else bench_deg,
-            "finer": _finer(finer_for(judged.error_deg, partly)),
         }
 
 
-def _finer(found: PartialAnswer[MeasuredPipeline] | None) -> dict[str, object] | None:
-    if found is None:
-        return None
+def finer_document(found: PartialAnswer[MeasuredPipeline]) -> dict[str, object]:
+    """Return a partial answer as ``finer`` of the HTTP answer."""
     return {
         "dataset": found.subject.dataset,
         "extractor": found.subject.extractor,

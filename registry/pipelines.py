@@ -21,6 +21,7 @@ from registry.measured_pipelines import (
     LEAST_ANSWERED,
     Draws,
     MeasuredPipeline,
+    PartialAnswer,
     PipelineJudgement,
     Score,
 )
@@ -35,7 +36,7 @@ NOT_COUNTED = 255
 """Value in place of a number of units where there is no limit on the error."""
 
 #: Fields and sets of hazards whose errors are kept, some 200 kB each.
-MOST_ERRORS = 96
+MOST_ERRORS = 128
 #: Benches and shares whose errors are drawn only where another field has others, and such fields.
 MOST_DRAWS, MOST_FIELDS = 16, 16
 
@@ -202,8 +203,8 @@ class PipelineErrors:
         if draws is not None:
             self.error_deg = table.at_confidence(self.own_deg, self.bench_deg, draws)
         self.by_error = np.lexsort((self.error_deg, table.design_of))
-        self.own_judgement = lru_cache(None)(self._own_judgement)
         self.judgement = lru_cache(None)(self._judgement)
+        self.partial_answer = lru_cache(None)(self._partial_answer)
 
     @property
     def bench_deg(self) -> Numbers:
@@ -212,13 +213,16 @@ class PipelineErrors:
         own = self.table.bench_deg
         return own if bench is None else np.full(len(own), bench)
 
+    def _judgement(self, row: int) -> PipelineJudgement:
+        """Return the error of one pipeline, with its condition and field."""
+        return self._on_benches(row, self._own_judgement(row))
+
     def _own_judgement(self, row: int) -> PipelineJudgement:
         """Return the error of one pipeline with true directions, with its condition and field."""
         return self.table.rows[row].judge(self.hazards, self.half)
 
-    def _judgement(self, row: int) -> PipelineJudgement:
-        """Return the error of one pipeline, with its condition and field."""
-        own = self.own_judgement(row)
+    def _on_benches(self, row: int, own: PipelineJudgement) -> PipelineJudgement:
+        """Return the error of one pipeline on calibration benches, of that with true directions."""
         if self.draws is None or math.isinf(own.error_deg):
             return own
         return PipelineJudgement(float(self.error_deg[row]), own.condition, own.field_deg)
@@ -308,23 +312,17 @@ class PipelineErrors:
         first = begins(places)
         return dict(zip(places[first].tolist(), rows[first].tolist(), strict=True))
 
-    def document(self, row: int, finer: int) -> dict[str, object]:
-        """Return the members of a pipeline in the HTTP answer that a question decides.
-
-        Parameters
-        ----------
-        row : position of the pipeline
-        finer : pipeline on the same sensor below the availability limit; -1 for none
-        """
-        rows, field = self.table.rows, (self.hazards, self.half)
-        partly = None if finer < 0 else rows[finer].partial_answer(*field)
-        return rows[row].judged(
-            self.judgement(row),
-            self.own_judgement(row),
-            *field,
+    def document(self, row: int) -> dict[str, object]:
+        """Return the members of a pipeline in the HTTP answer that a question decides."""
+        own = self._own_judgement(row)
+        return self.table.rows[row].judged(
+            *(self._on_benches(row, own), own, self.hazards, self.half),
             bench_deg=None if self.draws is None else self.draws[0],
-            partly=() if partly is None else (partly,),
         )
+
+    def _partial_answer(self, row: int) -> PartialAnswer[MeasuredPipeline] | None:
+        """Return the error of a pipeline below the availability limit over what it answers."""
+        return self.table.rows[row].partial_answer(self.hazards, self.half)
 
     def within_limits(self, limits: Limits, max_error_deg: float | None = None) -> Flags:
         """Return the mask of the pipelines within limits, which have these hazards and field."""
@@ -385,7 +383,8 @@ def _nothing_drawn(_draws: Draws) -> list[tuple[Numbers, Numbers]]:
 
 def begins(values: Positions) -> Flags:
     """Return the mask of the first of equal values, which are in ascending order."""
-    found = np.ones(len(values), bool)
+    found = np.empty(len(values), bool)
+    found[:1] = True
     np.not_equal(values[1:], values[:-1], out=found[1:])
     return found
 

@@ -81,13 +81,13 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
 
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    before = gc.get_threshold()
+    gc.set_threshold(COLLECTED_AFTER)
     app.state.knowledge.load_all()
     # Who asks for it first shall not wait for it, nor shall all others meanwhile: a thread beside
     # them would hold up each of their answers. Before a service answers it is nobody's loss.
     await asyncio.to_thread(app.openapi)  # it asks path functions, each in a loop of its own
     # What is loaded now stays: the collector need not walk it again for every few answers.
-    before = gc.get_threshold()
-    gc.set_threshold(COLLECTED_AFTER)
     gc.collect()
     gc.freeze()
     yield

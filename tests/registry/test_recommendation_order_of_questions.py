@@ -29,7 +29,11 @@ def test_what_was_judged_for_one_question_does_not_tell_for_another(
         *({"max_error_deg": 0.5}, {"max_error_deg": 0.6}, {"confidence": 0.6, "bench_deg": 0.1}),
     ]
     fresh = [recommend(ask, list(rows), facts=facts).document for ask in asks]
-    for name in ("pipelines.MOST_ERRORS", "design_arrays.MOST_BEST", "answer_json.MOST_TEXTS"):
+    for name in (
+        *("pipelines.MOST_ERRORS", "design_arrays.MOST_BEST", "design_arrays.MOST_COUNTED"),
+        *("answer_json.MOST_TEXTS", "answer_json.MOST_ARCHITECTURES", "texts.paths.MOST_TEXTS"),
+        *("texts.calibrations.MOST_TEXTS", "texts.calibrations.MOST_PIPELINES"),
+    ):
         monkeypatch.setattr(f"registry.{name}", 2)
     kept = Measurements(rows)
     for _ in range(2):

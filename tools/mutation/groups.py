@@ -67,6 +67,9 @@ _RESULTS = "benchmark/results"
 _DATASETS = "benchmark/datasets"
 _MODELS = "algorithms/models"
 _EXTRACTORS = "algorithms/extractors"
+_ANSWERS = _in(
+    "registry", "draws", "recommendation_measured", "recommendation_survey", "recommendation"
+)
 
 GROUPS: Mapping[str, Group] = {
     "metrics": Group(
@@ -138,13 +141,8 @@ GROUPS: Mapping[str, Group] = {
             "registry/fitting.py": _in("registry", "resolution"),
             "registry/sensors.py": _in("registry", "resolution_sensors"),
             "registry/draws.py": _in("registry", "draws", "recommendation"),
-            "registry/answer_json.py": _in(
-                "registry",
-                "draws",
-                "recommendation_measured",
-                "recommendation_survey",
-                "recommendation",
-            ),
+            "registry/answer_json.py": _ANSWERS,
+            "registry/texts/calibrations.py": _ANSWERS,
             "registry/evidence.py": _in("api/figures", "evidence_map"),
             "registry/possibility.py": _in("api/figures", "evidence_map"),
             "registry/contradiction.py": (
@@ -181,10 +179,14 @@ GROUPS: Mapping[str, Group] = {
             "benchmark/datasets/repeats.py": _in(_DATASETS, "repeats_and_units", "dataset_parts"),
             "benchmark/datasets/units.py": _in(_DATASETS, "repeats_and_units", "dataset_parts"),
             "benchmark/datasets/export_verification.py": _in(
-                _DATASETS, "export_parts", "export_verification", "dataset_export"
+                f"{_DATASETS}/exports", "export_parts", "export_verification", "dataset_export"
             ),
-            "benchmark/datasets/export*.py": _in(_DATASETS, "export_parts", "dataset_export"),
-            "benchmark/datasets/checksums.py": _in(_DATASETS, "export_parts", "dataset_export"),
+            "benchmark/datasets/export*.py": _in(
+                f"{_DATASETS}/exports", "export_parts", "dataset_export"
+            ),
+            "benchmark/datasets/checksums.py": _in(
+                f"{_DATASETS}/exports", "export_parts", "dataset_export"
+            ),
             "benchmark/datasets/preview*.py": _in(_DATASETS, "dataset_preview"),
             "benchmark/datasets/samples.py": _in(_RESULTS, "digests"),
             "benchmark/datasets/pins.py": (
@@ -258,7 +260,7 @@ GROUPS: Mapping[str, Group] = {
                 _EXTRACTORS, "camera_and_event_kernels", "camera_hough"
             ),
             "algorithms/extractors/frames/energy_filter*.py": _in(
-                _EXTRACTORS, "energy_filter_kernel", "energy_filtering"
+                f"{_EXTRACTORS}/frames", "energy_filter_kernel", "energy_filtering"
             ),
             "algorithms/extractors/frames/mirror/*": _in(
                 f"{_EXTRACTORS}/frames/mirror", "mirror_taps", "mirror", "mirror_slit"

@@ -167,7 +167,7 @@ class _KeptTexts(dict[bytes, bytes]):
     def __missing__(self, packed: bytes) -> bytes:
         if len(self) >= MOST_TEXTS:
             self.clear()
-        at, studies = (int.from_bytes(part, "little") for part in (packed[:8], packed[8:]))
+        at, studies = int.from_bytes(packed[:8], "little"), int.from_bytes(packed[8:], "little")
         begun, count = self._begun[at]
         counted = count % studies.bit_count() if count else b""
         text = self[packed] = b'%b%b,"studies":[%b]}' % (begun, counted, self._studies(studies))

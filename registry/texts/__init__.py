@@ -1,0 +1,1 @@
+"""Parts of an answer as JSON, each written once and kept."""
