@@ -79,10 +79,6 @@ class PathTable:
             for path in self.paths
         ]
 
-    def studies(self, bits: int) -> tuple[str, ...]:
-        """Return the keys of a study set."""
-        return tuple(self.keys[at] for at in positions(bits))
-
     def of(self, design: Design) -> tuple[int, ...]:
         """Return the paths that lead to a design."""
         kinds = self.taxonomy.kinds

@@ -57,13 +57,16 @@ def source_named(text: str) -> Source:
     """Return what a source is called, and where it leads.
 
     A DOI is written as one, another address as its publisher, a label of the survey as its name.
-    An address that `fault` refuses is named by its host and leads nowhere.
+    An address that `fault` refuses is named by its host, if it has one, and leads nowhere.
     """
     if not text.startswith(("http://", "https://")):
         return Source(labels.label_of(text))
-    host = _host(text)
     if fault(text):
-        return Source(host)
+        try:
+            return Source(_host(text))
+        except ValueError:  # no address at all
+            return Source(text)
+    host = _host(text)
     if host == _DOI:
         return Source("doi:" + urlsplit(text).path.lstrip("/"), text)
     known = _known(host, hosts())

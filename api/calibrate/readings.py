@@ -26,6 +26,8 @@ MATRICES: dict[Transform, tuple[tuple[float, float], tuple[float, float]]] = {
 }
 #: Why rows of a sensor that looks one way are left out.
 BEHIND = "the light is behind the sensor"
+FALLING = "readings fall when light rises"
+_NO_SUM = "the signals have no positive sum"
 #: Share of the usual light below which balances are those of noise.
 _FAINT = 0.1
 _KINDS = {"spot": FeatureKind.SPOT, "channels": FeatureKind.SIGNALS}
@@ -144,7 +146,10 @@ def readings_of(table: Table, settings: Settings, *, behind: bool = False) -> Re
         usable &= ~bad
     if not usable.any():
         counts = ", ".join(f"{count} {reason}" for reason, count in dropped.items() if count)
-        raise TableError(f"{table.source}: no row can be used ({counts})")
+        # Readings that fall when light rises have negative sums where nothing is taken off them.
+        falling = dropped[_NO_SUM] and np.nanmedian(raw.sum(axis=1)) < 0
+        hint = f"; {FALLING}: say inverted = true" if falling else ""
+        raise TableError(f"{table.source}: no row can be used ({counts}){hint}")
     made = Readings(
         features, sun, _KINDS.get(settings.readings.kind, FeatureKind.BALANCE), rows, run, names,
         signals, context, angles, {reason: count for reason, count in dropped.items() if count},
@@ -225,7 +230,7 @@ def _reasons(  # noqa: PLR0917 - what a row is made of
         "all readings, or the direction, are zero": zeros,
         "the direction is no unit vector, or 90 deg or more off": ~np.isfinite(sun).all(axis=1),
         "there is hardly any light": faint,
-        "the signals have no positive sum": ~np.isfinite(features).all(axis=1),
+        _NO_SUM: ~np.isfinite(features).all(axis=1),
     }
     if settings.readings.kind != "channels":
         found[BEHIND] = ~(sun[:, 2] > 0)

@@ -22,6 +22,8 @@ _BETTER = 0.9
 #: Size of a correction over its 1-sigma from which it is one.
 _CLEAR = 8.0
 _ROUNDS = 20
+#: Steps to an offset, of which the first is at most a tenth of the readings' range.
+_MOST_STEPS = 40
 #: Residuals over their median up to which poses count in full.
 _USUAL = 2.0
 #: RMS over median of the length of two normal errors.
@@ -158,7 +160,8 @@ def _move(readings: Readings, old: Any) -> tuple[Floats, Floats]:
     offset = np.zeros(2)
     width = np.maximum(np.ptp(readings.features, axis=0), 1e-12)
     weight = np.ones(len(readings))
-    for _ in range(_ROUNDS):
+    rounds, largest = 0, 0.1 * width
+    for _ in range(_MOST_STEPS):
         at = old.predict(readings.features - offset, readings.context)
         slopes = [
             old.predict(readings.features - offset - axis, readings.context) - at
@@ -177,11 +180,16 @@ def _move(readings: Readings, old: Any) -> tuple[Floats, Floats]:
         )
         aim = (left[usable] * root[:, None]).reshape(-1)
         step = np.linalg.lstsq(design, aim, rcond=1e-8)[0]
-        offset = offset + np.clip(step, -0.1 * width, 0.1 * width)
+        cut = np.clip(step, -largest, largest)
+        offset = offset + cut
+        if (cut == step).all():
+            rounds += 1
+        else:  # a long way, which few poses close together do not tell
+            largest = 2.0 * largest
         size = np.linalg.norm(left, axis=1)
         middle = max(_USUAL * float(np.nanmedian(size)), 1e-12)
         weight = 1.0 / np.maximum(np.nan_to_num(size, nan=np.inf), middle)
-        if (np.abs(step) < 1e-9 * width).all():
+        if rounds >= _ROUNDS or (np.abs(step) < 1e-9 * width).all():
             break
     return offset, np.eye(3)
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from algorithms.angles import separation_deg
 from algorithms.calibration.blocks import folds
 from algorithms.calibration.hull import Hull
-from algorithms.chain import Chain, Scored
+from algorithms.chain import Scored
 from algorithms.contract import (
     FeatureKind,
     Floats,
@@ -316,8 +316,3 @@ def _flexibility(name: str) -> int:
 
 def _left_out(one: Candidate) -> int:
     return 0 if one.errors is None else int(np.isfinite(one.errors).sum())
-
-
-def is_chain(scored: Scored) -> bool:
-    """Say whether compensations stand ahead of the model."""
-    return isinstance(scored, Chain)

@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from files.reading import FileRefusedError, read_bytes
+from files.reading import read_bytes
 
 #: Largest file, and most rows and columns that are read of one.
 LARGEST, MOST_ROWS, MOST_COLUMNS = 256 * 1024 * 1024, 2_000_000, 500
@@ -277,8 +277,3 @@ def _require_names(names: list[str], source: str) -> None:
     except ValueError:
         return
     raise TableError(f"{source}, row 1: expected a header with names of columns; got numbers")
-
-
-def file_refused(error: FileRefusedError) -> TableError:
-    """Return the refusal of a file as this module's error."""
-    return TableError(str(error))

@@ -106,7 +106,8 @@ def noise_around(offsets: Floats, sun: Floats) -> Floats:
     square = ((offsets[known] - offsets[known][pairs]) ** 2).sum(axis=1)
     near = np.asarray(tree.query(sun, k=_AROUND)[1])
     around = np.degrees(np.sqrt(np.mean(square[near], axis=1) / 2.0))
-    return np.asarray(around * whole / np.sqrt(np.mean(around[known] ** 2)))
+    usual = np.sqrt(np.mean(around[known] ** 2))
+    return np.asarray(around * (whole / usual) if usual > 0 else around)
 
 
 def _middle(square: Floats) -> float:

@@ -130,7 +130,11 @@ def _calibrate(directory: Path) -> dict[str, dict[str, str]]:
     try:
         settings = None
         if task["config"].strip():
-            settings = parse_settings(tomllib.loads(task["config"]), "config")
+            try:
+                stated = tomllib.loads(task["config"])
+            except RecursionError:
+                return {"refused": {"why": "config: brackets stand too deep in each other"}}
+            settings = parse_settings(stated, "config")
         rows = sum(len(read_table(path)) for path in paths)
         if rows > MOST_ROWS:
             return {"refused": {"why": f"expected at most {MOST_ROWS} rows in all; got {rows}"}}

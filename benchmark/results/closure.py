@@ -169,8 +169,8 @@ class Sources:
         for star in known.stars:
             yield from self._used(module, f"{star}.{EVERYTHING}")
 
-    def _used(self, module: str, use: str) -> Iterator[_Node]:
-        """Yield what a use in a module reaches."""
+    def _used(self, module: str, use: str, asked: frozenset[str] = frozenset()) -> Iterator[_Node]:
+        """Yield what a use in a module reaches; `asked` modules took everything of it."""
         if use.startswith(LOADED):
             yield from self._loaded(module, use.removeprefix(LOADED))
         elif use.startswith(IMPORTED):
@@ -187,9 +187,9 @@ class Sources:
                 return
             for star in known.stars:
                 other = self._absolute(module, star)
-                if self._is_ours(other) and self._defines(other, root, set()):
+                if self._is_ours(other) and self._defines(other, root, {*asked, module}):
                     yield module, _RUN
-                    yield from self._used(other, use)
+                    yield from self._used(other, use, asked | {module})
             # else a built-in one
 
     def _taken(self, name: str) -> Iterator[_Node]:

@@ -104,12 +104,6 @@ class FindingVerdict:
     not_tested: str
     clauses: tuple[ClauseVerdict, ...]
 
-    @property
-    def tests(self) -> str:
-        """What is tested, clause by clause, and what is not, in a sentence."""
-        tested = f"tests: {'; '.join(clause.statement for clause in self.clauses)}"
-        return f"{tested}. Not tested: {self.not_tested}" if self.not_tested else tested
-
     def to_dict(self) -> dict[str, Any]:
         """Return the verdict as plain JSON data."""
         return {

@@ -47,6 +47,8 @@ def test_a_raw_address_or_a_mirror_is_no_source_and_no_link(address: str) -> Non
         ("https://www.mdpi.com:8080/x", "by its name alone"),
         ("https://user@www.mdpi.com/x", "by its name alone"),
         ("https://localhost/x", "raw address"),
+        ("https://[www.mdpi.com/x", "no address: Invalid IPv6 URL"),
+        ("https://www.mdpi.com:99999/x", "no address: Port out of range"),
         ("data sheet at pdfslide.net/x", "pdfslide.net stands in a source"),
         ("120.26.44.124/details", "120.26.44.124 stands in a source"),
     ],
@@ -70,6 +72,15 @@ def test_what_cannot_be_cited_says_why(text: str, reason: str) -> None:
 def test_a_source_is_named(text: str, name: str) -> None:
     assert not sources.fault(text)
     assert sources.source_named(text).name == (name or text)
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [("https://120.26.44.124/details", "120.26.44.124"), ("https://[x/y", "https://[x/y")],
+)
+def test_what_cannot_be_cited_is_named_and_leads_nowhere(text: str, name: str) -> None:
+    found = sources.source_named(text)
+    assert (found.name, found.link) == (name, "")
 
 
 def test_every_source_of_ours_has_a_name_and_a_host_that_may_be_linked_to() -> None:

@@ -83,25 +83,13 @@ def quantity(
         _si(expanded, "distribution", "normal")
 
 
-def quantities(
-    parent: Element,
-    name: str,
-    values: Sequence[float],
-    unit: str,
-    uncertainties: Sequence[float] | None = None,
-) -> None:
-    """Add numbers of one unit, each with its expanded uncertainty where they are known."""
+def quantities(parent: Element, name: str, values: Sequence[float], unit: str) -> None:
+    """Add numbers of one unit."""
     made = dcc(parent, "quantity")
     content(made, "name", name)
     real = SubElement(made, f"{{{SI}}}realListXMLList")
     _si(real, "valueXMLList", _numbers(values))
     _si(real, "unitXMLList", unit)
-    if uncertainties is not None:
-        expanded = _si(real, "expandedUncXMLList")
-        _si(expanded, "uncertaintyXMLList", _numbers(uncertainties))
-        _si(expanded, "coverageFactorXMLList", repr(COVERAGE_FACTOR))
-        _si(expanded, "coverageProbabilityXMLList", repr(COVERAGE))
-        _si(expanded, "distributionXMLList", "normal")
 
 
 def _si(parent: Element, name: str, text: str | None = None) -> Element:

@@ -10,7 +10,7 @@ import numpy as np
 from algorithms.contract import FeatureKind
 from api.calibrate.conventions.finding import MUCH_BETTER, Finding
 from api.calibrate.face_normals import face_normals
-from api.calibrate.readings import Readings, quadrant_balances
+from api.calibrate.readings import FALLING, Readings, quadrant_balances
 from api.calibrate.robust import robust_map
 from api.calibrate.settings import Settings
 
@@ -20,7 +20,6 @@ _FALLING = 0.5
 _SURER = 0.1
 #: Poses without light on a face that tell its level then.
 _FEWEST_UNLIT = 6
-_FALLS = "readings fall when light rises"
 
 
 def of_light(readings: Readings, settings: Settings) -> Iterator[Finding]:
@@ -31,14 +30,9 @@ def of_light(readings: Readings, settings: Settings) -> Iterator[Finding]:
     if settings.readings.kind not in ("quadrants", "electrodes"):
         return
     total = readings.raw.sum(axis=1)
-    if np.median(total) < 0:
+    if np.corrcoef(total, readings.sun[:, 2])[0, 1] < -_FALLING:
         yield Finding(
-            "light", f"{_FALLS}: say inverted = true", np.nan, np.nan,
-            {"readings": {"inverted": True}}, True,
-        )  # fmt: skip
-    elif np.corrcoef(total, readings.sun[:, 2])[0, 1] < -_FALLING:
-        yield Finding(
-            "light", f"{_FALLS}: say inverted = true, and dark = their level without light",
+            "light", f"{FALLING}: say inverted = true, and dark = their level without light",
             np.nan, np.nan, {}, True,
         )  # fmt: skip
 
@@ -67,7 +61,7 @@ def _falling_faces(readings: Readings, settings: Settings) -> Iterator[Finding]:
     if np.isfinite(levels).all():
         change["dark"] = tuple(float(value) for value in dark + sign * gain * np.asarray(levels))
     yield Finding(
-        "light", f"{_FALLS}: say inverted = true, and dark = their level without light",
+        "light", f"{FALLING}: say inverted = true, and dark = their level without light",
         np.nan, np.nan, {"readings": change} if "dark" in change else {}, True,
     )  # fmt: skip
 

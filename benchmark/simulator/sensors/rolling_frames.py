@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Hashable
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
@@ -199,21 +199,6 @@ def _nodes(sensor: FrameSensor, scene: Scene, middle_s: Floats, half_s: float) -
     # one that leaves the field takes as many as cross a window
     way = np.minimum(np.nan_to_num(way, nan=np.inf), _FARTHEST_PX)
     return np.asarray(np.ceil(_NODES + _NODES_A_PX * way), dtype=np.int64)
-
-
-def _at(one: Scene, times_s: Sequence[float], since_s: float) -> Scene:
-    """One sample as a sensor at rest sees it at some times (T,): that many samples."""
-    many = one.rows(np.zeros(len(times_s), dtype=np.int64))
-    return replace(many, sun=seen_at(many, np.array(times_s) + since_s), rate_deg_s=None)
-
-
-def _join(boxes: NDArray[np.int64], others: NDArray[np.int64]) -> None:
-    """Let boxes (A, 4), `MultiSpotSensor.boxes`, hold others, too, where those hold anything."""
-    lit = (others[:, 1] > others[:, 0]) & (others[:, 3] > others[:, 2])
-    new = lit & ((boxes[:, 1] <= boxes[:, 0]) | (boxes[:, 3] <= boxes[:, 2]))
-    boxes[new] = others[new]
-    boxes[lit, ::2] = np.minimum(boxes[lit, ::2], others[lit, ::2])
-    boxes[lit, 1::2] = np.maximum(boxes[lit, 1::2], others[lit, 1::2])
 
 
 def _check(row_time_s: float, more_nodes: int) -> None:

@@ -10,7 +10,9 @@ import pytest
 from bench import grid, sun_of
 
 from api.calibrate.calibration import calibrate
-from api.calibrate.table import TableError
+from api.calibrate.frames import SPOT, with_spots
+from api.calibrate.settings import Settings, SettingsError
+from api.calibrate.table import Table, TableError
 
 ANGLES = grid(9, 20.0)
 FOCAL, MIDDLE = 60.0, (39.5, 29.5)
@@ -21,7 +23,7 @@ def picture(sun: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     y, x = np.mgrid[:60, :80]
     at = MIDDLE + FOCAL * sun[:2] / sun[2]
     disc = 180.0 / (1.0 + np.exp(2.0 * (np.hypot(x - at[0], y - at[1]) - 5.0)))
-    return rng.normal(20.0 + disc, 2.0).clip(0, 255).round().astype(np.uint8)
+    return np.asarray(rng.normal(20.0 + disc, 2.0).clip(0, 255).round().astype(np.uint8))
 
 
 def folder(path: Path, colour: int | None = None) -> Path:
@@ -38,7 +40,7 @@ def folder(path: Path, colour: int | None = None) -> Path:
     return path
 
 
-def test_frames_of_a_directory_are_measured_and_calibrate(tmp_path):
+def test_frames_of_a_directory_are_measured_and_calibrate(tmp_path: Path) -> None:
     found = calibrate([folder(tmp_path / "run", colour=7)], models=("homography", "pinhole"))
     assert len(found.readings) + len(found.excluded) == len(ANGLES)
     assert found.chosen.rms_deg < 0.1  # a tenth of a pixel
@@ -55,7 +57,7 @@ def test_frames_of_a_directory_are_measured_and_calibrate(tmp_path):
         ("poses.csv", "expected a PNG"),
     ],
 )
-def test_a_picture_that_is_none_is_named_by_its_row(name, said, tmp_path):
+def test_a_picture_that_is_none_is_named_by_its_row(name: str, said: str, tmp_path: Path) -> None:
     run = tmp_path / "run"
     run.mkdir()
     (run / "poses.csv").write_text(f"image,theta_x_deg,theta_y_deg\n{name},1,2\n")
@@ -63,8 +65,60 @@ def test_a_picture_that_is_none_is_named_by_its_row(name, said, tmp_path):
         calibrate([run])
 
 
-def test_a_directory_of_two_tables_is_refused(tmp_path):
+def test_a_directory_of_two_tables_is_refused(tmp_path: Path) -> None:
     for name in ("a.csv", "b.csv"):
         (tmp_path / name).write_text("x")
     with pytest.raises(TableError, match=r"expected one table .*a.csv, b.csv"):
         calibrate([tmp_path])
+
+
+def settings(column: str = "image", **readings: object) -> Settings:
+    return Settings.model_validate(
+        {
+            "readings": {"kind": "frames", "columns": [column], **readings},
+            "direction": {"form": "alpha-inner", "columns": ["theta_x_deg", "theta_y_deg"]},
+        }
+    )
+
+
+def named(*names: str) -> Table:
+    return Table({"image": np.array(names)}, 2, "poses.csv", {})
+
+
+def test_grey_frames_give_their_spots_and_no_word_of_colour(tmp_path: Path) -> None:
+    run = folder(tmp_path / "run")
+    told: list[tuple[int, int]] = []
+    made, said = with_spots(
+        named("40.png", "44.png"), run, settings(), lambda *done: told.append(done)
+    )
+    for at, number in enumerate((40, 44)):
+        sun = sun_of(ANGLES)[number]
+        spot = [made.columns[name][at] for name in SPOT]
+        assert spot == pytest.approx(MIDDLE + FOCAL * sun[:2] / sun[2], abs=0.3)
+    assert said == ["2 frames were read by mirror"]
+    assert told == [(1, 2), (2, 2)]
+
+
+@pytest.mark.parametrize(
+    ("extractor", "said"),
+    [
+        ("voltage-balance", r"one that finds a spot in frames \(.*mirror.*\); got 'voltage-balanc"),
+        ("feic", "readings.extractor: feic needs the sensor geometry's focal_length_mm"),
+    ],
+)
+def test_an_extractor_that_finds_no_spot_in_these_frames_is_refused(
+    extractor: str, said: str, tmp_path: Path
+) -> None:
+    with pytest.raises(SettingsError, match=said):
+        with_spots(named("0.png"), tmp_path, settings(extractor=extractor))
+
+
+def test_a_table_without_the_column_of_pictures_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(TableError, match=r"no column 'picture' \(there are image\)"):
+        with_spots(named("0.png"), tmp_path, settings("picture"))
+
+
+def test_a_directory_is_no_picture(tmp_path: Path) -> None:
+    (tmp_path / "0.png").mkdir()
+    with pytest.raises(TableError, match=r"^poses.csv, row 2: expected a file, got a directory"):
+        with_spots(named("0.png"), tmp_path, settings())
