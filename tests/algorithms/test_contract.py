@@ -80,6 +80,11 @@ def test_one_word_is_not_taken_for_a_list_of_letters(words):
         replace(ABOUT, **{words: "He2005"})
 
 
+def test_a_column_of_the_context_is_not_taken_for_a_list_of_letters() -> None:
+    with pytest.raises(TypeError, match="context must be a tuple; got 'time_s'"):
+        replace(Ahead.about, context="time_s")
+
+
 def test_a_model_must_read_something():
     with pytest.raises(ValueError, match="ahead: accepts must name a kind"):
         replace(Ahead.about, accepts=frozenset())

@@ -7,12 +7,20 @@ import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 
 import algorithms
+from algorithms import discovery
+from algorithms.compensations.combinations import combinations
 from algorithms.contract import Extractor
-from algorithms.discovery import discover_extractors, discover_models, implementations
+from algorithms.discovery import (
+    discover_chains,
+    discover_extractors,
+    discover_models,
+    implementations,
+)
 
 GOOD = """
 from dataclasses import dataclass
@@ -120,6 +128,27 @@ def test_a_class_that_is_no_dataclass_is_refused(package):
     (folder / "one.py").write_text(text)
     with pytest.raises(TypeError, match="dataclass"):
         implementations(load(), Extractor, "extract")
+
+
+def test_an_extractor_that_can_be_changed_is_refused(
+    package: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder, load = package
+    text = GOOD.format(cls="One", name="one").replace("(frozen=True)", "")
+    (folder / "one.py").write_text(text)
+    monkeypatch.setattr(algorithms, "extractors", load())
+    with pytest.raises(TypeError, match="extractor one must be a frozen dataclass"):
+        discover_extractors()
+
+
+def test_a_chain_is_planned_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By what a compensation goes ahead of, or by a study's combination."""
+    used = {"optical + lsq": ("He2005",)}
+    monkeypatch.setattr(
+        discovery, "combinations", lambda stages, models: combinations(stages, models, used)
+    )
+    with pytest.raises(ValueError, match=r"planned already by .*ahead_of: optical \+ lsq"):
+        discover_chains()
 
 
 def test_finding_everything_loads_no_numerics_but_numpy():

@@ -121,6 +121,13 @@ def test_a_frame_without_a_pixel_has_no_spot():
     assert QualityFlag(found.flags[0]) == QualityFlag.NO_SPOT
 
 
+def test_rows_of_different_lengths_are_refused_as_by_extract() -> None:
+    ragged = [[[1.0, 2.0], [3.0]], [[1.0, 2.0], [3.0, 4.0]]]
+    for read in (BasicCentroid().extract, BasicCentroid().measure):
+        with pytest.raises(ValueError, match=r"\(N, H, W\)"):
+            read(ragged)
+
+
 def test_shapes_that_do_not_agree_are_refused():
     with pytest.raises(ValueError, match="covariance"):
         Measurement(np.zeros((2, 2)), np.zeros((2, 2)), np.zeros(2, dtype=np.int64))

@@ -107,3 +107,9 @@ def test_observations_of_another_detector_are_refused(shape, origin, message):
     correction = ReferenceCorrection(np.zeros((8, 10)), np.ones((8, 10)))
     with pytest.raises(ValueError, match=message):
         correction.correct(np.zeros(shape), origin)
+
+
+def test_a_profile_has_no_windows() -> None:
+    correction = ReferenceCorrection(np.zeros(8), np.ones(8), pixels=True)
+    with pytest.raises(ValueError, match="only frames have windows; leave origin_px=None"):
+        correction.correct(np.zeros((2, 4)), [[0, 0], [4, 0]])

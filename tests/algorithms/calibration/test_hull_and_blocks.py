@@ -157,6 +157,14 @@ def test_orders_that_samples_leave_open_are_not_chosen():
         choose_order(np.array([np.inf, np.inf]), "test")
 
 
+def test_orders_are_open_that_hang_on_the_samples_of_one_fold() -> None:
+    """Without them all others lie in one place, and not even a line is settled."""
+    x = np.where(np.arange(40) % 5 == 0, np.linspace(-1.0, 1.0, 40), 0.0)
+    design = np.polynomial.chebyshev.chebvander(x, 2)
+    found = errors_of_orders(design, [2, 3], x[:, None], np.arange(40) % 5, NOWHERE[:, :3])
+    assert np.isinf(found).all()
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_rounding_moves_no_pose_into_another_fold(seed: int) -> None:
     generator = np.random.default_rng(seed)

@@ -1,0 +1,131 @@
+"""Calibrations that cannot be written or read, and files of processes that may still be running."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+
+from algorithms.calibration import documents, saving
+from algorithms.calibration.documents import DocumentError, digest_of, read_document
+from algorithms.calibration.saving import (
+    UnreadableCalibrationError,
+    document,
+    pipeline_of,
+    save,
+    stage_document,
+)
+from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
+from algorithms.extractors.frames.centroid import BasicCentroid
+from algorithms.models.geometric.standard_projection import StandardProjection
+from algorithms.pipeline import Pipeline
+
+
+@dataclass(frozen=True)
+class Holding(Extractor):
+    """Has one parameter of any kind."""
+
+    about: ClassVar = AboutExtractor(
+        name="holding", taxonomy="None", observation=Observation.FRAMES, kind=FeatureKind.SPOT
+    )
+    held: Any
+
+    def extract(self, observations: Any) -> Floats:
+        return np.zeros((len(observations), 2))
+
+
+@pytest.fixture
+def pipeline() -> Pipeline:
+    model = StandardProjection(focal_length_mm=2.0, unit_mm=0.01)
+    return Pipeline(BasicCentroid(), model.fit([[0.0, 0.0]], [[0.0, 0.0, 1.0]]))
+
+
+@pytest.mark.parametrize("held", [{1.0, 2.0}, 1j, b"bytes", object()])
+def test_a_parameter_that_is_no_number_text_or_table_is_refused(held: object) -> None:
+    with pytest.raises(TypeError, match=f"numbers, text and tables.*{type(held).__name__}"):
+        stage_document(Holding(held))
+
+
+@pytest.mark.parametrize("held", [np.int64(5), np.float64(2.5), np.bool_(1), np.str_("median")])
+def test_a_numpy_scalar_is_written_as_the_plain_value(held: np.generic) -> None:
+    stored = stage_document(Holding(held))["parameters"]["held"]
+    assert stored == held
+    assert type(stored) in {int, float, bool, str}
+    assert json.loads(json.dumps(stored)) == held
+
+
+def test_a_list_that_does_not_name_its_kind_is_refused(pipeline: Pipeline) -> None:
+    stored = json.loads(json.dumps(document(pipeline)))
+    stored["extractor"]["parameters"]["window_px"] = [9]
+    stored["digest"] = digest_of(stored)
+    with pytest.raises(UnreadableCalibrationError, match="damaged: a bare list"):
+        pipeline_of(stored)
+
+
+@pytest.mark.parametrize("value", [{1, 2}, float("nan"), b"bytes"])
+def test_a_document_of_what_json_cannot_say_is_refused(pipeline: Pipeline, value: object) -> None:
+    stored = {**document(pipeline), "sensor": value}
+    with pytest.raises(UnreadableCalibrationError, match="damaged: expected what JSON can say"):
+        pipeline_of(stored)
+
+
+def nested(depth: int) -> Any:
+    value: Any = 1
+    for level in range(depth):
+        value = [value] if level % 2 else {"inner": value}
+    return value
+
+
+def test_a_file_may_be_fifty_levels_deep_and_no_deeper(tmp_path: Path) -> None:
+    path = tmp_path / "deep.json"
+    path.write_text(json.dumps(nested(50)))
+    assert read_document(path) == nested(50)
+    path.write_text(json.dumps(nested(51)))
+    with pytest.raises(DocumentError, match="nested deeper than 50"):
+        read_document(path)
+
+
+def test_a_file_may_be_as_large_as_the_limit_and_no_larger(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "large.json"
+    path.write_text("[1, 2]")
+    monkeypatch.setattr(documents, "LARGEST_BYTES", 6)
+    assert read_document(path) == [1, 2]
+    monkeypatch.setattr(documents, "LARGEST_BYTES", 5)
+    with pytest.raises(DocumentError, match="at most 5 bytes, got more"):
+        read_document(path)
+
+
+def test_a_half_written_file_of_another_user_s_process_stays(
+    pipeline: Pipeline, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(process: int, signal: int) -> None:
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(os, "kill", refuse)
+    half = tmp_path / ".calibration.json.4711-1f.saving"
+    half.write_text("half")
+    save(pipeline, tmp_path / "calibration.json")
+    assert half.read_text() == "half"
+
+
+def test_where_asking_would_end_a_process_it_is_not_asked(
+    pipeline: Pipeline, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[int] = []
+    system = SimpleNamespace(
+        name="nt", getpid=os.getpid, kill=lambda process, signal: asked.append(process)
+    )
+    monkeypatch.setattr(saving, "os", system)
+    half = tmp_path / ".calibration.json.4711-1f.saving"
+    half.write_text("half")
+    save(pipeline, tmp_path / "calibration.json")
+    assert asked == []
+    assert half.exists()

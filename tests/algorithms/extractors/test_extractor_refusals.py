@@ -1,0 +1,119 @@
+"""What extractors refuse: parameters, designs, light; and lists and cameras at their limits."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from algorithms.contract import SensorGeometry, UnsuitableDesignError
+from algorithms.extractors.frames.cameras.blooming_cameras import LineCamera
+from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
+from algorithms.extractors.frames.multi_spot.spot_list import SpotList
+from algorithms.extractors.frames.multi_spot.weighted_spots import WeightedSpots
+from algorithms.extractors.profiles.centroid import ProfileCentroid
+from algorithms.extractors.profiles.direct_readings import DirectProfile, ThresholdProfile
+from algorithms.extractors.profiles.eigen_analysis import EigenAnalysis
+from algorithms.extractors.profiles.linear_phase import FrameLinearPhase, LinearPhase
+
+HOLE = ((0.0, 0.0, 5.0),)
+LINES: dict[str, Any] = {
+    "line_axes": ("x", "y"),
+    "line_pixels": 64,
+    "slits": ((0.0, 0.0, 6.0),),
+    "reach_px": 20.0,
+    "margin_px": 3.0,
+}
+PIXELS: dict[str, Any] = {"line_axes": ("x",), "line_pixels": 64}
+LIST: dict[str, Any] = {"apertures_px": HOLE, "spots": 3}
+MASK: dict[str, Any] = {"apertures_px": HOLE}
+AXES = "line_axes must be 'x' or 'y', one a line; got"
+FREQUENCIES = "frequencies must be None or at least 1; got"
+ROWS = "apertures_px must be rows of finite x, y, width; got"
+FIELD = "field_px must be None or finite x, y and a positive reach; got"
+
+
+@pytest.mark.parametrize(
+    ("method", "given", "wrong", "said"),
+    [
+        (ProfileCentroid, LINES, {"line_axes": ()}, rf"{AXES} \(\)"),
+        (ProfileCentroid, LINES, {"line_axes": ("x", "z")}, rf"{AXES} \('x', 'z'\)"),
+        (ProfileCentroid, LINES, {"slits": ()}, r"slits must not be empty; got \(\)"),
+        (DirectProfile, PIXELS, {"line_axes": ()}, rf"{AXES} \(\)"),
+        (DirectProfile, PIXELS, {"line_axes": ("u",)}, rf"{AXES} \('u',\)"),
+        (ThresholdProfile, PIXELS, {"line_axes": ("x", "")}, rf"{AXES} \('x', ''\)"),
+        (LinearPhase, LINES, {"frequencies": 0}, f"{FREQUENCIES} 0"),
+        (EigenAnalysis, LINES, {"frequencies": -1}, f"{FREQUENCIES} -1"),
+        (FrameLinearPhase, {"width_px": 8.0}, {"frequencies": 0}, f"{FREQUENCIES} 0"),
+        (SpotList, LIST, {"apertures_px": ()}, rf"{ROWS} \[\]"),
+        (SpotList, LIST, {"apertures_px": ((0.0, 0.0),)}, ROWS),
+        (SpotList, LIST, {"apertures_px": ((0.0, 0.0, math.nan),)}, f"{ROWS} .*nan"),
+        (SpotList, LIST, {"blur_px": -0.1}, "blur_px must be finite, not negative; got -0.1"),
+        (SpotList, LIST, {"blur_px": math.inf}, "blur_px must be finite, not negative; got inf"),
+        (MultipleCentroids, MASK, {"field_px": (9.0, 8.0, 0.0)}, rf"{FIELD} \(9.0, 8.0, 0.0\)"),
+        (MultipleCentroids, MASK, {"field_px": (math.nan, 8.0, 1.0)}, rf"{FIELD} \(nan"),
+        (MultipleCentroids, MASK, {"field_px": (9.0, 8.0)}, rf"{FIELD} \(9.0, 8.0\)"),
+    ],
+)
+def test_a_parameter_that_cannot_be_is_named(
+    method: Any, given: dict[str, Any], wrong: dict[str, Any], said: str
+) -> None:
+    assert method(**given).about.name
+    with pytest.raises(ValueError, match=f"{method.about.name}: {said}"):
+        method(**{**given, **wrong})
+
+
+@pytest.mark.parametrize(
+    "without",
+    [{"slits": ()}, {"line_axes": ()}, {"line_pixels": 0}, {"focal_length_mm": 0.0}],
+)
+def test_a_design_with_no_line_behind_a_slit_is_refused(without: dict[str, Any]) -> None:
+    design: dict[str, Any] = {
+        "focal_length_mm": 2.0,
+        "pixel_pitch_mm": 0.05,
+        "half_fov_deg": 30.0,
+        "line_axes": ("x", "y"),
+        "line_pixels": 64,
+        "slits": ((0.0, 0.0, 0.3),),
+    }
+    assert ProfileCentroid.for_sensor(SensorGeometry(**design)).line_pixels == 64
+    with pytest.raises(UnsuitableDesignError, match="needs lines of pixels behind slits"):
+        ProfileCentroid.for_sensor(SensorGeometry(**{**design, **without}))
+
+
+def test_of_more_spots_than_a_list_has_the_brightest_are_kept_in_the_order_of_reading() -> None:
+    frame = np.zeros((1, 60, 80))
+    places = {(10, 10): 300.0, (60, 20): 200.0, (30, 30): 250.0, (50, 45): 400.0}
+    for (left, top), light in places.items():
+        frame[0, top : top + 5, left : left + 5] = light
+    frame.setflags(write=False)
+    every = SpotList(HOLE, spots=4).extract(frame).reshape(4, 3)
+    assert every[:, 0].tolist() == [12.0, 62.0, 32.0, 52.0]
+    brightest = SpotList(HOLE, spots=2).extract(frame).reshape(2, 3)
+    np.testing.assert_array_equal(brightest, every[[0, 3]])
+
+
+def test_spots_one_pixel_thick_have_no_profile_to_be_weighted_by() -> None:
+    holes = ((-10.0, -8.0, 3.0), (10.0, -8.0, 3.0), (0.0, 10.0, 3.0), (12.0, 9.0, 3.0))
+    frames = np.full((2, 64, 64), 5.0)
+    for x, y in np.array(holes, dtype=int)[:, :2] + 31:
+        frames[0, y, x - 2 : x + 3] = 500.0
+        frames[1, y - 1 : y + 2, x - 1 : x + 2] = 500.0
+    frames.setflags(write=False)
+    found = MultipleCentroids(holes, blur_px=1.0).extract(frames)
+    np.testing.assert_allclose(found, [[31.0, 31.0]] * 2, atol=1e-9)
+    weighted = WeightedSpots(holes, blur_px=1.0).extract(frames)
+    np.testing.assert_allclose(weighted, [[np.nan, np.nan], [31.0, 31.0]], atol=1e-9)
+
+
+def test_a_camera_of_a_design_has_its_focal_length_centre_and_distortion() -> None:
+    drawn = SensorGeometry(focal_length_mm=4.0, pixel_pitch_mm=0.01, centre_px=(30.0, 20.0))
+    turned = ((0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+    assert LineCamera.for_sensor(drawn) == LineCamera(4.0, 0.01, (30.0, 20.0))
+    lens = replace(drawn, lens_distortion=(0.1, 0.02))
+    assert LineCamera.for_sensor(lens, turned) == LineCamera(
+        4.0, 0.01, (30.0, 20.0), (0.1, 0.02), turned
+    )
