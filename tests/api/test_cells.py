@@ -1,10 +1,43 @@
 """One spelling of what stands in a cell, for the command line, the service and the deposit."""
 
+import enum
 import math
+from enum import Enum, IntEnum, StrEnum
 
+import numpy as np
 import pytest
 
 from api.cells import cell, plain_value
+
+
+class Order(enum.IntEnum):
+    """Numbers with names."""
+
+    FIRST = 1
+
+
+class Verdict(enum.StrEnum):
+    """Words with names."""
+
+    AGREES = "agrees"
+
+
+class Word(StrEnum):
+    """A choice that is text."""
+
+    NEAR = "near"
+
+
+class Number(IntEnum):
+    """A choice that is a number."""
+
+    TWO = 2
+
+
+class Other(Enum):
+    """A choice that is neither."""
+
+    FAR = "far"
 
 
 @pytest.mark.parametrize(
@@ -24,12 +57,36 @@ from api.cells import cell, plain_value
         ({"b", "a"}, "a; b"),
         ([0.5, True], "0.5; true"),
         ({"é": math.nan, "k": [1]}, '{"é": null, "k": [1]}'),
+        (Word.NEAR, "near"),
+        (Number.TWO, "2"),
+        (np.float64(0.25), "0.25"),
+        (np.int64(3), "3"),
+        ([Word.NEAR, Number.TWO], "near; 2"),
+        ({"k": Number.TWO, "w": Word.NEAR}, '{"k": 2, "w": "near"}'),
     ],
 )
 def test_a_cell_is_spelled_one_way(value, text):
     assert cell(value) == text
 
 
-def test_what_no_document_holds_is_refused():
-    with pytest.raises(TypeError, match="complex"):
-        plain_value([1j])
+@pytest.mark.parametrize("value", [1j, Other.FAR])
+def test_what_no_document_holds_is_refused(value: object) -> None:
+    with pytest.raises(TypeError, match=type(value).__name__):
+        plain_value([value])
+
+
+def test_choices_stay_what_they_are_in_a_document() -> None:
+    assert plain_value({"word": Word.NEAR, "number": Number.TWO}) == {"word": "near", "number": 2}
+
+
+@pytest.mark.parametrize(
+    ("value", "text", "plain"),
+    [
+        (Order.FIRST, "1", 1),
+        (Verdict.AGREES, "agrees", "agrees"),
+        ([Verdict.AGREES, Order.FIRST], "agrees; 1", ["agrees", 1]),
+    ],
+)
+def test_a_named_constant_is_spelled_as_its_value(value: object, text: str, plain: object) -> None:
+    assert cell(value) == text
+    assert plain_value(value) == plain

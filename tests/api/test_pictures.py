@@ -141,3 +141,12 @@ def test_what_is_to_be_drawn_has_to_be_said(arguments, capsys):
         previews.main(arguments)
     assert ended.value.code == 2
     assert "python -m api.previews: error: " in capsys.readouterr().err
+
+
+def test_a_picture_that_is_kept_already_is_not_drawn_again(tmp_path: Path) -> None:
+    name = datasets.names()[0]
+    path = place(tmp_path, name)
+    path.parent.mkdir(parents=True)
+    path.write_bytes(b"kept")
+    previews.draw(tmp_path, [name])
+    assert path.read_bytes() == b"kept"

@@ -2,7 +2,9 @@
 
 import itertools
 import json
+import os
 import re
+import sys
 from functools import cache
 
 import pytest
@@ -10,6 +12,7 @@ from typer.testing import CliRunner
 
 from api.cli.command_line import app
 from api.cli.layout import Column, laid_out, wrap
+from api.cli.table_output import COLUMNS, NARROWEST, line_width
 
 #: The narrowest, which is the hardest; slow are what most terminals have, and others.
 WIDTHS = (40, *[pytest.param(width, marks=pytest.mark.slow) for width in (60, 80, 120, 200)])
@@ -131,3 +134,63 @@ def test_empty_columns_are_left_out_where_there_are_rows():
     text = shown("benchmark", "--dataset", "pd-slit", "--condition", "nominal", width=200)
     assert "rms deg" in text
     assert "latency" not in text  # nothing is timed in the store of the tests
+
+
+class _Stream:
+    """A stream of a number, or one that has none: closed, or not a file."""
+
+    def __init__(self, number: int | None) -> None:
+        self.number = number
+
+    def fileno(self) -> int:
+        if self.number is None:
+            raise ValueError("I/O operation on closed file")
+        return self.number
+
+
+@pytest.mark.parametrize(
+    ("given", "terminals", "width"),
+    [
+        ("132", {1: 90}, 132),
+        ("5", {}, NARROWEST),
+        ("0", {1: 90}, 90),
+        ("wide", {1: 90}, 90),
+        (None, {1: 90, 2: 70}, 90),
+        (None, {2: 70, 0: 60}, 70),  # stdout goes to a pager
+        (None, {0: 60}, 60),
+        (None, {1: 8}, NARROWEST),
+        (None, {1: 0, 2: 70}, 70),  # a terminal that does not know how wide it is
+        (None, {1: 0}, COLUMNS),
+        (None, {}, COLUMNS),
+    ],
+)
+def test_lines_are_as_wide_as_the_first_terminal(
+    monkeypatch: pytest.MonkeyPatch, given: str | None, terminals: dict[int, int], width: int
+) -> None:
+    def size(number: int) -> os.terminal_size:
+        if number not in terminals:
+            raise OSError(25, "Inappropriate ioctl for device")
+        return os.terminal_size((terminals[number], 24))
+
+    monkeypatch.setattr(os, "get_terminal_size", size)
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        monkeypatch.setattr(sys, name, _Stream(number))
+    monkeypatch.delenv("COLUMNS", raising=False)
+    if given is not None:
+        monkeypatch.setenv("COLUMNS", given)
+    found = line_width()
+    monkeypatch.undo()
+    assert found == width
+
+
+@pytest.mark.parametrize("closed", [None, _Stream(None)])
+def test_a_closed_stream_is_passed_over(
+    monkeypatch: pytest.MonkeyPatch, closed: _Stream | None
+) -> None:
+    monkeypatch.delenv("COLUMNS", raising=False)
+    monkeypatch.setattr(os, "get_terminal_size", lambda _: os.terminal_size((66, 24)))
+    monkeypatch.setattr(sys, "stdout", closed)
+    monkeypatch.setattr(sys, "stderr", _Stream(2))
+    found = line_width()
+    monkeypatch.undo()
+    assert found == 66

@@ -192,3 +192,22 @@ def test_a_gap_leads_to_what_could_be_measured(evidence: Evidence) -> None:
     )
     assert sensor["state"] == "measured"
     assert sensor["leads_to"] == "/architectures/CCD/Single-Ap."
+
+
+def test_an_untried_pair_leads_to_what_has_both_values_or_one() -> None:
+    dataset = "cmos-single-aperture"
+    plan = {("CMOS", "Single-Ap."): {("bcm", "spm"): (dataset,)}}
+    untried = Evidence(catalogue(), (), plan)
+    found = {
+        (row["row"], row["column"]): row
+        for row in evidence_map(facts(), {}, "detector", "mask", evidence=untried).rows
+    }
+    both = found["CMOS", "Single-Ap."]
+    assert both["command"] == PipelineRun(dataset, "bcm", "spm").command
+    assert both["best_dataset"] is both["best_own_deg"] is None
+    for one in (found["CCD", "Single-Ap."], found["CMOS", "N-Slit"]):
+        assert one["command"] == f"sunatlas benchmark --dataset {dataset}"
+    for row in (both, found["CCD", "Single-Ap."]):
+        assert row["leads_to"] == f"/datasets/{dataset}"
+    neither = found["CCD", "N-Slit"]
+    assert neither["command"] == neither["leads_to"] == ""

@@ -1,0 +1,89 @@
+"""`sunatlas studies`: references as the service gives them, and what one study's page says."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from api.cli.asking import ask
+from api.cli.command_line import app
+from api.cli.commands import studies
+from api.http.routers import studies as endpoints
+from tests.api.conftest import Client
+
+FORMS = ("bibtex", "ris", "csl")
+#: Mapped by the survey and scored here; added after the survey.
+STUDY, LATER = "Chang2008", "Herman2025c"
+
+
+def shown(*arguments: str) -> Any:
+    found = CliRunner(env={"COLUMNS": "400"}).invoke(app, ["studies", *arguments])
+    assert found.exit_code == 0, found.stderr
+    return found
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_references_are_those_of_the_service(atlas: Client, form: str) -> None:
+    printed = shown("--detector", "Event", "--edition", "all", "--format", form)
+    served = atlas.get(f"/v1/studies?detector=Event&edition=all&format={form}")
+    assert served.status_code == 200
+    assert printed.stdout == served.text
+    one = shown(STUDY, "--format", form)
+    assert one.stdout == atlas.get(f"/v1/studies/{STUDY}?format={form}").text
+    assert one.stderr == ""
+
+
+def test_studies_without_a_title_have_no_reference_and_are_named(atlas: Client) -> None:
+    untitled = [one["key"] for one in atlas.walk("/v1/studies?limit=500") if not one["title"]]
+    assert untitled
+    printed = shown("--format", "bibtex")
+    named = ", ".join(untitled)
+    assert printed.stderr == f"sunatlas: no title is known of {named}: left out\n"
+    assert not any(f"{{{key}," in printed.stdout for key in untitled)
+    assert f"{{{STUDY}," in printed.stdout
+    alone = shown(untitled[0], "--format", "ris")
+    assert f"of {untitled[0]}: left out" in alone.stderr
+    assert untitled[0] not in alone.stdout
+
+
+def test_an_added_study_is_told_from_those_of_the_survey() -> None:
+    said = "Added after the survey, which does not map it.\n"
+    assert said in shown(LATER).stdout
+    assert said not in shown(STUDY).stdout
+
+
+@pytest.fixture
+def document(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """The service's answer about a study, to be altered."""
+    found = dict(ask(endpoints.study, key=STUDY).document)
+    monkeypatch.setattr(studies, "ask", lambda *_, **__: SimpleNamespace(document=found))
+    return found
+
+
+def test_who_confirmed_a_study_is_said(document: dict[str, Any]) -> None:
+    row = {"name": "Jane Doe", "date": "2031-02-28", "confirms": "every cell", "source": "a letter"}
+    document["verified"] = [row]
+    said = shown(STUDY).stdout
+    assert "Verified by Jane Doe on 2031-02-28: every cell (a letter)\n" in said
+    document["verified"] = []
+    assert "Verified" not in shown(STUDY).stdout
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"rms_deg": 0.012345}, "nominal: 0.0123 deg"),
+        ({"rms_deg": None, "status": "unavailable"}, "nominal: without an error"),
+        ({"rms_deg": None, "status": None}, "nominal: not measured yet"),
+    ],
+)
+def test_a_pipeline_without_an_error_is_told_from_one_that_never_ran(
+    document: dict[str, Any], changed: dict[str, Any], said: str
+) -> None:
+    first = document["pipelines"][0]
+    score = {**first["scores"][0], "condition": "nominal", **changed}
+    document["pipelines"] = [{**first, "scores": [score]}]
+    assert said in shown(STUDY).stdout

@@ -1,0 +1,97 @@
+"""`sunatlas survey add` refuses calls that ask for two things, and replaces no file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from api.cli.command_line import app
+from survey_data.additions.toml_lines import parse_toml
+
+TEMPLATE = """\
+key = "Doe2030"
+title = "A sun sensor that nobody built"
+authors = ["Jane Doe"]
+year = 2030
+type = "thesis"
+
+[[detector]]
+value = "CMSO"
+basis = "title"
+"""
+TWO = """\
+@article{Doe2030, author={Jane Doe}, title={A first}, year={2030}, journal={Sensors}}
+@article{Roe2029, author={Rae Roe}, title={A second}, year={2029}}
+"""
+
+
+def add(*arguments: object) -> Any:
+    call = ["survey", "add", *map(str, arguments)]
+    return CliRunner(env={"COLUMNS": "200"}).invoke(app, call, catch_exceptions=False)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("--init", "Doe2030", "--apply"), "--init writes a template and takes no --apply"),
+        (("--init", "Doe2030", "--attributes", "a.toml"), "takes no --apply or --attributes"),
+        ((), "expected a file, or --init KEY for a template"),
+        (("--init", "Doe2030", "new.txt"), "a file that ends in .toml; got 'new.txt'"),
+    ],
+)
+def test_a_call_that_does_not_say_one_thing_is_refused(
+    arguments: tuple[str, ...], says: str
+) -> None:
+    refused = add(*arguments)
+    assert (refused.exit_code, refused.stdout) == (2, "")
+    assert says in refused.stderr
+    assert refused.stderr.count("\n") == 1
+
+
+def test_a_template_is_not_written_over_a_file(tmp_path: Path) -> None:
+    there = tmp_path / "mine.toml"
+    there.write_text(TEMPLATE)
+    refused = add("--init", "Doe2030", there)
+    assert refused.exit_code == 2
+    assert f"--init: {there} is there already" in refused.stderr
+    assert there.read_text() == TEMPLATE
+
+
+def test_a_template_without_a_file_is_printed(tmp_path: Path) -> None:
+    shown = add("--init", "Doe2030")
+    assert shown.exit_code == 0, shown.stderr
+    stated = parse_toml(shown.stdout, "printed").values
+    assert (stated["key"], stated["year"]) == ("Doe2030", 2030)
+    path = tmp_path / "new.toml"
+    assert f"{path} written: fill it in" in add("--init", "Doe2030", path).stdout
+    assert path.read_text() == shown.stdout
+
+
+def test_a_template_of_a_publication_is_printed_with_its_columns(tmp_path: Path) -> None:
+    given = tmp_path / "refs.bib"
+    given.write_text(TWO)
+    shown = add("--init", "Doe2030b", given, "--key", "Doe2030")
+    assert shown.exit_code == 0, shown.stderr
+    stated = parse_toml(shown.stdout, "printed").values
+    assert stated["key"] == "Doe2030b"
+    assert (stated["title"], stated["venue"], stated["year"]) == ("A first", "Sensors", 2030)
+    assert given.read_text() == TWO
+
+
+def test_faults_are_named_on_stderr_and_in_json_alike(tmp_path: Path) -> None:
+    given = tmp_path / "study.toml"
+    given.write_text(TEMPLATE)
+    shown = add(given, "--format", "json")
+    assert shown.exit_code == 1
+    document = json.loads(shown.stdout)
+    assert document["file"] == "study.toml"
+    line = TEMPLATE[: TEMPLATE.index("CMSO")].count("\n") + 1
+    told = [(one["line"], one["message"]) for one in document["faults"]]
+    assert any(at == line and "did you mean CMOS?" in message for at, message in told)
+    places = [("" if at is None else f", line {at}", message) for at, message in told]
+    assert shown.stderr.splitlines() == [f"sunatlas: study.toml{at}: {m}" for at, m in places]
+    assert add(given).stdout == ""

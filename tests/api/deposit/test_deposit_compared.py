@@ -1,0 +1,180 @@
+"""A bundle is compared file by file with the one that is built here: where it differs is said."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sqlite3
+from collections.abc import Callable, Mapping
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pyarrow import parquet
+
+from api.deposit import against_record
+from api.deposit.against_record import differences
+from api.deposit.crate import CRATE
+from api.deposit.database import DATABASE
+from api.deposit.frames import FOLDER
+from api.deposit.identity import identity
+from api.deposit.package import DESCRIPTOR
+from benchmark.datasets.checksums import contents
+from benchmark.datasets.export import CARD, SCHEMA_VERSION
+from tests.api.deposit import small_bundle
+from tests.api.deposit.test_deposit_forms import PARQUET
+
+Problems = dict[str, str]
+
+
+@pytest.fixture
+def small(tmp_path: Path) -> Path:
+    bundle = small_bundle.make(tmp_path / "bundle")
+    package = json.loads((bundle / DESCRIPTOR).read_text("utf-8"))
+    package["version"] = identity().version
+    (bundle / DESCRIPTOR).write_text(json.dumps(package))
+    return bundle
+
+
+@pytest.fixture
+def compare(
+    small: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Callable[[Callable[[Path], object]], Problems]:
+    """Compare a bundle, after a change, with what it was: all that the record makes here."""
+    before = Path(shutil.copytree(small, tmp_path / "before"))
+    for name in [PARQUET, DATABASE]:
+        (before / name).unlink()
+
+    def fill(made: Path, *_: Any, other_forms: Callable[[Path, Mapping[str, Any]], None]) -> None:
+        shutil.copytree(before, made, dirs_exist_ok=True)
+        other_forms(made, json.loads((made / DESCRIPTOR).read_text("utf-8")))
+
+    monkeypatch.setattr(against_record, "fill", fill)
+    monkeypatch.setattr(against_record, "measured_tables", lambda _published: [])
+
+    def compared(change: Callable[[Path], object]) -> Problems:
+        change(small)
+        return dict(differences(small, frames=()))
+
+    return compared
+
+
+def repacked(bundle: Path) -> None:
+    """Hold the same tables, as another library might have written them."""
+    for path in (bundle / "parquet").iterdir():
+        parquet.write_table(parquet.read_table(path), path, compression="gzip")
+    with closing(sqlite3.connect(bundle / DATABASE)) as base:
+        base.execute("PRAGMA page_size = 8192")
+        base.execute("VACUUM")
+
+
+def edited(name: str, edit: Callable[[str], str]) -> Callable[[Path], object]:
+    return lambda bundle: (bundle / name).write_text(edit((bundle / name).read_text("utf-8")))
+
+
+def other_values(bundle: Path) -> None:
+    table = parquet.read_table(bundle / PARQUET)
+    parquet.write_table(table.slice(0, 0), bundle / PARQUET)
+    with closing(sqlite3.connect(bundle / DATABASE)) as base:
+        base.execute("DELETE FROM one")
+        base.commit()
+
+
+FORMS = "holds other tables than the CSV of this bundle"
+HERE = "built of facts and record here"
+
+
+@pytest.mark.parametrize(
+    ("change", "problems"),
+    [
+        (lambda _bundle: None, {}),
+        (repacked, {}),
+        (other_values, {PARQUET: FORMS, DATABASE: FORMS}),
+        (lambda bundle: (bundle / DATABASE).write_bytes(b"none"), {DATABASE: FORMS}),
+        (lambda bundle: (bundle / PARQUET).write_bytes(b"none"), {PARQUET: FORMS}),
+        (lambda bundle: (bundle / DATABASE).unlink(), {DATABASE: "missing"}),
+        (
+            lambda bundle: (bundle / "more.txt").write_text(""),
+            {"more.txt": "no file of this bundle"},
+        ),
+        (
+            edited("README.md", lambda _: "# other\n"),
+            {"README.md": f"row 1 is '# other'; {HERE} it is '# read me'"},
+        ),
+        (
+            edited("README.md", lambda text: text + "\n"),
+            {"README.md": f"has 3 lines; {HERE} it has 2"},
+        ),
+        (
+            edited(CRATE, lambda text: json.dumps(json.loads(text), indent=1)),
+            {CRATE: "not laid out as built here"},
+        ),
+        (edited(CRATE, lambda text: text[:-1]), {CRATE: "not JSON"}),
+        (edited(CRATE, lambda _: "[" * 100_000), {CRATE: "not JSON"}),
+        (edited(CRATE, lambda _: "3"), {CRATE: "row 1 is '3'; "}),
+    ],
+)
+def test_each_file_that_differs_is_named_with_the_place(
+    compare: Callable[[Callable[[Path], object]], Problems],
+    change: Callable[[Path], object],
+    problems: Problems,
+) -> None:
+    found = compare(change)
+    assert found.keys() == problems.keys()
+    for name, text in problems.items():
+        assert found[name].startswith(text), found[name]
+
+
+def test_files_of_digests_are_named_only_where_nothing_else_differs(
+    compare: Callable[[Callable[[Path], object]], Problems],
+) -> None:
+    def change(bundle: Path) -> None:
+        edited("README.md", lambda _: "# other\n")(bundle)
+        edited(CRATE, lambda _: "{}")(bundle)
+
+    assert compare(change).keys() == {"README.md"}
+
+
+def test_samples_of_other_data_sets_than_asked_for_are_named_before_anything_is_built(
+    small: Path,
+) -> None:
+    (small / FOLDER / "pd-orbit").mkdir(parents=True)
+    steps: list[tuple[int, int, str]] = []
+    found = differences(small, frames=("pd-slit",), progress=lambda *step: steps.append(step))
+    assert found == [
+        (f"{FOLDER}/pd-orbit", "no data set of this bundle"),
+        (f"{FOLDER}/pd-slit", "missing"),
+    ]
+    assert steps == [(1, 1, "")]
+
+
+def test_samples_that_are_no_export_are_named_without_the_path_of_the_bundle(small: Path) -> None:
+    (small / FOLDER / "pd-slit").mkdir(parents=True)
+    before = contents(small)
+    assert differences(small, frames=("pd-slit",)) == [
+        (f"{FOLDER}/pd-slit", f"not an export of a dataset, it has no {CARD}")
+    ]
+    assert contents(small) == before
+
+
+def test_samples_that_were_exported_otherwise_are_named_by_their_card(
+    small: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(against_record, "sample_size", lambda _name, _pins: 3)
+    folder = small / FOLDER / "pd-slit"
+    folder.mkdir(parents=True)
+    card = {"schema": SCHEMA_VERSION, "files": [], "exported": {"splits": ["test"]}}
+    (folder / CARD).write_text(json.dumps(card))
+    (first, said), (second, why) = differences(small, frames=("pd-slit",), anew=False)
+    assert (first, second) == (f"{FOLDER}/pd-slit/{CARD}", f"{FOLDER}/pd-slit")
+    assert said.startswith("exported is {'splits': ['test']}, expected {'conditions': ['nominal']")
+    assert "'first_samples': 3" in said
+    assert why.startswith("not an export of a dataset, it has no ")
+
+
+def test_a_bundle_of_another_version_is_left_to_that_version(small: Path) -> None:
+    (small / DESCRIPTOR).write_text('{"version": "9.9", "resources": []}')
+    ((name, text),) = differences(small)
+    assert (name, text.partition(";")[0]) == (DESCRIPTOR, "of version '9.9'")
+    assert f"here is {identity().version}" in text

@@ -1,0 +1,323 @@
+"""What a bundle, its parts or its zip may not be, and where the message says so."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+import zipfile
+import zlib
+from collections.abc import Callable
+from importlib.metadata import PackageNotFoundError
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pytest
+from frictionless import FrictionlessException, Resource, system
+from pyarrow import parquet
+
+from api.deposit import deposit_tables, forms, identity, verification
+from api.deposit.bundle import DepositError, build
+from api.deposit.crate import CRATE
+from api.deposit.database import DATABASE, write_database
+from api.deposit.deposit_tables import DescriptorError, read_descriptor
+from api.deposit.package import DESCRIPTOR
+from api.deposit.packing import PackingError, check, pack
+from api.deposit.typed_tables import CellError, TypedTable, typed_tables
+from api.deposit.verification import NoBundleError, verify
+from benchmark.datasets.checksums import CHECKSUMS, write_checksums
+from tests.api.deposit import small_bundle
+from tests.api.deposit.altered_zips import README, TOP, patched
+from tests.api.deposit.test_deposit_forms import PARQUET, TABLE, found
+from tests.api.deposit.test_deposit_verification import agree
+from tests.api.deposit.test_deposit_zip import RELEASED
+
+
+@pytest.fixture
+def small(tmp_path: Path) -> Path:
+    return small_bundle.make(tmp_path / "bundle")
+
+
+def without(bundle: Path, name: str) -> None:
+    """Take a file out of a bundle, of whose absence nothing but the file itself tells then."""
+    (bundle / name).unlink()
+    crate = json.loads((bundle / CRATE).read_text("utf-8"))
+    crate["@graph"] = [entity for entity in crate["@graph"] if entity["@id"] != name]
+    (bundle / CRATE).write_text(json.dumps(crate))
+    agree(bundle)  # type: ignore[no-untyped-call]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("{", "not JSON"),
+        ("[]", "expected an object with a list of resources"),
+        ('{"resources": {}}', "expected an object with a list of resources"),
+    ],
+)
+def test_a_descriptor_that_is_none_is_refused_by_its_file(
+    tmp_path: Path, text: str, message: str
+) -> None:
+    path = tmp_path / DESCRIPTOR
+    path.write_text(text)
+    with pytest.raises(DescriptorError, match=f"{DESCRIPTOR}: {message}"):
+        read_descriptor(path)
+
+
+def test_a_record_without_learning_curves_makes_no_table_of_them() -> None:
+    assert deposit_tables._curves([], {}) == []
+
+
+def test_columns_that_the_descriptor_does_not_say_are_refused(small: Path) -> None:
+    package = json.loads((small / DESCRIPTOR).read_text("utf-8"))
+    (small / TABLE).write_text("title\na\n")
+    with pytest.raises(CellError, match=r"one\.csv: columns are \['title'\], described are"):
+        typed_tables(small, package)
+
+
+def test_a_database_in_no_directory_is_an_error_of_sqlite_and_not_of_the_disk(
+    tmp_path: Path,
+) -> None:
+    with pytest.raises(sqlite3.OperationalError, match="unable to open") as raised:
+        write_database([], tmp_path / "none" / DATABASE)
+    assert raised.value.sqlite_errorname == "SQLITE_CANTOPEN"
+
+
+def test_a_full_disk_is_an_error_of_the_system_that_names_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    connect = sqlite3.connect
+
+    def small_disk(where: Any, **options: Any) -> sqlite3.Connection:
+        base: sqlite3.Connection = connect(where, **options)
+        if where != ":memory:":
+            base.execute("PRAGMA max_page_count = 2")
+        return base
+
+    monkeypatch.setattr(sqlite3, "connect", small_disk)
+    fields = [{"name": "name", "type": "string", "description": "A name."}]
+    resource = {"name": "one", "title": "One", "description": "", "schema": {"fields": fields}}
+    table = TypedTable(resource, {"name": ["x" * 100_000]})
+    with pytest.raises(OSError, match="No space left on device") as raised:
+        write_database([table], tmp_path / DATABASE)
+    assert raised.value.filename == str(tmp_path / DATABASE)
+
+
+def test_tables_of_which_no_database_can_be_made_are_said_to_be_so(small: Path) -> None:
+    """Both names stand for one in SQL, of which neither table nor Parquet know."""
+    package = json.loads((small / DESCRIPTOR).read_text("utf-8"))
+    schema = package["resources"][0]["schema"]
+    schema["fields"] = [
+        {"name": name, "type": "string"} for name in ("references", "survey_references")
+    ]
+    schema["primaryKey"] = ["references"]
+    (small / DESCRIPTOR).write_text(json.dumps(package))
+    (small / TABLE).write_text("references,survey_references\na,b\n")
+    problems = found(small)
+    assert problems.keys() == {PARQUET, DATABASE}
+    assert problems[DATABASE].startswith("cannot be made of the tables in CSV (duplicate column")
+
+
+def test_a_parquet_file_whose_head_counts_other_rows_than_it_has_is_named(small: Path) -> None:
+    name = "benchmark/samples/one.parquet"
+    path = small / name
+    path.parent.mkdir()
+    parquet.write_table(pa.table({"a": [1, 2, 3]}), path)
+    data = path.read_bytes()
+    counted = b"\x16\x06\x19"  # a count of three as Thrift writes it, before the row groups
+    assert data.count(counted) == 1
+    path.write_bytes(data.replace(counted, b"\x16\x08\x19"))
+    package = {"resources": [{"path": name, "description": "Columns: a: a number."}]}
+    assert list(forms._of_measurements(small, package)) == [
+        (name, "has 3 rows, its own head says 4")
+    ]
+
+
+@pytest.mark.parametrize("name", ["LICENSE", "survey/LICENSE", "bibliography/LICENSE"])
+def test_a_bundle_without_its_terms_is_told_which_are_missing(small: Path, name: str) -> None:
+    without(small, name)
+    assert verify(small) == [(name, "missing; a bundle goes out with its terms")]
+
+
+def test_a_directory_without_a_descriptor_is_no_bundle(small: Path) -> None:
+    without(small, DESCRIPTOR)
+    with pytest.raises(NoBundleError, match=f"not a bundle, it has no {DESCRIPTOR}"):
+        verify(small)
+
+
+def test_a_crate_with_another_size_is_found(small: Path) -> None:
+    crate = json.loads((small / CRATE).read_text("utf-8"))
+    for entity in crate["@graph"]:
+        if entity["@id"] == "README.md":
+            entity["contentSize"] = "1"
+    (small / CRATE).write_text(json.dumps(crate))
+    (small / CHECKSUMS).unlink()
+    write_checksums(small)
+    assert verify(small) == [(CRATE, "README.md: contentSize is not its size")]
+
+
+def test_what_reads_tables_has_no_way_to_the_web_while_a_bundle_is_verified() -> None:
+    """A reader that were to follow an address is refused before it asks anybody."""
+    with system.use_context(http_session=verification._Offline()):
+        resource = Resource(path="http://127.0.0.1:9/one.csv")
+        with pytest.raises(FrictionlessException, match="a bundle is verified offline"):
+            resource.open()  # type: ignore[no-untyped-call]
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda out: out.write_text("mine"), "expected a directory or nothing"),
+        (lambda out: out.symlink_to(out.parent), "expected a directory or nothing"),
+        (lambda out: (out / "deep").mkdir(parents=True), None),
+        (lambda out: [out.mkdir(), (out / "thesis.txt").write_text("")], "holds thesis.txt, which"),
+    ],
+)
+def test_a_place_that_holds_anything_else_is_not_built_over(
+    tmp_path: Path, make: Callable[[Path], object], message: str | None
+) -> None:
+    out = tmp_path / "out"
+    make(out)
+    before = sorted(tmp_path.rglob("*"))
+    with pytest.raises((DepositError, OSError), match=message):
+        build(out)
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_an_earlier_bundle_may_be_built_over_and_a_changed_one_may_not(small: Path) -> None:
+    """Tables with problems are refused after that, so that nothing is built here."""
+    nothing = small.with_name("nothing")
+    nothing.mkdir()
+    with pytest.raises(DepositError, match=r"the survey's tables have \d+ problems"):
+        build(small, survey=nothing)
+    (small / "notes.txt").write_text("mine")
+    with pytest.raises(DepositError, match=r"holds notes\.txt, which is no part"):
+        build(small, survey=nothing)
+    (small / "notes.txt").unlink()
+    package = json.loads((small / DESCRIPTOR).read_text("utf-8"))
+    (small / DESCRIPTOR).write_text(json.dumps({**package, "name": "another"}))
+    with pytest.raises(DepositError, match="holds another data package, which is no part"):
+        build(small, survey=nothing)
+
+
+@pytest.mark.parametrize("content", [b"", b"PK", b"no zip at all"])
+def test_a_file_beside_a_bundle_that_is_not_its_zip_is_not_replaced(
+    tmp_path: Path, content: bytes
+) -> None:
+    path = tmp_path / "out.zip"
+    path.write_bytes(content)
+    with pytest.raises(DepositError, match=r"out\.zip: not the zip of an earlier bundle"):
+        build(tmp_path / "out")
+    assert path.read_bytes() == content
+
+
+def test_a_zip_of_something_else_is_not_replaced(tmp_path: Path) -> None:
+    path = tmp_path / "out.zip"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("sun-sensor-atlas-0.1.0/README.md", "")
+        archive.writestr("thesis.txt", "")
+    with pytest.raises(DepositError, match=r"out\.zip: not the zip of an earlier bundle"):
+        build(tmp_path / "out")
+
+
+def test_a_bundle_too_large_for_a_zip_is_refused(
+    small: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(zipfile, "ZIP64_LIMIT", 100)
+    with pytest.raises(PackingError, match="too large for a zip; expected less than 4 GiB"):
+        pack(small, small.with_name("large.zip"), TOP, RELEASED)
+
+
+def replaced(packed: bytes, content: bytes, method: int) -> Callable[[Path], None]:
+    """Let README.md be packed as these bytes, its directory entry with it."""
+
+    def alter(path: Path) -> None:
+        data = path.read_bytes()
+        start = data.find(README.encode()) + len(README)
+        length = int.from_bytes(data[start - len(README) - 12 : start - len(README) - 8], "little")
+        path.write_bytes(data[:start] + packed + data[start + length :])
+        fields = ((8, "H", method), (14, "L", zlib.crc32(content)), (18, "L", len(packed)))
+        for field in fields:
+            patched(field, None)(path)
+
+    return alter
+
+
+def deflated(content: bytes) -> bytes:
+    packer = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS)
+    return packer.compress(content) + packer.flush()
+
+
+HELD = b"# read me\n"
+
+
+@pytest.mark.parametrize(
+    ("packed", "method", "message"),
+    [
+        (deflated(HELD[:-1] + b"!"), 8, "unpacks to other bytes than the bundle has"),
+        (deflated(HELD[:4]), 8, "ends before the file of the bundle does"),
+        (deflated(HELD)[:-2], 8, "is cut short: what is packed does not end"),
+        (HELD[:-1] + b"!", 0, "unpacks to other bytes than the bundle has"),
+        (HELD[:4], 0, "ends before the file of the bundle does"),
+    ],
+)
+def test_an_entry_that_unpacks_to_anything_else_is_named(
+    small: Path, packed: bytes, method: int, message: str
+) -> None:
+    path = small.with_name("bundle.zip")
+    replaced(packed, HELD, method)(path)
+    with pytest.raises(PackingError, match=rf"^entry \d+ of \d+, {README}, {message}$"):
+        check(path, small, TOP, RELEASED)
+
+
+def test_an_entry_may_be_stored_as_it_is(small: Path) -> None:
+    """Only the zip's directory, which still says deflate, is then another."""
+    path = small.with_name("bundle.zip")
+    replaced(HELD, HELD, 0)(path)
+    with pytest.raises(PackingError, match=f"directory differs from entry .*{README}: method is 8"):
+        check(path, small, TOP, RELEASED)
+
+
+def test_an_entry_of_which_the_file_ends_is_cut_short(small: Path) -> None:
+    path = small.with_name("bundle.zip")
+    data = path.read_bytes()
+    path.write_bytes(data[: data.find(README.encode()) + len(README) + 3])
+    with pytest.raises(PackingError, match=rf"{README}, is cut short: \d+ bytes are missing"):
+        check(path, small, TOP, RELEASED)
+
+
+def test_another_name_in_the_directory_of_a_zip_is_said(small: Path) -> None:
+    path = small.with_name("bundle.zip")
+    data = bytearray(path.read_bytes())
+    at = data.rfind(README.encode())
+    data[at : at + len(README)] = README.replace("README", "ReadMe").encode()
+    path.write_bytes(data)
+    with pytest.raises(PackingError, match=rf"{README}: name is '{TOP}/ReadMe\.md'"):
+        check(path, small, TOP, RELEASED)
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_an_installation_is_asked_for_its_version_where_there_is_no_checkout(
+    there: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def distribution(name: str) -> Any:
+        if not there:
+            raise PackageNotFoundError(name)
+        return type("Found", (), {"metadata": {"Version": "9.8", "Summary": "", "Author": "A"}})
+
+    monkeypatch.setattr(identity, "ROOT", tmp_path)
+    monkeypatch.setattr(identity, "distribution", distribution)
+    if there:
+        assert identity.version() == "9.8"
+    else:
+        with pytest.raises(identity.MissingFileError, match="nor an installed sun-sensor-atlas"):
+            identity.version()
+
+
+def test_a_person_without_an_affiliation_has_none_in_the_crate(tmp_path: Path) -> None:
+    alone = small_bundle.PEOPLE.replace("    affiliation: Institute of Light\n", "")
+    for people, has in ((small_bundle.PEOPLE, True), (alone, False)):
+        crate = json.loads((small_bundle.make(tmp_path / "b", people) / CRATE).read_text("utf-8"))
+        (person,) = (entity for entity in crate["@graph"] if entity["@type"] == "Person")
+        assert ("affiliation" in person) is has
+        assert any(entity["@type"] == "Organization" for entity in crate["@graph"]) is has

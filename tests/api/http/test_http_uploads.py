@@ -1,0 +1,99 @@
+"""Forms with files are read part by part, or refused with what was expected."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterable, Iterator
+
+import pytest
+from fastapi import Request
+from starlette.types import Message
+
+from api.calibrate.uploaded import Upload
+from api.http import uploads
+from api.http.problems import Problem
+from api.http.uploads import Form, read_form
+
+FIELD = b'Content-Disposition: form-data; name="%s"\r\n\r\n%s'
+FILE = b'Content-Disposition: form-data; name="file"; filename="%s"\r\n\r\n%s'
+
+
+def form_of(chunks: Iterable[bytes], **headers: str) -> Form:
+    """Read a form that arrives in chunks; names of headers have _ for -."""
+    named = {"content_type": "multipart/form-data; boundary=a", **headers}
+    scope = {
+        "type": "http",
+        "headers": [(k.replace("_", "-").encode(), v.encode()) for k, v in named.items()],
+    }
+    waiting: Iterator[bytes] = iter(chunks)
+
+    async def receive() -> Message:
+        chunk = next(waiting, None)
+        return {"type": "http.request", "body": chunk or b"", "more_body": chunk is not None}
+
+    return asyncio.run(read_form(Request(scope, receive)))
+
+
+def body(*parts: bytes) -> bytes:
+    return b"".join(b"--a\r\n" + part + b"\r\n" for part in parts) + b"--a--\r\n"
+
+
+def test_fields_and_files_are_told_apart_whatever_else_stands_in_a_head() -> None:
+    """A field for files that was left empty (no name, no content) is no file."""
+    typed = b"Content-Type: text/csv\r\n" + FILE % (b"b.csv", b"1,2\r\n3,4")
+    sent = body(FIELD % (b"apply", b"true"), typed, FILE % (b"", b""))
+    form = form_of(sent[at : at + 7] for at in range(0, len(sent), 7))
+    assert form == Form({"apply": "true"}, (Upload("b.csv", b"1,2\r\n3,4"),))
+
+
+@pytest.mark.parametrize(
+    ("sent", "reason"),
+    [
+        (body(b"no end of the head"), "a part without a head"),
+        (body(b"Content-Type: text/csv\r\n\r\n1,2"), "a part without a name"),
+        (body(b"Content-Disposition: form-data\r\n\r\n1,2"), "a part without a name"),
+        (
+            body(FIELD % (b"apply", b"true"), FIELD % (b"apply", b"false")),
+            "field apply stands twic",
+        ),
+        (body(*(FIELD % (b"f%d" % n, b"") for n in range(41))), "expected at most 40 parts"),
+        (b"before" + body(FIELD % (b"apply", b"true")), "expected parts between boundaries"),
+    ],
+)
+def test_a_body_that_is_no_form_is_refused_with_the_reason(sent: bytes, reason: str) -> None:
+    with pytest.raises(Problem) as refused:
+        form_of([sent])
+    assert (refused.value.status_code, refused.value.detail.count(reason)) == (400, 1)
+
+
+def test_forty_parts_are_taken() -> None:
+    assert len(form_of([body(*(FIELD % (b"f%d" % n, b"") for n in range(40)))]).fields) == 40
+
+
+@pytest.mark.parametrize("coding", ["gzip", "br, identity"])
+def test_a_packed_body_is_refused_by_its_coding(coding: str) -> None:
+    with pytest.raises(Problem) as refused:
+        form_of([body(FIELD % (b"apply", b"true"))], content_encoding=coding)
+    assert refused.value.status_code == 415
+    assert coding in refused.value.detail
+    assert "identity" in refused.value.detail
+
+
+def test_a_body_without_an_end_is_read_no_further_than_the_limit(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(uploads, "LARGEST_BODY", 100)
+    monkeypatch.setattr(uploads, "_LARGEST_READ", 400)
+    read = 0
+
+    def endless() -> Iterator[bytes]:
+        nonlocal read
+        while True:
+            read += 50
+            yield bytes(50)
+
+    with pytest.raises(Problem) as refused:
+        form_of(endless())
+    assert refused.value.status_code == 413
+    assert "at most 100 bytes" in refused.value.detail
+    assert read == 450, "one chunk beyond the limit"

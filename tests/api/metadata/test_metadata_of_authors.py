@@ -1,0 +1,123 @@
+"""Metadata name authors as schema.org does, and refuse a document whose names are ambiguous."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from api.deposit.citation import Author
+from api.deposit.identity import Identity, identity
+from api.metadata import schema_org
+from api.metadata.bundled import documents
+from api.metadata.croissant import DatasetDescription, File, Table, cite_as, croissant
+from benchmark.datasets.export import SCHEMA_VERSION
+
+WHAT = DatasetDescription("Atlas: pd-slit", "A data set.", None, "1.0.0", ("sun sensor",))
+ORCID = "0000-0002-1825-0097"
+PERSON = Author(family="Sun", given="Ada", orcid=ORCID, affiliation="A University")
+ALONE = Author(family="Plato")
+TEAM = Author(name="The Atlas Team")
+COLUMNS = (("sample", "integer", "Number of the sample."),)
+
+
+@pytest.fixture
+def who() -> Identity:
+    """The project as if three had made it."""
+    return dataclasses.replace(identity(), authors=(PERSON, ALONE, TEAM))
+
+
+def file(name: str) -> File:
+    return File.of(b"a", name, f"../{name}", ("text/csv",), "A table.")
+
+
+def table(name: str, of: str) -> Table:
+    return Table(name, of, "A sample.", COLUMNS, ("sample",))
+
+
+@pytest.mark.parametrize(
+    ("files", "tables", "says"),
+    [
+        (
+            [file("a.csv"), file("b.csv")],
+            [table("t", "a.csv"), table("u", "c.csv")],
+            r"table u: expected a file among a\.csv, b\.csv",
+        ),
+        ([], [table("t", "a.csv")], "table t: expected a file among "),
+        ([file("a.csv"), file("a.csv")], [], r"^a\.csv: two files or tables of that name"),
+        (
+            [file("a.csv")],
+            [table("t", "a.csv"), table("t", "a.csv")],
+            "^t: two files or tables of that name",
+        ),
+        ([file("a.csv")], [table("a.csv", "a.csv")], r"^a\.csv: two files or tables of that name"),
+    ],
+)
+def test_a_document_whose_names_do_not_tell_things_apart_is_refused(
+    who: Identity, files: list[File], tables: list[Table], says: str
+) -> None:
+    with pytest.raises(ValueError, match=says):
+        croissant(WHAT, who, files, tables)
+    assert croissant(WHAT, who, [file("a.csv")], [table("t", "a.csv")])["recordSet"]
+
+
+def test_croissant_tells_persons_from_organisations(who: Identity) -> None:
+    creators = croissant(WHAT, who, [], [])["creator"]
+    assert creators == [
+        {
+            "@type": "sc:Person",
+            "name": "Ada Sun",
+            "givenName": "Ada",
+            "familyName": "Sun",
+            "url": f"https://orcid.org/{ORCID}",
+        },
+        {"@type": "sc:Person", "name": "Plato", "givenName": "", "familyName": "Plato"},
+        {"@type": "sc:Organization", "name": "The Atlas Team"},
+    ]
+    assert "author = {Sun, Ada and Plato and {The Atlas Team}}" in cite_as(WHAT, who)
+
+
+def test_pages_tell_persons_from_organisations_and_where_they_work(who: Identity) -> None:
+    catalogue, software = schema_org.atlas(who, ["pd-slit"])["@graph"]
+    affiliation = {"@type": "Organization", "name": "A University"}
+    assert catalogue["creator"] == software["creator"]
+    assert catalogue["creator"] == [
+        {
+            "@type": "Person",
+            "@id": f"https://orcid.org/{ORCID}",
+            "name": "Ada Sun",
+            "givenName": "Ada",
+            "familyName": "Sun",
+            "affiliation": affiliation,
+        },
+        {"@type": "Person", "name": "Plato", "givenName": "", "familyName": "Plato"},
+        {"@type": "Organization", "name": "The Atlas Team"},
+    ]
+
+
+def test_a_bundle_describes_samples_of_a_data_set_that_has_no_errors(
+    tmp_path: Path, who: Identity
+) -> None:
+    """As one that is new: nothing was scored on it."""
+    folder = tmp_path / "frames" / "pd-slit"
+    (folder / "nominal").mkdir(parents=True)
+    arrays = {"observations": "Signals of the elements."}
+    card = {"schema": SCHEMA_VERSION, "files": [], "arrays": arrays}
+    (folder / "card.json").write_text(json.dumps(card))
+    (folder / "nominal" / "test.csv").write_text("signal_0,lit\n0.5,True\n0.25,False\n")
+    found: dict[str, Any] = documents(tmp_path, who, {"resources": []})
+    assert set(found) == {f"croissant/{name}.json" for name in ("record", "survey", "pd-slit")}
+    document = found["croissant/pd-slit.json"]
+    assert {one["contentUrl"] for one in document["distribution"]} == {
+        "../frames/pd-slit/card.json",
+        "../frames/pd-slit/nominal/test.csv",
+    }
+    (records,) = document["recordSet"]
+    assert records["name"] == "test"
+    assert [(one["name"], one["dataType"], one["description"]) for one in records["field"]] == [
+        ("signal_0", "sc:Float", "Signals of the elements."),
+        ("lit", "sc:Boolean", "lit"),
+    ]
