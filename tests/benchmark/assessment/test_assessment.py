@@ -130,6 +130,11 @@ def test_precision_scaling_and_phase_follow_their_formulas():
     assert SWEPT["High precision"](rows) == [(1.7, "disc", "")]
     rows = [row("tracking", "glint", kept_fraction=0.6)]
     assert SWEPT["Feature tracking"](rows) == [(0.6, "disc", "")]
+    for found, said in ((1.0, "no position to compare"), (0.1, "10% found at tracking `glint`")):
+        rows = [row("tracking", "glint", kept_fraction=None, found_fraction=found)]
+        value, why = only(SWEPT["Feature tracking"](rows))
+        assert math.isnan(value)
+        assert why == said
 
 
 def test_gain_is_told_over_that_of_independent_features():

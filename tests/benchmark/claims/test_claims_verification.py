@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ import pytest
 
 from benchmark.claims.experiment import find_experiments
 from benchmark.claims.ledger import LedgerError, ledger
-from benchmark.claims.outcomes import RECORD, read_outcomes
+from benchmark.claims.outcomes import RECORD, plan_digest, read_outcomes
 from benchmark.claims.rules import claims
 from benchmark.claims.verification import contradictions
 from benchmark.experiments import claims as experiment
@@ -69,6 +70,39 @@ def test_what_cannot_be_is_said_by_check_and_ledger(
     with pytest.raises(LedgerError, match=rf"{QUICK}: .*{said}.*measure it again"):
         ledger(directory)
     assert dict(list_due(Claims(directory)))[QUICK]
+
+
+def test_rules_that_were_not_measured_are_said_once_and_nothing_else_is_looked_at() -> None:
+    claim, outcome = claims()[QUICK], read_outcomes()[QUICK]
+    (said,) = contradictions(claim, replace(outcome, values={"other": (1.0,)}))
+    assert said.startswith("values: expected those of ")
+
+
+@pytest.mark.parametrize(
+    ("values", "second", "said"),
+    [
+        ({}, {"before": (1.0,) * 3}, "second, before: expected {trials} trials, got 3"),
+        ({}, {"other": (1.0,)}, "second: expected those of before, little; 'other' is not so"),
+        ({}, {}, "second: the plan and the outcome differ in whether there is a second method"),
+        ({"little": -0.5}, None, "values, little: a statistic averaged by logarithms is never"),
+    ],
+)
+def test_a_second_method_and_logarithms_are_those_of_the_plan(
+    values: dict[str, float], second: dict[str, tuple[float, ...]] | None, said: str
+) -> None:
+    """C04 is checked by a second method, and averages ratios by their logarithms."""
+    claim, outcome = claims()["C04"], read_outcomes()["C04"]
+    assert outcome.plan == plan_digest(claim)
+    changed = {name: (value, *outcome.values[name][1:]) for name, value in values.items()}
+    wrong = replace(
+        outcome,
+        values={**outcome.values, **changed},
+        second=outcome.second if second is None else second,
+    )
+    assert list(contradictions(claim, outcome)) == []
+    found = list(contradictions(claim, wrong))
+    assert said.format(trials=claim.trials) in found[0]
+    assert len(found) == 1
 
 
 @pytest.mark.slow

@@ -72,6 +72,22 @@ def test_no_logarithm_of_less_than_nothing():
 
 
 @pytest.mark.parametrize(
+    ("values", "interval", "result"),
+    [
+        ([0.0] * 5, (0.0, 0.0), "holds"),
+        ([math.inf] * 5, (math.inf, math.inf), "fails"),
+        ([0.1, 0.2, 0.0, 0.1, 0.2], (0.0, math.inf), "open"),
+        ([0.1, 0.2, math.inf, 0.1, 0.2], (0.0, math.inf), "open"),
+    ],
+)
+def test_what_has_no_logarithm_decides_where_all_trials_agree(values, interval, result):
+    """An error of zero, or a ratio to one, in every trial is beyond every limit."""
+    found = judge(rule("<", 1.0, scale="log"), values)
+    assert (found.low, found.high) == interval
+    assert (found.result, found.trials) == (result, 5)
+
+
+@pytest.mark.parametrize(
     ("results", "expected"),
     [
         ("hh", "reproduced"),

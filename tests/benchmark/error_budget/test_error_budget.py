@@ -17,8 +17,11 @@ from benchmark.plan.parts import installed_parts
 from benchmark.running.task import Task, measure
 from benchmark.simulator.readout.references import References
 
-#: Quick data sets of currents, of a dial, of profiles.
-QUICK = ("qpd-single-aperture", "psd-single-aperture", "pd-code-dial", "ccd-slit")
+#: Quick data sets of currents, of a dial, of profiles, of frequencies.
+QUICK = (
+    *("qpd-single-aperture", "psd-single-aperture", "pd-code-dial", "ccd-slit"),
+    "ltf-maskless-cube",
+)
 
 
 def _first(name):

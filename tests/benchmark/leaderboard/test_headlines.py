@@ -103,6 +103,7 @@ def test_published_figures_are_those_of_the_facts_where_they_have_one() -> None:
     [
         ("A,d,e,m,0.1,accuracy,typical,x", "accuracy.*1"),
         ("A,d,e,m,-0.1,accuracy,rms,x", "-0.1 is no number of degrees"),
+        ("A,d,e,m,tenth,accuracy,rms,x", "line 2: tenth is no number of degrees"),
         ("A,d,e,m,nan,accuracy,rms,x", "nan is no number of degrees"),
         ("A,d,e,m,0.1,accuracy,rms,", "line 2: .*differ"),
         ("A,d,e,m,0.1,accuracy,rms", "row 2, column difference"),

@@ -93,6 +93,26 @@ def test_what_answers_half_of_the_field_is_never_near():
     assert summary(row)["reached"] == 0
 
 
+class HalfSeen(Plane):
+    """The same; of the left half of the field no direction can be determined."""
+
+    def bound(self, condition, split="test", n=None):
+        read = self.generate(condition, split).observations
+        return replace(super().bound(condition, split, n), observable=read[:, 1] >= 0.0)
+
+
+def test_samples_that_are_not_observable_are_not_asked_for():
+    """What answers the right half alone answers all that can be, and errs as before: of unit 0."""
+    every, seen = (
+        measure(replace(task(preset, Guess), all_observable=asked))[0]
+        for preset, asked in ((Plane(poses=12), True), (HalfSeen(poses=12), False))
+    )
+    answered = every.refusals[0] == ""
+    assert (seen.availability[0][answered] == 1.0).all()
+    assert every.availability[0][answered].max() < 0.6
+    np.testing.assert_allclose(seen.rms_deg[0], every.rms_deg[0])
+
+
 def test_flights_are_told_in_order_and_end_with_all_poses():
     """`Lines` raises where poses with a time do not follow one another."""
     flown = measure(task(Plane(context_columns=("time_s",))))[0]

@@ -147,6 +147,8 @@ def test_current_components_are_of_the_code_as_it_is():
         ('"digest": "of e"', '"digest": 5', "extractors/e/digest: expected text, got a whole"),
         ('"data": "of data"', '"data": 5', "stages/data: expected text, got a whole"),
         ('"c": "of dc"', '"c": 5', "datasets/d/c: expected text, got a whole"),
+        ('"digest": "of e"', '"sum": "of e"', "extractors/e: the member 'digest' is missing"),
+        ('"digest": "of e"', '"digest": "of e", "sum": 1', "extractors/e: unknown member 'sum'"),
         ('"stages": {', '"harness": {', "the member 'stages' is missing"),
     ],
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -43,6 +44,53 @@ def test_a_table_comes_back_sorted_with_what_its_groups_share(tmp_path: Path) ->
         TABLE.read(tmp_path)
 
 
+def test_a_cell_that_is_there_twice_is_refused_by_its_line(tmp_path: Path) -> None:
+    TABLE.write(rows(), tmp_path)
+    path = tmp_path / "squares.csv"
+    path.write_text(path.read_text() + "2,even,5\n")
+    with pytest.raises(StoreError, match=r"squares\.csv, line 5: 2 is there twice"):
+        TABLE.read(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("{", "not JSON"),
+        ("[]", "groups: expected an object, got an array"),
+        ('{"odd":{"clef":"x"}}', "the member 'key' is missing"),
+        ('{"odd":{"key":5}}', "expected text, got a whole"),
+    ],
+)
+def test_what_groups_share_is_refused_where_it_cannot_be_read(
+    text: str, said: str, tmp_path: Path
+) -> None:
+    TABLE.write(rows(), tmp_path)
+    (tmp_path / "squares.json").write_text(text)
+    with pytest.raises(StoreError, match=rf"squares\.json\b.*{said}"):
+        TABLE.read(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"split": "train"}, "expected a split of calibration, test, repeat, got 'train'"),
+        ({"split": "repeat", "observable": 2}, "observable belongs to the split test alone"),
+        ({"observable": None}, "expected at most 3 observable samples, got None"),
+        ({"observable": 4}, "expected at most 3 observable samples, got 4"),
+        ({"bound_deg": 0.0}, "column bound_deg: expected a number above 0, got '0'"),
+        ({"bench_deg": -0.5}, "column bench_deg: expected a number of at least 0, got -0.5"),
+        ({"n": None}, "expected a number in n"),
+    ],
+)
+def test_a_pin_that_contradicts_itself_is_refused_by_its_line(
+    changed: dict[str, Any], said: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "pins.csv"
+    path.write_text(pins_text([pin(**changed)]))
+    with pytest.raises(StoreError, match=f"line 2.*{said}"):
+        read_pins(path)
+
+
 @pytest.mark.parametrize(("observable", "right"), [(0, False), (1, True), (3, True)])
 def test_a_bound_needs_a_sample_that_can_be_observed(
     observable: int, right: bool, tmp_path: Path
@@ -71,3 +119,12 @@ def test_a_record_is_of_its_files_alone(tmp_path: Path) -> None:
     assert record_manifest.names(tmp_path) == ("a.csv", "b/c.json", "h.csv")
     assert record_manifest.changes(tmp_path) == []
     assert record_manifest.changes(tmp_path, required=True) != []
+
+
+def test_nothing_is_written_to_a_record_whose_manifest_cannot_be_read(tmp_path: Path) -> None:
+    assert record_manifest.write(tmp_path, {"a.csv": "x\n"}, start=True)
+    assert not record_manifest.write(tmp_path, {"a.csv": "x\n"})
+    (tmp_path / "manifest.json").write_text("{")
+    with pytest.raises(StoreError, match=r"manifest\.json, line 1: not JSON"):
+        record_manifest.write(tmp_path, {"a.csv": "y\n"})
+    assert (tmp_path / "a.csv").read_text() == "x\n"

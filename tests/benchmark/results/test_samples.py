@@ -1,6 +1,7 @@
 """Errors sample by sample: what is written is read back, by us and by pandas."""
 
 import math
+import re
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -193,6 +194,43 @@ def test_other_columns_are_refused(record: Path) -> None:
 def test_errors_that_are_none_are_refused(error: list[float], found: list[bool]) -> None:
     with pytest.raises(ValueError, match="error_deg"):
         CellErrors.of(error, found)
+
+
+@pytest.mark.parametrize(
+    ("sun", "observable", "bound"),
+    [(SUN, FOUND[:3], ERRORS), (SUN.T, FOUND, ERRORS), (SUN, FOUND, ERRORS[1:]),
+     (SUN[:0], FOUND[:0], ERRORS[:0]), (SUN, FOUND[:, None], ERRORS)],
+)  # fmt: skip
+def test_directions_of_unlike_numbers_of_samples_are_refused(
+    sun: Any, observable: Any, bound: Any
+) -> None:
+    shapes = ", ".join(str(one.shape) for one in (sun, observable, bound))
+    with pytest.raises(ValueError, match=rf"\(N, 3\), \(N,\) and \(N,\); got {re.escape(shapes)}"):
+        Directions(sun, observable, bound)
+
+
+@pytest.mark.parametrize(
+    ("read", "name", "said"),
+    [
+        (samples.read_samples, "lamp", r"extractor \(string\)"),
+        (samples.read_directions, "lamp.directions", r"sample \(int16\)"),
+    ],
+)
+def test_a_table_without_rows_and_what_is_no_file_are_refused(
+    record: Path, read: Any, name: str, said: str
+) -> None:
+    path = record / "samples" / f"{name}.parquet"
+    parquet.write_table(parquet.read_table(path).slice(0, 0), path)
+    with pytest.raises(StoreError, match=rf"{name}\.parquet: expected 1 to 10000000 rows, got 0"):
+        read("lamp", record)
+    path.unlink()
+    path.mkdir()
+    with pytest.raises(StoreError, match=rf"{name}\.parquet: expected a file"):
+        read("lamp", record)
+    path.rmdir()
+    pd.DataFrame({"x": [1.0]}).to_parquet(path)
+    with pytest.raises(StoreError, match=rf"expected the columns {said}.*got x \(double\)"):
+        read("lamp", record)
 
 
 def test_only_the_first_condition_is_kept() -> None:

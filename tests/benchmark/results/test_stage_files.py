@@ -123,6 +123,22 @@ def test_the_limit_is_kept_while_results_come(tmp_path):
     assert files.get(key(99)) is None, "larger than all there may be"
 
 
+def test_what_else_is_in_the_folder_is_neither_counted_nor_removed(files):
+    files.put(key(1), np.arange(1000), 2.0)
+    (files.directory / "elsewhere").mkdir()
+    others = [
+        files.directory / name for name in ("room", "01/.half.5", "01/no-cost", "elsewhere/x.1")
+    ]
+    for path in others:
+        path.write_bytes(b"0" * 100)
+    assert files.costs() == {key(1): 2.0}
+    (path,) = (path for path in files.directory.glob("01/*.2000"))
+    assert files.size() == path.stat().st_size
+    StageFiles(files.directory, 1).make_room()
+    assert files.keys() == set()
+    assert all(path.is_file() for path in others)
+
+
 def test_several_may_write_the_same(files):
     value = np.arange(20_000)
     with ThreadPoolExecutor(4) as pool:

@@ -94,8 +94,10 @@ def test_light_gives_way_to_frames_that_take_much_memory(
     monkeypatch.setattr(condition_data, "_FRAME_BYTES", room)
     monkeypatch.setattr(condition_data, "_LIGHT_BYTES", 0)
     monkeypatch.setattr(condition_data, "LIMIT_BYTES", 16 * 100)
+    monkeypatch.setattr(memory, "limit_bytes", 16 * 100)
     memory.cache_for((preset.name, 0), preset.name)
     memory.render("light", lambda: np.ones(100))
+    assert memory.kept_bytes == 800
     with_light = condition_data.render(preset, "quiet", 0, all_observable=False)
     assert (memory.kept_bytes == 800) is stays
     memory.forget()

@@ -293,3 +293,29 @@ def test_impossible_read_outs_are_refused() -> None:
         turning(standard(), more_nodes=-1)
     with pytest.raises(ValueError, match="row_time_s must be finite"):
         turning(standard(), row_time_s=math.inf)
+
+
+def test_what_does_not_turn_is_seen_at_one_moment_beside_what_does() -> None:
+    sensor = turning(standard(), row_time_s=ROW_S)
+    still = scene_of(sensor, [(5.0, 3.0), (-8.0, 2.0)])
+    assert still.origin_px is not None
+    assert sensor.nodes(still, still.origin_px).tolist() == [1, 1]
+    assert seen_at(still, np.array([0.5, 1.0])) is still.sun
+
+    rates = np.array([[0.0, 0.0, 0.0], [0.0, 40.0, 0.0]])
+    mixed = replace(still, rate_deg_s=rates)
+    first, second = sensor.nodes(mixed, still.origin_px)
+    assert first == 1 < second
+    later = seen_at(mixed, np.array([0.5, 0.5]))
+    np.testing.assert_array_equal(later[0], still.sun[0])
+    assert np.degrees(np.arccos(later[1] @ still.sun[1])) == pytest.approx(20.0, abs=0.5)
+
+    both, rested = sensor.lit(mixed), sensor.lit(still)
+    np.testing.assert_array_equal(both[0], rested[0])
+    assert np.abs(both[1] - rested[1]).max() > 10 * NEAR * rested.max()
+
+
+def test_rows_that_are_exposed_for_no_time_at_once_see_one_moment() -> None:
+    moments, shares = row_shares(np.full(5, 0.25), 0.0, 4)
+    assert moments.tolist() == [0.25]
+    assert shares.tolist() == [[1.0]] * 5

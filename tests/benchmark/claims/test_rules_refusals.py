@@ -1,0 +1,78 @@
+"""Rules, plans and explanations of claims that cannot be read are refused by name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from benchmark.claims import rules
+from benchmark.claims.ledger import LedgerError, ledger
+from benchmark.claims.rules import DIRECTORY, RulesError, claims, rows_of
+
+
+@pytest.fixture
+def tables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str, str], None]:
+    """Return a function that replaces text in a copy of one of the tables."""
+    for name in ("rules.csv", "trials.csv"):
+        (tmp_path / name).write_bytes((DIRECTORY / name).read_bytes())
+    monkeypatch.setattr(rules, "DIRECTORY", tmp_path)
+
+    def change(name: str, old: str, new: str) -> None:
+        text = (tmp_path / name).read_text("utf-8")
+        changed = re.sub(old, new, text, count=1, flags=re.MULTILINE)
+        assert changed != text
+        (tmp_path / name).write_text(changed, "utf-8")
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "said"),
+    [
+        ("trials.csv", r"^(C04,.*\n)", r"\1\1", r"trials\.csv: claim C04 stands there twice"),
+        ("trials.csv", r"^(C04,[^,]*),[^,]*", r"\1,4", "C04 plans 4 trials; at least 5"),
+        ("trials.csv", r"^(C04,[^,]*),[^,]*", r"\1,six", "claim C04, trials: .*'six'"),
+        ("trials.csv", r"^(C04,[^,]*,[^,]*),[^,]*", r"\1,day", "C04: expected one of unit, seed"),
+        ("trials.csv", r"^(C04,)", r"C04,more,\1", r"trials\.csv.*row"),
+        ("rules.csv", r"^(C04,little,.*,)0\.9,", r"\1little,", "C04 little, limit: .*'little'"),
+        ("rules.csv", r"^claim,rule", "claim,law", r"rules\.csv.*'rule'|rules\.csv.*law"),
+    ],
+)
+def test_a_table_that_cannot_decide_claims_is_refused_by_name(
+    tables: Callable[[str, str, str], None], name: str, old: str, new: str, said: str
+) -> None:
+    tables(name, old, new)
+    with pytest.raises(RulesError, match=said):
+        claims.__wrapped__()
+
+
+def test_tables_as_they_are_are_read(tables: Callable[[str, str, str], None]) -> None:
+    tables("trials.csv", r"^(C04,[^,]*),[^,]*", r"\1,5")
+    assert claims.__wrapped__()["C04"].trials == rules.FEWEST_TRIALS
+
+
+def test_a_claim_names_its_rules_where_one_is_asked_for_that_it_has_not() -> None:
+    claim = claims()["C04"]
+    assert claim.rule("little").name == "little"
+    with pytest.raises(RulesError, match="C04 has no rule 'much'; it has little, before"):
+        claim.rule("much")
+
+
+def test_a_table_without_the_columns_asked_for_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "three.csv"
+    path.write_text("claim,verdict,says\nC04,refuted,No.\n")
+    assert rows_of(path, ("claim", "verdict", "says")) == [
+        {"claim": "C04", "verdict": "refuted", "says": "No."}
+    ]
+    with pytest.raises(RulesError, match=r"three\.csv"):
+        rows_of(path, ("claim", "says"))
+
+
+def test_two_explanations_of_one_claim_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "explanations.csv"
+    path.write_text("claim,verdict,says\nC04,refuted,No.\nC04,partly,Somewhat.\n")
+    with pytest.raises(LedgerError, match=r"explanations\.csv: claim C04 stands there twice"):
+        ledger(tmp_path, path)

@@ -1,0 +1,249 @@
+"""Sensors where light misses them, nothing disturbs them, or nothing like that can be built."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from benchmark import datasets
+from benchmark.simulator.flight.time_series import DriftingFrameSensor
+from benchmark.simulator.light.stray_slope import UnevenScene
+from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
+from benchmark.simulator.masks.apertures import Aperture, Mask
+from benchmark.simulator.optics.assembly import Assembly
+from benchmark.simulator.optics.diffraction import SUNLIT_SILICON, round_intensity, round_skew
+from benchmark.simulator.optics.flare import Flare
+from benchmark.simulator.optics.ghosts import Ghost
+from benchmark.simulator.optics.plates import CoverGlass, Plate
+from benchmark.simulator.optics.projection import Camera
+from benchmark.simulator.optics.rectangle_patterns import RectanglePattern
+from benchmark.simulator.readout.column_noise import CommonNoise
+from benchmark.simulator.readout.detectors import CurrentReadout
+from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.readout.pixel_errors import PixelErrors
+from benchmark.simulator.readout.references import References
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensors.light_to_frequency import FrequencyCounter, FrequencySensor
+from benchmark.simulator.sensors.lit_pixels import LitPixels
+from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
+from benchmark.simulator.sensors.position_sensitive import LateralEffect, PositionSensor
+
+POINT = SolarDisc(diameter_deg=0.0)
+
+
+def nominal(name: str) -> Any:
+    return datasets.get(name).setups["nominal"].sensor
+
+
+def lit_by(*angles: tuple[float, float]) -> Scene:
+    alpha, beta = np.array(angles, dtype=float).T
+    return Scene(from_angles(alpha, beta), np.ones(len(alpha)), np.full(len(alpha), 0.002))
+
+
+def shadows() -> MultiSpotSensor:
+    """One hole over 24 by 20 pixels without errors, in geometric light."""
+    wide = nominal("cmos-multi-aperture")
+    detector = replace(
+        wide.detector, columns=24, rows=20, prnu=0.05, tunnel=0.0, errors=PixelErrors()
+    )
+    mask = Mask((Aperture("round", 0.03, 0.03),))
+    camera = Camera(0.4, mask, POINT, CoverGlass(), Assembly())
+    return MultiSpotSensor(camera, detector, spectrum=None)
+
+
+def test_pixels_near_light_ask_their_sensor_for_all_that_is_of_whole_frames() -> None:
+    sensor, scene = shadows(), lit_by((0.0, 3.0), (5.0, -8.0))
+    pattern = sensor.fixed_pattern("unit")
+    pixels = LitPixels(sensor, scene, pattern)
+    for name, built in pixels.fixed_pattern("unit").items():
+        np.testing.assert_array_equal(built, pattern[name])
+    assert not pixels.origins(scene.sun, np.random.default_rng(0)).any()
+    frames, own = (
+        seen.observe(scene, pattern, NoiseStreams.named("test")) for seen in (sensor, pixels)
+    )
+    np.testing.assert_array_equal(frames, own)
+    assert frames.shape == (2, 20, 24)
+    read, again = (
+        seen.reference_readings(pattern, References(), NoiseStreams.named("test"))
+        for seen in (sensor, pixels)
+    )
+    assert read.keys() == again.keys() >= {"dark_dn", "flat_dn"}
+    for name, readings in read.items():
+        np.testing.assert_array_equal(readings, again[name])
+        assert readings.shape == (20, 24)
+
+
+def test_columns_share_noise_only_where_their_amplifiers_make_some() -> None:
+    sensor, scene = shadows(), lit_by((0.0, 3.0))
+    errors = replace(sensor.detector.errors, column_noise_e=20.0)
+    noisy = replace(sensor, detector=replace(sensor.detector, errors=errors))
+    for seen, kind in ((sensor, type(None)), (noisy, CommonNoise)):
+        pixels = LitPixels(seen, scene, seen.fixed_pattern("unit"))
+        expected = pixels.expected(scene, pixels.pattern)
+        assert isinstance(pixels.common_noise(expected.shape, None), kind)
+
+
+def test_a_scene_of_uneven_light_that_does_not_slope_has_the_light_of_an_even_one() -> None:
+    sensor, scene = shadows(), lit_by((0.0, 3.0), (5.0, -8.0))
+    pattern = sensor.fixed_pattern("unit")
+    uneven = UnevenScene.of(scene, np.full((2, 2), 1e-3))
+    plain, sloping, flat = (
+        LitPixels(sensor, seen, pattern).expected(seen, pattern)
+        for seen in (scene, uneven, replace(uneven, slope=None))
+    )
+    np.testing.assert_array_equal(flat, plain)
+    assert np.abs(sloping - plain).max() > 0.1, "digital numbers"
+
+
+def test_shadows_have_no_diffracted_spots() -> None:
+    with pytest.raises(TypeError, match="without a spectrum has no diffracted spots"):
+        shadows()._spots  # noqa: B018 - the property refuses
+
+
+def test_the_boxes_of_a_shadow_hold_its_light() -> None:
+    sensor, scene = shadows(), lit_by((0.0, 3.0), (5.0, -8.0), (80.0, 0.0))
+    pattern = sensor.fixed_pattern("unit")
+    boxes, light = sensor.boxes(scene, pattern), sensor.lit(scene, pattern)
+    for frame, (left, right, top, bottom) in zip(light, boxes[:, 0].tolist(), strict=True):
+        inside = frame[top:bottom, left:right].copy() if right > left else np.zeros(0)
+        assert inside.sum() == pytest.approx(frame.sum())
+    assert light[:2].reshape(2, -1).any(axis=1).all()
+    assert not light[2].any(), "its light misses the detector"
+
+
+def test_an_image_beside_the_detector_leaves_it_dark() -> None:
+    camera = nominal("ccd-lens").camera
+    camera = replace(camera, flare=Flare(), sun=SolarDisc(rings=(4,)), assembly=Assembly())
+    sun = from_angles(np.array([0.0, 75.0, 0.0]), np.array([0.0, 0.0, 75.0]))
+    here, *beside = camera.shares(sun)
+    assert here.sum() == pytest.approx(1.0)
+    assert not np.any(beside)
+
+
+def test_a_ghost_of_the_cover_glass_falls_beside_its_spot_whole() -> None:
+    """The light goes through the glass twice more: Snell's law says how far that takes it."""
+    glass = CoverGlass((Plate(0.5, 1.5),))
+    camera = Camera(3.0, Mask((Aperture("round", 0.4, 0.4),)), POINT, glass)
+    readout = CurrentReadout(100.0, 0.0, 0.0, full_scale_ua=200.0, bits=24)
+    sensor = PositionSensor(camera, LateralEffect(8.0), readout)
+    scene = lit_by((0.0, 0.0), (20.0, 0.0), (0.0, -35.0))
+    direct = sensor.lit(scene)
+    both = replace(sensor, ghost=Ghost(0.5, 0.04, "glass")).lit(scene)
+    ghost = both - direct
+    np.testing.assert_allclose(ghost.sum(axis=1), 0.02 * direct.sum(axis=1))
+
+    def place_mm(currents: np.ndarray) -> np.ndarray:
+        q1, q2, q3, q4 = currents.T
+        sums = np.column_stack([q2 + q3 - q1 - q4, q1 + q2 - q3 - q4])
+        return np.asarray(4.0 * sums / currents.sum(axis=1)[:, None])
+
+    inside = [math.asin(math.sin(math.radians(angle)) / 1.5) for angle in (0.0, 20.0, 35.0)]
+    further = np.linalg.norm(place_mm(ghost) - place_mm(direct), axis=1)
+    assert further == pytest.approx([2.0 * 0.5 * math.tan(angle) for angle in inside], abs=1e-9)
+
+
+def test_lines_without_amplifier_errors_have_the_variance_of_shot_noise_and_reading() -> None:
+    preset = datasets.get("ccd-slit")
+    saturated: Any = preset.setups["saturated"].sensor
+    quiet = replace(saturated, detector=replace(saturated.detector, errors=PixelErrors()))
+    scene, pattern = lit_by((14.0, -33.0)), quiet.fixed_pattern("unit")
+    expected, detector = quiet.expected(scene, pattern), quiet.detector
+    found, charge = quiet.variance(expected)[:, :-2], expected[:, :-2]
+    plain = charge + detector.read_noise_e**2 + detector.gain_e_per_dn**2 / 12.0
+    free = (charge > 0.0) & (charge < detector.full_well_e)
+    assert free.sum() > 100
+    np.testing.assert_allclose(found[free], plain[free], rtol=1e-3)
+
+
+def test_noise_of_columns_is_added_to_lines_that_bloom() -> None:
+    preset = datasets.get("ccd-slit")
+    saturated: Any = preset.setups["saturated"].sensor
+    errors = PixelErrors(column_noise_e=500.0)
+    noisy = replace(saturated, detector=replace(saturated.detector, errors=errors))
+    quiet = replace(saturated, detector=replace(saturated.detector, errors=PixelErrors()))
+    dark = replace(lit_by((14.0, -33.0)), irradiance=np.zeros(1), stray=np.full(1, 0.2))
+    pattern = quiet.fixed_pattern("unit")
+    one, other = (
+        sensor.observe(dark, pattern, NoiseStreams.named("test")).astype(float)
+        for sensor in (noisy, quiet)
+    )
+    added = (one - other) * noisy.detector.gain_e_per_dn
+    assert added.std() == pytest.approx(500.0, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"pulse_e": 0.0}, "pulse_e and jitter_counts must be positive; got 0.0 and 0.01"),
+        ({"pulse_e": 1.0, "jitter_counts": -1.0}, "must be positive; got 1.0 and -1.0"),
+    ],
+)
+def test_converters_without_pulses_or_jitter_are_refused(
+    changes: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        FrequencyCounter(1e4, 1.0, 0.0, 1e6, **changes)
+
+
+def test_flats_leave_less_unknown_of_a_converters_gain() -> None:
+    """Without flats the whole mismatch is unknown; it scales with the light."""
+    readout = FrequencyCounter(1e4, 1.0, 0.03, 1e6)
+    sensor = FrequencySensor(((0.0, 0.0, 1.0),), readout, sun=POINT)
+    scene = Scene(np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]]), np.ones(2), np.zeros(2))
+    expected = sensor.expected(scene, sensor.fixed_pattern("unit"))
+    light = expected - readout.dark.level()
+    none = sensor.unit_variance(expected, scene, References(0, 0))
+    np.testing.assert_allclose(none, (0.03 * light) ** 2, rtol=1e-12)
+    some = sensor.unit_variance(expected, scene, References(1, 0))
+    many = sensor.unit_variance(expected, scene, References(100, 0))
+    assert (many < some).all()
+    assert (some < none).all()
+
+
+def test_a_mask_of_round_holes_does_not_drift() -> None:
+    sensor: Any = nominal("ccd-orbit")
+    assert isinstance(sensor, DriftingFrameSensor)
+    mask = replace(sensor.camera.mask, apertures=(Aperture("round", 0.1, 0.1),))
+    with pytest.raises(ValueError, match="round"):
+        replace(sensor, camera=replace(sensor.camera, mask=mask))
+
+
+def test_rims_a_whole_hole_apart_let_no_light_through() -> None:
+    places, numbers = np.linspace(-3.0, 3.0, 7), (1.0, 1.0)
+    light, skew = round_skew(places, places, numbers, (0.1, 0.1, 0.1, 0.1), apart=2.0)
+    assert light.shape == skew.shape == (7, 7)
+    assert not light.any()
+    assert not skew.any()
+    assert not round_intensity(places, places, numbers, apart=2.0).any()
+
+
+def test_more_points_than_the_phase_asks_for_change_no_light() -> None:
+    places, numbers = np.linspace(-2.0, 2.0, 9), (1.5, 1.2)
+    usual = round_intensity(places, places, numbers)
+    many = round_intensity(places, places, numbers, points=200)
+    np.testing.assert_allclose(many, usual, atol=1e-9)
+    assert usual.max() > 1.0
+
+
+def test_a_foil_that_shades_its_whole_slit_leaves_no_light_at_the_ends() -> None:
+    """60 deg off along x, a foil 0.1 mm thick shades more than a slit 0.02 mm wide."""
+    narrow = RectanglePattern(
+        half_mm=(0.01, 1.0),
+        thickness_mm=0.1,
+        height_mm=1.0,
+        glass=CoverGlass(),
+        sun=SolarDisc(),
+        spectrum=SUNLIT_SILICON,
+        pitch_mm=0.01,
+        reach_mm=1.0,
+        widest_deg=70.0,
+    )
+    oblique = from_angles(np.array([5.0]), np.array([60.0]))
+    assert oblique[0, 0] > oblique[0, 2] > 0.0, "off along x"
+    end = narrow._end(oblique)
+    assert end.shape[0] == 1
+    assert not end.any()

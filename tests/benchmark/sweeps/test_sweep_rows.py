@@ -1,0 +1,213 @@
+"""Rows of sweeps: what is planned, tracked, refused, compared, and drawn where nothing is found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, cast
+
+import numpy as np
+import pytest
+
+from algorithms.contract import (
+    AboutExtractor,
+    FeatureKind,
+    Observation,
+    SensorGeometry,
+    UnusableDataError,
+)
+from benchmark.datasets.standard import pd_slit
+from benchmark.sweeps import plan, plots
+from benchmark.sweeps.acquisition import acquisition
+from benchmark.sweeps.differences import differences
+from benchmark.sweeps.measure import Task, measure
+from benchmark.sweeps.points import Point
+from benchmark.sweeps.sweep_tables import to_markdown
+from benchmark.synthetic_features.series import SeriesPoint
+
+
+@dataclass(frozen=True)
+class Lines:
+    """The brightest pixel of either array; followed, the brightest near the one before."""
+
+    about: ClassVar[AboutExtractor] = AboutExtractor(
+        name="fake-lines",
+        taxonomy="BCM",
+        observation=Observation.PROFILES,
+        kind=FeatureKind.SPOT,
+    )
+    features: ClassVar[tuple[str, ...]] = ("x_px", "y_px")
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Any:
+        return cls()
+
+    def extract(self, observations: Any) -> Any:
+        both = np.asarray(observations, dtype=float).reshape(len(observations), 2, -1)
+        return both.argmax(axis=2).astype(float)
+
+    def track(self, observations: Any) -> Any:
+        both = np.array(observations, dtype=float).reshape(len(observations), 2, -1)
+        both[:, :, 100:] = 0.0  # where the glint stands
+        return self.extract(both)
+
+
+class Refusing(Lines):
+    about = replace(Lines.about, name="fake-refusing")
+
+    def extract(self, observations: Any) -> Any:
+        raise UnusableDataError("too little light\nfor it")
+
+
+class Unbuildable(Lines):
+    about = replace(Lines.about, name="fake-unbuildable")
+
+    @classmethod
+    def for_sensor(cls, geometry: SensorGeometry) -> Any:
+        raise RuntimeError("no such sensor")
+
+
+def setting_of(sweep: str, point: str) -> SeriesPoint:
+    settings = plan.SERIES["slit"].settings()
+    (found,) = [one for one in settings if (one.sweep, one.point) == (sweep, point)]
+    return replace(found, frames=12)
+
+
+def measured(extractor: type[Lines], sweep: str, point: str) -> dict[str, Any]:
+    place = Point("slit", sweep, point, extractor.about.name)
+    extractors = {place: cast("Any", extractor)}
+    ((at, row),) = measure(Task(extractors, setting_of(sweep, point), {}))
+    assert at == place
+    return dict(row)
+
+
+def test_a_method_that_remembers_follows_a_feature_past_a_glint() -> None:
+    class Forgetful(Lines):
+        about = replace(Lines.about, name="fake-forgetful")
+        track: Any = None
+
+    class Simple(Lines):
+        about = replace(Lines.about, name="fake-simple")
+
+        def track(self, observations: Any) -> Any:
+            return self.extract(observations)
+
+    followed, lost = measured(Lines, "tracking", "glint"), measured(Simple, "tracking", "glint")
+    # the brightest pixel of a flat bar 16 px wide may lie 8 px off: what counts is the glint
+    assert followed["rms"] < 9.0
+    assert lost["rms"] > 20.0
+    assert measured(Forgetful, "location", "middle")["status"] == "ok"
+    assert measured(Forgetful, "tracking", "glint")["status"] == "failed"
+
+
+def test_data_that_a_method_refuses_are_no_failure() -> None:
+    row = measured(Refusing, "noise", "50")
+    assert (row["status"], row["reason"]) == (
+        "refused",
+        "UnusableDataError: too little light for it",
+    )
+    assert row["rms"] is None
+
+
+def test_a_method_that_breaks_on_a_design_is_planned_and_its_row_says_so() -> None:
+    planned = plan.plan_points({"fake-unbuildable": cast("Any", Unbuildable)})
+    assert not planned.refused
+    assert {point.series for point in planned.settings} == {"slit", "slits"}
+    row = measured(Unbuildable, "noise", "50")
+    assert (row["status"], row["reason"]) == ("failed", "RuntimeError: no such sensor")
+
+
+def test_a_series_of_cameras_needs_a_camera() -> None:
+    with pytest.raises(TypeError, match="pd-slit has no lens camera; got SlitPairSensor"):
+        plan._camera_of(pd_slit.PRESET, "pd", "")
+
+
+def test_a_model_that_reads_no_code_is_refused() -> None:
+    with pytest.raises(TypeError, match="must be a model of coded masks; got ExtendedKalman"):
+        acquisition("cmos-encoded", "extended-kalman", directions=1, unit=7)
+
+
+ROW: dict[str, Any] = {
+    "series": "slit",
+    "sweep": "noise",
+    "point": "50",
+    "extractor": "fake-lines",
+    "extractor_taxonomy": "BCM",
+    "status": "ok",
+    "value": 50.0,
+    "n": 100,
+    "unit": "px",
+    "found_fraction": 0.5,
+    "kept_fraction": 0.5,
+    "wrong_fraction": 0.0,
+    "rms": 0.1,
+    "bias": 1e-5,
+    "bound": 0.05,
+    "over_bound": 2.0,
+    "reason": "",
+}
+
+
+@pytest.mark.parametrize(
+    ("column", "near", "far"),
+    [
+        ("found_fraction", 0.51, 0.52),  # one sample of 100 at the edge, and two
+        ("bias", 1.9e-5, 2.1e-5),  # a ten thousandth of the root mean square
+        ("rms", 0.100009, 0.10002),
+    ],
+)
+def test_numbers_differ_beyond_what_each_is_known_to(column: str, near: float, far: float) -> None:
+    assert list(differences([ROW], [{**ROW, column: near}])) == []
+    (found,) = differences([ROW], [{**ROW, column: far}])
+    assert found == (f"slit/noise/50/fake-lines/{column}", str(ROW[column]), str(far))
+
+
+def test_a_bias_without_a_spread_must_stay_as_it_is() -> None:
+    bare = {**ROW, "rms": None}
+    ((place, _, _),) = differences([bare], [{**bare, "bias": 1.000001e-5}])
+    assert place.endswith("/bias")
+
+
+def test_tables_list_what_is_not_measured_only_where_something_is_not() -> None:
+    lines = to_markdown([ROW])
+    assert "## Not measured" not in lines
+    left = {**ROW, "series": "", "sweep": "", "point": "", "reason": "reads nothing"}
+    assert to_markdown([ROW, left])[-1] == "- fake-lines on any: reads nothing"
+    assert to_markdown([ROW, left])[: len(lines)] == lines
+
+
+def rows_of(sweep: str, series: str, **changes: Any) -> list[dict[str, Any]]:
+    values = {"noise": (5.0, 10.0, 100.0), "phase": (0.0, 0.25, 0.5, 0.625, 0.75, 0.875)}[sweep]
+    return [{**ROW, "sweep": sweep, "series": series, "value": v, **changes} for v in values]
+
+
+NOTHING = {"rms": None, "bound": None, "found_fraction": 0.0}
+
+
+def test_a_panel_of_which_nothing_is_known_says_so() -> None:
+    rows = [*rows_of("noise", "slit"), *rows_of("noise", "slits", **NOTHING)]
+    full, empty = plots.figure(rows, "noise").axes
+    assert [line.get_marker() for line in full.lines].count("o") == 1
+    assert "nothing found" in [text.get_text() for text in empty.texts]
+    assert "nothing found" not in [text.get_text() for text in full.texts]
+    assert not [line for line in empty.lines if line.get_marker() == "o"]
+    assert empty.get_ylim() == (0.1, 1.0)
+    assert full.get_ylim() == pytest.approx((0.01, 0.1))
+
+
+def test_dots_are_hollow_where_little_is_found_and_a_phase_has_a_linear_axis() -> None:
+    rows = rows_of("phase", "slit", found_fraction=1.0, extractor_taxonomy="None")
+    rows[2]["found_fraction"] = 0.8
+    (axes,) = plots.figure(rows, "phase").axes
+    assert (axes.get_xscale(), axes.get_yscale()) == ("linear", "log")
+    dots = [line for line in axes.lines if line.get_marker() == "o"]
+    places = [np.asarray(line.get_xdata()).tolist() for line in dots]
+    assert sorted(map(len, places)) == [1, 5]
+    assert [0.5] in places
+    assert len({str(line.get_markerfacecolor()) for line in dots}) == 2
+    assert list(axes.get_xticks()) == [0.0, 0.5, 0.75], "every second one of many"
+    assert "slit (px)" in [text.get_text() for text in axes.texts]
+
+
+def test_a_sweep_that_is_not_drawn_is_refused() -> None:
+    with pytest.raises(ValueError, match="one of noise, size, phase; got 'pedestal'"):
+        plots.figure([ROW], "pedestal")
