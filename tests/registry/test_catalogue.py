@@ -1,7 +1,17 @@
 """The catalogue lists what is declared, by the taxonomy, and refuses what it cannot place."""
 
 import pytest
-from stand_ins import BCTM, EXTRACTORS, MODELS, SPM, SPOT, implementation, stand_ins
+from stand_ins import (
+    BCTM,
+    EXTRACTORS,
+    GLASS,
+    MODELS,
+    SPM,
+    SPOT,
+    chain,
+    implementation,
+    stand_ins,
+)
 
 from algorithms.contract import Observation
 from registry.catalogue import catalogue
@@ -48,6 +58,12 @@ def test_the_catalogue_refuses_what_it_cannot_place(survey: Facts) -> None:
         stand_ins(survey, [BCTM], []).extractor("bctn")
     with pytest.raises(InvalidValueError, match="did you mean 'spm'"):
         stand_ins(survey, [], [SPM]).model("spn")
+
+
+def test_a_chain_is_summed_up_by_its_compensations_and_its_model(survey: Facts) -> None:
+    assert GLASS.__doc__ == "Says what it is."  # one paragraph, and nothing behind it
+    (entry,) = stand_ins(survey, [], [chain(GLASS, SPM)]).implementations("model")
+    assert entry.summary == "Says what it is. Then spm."
 
 
 def test_the_catalogue_holds_what_discovery_finds() -> None:

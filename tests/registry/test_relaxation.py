@@ -172,6 +172,28 @@ def test_values_excluded_are_offered_back_one_by_one(
     ]
 
 
+@pytest.mark.parametrize(
+    "ask",
+    [
+        {"mask": "Lens"},
+        {"exclude_mask": ["Slit", "N-Slit"]},
+        {"max_error_deg": 0.1, "min_fov_deg": 120.0},
+        {"mask": "Lens", "detector": "CCD"},
+    ],
+)
+def test_each_way_out_gives_as_many_architectures_as_it_says(
+    ask: Mapping[str, object], facts_of: Callable[[Rows], Facts]
+) -> None:
+    facts = facts_of([STUDY, {**STUDY, "mask": ["N-Slit"], "detector": ["PDA"]}])
+    rows = [pipeline(rms_deg=0.2, cones=((20.0, 0.05),))]
+    answer = recommend(ask, rows, facts=facts)
+    ways = blocked_of(answer).relaxations
+    assert ways
+    for one in ways:
+        relaxed = one.apply(answer.requirements)
+        assert recommend(relaxed, rows, facts=facts).count == one.architectures > 0
+
+
 def test_hazards_and_properties_are_offered_less_one(
     survey: Facts, facts_of: Callable[[Rows], Facts]
 ) -> None:

@@ -197,6 +197,13 @@ def test_a_compensation_alone_runs_ahead_of_the_simplest_model(facts_of: Build) 
     assert (stage, why.split()[0]) == ("model", "OCM")
 
 
+def test_a_chain_of_two_compensations_without_a_model_runs_once(facts_of: Build) -> None:
+    both = chain(GLASS, SHADE, SPM)
+    found = resolved(facts_of, study_of(model=["OCM", "ICM/Shadow"]), models=[*MODELS, both])
+    assert models_of(found) == [both.about.name]
+    assert found.pipelines[0].assumed
+
+
 def test_where_a_compensation_is_not_planned_its_model_runs_bare(facts_of: Build) -> None:
     bare = ("glass + spm", "glass + lut", "shade + glass + spm")
     found = resolved(facts_of, study_of(model=["LUT", "OCM"]), models=GLASSED, without=bare)

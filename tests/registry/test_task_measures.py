@@ -5,10 +5,11 @@ from statistics import median
 
 import pytest
 
-from registry.ranking import TaskMeasure, joint_cost, key_of
+from registry import ranking
+from registry.ranking import TaskMeasure, joint_cost, key_of, task_measures
 from registry.recommendation import recommend
 from registry.studies import facts
-from survey_data.hardware import hardware
+from survey_data.hardware import Hardware, hardware
 from tests.registry.brute_force import measured_pipeline
 
 
@@ -78,3 +79,36 @@ def test_the_field_of_view_is_measured_as_a_full_angle() -> None:
     found = [one["value"] for a in answer.architectures for one in a.measures]
     assert [value for value in found if value is not None] == [120.0]
     assert {one["built"] for a in answer.architectures for one in a.measures} == {0}
+
+
+def test_power_and_volume_are_known_each_by_itself_and_cost_where_both_are(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def built(key: str, mask: str, power_mw: float | None, mass_g: float | None) -> Hardware:
+        seen = {"fov_full_deg": None, "accuracy_deg": None, "precision_deg": None}
+        return Hardware(
+            key, key, "CMOS", mask, accuracy_kind="", basis="title", source="",
+            power_mw=power_mw, mass_g=mass_g, **seen,
+        )  # fmt: skip
+
+    sensors = [
+        *(built("a", "Slit", None, 30.0), built("b", "Slit", None, 50.0)),
+        *(built("c", "Lens", 80.0, None), built("d", "Encoded", 9.0, 4.0)),
+        *(built("e", "", 1.0, 1.0), built("f", "Encoded", 9.0, None)),
+    ]
+    monkeypatch.setattr(ranking, "hardware", lambda: {one.id: one for one in sensors})
+    medians = ranking._published_medians.__wrapped__  # what is cached stays
+    monkeypatch.setattr(ranking, "_published_medians", medians)
+    tasks = ("Power", "Volume", "Cost")
+    found = {
+        mask: [
+            (m.value, m.sensor_count) for m in task_measures(tasks, ("CMOS", mask), None, math.inf)
+        ]
+        for mask in ("Slit", "Lens", "Encoded", "Maskless")
+    }
+    assert found == {
+        "Slit": [(None, 0), (40.0, 2), (None, 0)],
+        "Lens": [(80.0, 1), (None, 0), (None, 0)],
+        "Encoded": [(9.0, 2), (4.0, 1), (6.0, 1)],
+        "Maskless": [(None, 0)] * 3,
+    }

@@ -36,3 +36,15 @@ def test_a_change_by_hand_is_named_and_taken_over(
     shutil.copyfile(DATA_DIRECTORY / "studies.csv", path)
     assert facts_manifest.main() == 0
     assert capsys.readouterr().err == ""
+
+
+def test_a_sound_change_by_hand_is_taken_over_and_named(
+    tables: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tables / "studies.csv"
+    path.write_bytes(path.read_bytes().replace(b"sensor", b"sensos", 1))
+    renew = facts_manifest.renew
+    monkeypatch.setattr(facts_manifest, "renew", lambda: renew(tables))
+    assert facts_manifest.main() == 0
+    assert capsys.readouterr().err == "studies.csv taken over\n"
+    facts_manifest.require_unchanged(tables)

@@ -1,0 +1,164 @@
+"""Faults of an offered study and of its bibliography are named by line or by item."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from survey_data.additions.faults import FaultsError
+from survey_data.additions.issue_form import form, main, template_of
+from survey_data.additions.publications import choose, read_publications
+from survey_data.additions.vocabulary import Vocabulary
+from survey_data.additions.writing import UnknownStudyError, add_study, read_study, remove_study
+from survey_data.problems import SurveyImportError
+from tests.survey_data.additions.offered_study import STUDY, content, line_of, offered, refused
+from tests.survey_data.additions.test_issue_form import FILLED, body
+
+ROLE = 'role = "proposed"'
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "at", "said"),
+    [
+        ('venue = "Journal of Made-up Sensors"', "venue = true", "venue =", "expected a text, got"),
+        ('"Jane Doe", ', '"Jane Doe; Max Moe", ', "authors =", "holds a semicolon"),
+        ("identity =", 'url = "http://10.0.0.1/x"\nidentity =', "url =", "url: a raw address"),
+        (
+            'basis = "unknown"',
+            'name = "a plate"\nbasis = "unknown"',
+            "name = \"a plate\"",
+            "name: only of a value",
+        ),
+        ("value = 0.005", 'value = 0.005\nname = "error"', 'name = "error"', "only of a value of"),
+        (ROLE, 'role_note = "by us"', "role_note =", "role_note without a role"),
+        ('value = "CMOS"', f'value = "CMOS"\n{ROLE}', None, "only of a value of model and extr"),
+        ('note = "chapter 3"', "", ROLE, "model: a role needs a role_note"),
+        ('"Journal', f'"{"x" * 5001}', "venue =", "venue: longer than 5000 characters"),
+        ("[[accuracy_deg]]\nvalue = 0.005", "[[accuracy_deg]]", None, "or the basis unknown"),
+        ('basis = "title"', "", None, "detector: expected a basis, got none"),
+        ('basis = "unknown"', 'basis = "unknown"\nvalue = "Slit"', 'value = "Slit"', "yet a value"),
+    ],
+)  # fmt: skip
+def test_a_fault_of_a_template_is_named_by_its_line(
+    known: Vocabulary, right: str, wrong: str, at: str | None, said: str
+) -> None:
+    assert right in STUDY
+    text = STUDY.replace(right, wrong, 1)
+    ((line, message),) = refused(known, text)
+    assert said in message
+    assert at is None or line == line_of(text, at)
+
+
+def test_a_study_is_added_once(copy: Any) -> None:
+    """Two of one key may have been read before either was added."""
+    addition = read_study(offered(copy.directory), copy.directory)
+    rows = copy.rows("extension_studies")
+    added = [addition.study.get(column, "") for column in rows[0]]
+    copy.write("extension_studies", [*rows, added])
+    before = content(copy.directory)
+    with pytest.raises(SurveyImportError, match="a study with the key Doe2030 was added already"):
+        add_study(addition, copy.directory, apply=True)
+    assert content(copy.directory) == before
+
+
+def test_a_study_that_is_not_there_cannot_be_taken_away(copy: Any) -> None:
+    (first, *_), *_ = copy.rows("extension_studies")[1:]
+    with pytest.raises(UnknownStudyError, match=rf"study '{first[:-1]}': .* did you mean {first}"):
+        remove_study(first[:-1], copy.directory)
+    copy.edit("extension_studies", lambda rows: rows.__delitem__(slice(1, None)))
+    with pytest.raises(UnknownStudyError, match="there is no study after the survey"):
+        remove_study(first, copy.directory)
+
+
+def test_a_template_has_attributes_of_its_own(recorded: Path) -> None:
+    path = offered(recorded)
+    with pytest.raises(FaultsError, match="--attributes goes with a bibliography"):
+        read_study(path, recorded, attributes=path)
+
+
+@pytest.mark.parametrize("suffix", ["ris", "json", "toml"])
+def test_a_file_that_cannot_be_read_says_why(recorded: Path, suffix: str) -> None:
+    path = recorded.parent / f"offered.{suffix}"
+    with pytest.raises(FaultsError, match=rf"offered\.{suffix}: there is no such file"):
+        read_study(path, recorded)
+    path.write_bytes(b"TY  - JOUR\nTI  - \xff\n")
+    with pytest.raises(FaultsError, match="UTF-8 text"):
+        read_study(path, recorded)
+    path.unlink()
+    path.mkdir()
+    with pytest.raises(FaultsError, match="expected a file, got a directory"):
+        read_study(path, recorded)
+
+
+def publications_of(folder: Path, text: str, suffix: str) -> list[dict[str, str]]:
+    path = folder / f"refs.{suffix}"
+    path.write_text(text, encoding="utf-8")
+    return list(read_publications(path))
+
+
+def test_ends_without_a_record_and_empty_tags_of_ris_are_passed_over(tmp_path: Path) -> None:
+    text = "ER  - \nTY  - JOUR\nAU  - \nAU  - Doe, J.\nPY  - 2030\nER  - \nER  - \n"
+    (found,) = publications_of(tmp_path, text, "ris")
+    assert (found["key"], found["authors"], found["type"]) == ("Doe2030", "J. Doe", "journal")
+
+
+@pytest.mark.parametrize(
+    ("member", "column", "text"),
+    [
+        ({"author": ["Jane Doe", {}, {"literal": "ACME; Inc."}]}, "authors", "ACME, Inc."),
+        ({"author": "Jane Doe"}, "authors", ""),
+        ({"issued": {"raw": "May 2029"}}, "year", "2029"),
+        ({"issued": {"literal": "2028"}}, "year", "2028"),
+        ({"issued": {"date-parts": [[]], "raw": "2027"}}, "year", "2027"),
+        ({"issued": "2030"}, "year", ""),
+        ({"title": ["First", "Second"]}, "title", "First"),
+        ({"title": []}, "title", ""),
+        ({"title": True}, "title", ""),
+        ({"URL": "https://arxiv.org/abs/1"}, "url", "https://arxiv.org/abs/1"),
+        ({"URL": "arxiv.org/abs/1"}, "url", ""),
+        ({"DOI": "https://doi.org/10.1234/x."}, "doi", "10.1234/x"),
+        ({"id": "Doe2030b"}, "key", "Doe2030b"),
+        ({"id": "doe:2030"}, "key", ""),
+        ({"type": "webpage"}, "type", "unknown"),
+    ],
+)
+def test_a_member_of_csl_json_is_read_as_far_as_it_says_something(
+    member: dict[str, object], column: str, text: str, tmp_path: Path
+) -> None:
+    (found,) = publications_of(tmp_path, json.dumps(member), "json")
+    assert found[column] == text
+
+
+def test_an_item_of_csl_json_that_is_no_object_is_named(tmp_path: Path) -> None:
+    with pytest.raises(FaultsError, match="item 2: expected an object of CSL JSON, got str"):
+        publications_of(tmp_path, '[{"id": 1}, "Doe"]', "json")
+
+
+def test_the_only_publication_takes_the_key_that_is_asked_for() -> None:
+    only = {"key": "Doe2030", "title": "A sun sensor"}
+    assert choose([only], None, "refs.bib") is only
+    assert choose([only], "Doe2030", "refs.bib") is only
+    assert choose([only], "Doe2030a", "refs.bib") == {**only, "key": "Doe2030a"}
+
+
+def test_blank_lines_of_an_issue_s_field_say_nothing(known: Vocabulary) -> None:
+    with_blanks = FILLED["Model representation"].replace("\n", "\n\n  \n")
+    assert with_blanks != FILLED["Model representation"]
+    text = template_of(body({**FILLED, "Model representation": with_blanks}), known)
+    assert text == template_of(body(FILLED), known)
+    assert len(re.findall(r"^\[\[model\]\]$", text, re.MULTILINE)) == 2
+
+
+def test_the_form_is_printed_and_an_event_needs_a_file_to_write(
+    known: Vocabulary, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["--form"]) == 0
+    assert capsys.readouterr().out == form(known)
+    with pytest.raises(SystemExit) as stopped:
+        main([str(tmp_path / "event.json")])
+    assert stopped.value.code == 2
+    assert "expected EVENT.json and STUDY.toml, or --form" in capsys.readouterr().err

@@ -1,0 +1,97 @@
+"""Loading refuses a table without rows, a key twice and a cell of another type, with the place."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pandas as pd
+import pytest
+
+import survey_data
+from survey_data.descriptor import column_types, file_name
+from survey_data.reported import statistics
+from survey_data.tables import MAY_BE_EMPTY
+
+
+def test_a_table_with_a_header_alone_is_refused_unless_it_may_be_empty(copy: Any) -> None:
+    assert "architectures" in MAY_BE_EMPTY
+    for table in ("architectures", "venues"):
+        copy.edit(table, lambda rows: rows.__delitem__(slice(1, None)))
+    with pytest.raises(survey_data.SurveyDataError) as refused:
+        survey_data.load(copy.directory)
+    said = "the table has a header and no rows"
+    assert refused.value.problems == (survey_data.Problem("venues.csv", 1, None, said),)
+    found = survey_data.validate(copy.directory)
+    assert [(p.file, p.row) for p in found if p.message == said] == [("venues.csv", 1)]
+
+
+@pytest.mark.parametrize(
+    ("table", "key"), [("studies", ("key",)), ("attributes", ("study", "attribute", "value"))]
+)
+def test_a_key_that_stands_twice_is_refused_with_both_rows(
+    table: str, key: tuple[str, ...], copy: Any
+) -> None:
+    rows = copy.rows(table)
+    copy.write(table, [*rows, rows[4]])
+    said = " ".join(rows[4][rows[0].index(name)] for name in key)
+    with pytest.raises(survey_data.SurveyDataError) as refused:
+        survey_data.load(copy.directory)
+    assert refused.value.problems == (
+        survey_data.Problem(
+            file_name(table), len(rows) + 1, key[0], f"{said!r} stands in row 5 already"
+        ),
+    )
+
+
+@pytest.mark.parametrize(
+    ("table", "column", "text", "kind"),
+    [
+        ("attribute_definitions", "multiple", "perhaps", "boolean"),
+        ("attribute_definitions", "multiple", "True", "boolean"),
+        ("studies", "year", "MMX", "year"),
+        ("bases", "rank", "1.5", "integer"),
+        ("taxonomy", "min_deg", "wide", "number"),
+    ],
+)
+def test_a_cell_that_is_not_of_its_column_s_type_is_refused(
+    table: str, column: str, text: str, kind: str, copy: Any
+) -> None:
+    assert column_types(table)[column] == kind
+    copy.set(table, 2, column, text)
+    with pytest.raises(survey_data.SurveyDataError) as refused:
+        survey_data.load(copy.directory)
+    assert refused.value.problems == (
+        survey_data.Problem(file_name(table), 2, column, f"expected {kind}, got {text!r}"),
+    )
+
+
+def test_a_table_that_there_is_not_is_named_with_those_that_there_are() -> None:
+    with pytest.raises(KeyError, match="no table 'sundials'; there are studies, attributes"):
+        file_name("sundials")
+
+
+def test_the_edition_of_the_survey_has_its_own_studies_alone(
+    tables: survey_data.SurveyTables,
+) -> None:
+    survey, every = tables.edition("survey"), tables.edition("all")
+    assert set(survey.studies["edition"]) == {"survey"}
+    assert survey.studies["key"].tolist() == tables.studies["key"].tolist()
+    assert survey.attributes is tables.attributes
+    later = every.studies["key"].tolist()[len(tables.studies) :]
+    assert later == tables.extension_studies["key"].tolist()
+
+
+def test_kinds_of_figures_from_a_broken_table_are_refused(copy: Any) -> None:
+    copy.edit("statistics", lambda rows: rows[2].pop())
+    with pytest.raises(survey_data.SurveyDataError, match=r"statistics\.csv, row 3.*3 cells"):
+        statistics(copy.directory)
+
+
+def test_a_comparison_needs_the_number_of_studies_that_the_survey_states(
+    tables: survey_data.SurveyTables,
+) -> None:
+    counts = tables.counts.copy()
+    counts.loc[counts["id"] == "studies", "stated"] = pd.NA
+    with pytest.raises(LookupError, match=r"counts\.csv states no number of studies"):
+        survey_data.fidelity(replace(tables, counts=counts))
