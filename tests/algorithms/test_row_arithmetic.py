@@ -17,7 +17,9 @@ def test_medians_are_numpys_and_nan_where_a_row_holds_one(rows):
     np.testing.assert_array_equal(medians(rows), np.median(rows, axis=1))
 
 
-@pytest.mark.parametrize("dtype", ["uint8", "uint16", "int64"])
+@pytest.mark.parametrize(
+    "dtype", ["uint16", *(pytest.param(one, marks=pytest.mark.slow) for one in ("uint8", "int64"))]
+)
 @pytest.mark.parametrize("columns", [1, 2, 7, 64])
 def test_the_mean_of_two_large_integers_does_not_overflow(dtype, columns):
     top = np.iinfo(dtype).max
@@ -31,5 +33,5 @@ def test_medians_of_long_rows_are_numpys_whatever_their_order():
     rows = [rising, rising[::-1], np.minimum(rising, rising[::-1]), rising % 977, rising % 2]
     rows += [np.zeros(4001), rng.normal(size=4001), rng.normal(100.0, 0.6, 4001).round()]
     rows += [np.where(rising % 10 == 0, 101.0, 100.0), np.sort(rng.normal(size=4001) ** 9)]
-    for stack in (np.array(rows), np.array(rows)[:, 1:]):
+    for stack in (np.array(rows), np.array([row[1:] for row in rows])):
         np.testing.assert_array_equal(medians(stack), np.median(stack, axis=1))

@@ -1,4 +1,7 @@
-"""The parts that cameras' and events' extractors are made of, in closed form or beside SciPy."""
+"""The parts that cameras' and events' extractors are made of, in closed form or beside SciPy.
+
+Parts of a kernel are called as Python (`py_func`): compiled they are inside what extractors call.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +38,7 @@ def test_runs_are_of_pixels_above_the_level_but_for_single_dead_ones(row, found)
     frame = np.zeros((3, 7))
     frame[1] = [9.0 if mark == "#" else 5.0 for mark in row]  # what equals the level is not above
     runs = np.full((12, 3), np.nan)
-    count = blooming._runs(frame, 5.0, runs)
+    count = blooming._runs.py_func(frame, 5.0, runs)
     assert runs[:count].tolist() == [[middle, 1.0, width] for middle, width in found]
 
 
@@ -90,16 +93,16 @@ def test_a_line_extends_over_rows_most_of_which_have_a_run():
 def test_the_gradient_is_of_the_logarithm_of_the_light():
     rows, columns = np.mgrid[:7, :9]
     frame = 50.0 + 400.0 * np.exp(0.2 * columns - 0.1 * rows)
-    light, x, y = blooming._slope(frame, 3, 4, 50.0, 1e6)
+    light, x, y = blooming._slope.py_func(frame, 3, 4, 50.0, 1e6)
     assert (light, x, y) == pytest.approx((frame[3, 4] - 50.0, 0.2, -0.1))
     for place in ((3, 4), (3, 3), (3, 5), (2, 4), (4, 4)):
         saturated, dead = frame.copy(), frame.copy()
         saturated[place] = 1e6 + 1
-        assert blooming._slope(saturated, 3, 4, 50.0, 1e6) == (0.0, 0.0, 0.0)
+        assert blooming._slope.py_func(saturated, 3, 4, 50.0, 1e6) == (0.0, 0.0, 0.0)
         dead[place] = 50.0
-        assert blooming._slope(dead, 3, 4, 50.0, 1e6) == (0.0, 0.0, 0.0)
+        assert blooming._slope.py_func(dead, 3, 4, 50.0, 1e6) == (0.0, 0.0, 0.0)
     dark = np.full((3, 3), 49.0)
-    assert blooming._slope(dark, 1, 1, 50.0, 1e6) == (1.0, 0.0, 0.0)
+    assert blooming._slope.py_func(dark, 1, 1, 50.0, 1e6) == (1.0, 0.0, 0.0)
 
 
 def test_the_highest_cell_is_that_of_smoothed_votes():
@@ -130,7 +133,7 @@ def test_the_place_is_the_mean_of_what_is_near_on_both_sides():
 def test_the_gradient_is_sobel_s_but_for_the_border(shape):
     frame = np.random.default_rng(1).integers(0, 99, shape).astype(np.uint16)
     across, down, size = (np.zeros(shape) for _ in range(3))
-    steepest = circles._gradient(frame, across, down, size)
+    steepest = circles._gradient.py_func(frame, across, down, size)
     inner = (slice(1, -1), slice(1, -1))
     for axis, found in ((1, across), (0, down)):
         expected = ndimage.sobel(frame.astype(float), axis=axis) / 8
@@ -147,7 +150,7 @@ def test_edges_lie_where_a_blurred_step_is_steepest(turn_deg):
     away = (columns - 12.3) * c + (rows - 8.2) * s
     frame = 100.0 / (1.0 + np.exp(-away))
     across, down, size = (np.zeros(frame.shape) for _ in range(3))
-    circles._gradient(frame, across, down, size)
+    circles._gradient.py_func(frame, across, down, size)
     edges = np.empty((frame.size, 5))
     count = circles._edges(across, down, size, 10.0, edges)
     assert count >= 8
@@ -224,7 +227,7 @@ def test_frames_are_blurred_as_by_scipy(shape):
     frame = np.random.default_rng(1).integers(0, 99, shape).astype(np.uint16)
     taps = np.array([0.1, 0.2, 0.4, 0.2, 0.1])
     rows, out = np.empty(shape), np.empty(shape)
-    holes.blur(frame, taps, rows, out)
+    holes.blur.py_func(frame, taps, rows, out)
     across = ndimage.convolve1d(frame.astype(float), taps, axis=1, mode="nearest")
     np.testing.assert_allclose(rows, across)
     np.testing.assert_allclose(out, ndimage.convolve1d(across, taps, axis=0, mode="nearest"))
@@ -237,7 +240,7 @@ def hole(pixels, start, most=99, shape=(7, 11)):
     marks = np.zeros(image.size, dtype=np.int32)
     found = np.empty(image.size, dtype=np.int64)
     first = start[0] * shape[1] + start[1]
-    count, enclosed = flood(image, first, 5.0, False, SIDES, most, 3, marks, found)
+    count, enclosed = flood.py_func(image, first, 5.0, False, SIDES, most, 3, marks, found)
     return count if enclosed else 0, marks, found
 
 
@@ -309,7 +312,7 @@ def test_events_are_counted_up_to_the_last_and_broken_ones_told(changed, count):
     events[:, :3] = [(4.0, 7.0, 60.0), (5.0, 8.0, 70.0), (6.0, 9.0, 80.0)]
     for (m, column), value in changed.items():
         events[1, m, column] = value
-    assert spikes.count(events).tolist() == [3, count]
+    assert spikes.count.py_func(events).tolist() == [3, count]
 
 
 def test_light_is_the_inverse_of_times_but_for_hot_pixels():
@@ -331,14 +334,14 @@ def test_the_winner_is_the_middle_of_the_brightest_neighbours(axis, width, middl
     weights = np.array([3.0, 2.0, 4.0, 3.0, 3.5])
     events = np.ones((5, 3))
     events[:, axis] = places
-    assert spikes._winner(events, 5, axis, weights, width) == middle
+    assert spikes._winner.py_func(events, 5, axis, weights, width) == middle
 
 
 def test_at_the_first_address_a_window_reaches_over_the_edge():
     events = np.zeros((1, 3))
-    assert spikes._winner(events, 1, 0, np.ones(1), 1) == 0.0
+    assert spikes._winner.py_func(events, 1, 0, np.ones(1), 1) == 0.0
     # of equal windows the first: what lies before the array is dark
-    assert spikes._winner(events, 1, 0, np.ones(1), 3) == -1.0
+    assert spikes._winner.py_func(events, 1, 0, np.ones(1), 3) == -1.0
 
 
 def test_lines_move_by_their_own_events_and_share_what_is_near():
@@ -352,10 +355,10 @@ def test_lines_move_by_their_own_events_and_share_what_is_near():
         ]
     )  # fmt: skip
     weights = np.array([1.0, 3.0, 2.0, 1.0, 1.0, 5.0, 4.0, 3.0])
-    move_x, move_y, share = spikes._line_step(events, 8, weights, centre, reach)
+    move_x, move_y, share = spikes._line_step.py_func(events, 8, weights, centre, reach)
     assert move_x == pytest.approx((2.0 * 1 - 1.0 * 3) / 4)
     assert move_y == pytest.approx((1.0 * 2 - 2.0 * 1 + 2.0 * 1) / 4)
     assert share == pytest.approx(13.0 / 20.0)
-    alone = spikes._line_step(events[:2], 2, weights[:2], centre, reach)
+    alone = spikes._line_step.py_func(events[:2], 2, weights[:2], centre, reach)
     assert math.isnan(alone[0])
     assert alone[2] == 0.0

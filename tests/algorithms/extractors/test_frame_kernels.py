@@ -1,4 +1,7 @@
-"""The parts that extractors of frames are made of, each beside NumPy, on frames not square."""
+"""The parts that extractors of frames are made of, each beside NumPy, on frames not square.
+
+Parts of a kernel are called as Python (`py_func`): compiled they are inside what extractors call.
+"""
 
 from __future__ import annotations
 
@@ -26,6 +29,7 @@ def noise(shape, seed=1):
 @pytest.mark.parametrize("width", [1, 2, 3, 4, 5, 7, 8, 9])
 def test_maxima_profiles_and_brightest_are_numpys_at_every_width(width):
     frames = np.random.default_rng(width).integers(0, 50, (3, 4, width)).astype(np.uint16)
+    frames.setflags(write=False)  # as extractors get them: compiled once for both
     maxima = np.empty((3, 4), dtype=np.uint16)
     moments.row_maxima(frames, maxima)
     np.testing.assert_array_equal(maxima, frames.max(axis=2))
@@ -46,6 +50,7 @@ def test_frames_without_contrast_or_with_a_hole_are_unusable():
     frames[2, 0, 0] = 6.0
     frames[3, 2, 3] = np.nan
     frames[4, 1, 1] = np.inf
+    frames.setflags(write=False)
     assert moments.unusable_frames(frames).tolist() == [True, False, False, True, True]
 
 
@@ -55,7 +60,7 @@ def test_moments_above_a_level_are_over_the_window_alone(window):
     top, bottom, left, right = window
     out = np.empty((1, 6), dtype=np.int64)
     level = np.array([12], dtype=np.int64)
-    moments.moments_above(frames, frames.max(axis=2), level, np.array([window]), out)
+    moments.moments_above.py_func(frames, frames.max(axis=2), level, np.array([window]), out)
     rows, columns = np.mgrid[top:bottom, left:right]
     part = frames[0, top:bottom, left:right]
     u = np.where(part > 12, part - 12, 0)
@@ -69,14 +74,15 @@ def test_moments_above_a_level_are_over_the_window_alone(window):
 @pytest.mark.parametrize("reach", [1, 2, 4])
 @pytest.mark.parametrize("window", [(0, 9, 0, 14), (2, 7, 3, 11), (0, 2, 12, 14), (4, 5, 6, 7)])
 def test_box_moments_are_those_of_the_frame_filtered(window, reach):
-    frames = np.random.default_rng(3).integers(0, 30, (1, 9, 14)).astype(np.int64)
+    frames = np.random.default_rng(3).integers(0, 30, (1, 9, 14)).astype(np.uint16)
+    frames.setflags(write=False)
     top, bottom, left, right = window
     out = np.empty((1, 6), dtype=np.int64)
     moments.box_moments(frames, np.array([window]), reach, np.int64(0), out)
     side = 2 * reach + 1
     rows, columns = np.mgrid[top:bottom, left:right]
     expected = []
-    for image in (frames[0], np.ones_like(frames[0])):
+    for image in (frames[0].astype(int), np.ones(frames.shape[1:], int)):
         box = ndimage.convolve(image, np.ones((side, side), dtype=int), mode="constant")
         part = box[top:bottom, left:right]
         expected += [part.sum(), (columns * part).sum(), (rows * part).sum()]
@@ -88,7 +94,7 @@ def test_a_box_holds_all_pixels_as_bright_as_the_brightest():
     frames[0, [2, 6, 4], [11, 3, 5]] = 9
     frames[1, 8, 13] = 5
     out = np.empty((2, 4), dtype=np.int64)
-    window_sums.boxes_of_maxima(frames, frames.max(axis=2), out)
+    window_sums.boxes_of_maxima.py_func(frames, frames.max(axis=2), out)
     assert out.tolist() == [[3, 2, 11, 6], [13, 8, 13, 8]]
 
 
@@ -99,7 +105,7 @@ def test_a_box_holds_all_pixels_as_bright_as_the_brightest():
 def test_sums_of_a_window_are_told_where_it_is_whole(x, y, inside):
     frames = noise((1, 9, 14))
     out = np.empty((1, 2, 5))
-    window_sums.window_profiles(frames, np.array([[x, y]]), 2, out)
+    window_sums.window_profiles.py_func(frames, np.array([[x, y]]), 2, out)
     if inside:
         part = frames[0, y - 2 : y + 3, x - 2 : x + 3]
         np.testing.assert_allclose(out[0], [part.sum(axis=0), part.sum(axis=1)])
@@ -163,7 +169,7 @@ def test_a_window_over_the_edge_is_filled_up_with_its_rim(shape):
     columns, rows = np.empty(21), np.empty(21)
     for y in range(0, height, 2):
         for x in range(0, width, 3):
-            first = balance_kernel._window_sums(frame, x, y, columns, rows)
+            first = balance_kernel._window_sums.py_func(frame, x, y, columns, rows)
             window = np.full((21, 21), np.nan)
             for i in range(max(y - 10, 0), min(y + 11, height)):
                 for j in range(max(x - 10, 0), min(x + 11, width)):
@@ -202,15 +208,15 @@ def test_a_gaussian_starts_from_the_pixels_brighter_than_half():
     frame[4:7, 8:13] = 25.0
     frame[5, 10] = 45.0
     p = np.empty(6)
-    assert gaussian_kernel._start(frame, p)
+    assert gaussian_kernel._start.py_func(frame, p)
     lit = frame > 25.0
     radius = math.sqrt(lit.sum() / (2 * math.pi * math.log(2)))
     np.testing.assert_allclose(p, [40.0, 10.0, 5.0, max(radius, 0.5), max(radius, 0.5), 5.0])
     frame[4:7, 8:13] = 26.0
-    assert gaussian_kernel._start(frame, p)
+    assert gaussian_kernel._start.py_func(frame, p)
     radius = math.sqrt(15 / (2 * math.pi * math.log(2)))
     np.testing.assert_allclose(p[1:5], [10.0, 5.0, radius, radius])
-    assert not gaussian_kernel._start(np.full((12, 19), 5.0), p)
+    assert not gaussian_kernel._start.py_func(np.full((12, 19), 5.0), p)
 
 
 def gaussian(p, height, width):
@@ -224,10 +230,10 @@ def test_the_normal_equations_of_a_gaussian_are_those_of_differences():
     p = np.array([30.0, 7.3, 4.6, 2.1, 1.4, 5.0])
     frame = noise((height, width))
     x, y, along = np.empty((3, width)), np.empty((3, height)), np.zeros((5, width))
-    gaussian_kernel._factors(p, 0, x)
-    gaussian_kernel._factors(p, 1, y)
+    gaussian_kernel._factors.py_func(p, 0, x)
+    gaussian_kernel._factors.py_func(p, 1, y)
     projected, matrix = np.empty(6), np.empty((6, 6))
-    total = gaussian_kernel._residual_sums(frame, p, x, y, along, projected)
+    total = gaussian_kernel._residual_sums.py_func(frame, p, x, y, along, projected)
     gaussian_kernel._normal_matrix(p, x, y, matrix)
     slopes = []
     for k in range(6):

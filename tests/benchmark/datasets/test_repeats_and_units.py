@@ -53,7 +53,7 @@ def test_the_spread_of_repeats_is_the_noise_the_sensor_states() -> None:
 
 
 def test_repeats_of_a_flight_carry_the_context_of_their_moments() -> None:
-    preset = PRESETS["ccd-orbit"]
+    preset = PRESETS["pd-orbit"]
     repeat, test = (preset.generate("nominal", split) for split in ("repeat", "test"))
     again = np.tile(preset.repeats.pose_indices(len(test.sun)), preset.repeats.passes)
     assert repeat.context.keys() == test.context.keys()

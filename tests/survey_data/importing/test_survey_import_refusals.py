@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -19,6 +21,15 @@ from survey_data.importing.values import UnreadableValueError, ValueReader
 from survey_data.importing.writing import locked_tables
 
 
+@pytest.fixture
+def usual_csv_limit() -> Iterator[None]:
+    """Python's own limit on a cell: a library that validates tables lifts it for the process."""
+    before = csv.field_size_limit(131_072)
+    yield
+    csv.field_size_limit(before)
+
+
+@pytest.mark.usefixtures("usual_csv_limit")
 @pytest.mark.parametrize(
     ("text", "row", "said"),
     [

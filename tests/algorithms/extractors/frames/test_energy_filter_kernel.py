@@ -1,4 +1,7 @@
-"""The parts of the energy filter, each beside NumPy, on frames wider than high."""
+"""The parts of the energy filter, each beside NumPy, on frames wider than high.
+
+Parts of the kernel are called as Python (`py_func`): compiled they are inside what is called whole.
+"""
 
 import math
 
@@ -26,8 +29,8 @@ def test_the_border_is_every_outermost_pixel_once(shape):
     rim[1:-1, 1:-1] = False
     count = 2 * shape[1] + 2 * max(shape[0] - 2, 0)
     if rim.sum() == count:  # but for a single row or column, which counts twice over
-        assert border_level(frame) == pytest.approx((frame[rim].mean(), frame[rim].var()))
-    assert border_level(np.full(shape, 7.0))[1] == 0.0
+        assert border_level.py_func(frame) == pytest.approx((frame[rim].mean(), frame[rim].var()))
+    assert border_level.py_func(np.full(shape, 7.0))[1] == 0.0
 
 
 def test_the_centre_is_of_the_light_above_the_cut():
@@ -95,7 +98,7 @@ def test_the_shift_and_the_variance_it_leaves_are_numpys_least_squares():
     frame = 500 * spot(11.35, 6.3) + np.random.default_rng(2).normal(0, 4.0, energies.shape)
     cut = 60.0
     information, shift = np.zeros(3), np.zeros(2)
-    variance = shift_of(frame, energies, 0.0, cut, information, shift)
+    variance = shift_of.py_func(frame, energies, 0.0, cut, information, shift)
     above = energies > cut
     g_y, g_x = np.gradient(energies)
     design = -np.column_stack([g_x[above], g_y[above]])
@@ -114,7 +117,7 @@ def test_the_shift_and_the_variance_it_leaves_are_numpys_least_squares():
 def test_light_half_as_bright_again_or_half_gone_is_another(gain, expected):
     energies = 500 * spot(11.2, 6.4) + 30.0
     frame = gain * (energies - 30.0) + 30.0
-    variance = shift_of(frame, energies, 30.0, 90.0, np.zeros(3), np.zeros(2))
+    variance = shift_of.py_func(frame, energies, 30.0, 90.0, np.zeros(3), np.zeros(2))
     assert math.isnan(variance) is not expected
 
 
@@ -122,16 +125,17 @@ def test_a_shift_needs_four_pixels_and_two_slopes():
     for pixels, expected in ((3, False), (4, True)):
         energies = np.random.default_rng(3).uniform(0, 1, (6, 9))
         energies[2, 2 : 2 + pixels] += 10.0
-        variance = shift_of(energies, energies, 0.0, 5.0, np.zeros(3), np.zeros(2))
+        variance = shift_of.py_func(energies, energies, 0.0, 5.0, np.zeros(3), np.zeros(2))
         assert math.isnan(variance) is not expected
     ridge = np.tile(10.0 + np.arange(9.0), (6, 1))  # no slope from row to row
-    assert math.isnan(shift_of(ridge, ridge, 0.0, 5.0, np.zeros(3), np.zeros(2)))
+    assert math.isnan(shift_of.py_func(ridge, ridge, 0.0, 5.0, np.zeros(3), np.zeros(2)))
 
 
 def test_late_frames_replace_earlier_ones_at_the_rate_of_the_memory():
     """A still spot whose brightness alone changes: E moves by (I - E) / memory."""
     bright = [100.0, 110.0, 90.0, 120.0, 100.0]
     frames = np.stack([b * spot(11.2, 6.4) for b in bright])
+    frames.setflags(write=False)  # as extractors get them
     found, lengths = np.zeros((5, 2)), np.zeros(5, dtype=np.int64)
     usable = np.ones(5, dtype=bool)
     filter_sequence(frames, usable, 5.0, 0.2, 2.0, 3, 1e9, 0.1, found, lengths)
