@@ -16,7 +16,7 @@ from fastapi.routing import APIRoute
 from api.http.answers import Answer, AnswerRoute, CitedAnswer
 from api.http.asking import ask
 from api.http.knowledge import Knowledge
-from api.http.negotiation import CITATIONS, CSV, JSON
+from api.http.negotiation import CITATIONS, CSL, CSV, JSON
 from api.http.problems import MEDIA_TYPE, Problem
 from api.http.refusals import asked_models, refusal, schemas
 from api.schema.service import ProblemDocument
@@ -118,6 +118,8 @@ def _give_example(content: dict[str, Any], answer: Answer) -> None:
         for kind in CITATIONS.values():
             text = answer.representation(kind).body.decode()
             content[kind] = {"schema": {"type": "string"}, "example": text}
+        items = {"type": "array", "items": {"type": "object"}}
+        content[CSL] = {"schema": items, "example": json.loads(content[CSL]["example"])}
 
 
 def shorten(value: Any) -> Any:

@@ -75,6 +75,8 @@ class _Reading:
         found = method.measure(seen).features
         if seen.dtype != np.float64:  # as corrected readings are
             method.measure(seen.astype(np.float64))
+        seen.setflags(write=False)  # as kept readings are
+        method.measure(seen)
         return bool(np.isfinite(found).all(axis=1).any())
 
 

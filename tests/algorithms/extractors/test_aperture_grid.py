@@ -33,7 +33,7 @@ def test_a_spot_is_expected_where_it_is_whole_in_the_frame(x, y, seen):
     state = np.empty(1, dtype=np.int8)
     for shape, place in (((40, 100), (x, y)), ((100, 40), (y, x))):
         dark = np.zeros(shape)
-        seen_here = view._look(dark, 1.0, one, 1.5, *place, np.empty((0, 4)), none, state)
+        seen_here = view._look.py_func(dark, 1.0, one, 1.5, *place, np.empty((0, 4)), none, state)
         assert seen_here == (0, int(seen))
 
 
@@ -59,7 +59,7 @@ def test_votes_are_for_the_displacement_of_each_pair():
     cell = 2.0
     ballot = np.zeros((60, 90), dtype=np.int16)
     touched = np.empty(8, dtype=np.int64)
-    cells = kernel._cast(spots, TABLE, cell, ballot, touched)
+    cells = kernel._cast.py_func(spots, TABLE, cell, ballot, touched)
     expected = np.zeros_like(ballot)
     for x, y, _ in spots:
         for dx, dy, _ in APERTURES:

@@ -46,6 +46,7 @@ def test_spots_are_scipys_labels_of_touching_pixels(seed, density, height, width
     rng = np.random.default_rng(seed)
     frame = rng.integers(1, 100, (height, width)) * (rng.random((height, width)) < density)
     frame = frame.astype(np.uint16)
+    frame.setflags(write=False)  # as extractors get them
     spots, cuts = np.full((1, 900, 4), np.nan), np.full((1, 900, 3), np.nan)
     counts, cut_counts = np.zeros((2, 1), dtype=np.int64)
     maxima, level = frame.max(axis=1)[None], np.array([9.0])
@@ -72,8 +73,9 @@ def test_spots_are_scipys_labels_of_touching_pixels(seed, density, height, width
 
 
 def test_more_spots_than_there_is_room_for_are_said_so():
-    frame = np.zeros((1, 40, 40), dtype=np.uint8)
+    frame = np.zeros((1, 40, 40), dtype=np.uint16)
     frame[:, 1:-1:2, 1:-1:2] = 9
+    frame.setflags(write=False)
     spots, cuts = np.empty((1, 5, 4)), np.empty((1, 5, 3))
     counts, cut_counts = np.zeros((2, 1), dtype=np.int64)
     maxima, level = frame.max(axis=2), np.array([1.0])

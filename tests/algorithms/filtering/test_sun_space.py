@@ -127,7 +127,9 @@ def test_a_filter_that_ignores_gains_is_too_sure_and_one_that_considers_them_is_
     runs = drawn(whole, runs=200, steps=80, first=first, seed=12)
     schmidt = ExtendedKalman(considered=tuple(range(6, 12)))
     considering = schmidt.begin(whole, runs.first, first)
-    ignoring = ExtendedKalman().begin(plain, runs.first[:, :13], first[:6, :6])
+    ignoring = ExtendedKalman().begin(
+        plain, np.ascontiguousarray(runs.first[:, :13]), first[:6, :6]
+    )
     spread, said = {}, {}
     for step, known in enumerate(runs.known):
         if step:

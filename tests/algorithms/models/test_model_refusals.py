@@ -205,6 +205,7 @@ def test_a_coded_mask_has_apertures_and_a_height(without: dict[str, Any]) -> Non
         CodedSpacing.for_sensor(coded(**without), FeatureKind.SPOTS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turn_deg", [1.6, -1.6])
 def test_a_mask_turned_too_far_to_be_read_as_drawn_is_read_turned(turn_deg: float) -> None:
     design = coded()

@@ -26,6 +26,7 @@ def turntable(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def require_fits(page: Page) -> None:
     """Nothing reaches beyond the window, but what scrolls in its own box."""
+    page.wait_for_load_state()  # the style sheet comes after the text
     assert page.evaluate("document.documentElement.scrollWidth") <= page.viewport_size["width"]
 
 

@@ -77,21 +77,22 @@ def test_an_extractor_reads_data_sets_until_it_finds_something_in_one() -> None:
 
     def reader(geometry: str) -> SimpleNamespace:
         def measure(seen: np.ndarray) -> SimpleNamespace:
-            read.append((geometry, seen.dtype.name))
+            read.append((geometry, seen.dtype.name, seen.flags.writeable))
             return SimpleNamespace(features=np.full((2, 2), 1.0 if geometry == "fits" else np.nan))
 
         return SimpleNamespace(measure=measure)
 
     def preset(geometry: str) -> SimpleNamespace:
-        samples = SimpleNamespace(observations=np.full((2, 5, 5), 4095, dtype=np.uint16))
         return SimpleNamespace(
             conditions=("nominal", "noisy"),
-            generate=lambda condition, split, n: samples,
+            generate=lambda condition, split, n: SimpleNamespace(
+                observations=np.full((2, 5, 5), 4095, dtype=np.uint16)
+            ),
             geometry=geometry,
             observation=Observation.FRAMES,
         )
 
     extractor = SimpleNamespace(for_sensor=reader)
     compiling._Reading(extractor, ((preset("empty"), preset("fits"), preset("spare")),))()
-    dtypes = ("uint16", "float64")
-    assert read == [(name, dtype) for name in ("empty", "fits") for dtype in dtypes]
+    arrays = ("uint16", True), ("float64", True), ("uint16", False)
+    assert read == [(name, *array) for name in ("empty", "fits") for array in arrays]
