@@ -261,6 +261,20 @@ def test_the_best_calibration_is_shown_where_no_study_used_it(
     assert [c.model for c in turned.calibrations] == ["SPM", "LUT"]
 
 
+@pytest.mark.parametrize("best", ["SPM", "LUT"])
+def test_studies_that_used_the_best_count_whatever_error_they_state(
+    facts_of: Callable[[Rows], Facts], best: str
+) -> None:
+    """It is measured: that no study states an error within the limit does not matter."""
+    usual = {"SPM": "LUT", "LUT": "SPM"}[best]
+    facts = facts_of([{**STUDY, "model": [model]} for model in (usual, usual, best)])
+    errs = {usual: 0.1, best: 0.02}
+    rows = [pipeline(model=m.lower(), stages=(m,), rms_deg=deg) for m, deg in errs.items()]
+    said = only(recommend({"max_error_deg": 1.0}, rows, facts=facts)).contradiction or ""
+    assert said.startswith("2 studies used")
+    assert "used by 1 study, reaches" in said
+
+
 def test_what_answers_too_seldom_is_contradicted_with_the_share_that_it_answers(
     facts_of: Callable[[Rows], Facts],
 ) -> None:
