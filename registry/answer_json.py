@@ -158,7 +158,7 @@ class AnswerTexts:
         judged, advising : what is judged and what advice is asked for (`Question`)
         number : position of the architecture
         studies, stated, measures : as in `RankedPlace`
-        finer : pipeline that answers too seldom and is named; -1 for none
+        finer : most accurate pipeline below the availability limit; -1 for none
         usual : the measured design that most studies used and its pipeline
         best, row_of_best : the design with the smallest error and its pipeline; -1 for none
         designs, rows : those that are listed and their pipelines, packed

@@ -189,8 +189,8 @@ class DesignArrays(PipelineTable):
         self.not_specified = np.array(
             [not design.is_specified for design in self.designs], np.int64
         )
-        self.is_other = ~self.is_measured
-        self.unmeasured_designs = np.flatnonzero(self.is_other)
+        self.is_unmeasured = ~self.is_measured
+        self.unmeasured_designs = np.flatnonzero(self.is_unmeasured)
         self.place_studies = self.words_of(place.studies for place in places)
         with_model = self.words_of(design.with_model for design in self.designs)
         sets = np.concatenate((self.place_studies, with_model, self.users), axis=1)
@@ -273,7 +273,9 @@ class DesignArrays(PipelineTable):
         used = taken > 0
         measured, others = (
             UsedDesigns(at, with_model[at], taken[at])
-            for at in (np.flatnonzero(used & flags) for flags in (self.is_measured, self.is_other))
+            for at in (
+                np.flatnonzero(used & flags) for flags in (self.is_measured, self.is_unmeasured)
+            )
         )
         return counts[:first], measured, others
 

@@ -47,3 +47,8 @@ def found_in(made: Table) -> list[Finding]:
     """Conventions that seem to be others than the columns' names say."""
     stated = guess(made)
     return findings(readings_of(made, stated), stated)
+
+
+def spot_table(features: Array, angles: Array, unit: str = "_deg") -> Table:
+    """A file of spots and angles, whose columns name the unit."""
+    return table(("x_px", "y_px", f"theta_x{unit}", f"theta_y{unit}"), features, angles)

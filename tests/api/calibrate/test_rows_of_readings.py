@@ -5,12 +5,12 @@ from __future__ import annotations
 import bench
 import numpy as np
 import pytest
-from samples import table
+from samples import spot_table, table
 
 from api.calibrate.readings import BEHIND, readings_of
 from api.calibrate.robust import wrong_poses
 from api.calibrate.roles import guess
-from api.calibrate.table import Table, TableError
+from api.calibrate.table import TableError
 
 ANGLES = bench.grid(15, 40.0)
 SUN = bench.sun_of(ANGLES)
@@ -18,12 +18,8 @@ SPOTS = bench.spots(SUN, 1)
 VECTOR = ("sun_x", "sun_y", "sun_z")
 
 
-def spot_table(angles: np.ndarray, unit: str = "_deg") -> Table:
-    return table(("x_px", "y_px", f"theta_x{unit}", f"theta_y{unit}"), SPOTS, angles)
-
-
 def test_rows_with_the_light_behind_are_kept_where_asked_for() -> None:
-    made = spot_table(np.where(ANGLES > 30.0, 120.0, ANGLES))
+    made = spot_table(SPOTS, np.where(ANGLES > 30.0, 120.0, ANGLES))
     settings = guess(made)
     front, every = (readings_of(made, settings, behind=behind) for behind in (False, True))
     assert front.dropped == {BEHIND: len(ANGLES) - len(front)}
@@ -32,7 +28,7 @@ def test_rows_with_the_light_behind_are_kept_where_asked_for() -> None:
 
 
 def test_a_file_without_the_column_of_runs_is_refused() -> None:
-    made = spot_table(ANGLES)
+    made = spot_table(SPOTS, ANGLES)
     stated = guess(made)
     named = stated.model_copy(update={"rows": stated.rows.model_copy(update={"run": "sweep"})})
     with pytest.raises(TableError, match=r"no column 'sweep' \(there are x_px"):

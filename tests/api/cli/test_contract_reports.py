@@ -64,7 +64,7 @@ def test_a_module_that_cannot_be_imported_is_named_with_its_line(
 
 @pytest.fixture
 def suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
-    """A checkout whose test runner answers as it is told; its command is kept."""
+    """A checkout with a fake test runner, which keeps its command."""
     (tmp_path / "tests" / "algorithms").mkdir(parents=True)
     monkeypatch.setattr(contract, "ROOT", tmp_path)
     told = SimpleNamespace(code=0, report=REPORT, command=[], cwd=None)

@@ -104,7 +104,7 @@ def test_a_full_disk_is_an_error_of_the_system_that_names_the_file(
 
 
 def test_tables_of_which_no_database_can_be_made_are_said_to_be_so(small: Path) -> None:
-    """Both names stand for one in SQL, of which neither table nor Parquet know."""
+    """Two columns get the same name in SQL."""
     package = json.loads((small / DESCRIPTOR).read_text("utf-8"))
     schema = package["resources"][0]["schema"]
     schema["fields"] = [

@@ -14,7 +14,7 @@ from api.schema.vocabulary import MEANINGS
 class Rows(Described):
     """A model with members that the vocabulary knows, that say it themselves, and that nobody does.
 
-    The names of the last stand for a member whose description was forgotten.
+    The last has a member whose description was forgotten.
     """
 
     detector: str

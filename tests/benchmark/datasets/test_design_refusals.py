@@ -179,7 +179,7 @@ def bound_of(deviation_rad: float | None) -> Any:
 
 
 def test_a_field_known_without_error_bounds_the_turns_across_it() -> None:
-    """A field along x tells of turns about y and z alone: with the Sun on z, of one angle."""
+    """A field along x fixes turns about y and z; with the Sun on z, one angle alone."""
     preset, single = flight_without_instruments(), bound_of(0.02)
     found = posterior_bound(preset, "nominal", MAGNETOMETER, sequential=False, bound=single)
     assert found is not None

@@ -1,4 +1,4 @@
-"""Files derived from a board: what stands for built sensors, and tables for spreadsheets."""
+"""Files derived from a board: data sets of built sensors, and tables for spreadsheets."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Board = Mapping[str, Any]
 
 @pytest.fixture
 def two(published_board: Board) -> Board:
-    """An idealisation and a data set that stands for built sensors, with their first rows."""
+    """An idealisation and a data set of built sensors, with their first rows."""
     by_kind = {bool(one["idealisation"]): one for one in published_board["datasets"]}
     chosen = [{**by_kind[kind], "rows": by_kind[kind]["rows"][:3]} for kind in (True, False)]
     return {**published_board, "datasets": chosen, "sweeps": published_board["sweeps"][:20]}

@@ -5,12 +5,11 @@ from __future__ import annotations
 import bench
 import numpy as np
 import pytest
-from samples import found_in, samples, table
+from samples import found_in, samples, spot_table, table
 
 from api.calibrate.conventions.findings import findings, linear_map
 from api.calibrate.readings import readings_of
 from api.calibrate.roles import guess
-from api.calibrate.table import Table
 
 ANGLES = bench.grid(15, 40.0)
 SUN = bench.sun_of(ANGLES)
@@ -18,16 +17,12 @@ SPOTS = bench.spots(SUN, 1)
 VECTOR = ("sun_x", "sun_y", "sun_z")
 
 
-def spot_table(angles: np.ndarray, unit: str = "_deg") -> Table:
-    return table(("x_px", "y_px", f"theta_x{unit}", f"theta_y{unit}"), SPOTS, angles)
-
-
 def test_directions_as_vectors_need_no_form_of_angles() -> None:
     assert found_in(table(("x_px", "y_px", *VECTOR), SPOTS, SUN)) == []
 
 
 def test_radians_named_as_degrees_are_found() -> None:
-    first = found_in(spot_table(np.radians(ANGLES), ""))[0]
+    first = found_in(spot_table(SPOTS, np.radians(ANGLES), ""))[0]
     assert (first.about, first.change, first.certain) == (
         "unit",
         {"direction": {"unit": "rad"}},
@@ -50,7 +45,7 @@ def test_where_azimuths_stand_for_rotations_nothing_is_said_of_axes() -> None:
     names = ("x_px", "y_px", "azimuth_deg", "elevation_deg")
     assert [one.about for one in found_in(table(names, mirrored, azimuth))] == ["axes"]
     stated = guess(table(names, mirrored, azimuth)).model_copy(
-        update={"direction": guess(spot_table(ANGLES)).direction}
+        update={"direction": guess(spot_table(SPOTS, ANGLES)).direction}
     )
     made = table(("x_px", "y_px", "theta_x_deg", "theta_y_deg"), mirrored, azimuth)
     every = readings_of(made, stated, behind=True)

@@ -1,6 +1,6 @@
 """Commands that make, send or fetch something, and what they print of it.
 
-What is made has tests of its own; here a stand-in tells what came of it.
+Files are tested elsewhere; here a fake returns the result that is printed.
 """
 
 from __future__ import annotations
