@@ -44,7 +44,7 @@ class RankedPlace(NamedTuple):
     Attributes
     ----------
     key : what it is ranked by
-    number : its position in the table
+    number, at : its position in the table, and among those that meet the requirements
     studies : its studies (bits) that have what is asked of studies
     studies_within_limits : those of them whose stated numbers keep the limits, too
     start, end : its part of `Answer.designs`
@@ -57,6 +57,7 @@ class RankedPlace(NamedTuple):
 
     key: tuple[float, ...]
     number: int
+    at: int
     place: Place
     studies: int
     studies_within_limits: int
@@ -111,14 +112,17 @@ class Answer:
         facts = _place_facts(question.table)
         advice_of = facts.advice(advising)
         starts: list[int] = self._starts.tolist()
-        order = best.order[self.designs]
-        least = np.minimum.reduceat(order, self._starts)
         ends = (*starts[1:], self.count)
-        places_of_best = np.flatnonzero(order == np.repeat(least, np.subtract(ends, starts)))
+        # Of each architecture the design that comes first by error, and its place among all.
+        numbers = question.arrays.numbers[: self.count]
+        bits = question.arrays.design_bits
+        first = np.minimum.reduceat(best.order[self.designs] << bits | numbers, self._starts)
+        places_of_best = first & ((1 << bits) - 1)
         least = self.designs[places_of_best]
         found = []
-        for number, start, end, at, design, row, error in zip(
+        for number, at, start, end, best_at, design, row, error in zip(
             self._of[self._starts].tolist(),
+            range(len(starts)),
             starts,
             ends,
             places_of_best.tolist(),
@@ -137,11 +141,12 @@ class Answer:
             backing = has.bit_count()
             key = key_of(sort, bool(advice), backing, error, own, of_errors=of_errors)
             within = place.studies & stated
-            rank = at - start + 1
+            rank = best_at - start + 1
             found.append(
                 RankedPlace(
                     key,
                     number,
+                    at,
                     place,
                     has,
                     within,
@@ -159,8 +164,8 @@ class Answer:
         return found
 
     @cached_property
-    def usual(self) -> dict[int, tuple[int, int]]:
-        """The measured calibration that most studies used, by architecture, and its pipeline.
+    def usual(self) -> dict[int, tuple[int, int, float]]:
+        """The measured calibration that most studies used, by architecture, its pipeline and error.
 
         Of several the one with the smallest error, then the first. All by position.
         """
@@ -168,7 +173,8 @@ class Answer:
         places = self.question.arrays.place_of[used]
         first = begins(places)
         designs = used[first]
-        found = zip(designs.tolist(), self.best.row[designs].tolist(), strict=True)
+        rows, errors = self.best.row[designs], self.best.error[designs]
+        found = zip(designs.tolist(), rows.tolist(), errors.tolist(), strict=True)
         return dict(zip(places[first].tolist(), found, strict=True))
 
     def candidate(self, design: int) -> Candidate:
@@ -179,9 +185,8 @@ class Answer:
         """Return the least of some values of designs on each architecture, best first."""
         if values is self.best.error:
             return [place.error_deg for place in self.places]
-        least = np.minimum.reduceat(values[self.designs], self._starts).tolist()
-        of_start = dict(zip(self._starts.tolist(), least, strict=True))
-        return [of_start[place.start] for place in self.places]
+        least: list[float] = np.minimum.reduceat(values[self.designs], self._starts).tolist()
+        return [least[place.at] for place in self.places]
 
     def design_with_least(self, place: RankedPlace, values: Numbers) -> int:
         """Return the design on an architecture that reaches the least of some values."""

@@ -7,26 +7,41 @@ a path or a node is written once and kept by all that it depends on.
 from __future__ import annotations
 
 import hashlib
+import itertools
 import math
 import weakref
 from functools import cached_property, lru_cache
 
 import numpy as np
 
-from registry.answer import Answer
-from registry.contradiction import against_advice, against_literature, regret_words
+from registry.answer import Answer, RankedPlace
+from registry.contradiction import (
+    against_advice,
+    against_literature,
+    is_contradicted,
+    regret_words,
+)
 from registry.design_arrays import design_arrays
 from registry.designs import DesignTable, Limits
 from registry.judging import OF_STUDIES, Question, advice_for
 from registry.paths import path_table
 from registry.pipelines import PipelineErrors
-from registry.ranking import TaskMeasure
+from registry.ranking import SORTS, TaskMeasure
 from registry.requirements import CONFIDENCE, Requirements
-from registry.texts.calibrations import MOST_TEXTS, CalibrationTexts, StudyTexts, to_json_bytes
+from registry.texts.calibrations import (
+    MOST_TEXTS,
+    CalibrationTexts,
+    StudyTexts,
+    to_json_bytes,
+)
 from registry.texts.paths import PathTexts
 
-#: Architectures whose texts are kept, some 7 kB each.
+#: Architectures whose calibrations are kept, some 7 kB each.
 MOST_ARCHITECTURES = 3072
+
+
+#: Limit on the error that all keep, and how much of an answer is usually asked for.
+_LARGEST_DEG, _USUAL_SIZE = 180.0, (20, 5)
 
 
 class AnswerTexts:
@@ -47,8 +62,9 @@ class AnswerTexts:
         self._studies = studies.text
         self.calibrations = CalibrationTexts(self.arrays, studies)
         self._paths = PathTexts(paths, self.arrays, self._studies).text
+        self._kept: dict[tuple[object, ...], tuple[list[bytes], bytes, list[bytes]]] = {}
         self._head = lru_cache(MOST_TEXTS)(self._head_text)
-        self._architecture = lru_cache(MOST_ARCHITECTURES)(self._architecture_text)
+        self._measures = lru_cache(MOST_TEXTS)(_measures_text)
         self._contradiction = lru_cache(MOST_TEXTS)(self._contradiction_text)
         self._ends = lru_cache(MOST_TEXTS)(_ends_text)
 
@@ -91,104 +107,75 @@ class AnswerTexts:
     def _architectures(
         self, answer: Answer, limit: int | None, calibrations: int | None
     ) -> list[bytes]:
-        question, best, first_row = answer.question, answer.best, self.arrays.first_row
-        errors, judged, advising = best.errors, question.judged_requirements, question.advice_key
-        finer, usual, unbeaten = question.finest_partial_answers, answer.usual, answer.pareto
+        question, unbeaten = answer.question, answer.pareto
+        errors, kept = answer.best.errors, self._kept
+        judged, advising = question.judged_requirements, question.advice_key
+        finer, usual = question.finest_partial_answers, answer.usual
+        # As bytes, which are quicker to cut and to compare than lists of numbers.
+        designs, rows = answer.designs.tobytes(), answer.best.row[answer.designs].tobytes()
+        size = answer.designs.itemsize
         largest = question.requirements.largest_deg
         within = b"" if largest is None else errors.units_within(largest).tobytes()
-        # As bytes, which are quicker to cut and to compare than lists of numbers.
-        designs, rows = answer.designs.tobytes(), best.row[answer.designs].tobytes()
-        size = answer.designs.itemsize
-        units: tuple[bytes, ...] = ()
         parts: list[bytes] = []
         for at, place in enumerate(answer.places[:limit]):
-            total = place.end - place.start
+            number, total = place.number, place.end - place.start
             shown = total if calibrations is None else min(calibrations, total)
             listed = slice(size * place.start, size * (place.start + shown))
-            if within:
-                of_units = place.best, *_unpacked(designs[listed])
-                units = tuple([within[first_row[one] : first_row[one + 1]] for one in of_units])
-            head, best_text, between, listed_text = self._architecture(
-                errors,
-                judged,
-                advising,
-                place.number,
-                place.studies,
-                place.studies_within_limits,
-                place.measures,
-                finer.get(place.number, -1),
-                usual.get(place.number),
-                place.best,
-                place.row,
-                designs[listed],
-                rows[listed],
-                units,
+            key = (
+                *(errors, judged, place.studies, place.studies_within_limits),
+                *(finer.get(number), usual.get(number), place.best, place.rank_of_best),
+                *(designs[listed], rows[listed], self._units(place.best, designs[listed], within)),
             )
-            parts += (_rank_text(at + 1), head, _rank_text(place.rank_of_best, first=True))
-            parts += (*best_text, b',"pareto":true' if at in unbeaten else b',"pareto":false')
-            parts += (between, b"%d" % total, *listed_text)
+            texts = kept.get(key)
+            if texts is None:
+                ends = self._ends(judged, place.studies > 0)
+                texts = self._calibrations(answer, place, shown, within, ends)
+                if len(kept) >= MOST_ARCHITECTURES:
+                    kept.clear()
+                kept[key] = texts
+            best, contradiction, others = texts
+            measures = self._measures(place.measures) if place.measures else b"[]"
+            parts += (
+                *(_rank_text(at + 1), self._head(number, place.studies, advising), *best),
+                b',"pareto":%b,"contradiction":%b,"measures":%b,"count":%d,"calibrations":['
+                % (b"true" if at in unbeaten else b"false", contradiction, measures, total),
+                *others,
+            )
         return parts
 
-    def _architecture_text(  # noqa: PLR0917 - by these it is kept
+    def _units(self, best: int, designs: bytes, within: bytes) -> bytes:
+        """Return how many units keep the limit, of all pipelines of one design and of others."""
+        if not within:
+            return b""
+        every, first = (best, *np.frombuffer(designs, np.int64).tolist()), self.arrays.first_row
+        return b"".join([within[first[one] : first[one + 1]] for one in every])
+
+    def _calibrations(
         self,
-        errors: PipelineErrors,
-        judged: tuple[str, ...],
-        advising: tuple[tuple[str, ...] | None, ...],
-        number: int,
-        studies: int,
-        stated: int,
-        measures: tuple[TaskMeasure, ...],
-        finer: int,
-        usual: tuple[int, int] | None,
-        best: int,
-        row_of_best: int,
-        designs: bytes,
-        rows: bytes,
-        units: tuple[bytes, ...],
-    ) -> tuple[bytes, tuple[bytes, bytes], bytes, list[bytes]]:
-        """Return four parts of an architecture, what changes with every question left out.
-
-        Left out are its rank, behind the first part the rank of its best calibration, behind the
-        second whether none beats it, and behind the third how many of its designs meet the
-        requirements.
-
-        Parameters
-        ----------
-        errors : of all pipelines
-        judged, advising : what is judged and what advice is asked for (`Question`)
-        number : position of the architecture
-        studies, stated, measures : as in `RankedPlace`
-        finer : most accurate pipeline below the availability limit; -1 for none
-        usual : the measured design that most studies used and its pipeline
-        best, row_of_best : the design with the smallest error and its pipeline; -1 for none
-        designs, rows : those that are listed and their pipelines, packed
-        units : of all pipelines of all these how many units keep the limit; none without one
-        """
-        of_measured, of_stated = self._ends(judged, bool(studies))
-        text = self.calibrations.text
-        pairs = zip((best, *_unpacked(designs)), (row_of_best, *_unpacked(rows)), strict=True)
-        calibrations = []
-        for at, (design, row) in enumerate(pairs):
-            if row < 0:
-                calibrations.append((text(design, row, stated, studies), of_stated))
-            else:
-                within = units[at] if units else b""
-                measured = text(design, row, studies, studies, errors, finer, within)
-                calibrations.append((measured, of_measured))
-        best_text, *listed = calibrations
-        contradiction = b"null"
-        if usual is not None:
-            first = best, row_of_best, studies if row_of_best >= 0 else stated
-            contradiction = self._contradiction(errors, studies, *usual, *first)
-        between = b',"contradiction":%b,"measures":%b,"count":' % (
-            contradiction,
-            to_json_bytes([one.to_dict() for one in measures]),
+        answer: Answer,
+        place: RankedPlace,
+        shown: int,
+        within: bytes,
+        ends: tuple[bytes, bytes],
+    ) -> tuple[list[bytes], bytes, list[bytes]]:
+        """Return the best calibration of an architecture, what it contradicts, and those shown."""
+        number, studies, errors = place.number, place.studies, answer.best.errors
+        listed = answer.designs[place.start : place.start + shown]
+        texts = self.calibrations.parts(
+            (_rank_text(place.rank_of_best, first=True), *_rank_texts(shown)),
+            (place.best, *listed.tolist()),
+            (place.row, *answer.best.row[listed].tolist()),
+            *(studies, place.studies_within_limits, errors),
+            *(answer.question.finest_partial_answers.get(number, -1), within, ends),
         )
-        texts = [b',"calibrations":[']
-        for rank, calibration in enumerate(listed, 1):
-            texts += (_rank_text(rank), *calibration)
         texts.append(b"]}")
-        return self._head(number, studies, advising), best_text, between, texts
+        contradiction = b"null"
+        if number in answer.usual:
+            design, row, error_deg = answer.usual[number]
+            if is_contradicted(error_deg, place.error_deg):
+                compared = design, row, place.best, place.row
+                contradiction = self._contradiction(errors, studies, *compared)
+        return texts[:4], contradiction, texts[4:]
 
     def _head_text(
         self, number: int, studies: int, advising: tuple[tuple[str, ...] | None, ...]
@@ -226,32 +213,31 @@ class AnswerTexts:
         usual_row: int,
         best: int,
         best_row: int,
-        best_studies: int,
     ) -> bytes:
         """Return the sentence where measurement contradicts the literature; null for none.
 
-        It is of the calibration that most studies used and the one with the smallest error.
+        It is of the calibration that most studies used and the one with the smallest error, both
+        measured: their positions and those of their pipelines, and the studies that count (bits).
         """
-        arrays = self.arrays
-        designs = arrays.designs
-        said = against_literature(
-            arrays.candidate(usual, usual_row, errors),
-            (designs[usual].users & studies).bit_count(),
-            arrays.candidate(best, best_row, errors),
-            (designs[best].users & best_studies).bit_count(),
-        )
-        return to_json_bytes(said)
+        arrays, pairs = self.arrays, ((usual, usual_row), (best, best_row))
+        first, second = (arrays.candidate(*pair, errors) for pair in pairs)
+        used, tried = ((arrays.designs[pair[0]].users & studies).bit_count() for pair in pairs)
+        return to_json_bytes(against_literature(first, used, second, tried))
 
 
-def _unpacked(positions: bytes) -> list[int]:
-    found: list[int] = np.frombuffer(positions, np.int64).tolist()
-    return found
+def _measures_text(measures: tuple[TaskMeasure, ...]) -> bytes:
+    return to_json_bytes([one.to_dict() for one in measures])
 
 
 @lru_cache(None)
 def _rank_text(rank: int, *, first: bool = False) -> bytes:
     """Return how a member of a list begins, which ranks begin with 1, or the `first` of one."""
     return b'%b{"rank":%d' % (b"" if first or rank == 1 else b",", rank)
+
+
+@lru_cache(None)
+def _rank_texts(count: int) -> list[bytes]:
+    return [_rank_text(rank) for rank in range(1, count + 1)]
 
 
 def _ends_text(judged: tuple[str, ...], studied: bool) -> tuple[bytes, bytes]:
@@ -291,10 +277,18 @@ def prepare(table: DesignTable) -> None:
     texts.calibrations.prepare()
     arrays = texts.arrays
     for half in (None, *arrays.edges, math.inf):
-        _ = arrays.errors((), half, (None, CONFIDENCE)).unit_errors_deg
+        _ = arrays.errors((), half, (None, CONFIDENCE)).ranked_unit_errors
         arrays.best_pipelines(Limits(half_field_deg=half, draws=(0.0, CONFIDENCE)))
+    fields = [None, *(2 * half for half in arrays.edges)]
     tasks = table.facts.taxonomy.values("task")
-    Answer(Question(table, Requirements({"task": tasks})), "advice")
+    for asked in (
+        *(Requirements(min_fov_deg=field) for field in fields),
+        *(Requirements({"task": (task,)}) for task in tasks),
+        Requirements({"task": tasks}),
+    ):
+        for limit, sort in itertools.product((None, _LARGEST_DEG), SORTS):
+            limited = asked.with_value("max_error_deg", limit)
+            answer_json(Answer(Question(table, limited), sort), *_USUAL_SIZE)
     _ = texts.digest, arrays.cone_edges
 
 

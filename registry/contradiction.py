@@ -59,6 +59,11 @@ def design_words(candidate: Candidate) -> str:
     return calibration_name(design.extractor, design.stages, measured)
 
 
+def is_contradicted(usual_deg: float, best_deg: float) -> bool:
+    """Return whether an error is so much larger than the smallest that it contradicts studies."""
+    return math.isfinite(best_deg) and usual_deg >= LEAST_RATIO * best_deg
+
+
 def against_literature(usual: Candidate, used: int, best: Candidate, tried: int) -> str | None:
     """Compare the calibration that most studies used with the one that has the smallest error.
 
@@ -69,7 +74,7 @@ def against_literature(usual: Candidate, used: int, best: Candidate, tried: int)
     best, tried
         The one with the smallest error there, and how many studies used that.
     """
-    if not math.isfinite(best.error_deg) or usual.error_deg < LEAST_RATIO * best.error_deg:
+    if not is_contradicted(usual.error_deg, best.error_deg):
         return None
     others = f"{tried} {'studies' if tried > 1 else 'study'}" if tried else "no study"
     return (
@@ -95,13 +100,15 @@ def against_advice(answer: Answer, tasks: Sequence[str]) -> tuple[str, ...]:
     for task, values_of, scale, unit in _MEASURED:
         if tasks and task not in tasks:
             continue
-        advised = [at for at, place in enumerate(places) if task in place.advised_tasks]
-        if not 0 < len(advised) < len(places):
-            continue
-        others = [at for at, place in enumerate(places) if task not in place.advised_tasks]
         values = values_of(answer)
         reached = answer.least_by_place(values)
-        first, other = (min(side, key=reached.__getitem__) for side in (advised, others))
+        other = reached.index(min(reached)) if reached else -1
+        if other < 0 or task in places[other].advised_tasks:
+            continue
+        advised = [at for at, place in enumerate(places) if task in place.advised_tasks]
+        if not advised:
+            continue
+        first = min(advised, key=reached.__getitem__)
         mine, theirs = scale * reached[first], scale * reached[other]
         if math.isinf(mine) or mine <= theirs or abs(mine) == abs(theirs):
             continue

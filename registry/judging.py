@@ -150,10 +150,8 @@ class Question:
 
         Only calibrations that meet the requirements on model, extractor and properties count.
         """
-        allowed = self.arrays.numbers >= 0
-        for name in ("model", "exclude_model", "extractor", "exclude_extractor", "properties"):
-            if name in self.designs_with:
-                allowed &= self.designs_with[name]
+        names = ("model", "exclude_model", "extractor", "exclude_extractor", "properties")
+        allowed = [self.designs_with[name] for name in names if name in self.designs_with]
         return self.errors.finest(self.best_pipelines.limits, allowed)
 
     @property

@@ -46,6 +46,11 @@ class PartialAnswer(Generic[Of]):
     availability: float
     subject: Of
 
+    @property
+    def coarse_deg(self) -> float:
+        """Error above which it is far more accurate; infinite if it answers too seldom."""
+        return FINER * self.error_deg if self.availability >= LEAST_ANSWERED else math.inf
+
     def is_finer(self, error_deg: float) -> bool:
         """Return whether it is far more accurate than a given error, of at least half the samples.
 
@@ -53,8 +58,7 @@ class PartialAnswer(Generic[Of]):
         ----------
         error_deg : infinite for none, than which nothing is more accurate
         """
-        often = self.availability >= LEAST_ANSWERED
-        return often and FINER * self.error_deg < error_deg < math.inf
+        return self.coarse_deg < error_deg < math.inf
 
 
 def finer_for(error_deg: float, partly: Iterable[PartialAnswer[Of]]) -> PartialAnswer[Of] | None:

@@ -11,6 +11,7 @@ import itertools
 import math
 from collections.abc import Iterable, Sequence
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,7 @@ from registry.measured_pipelines import (
     Score,
 )
 from registry.requirements import UNITS
+from registry.score_columns import Scores, numbers
 
 Flags = NDArray[np.bool_]
 Numbers = NDArray[np.float64]
@@ -228,12 +230,17 @@ class PipelineErrors:
         return PipelineJudgement(float(self.error_deg[row]), own.condition, own.field_deg)
 
     @cached_property
-    def unit_errors_deg(self) -> Numbers:
-        """Error that each of ten units keeps at the confidence, shape (10, pipelines)."""
+    def ranked_unit_errors(self) -> tuple[Numbers, NDArray[np.unsignedinteger[Any]]]:
+        """Errors that units keep at the confidence, ascending, and how many are smaller than each.
+
+        The second is of shape (10, pipelines), in small integers: a limit is compared with those in
+        a tenth of the time.
+        """
         assert self.draws is not None  # noqa: S101 - without draws no unit is counted
         ratios, share = self.table.unit_ratios, self.draws[1]
         found = unit_errors(self.own_deg, ratios, self.bench_deg, share)
-        return np.ascontiguousarray(found.T)
+        errors_deg, ranks = np.unique(found.T, return_inverse=True)
+        return errors_deg, ranks.reshape(found.T.shape).astype(np.min_scalar_type(len(errors_deg)))
 
     def units_within(self, limit_deg: float | None) -> NDArray[np.uint8]:
         """Return how many of ten units of each pipeline keep a limit on the error.
@@ -242,10 +249,15 @@ class PipelineErrors:
         """
         if limit_deg is None or self.draws is None:
             return np.full(len(self.own_deg), NOT_COUNTED, np.uint8)
-        within = (self.unit_errors_deg <= limit_deg).view(np.uint8)
-        found: NDArray[np.uint8] = within.sum(axis=0, dtype=np.uint8)
-        found[np.isinf(self.own_deg)] = NOT_COUNTED
+        errors_deg, ranks = self.ranked_unit_errors
+        smaller = ranks.dtype.type(errors_deg.searchsorted(limit_deg, side="right"))
+        found: NDArray[np.uint8] = (ranks < smaller).view(np.uint8).sum(axis=0, dtype=np.uint8)
+        found[self._without_error] = NOT_COUNTED
         return found
+
+    @cached_property
+    def _without_error(self) -> Positions:
+        return np.flatnonzero(np.isinf(self.own_deg))
 
     @cached_property
     def covers_hazards(self) -> Flags:
@@ -266,10 +278,11 @@ class PipelineErrors:
         return found
 
     @cached_property
-    def _seldom(self) -> tuple[Positions, Positions]:
-        """Pipelines below the availability limit, by architecture and error, and architectures.
+    def _seldom(self) -> tuple[Positions, Positions, Positions]:
+        """Pipelines below the availability limit, by architecture and error.
 
-        As `MeasuredPipeline.partial_answer`, without those that answer less than `LEAST_ANSWERED`.
+        With their architectures and designs. As `MeasuredPipeline.partial_answer`, without those
+        that answer less than `LEAST_ANSWERED`.
         """
         table, half = self.table, self.half
         known, judged = self.covers_hazards.copy(), np.ones(len(table.rows), bool)
@@ -288,9 +301,10 @@ class PipelineErrors:
         named = np.flatnonzero(known & ~judged & (self.availability >= LEAST_ANSWERED))
         places = table.row_place[named]
         order = np.lexsort((largest[named], places))
-        return named[order], places[order]
+        named = named[order]
+        return named, places[order], table.design_of[named]
 
-    def finest(self, limits: Limits, designs: Flags) -> dict[int, int]:
+    def finest(self, limits: Limits, designs: Sequence[Flags]) -> dict[int, int]:
         """Return the most accurate pipeline below the availability limit, by architecture.
 
         Both are positions.
@@ -298,12 +312,14 @@ class PipelineErrors:
         Parameters
         ----------
         limits : limits with the hazards and field of these errors
-        designs : mask of the designs whose pipelines may be returned
+        designs : masks over designs; a pipeline is returned only of one that is in all of them
         """
-        table, (rows, places) = self.table, self._seldom
+        table, (rows, places, designs_of_rows) = self.table, self._seldom
         if not len(rows):
             return {}
-        among = designs[table.design_of[rows]]
+        among = np.ones(len(rows), bool)
+        for mask in designs:
+            among &= mask[designs_of_rows]
         if limits.min_availability is not None:
             among &= self.availability[rows] >= limits.min_availability
         if limits.max_latency_us is not None:
@@ -343,39 +359,6 @@ class PipelineErrors:
         return found
 
 
-class Scores:
-    """Scores as columns; ``rows`` are the pipelines that they are of."""
-
-    def __init__(self, pairs: Sequence[tuple[int, Score]], half_fov_deg: Numbers) -> None:
-        self.rows = np.array([at for at, _ in pairs], int)
-        scores = [score for _, score in pairs]
-        self.has_score = np.zeros(len(half_fov_deg), bool)
-        self.has_score[self.rows] = True
-        self.half_fov_deg = half_fov_deg[self.rows]
-        rms = numbers(score.rms_deg for score in scores)
-        available = np.array([score.is_available for score in scores], bool)
-        self.rms = rms
-        self.error = np.where(available & ~np.isnan(rms), rms, np.inf)
-        self.share = np.where(np.isnan(rms), 0.0, numbers(score.availability for score in scores))
-        most = max((len(score.cones) for score in scores), default=0)
-        self.cones = [
-            (
-                numbers(s.cones[at][0] if at < len(s.cones) else None for s in scores),
-                numbers(s.cones[at][1] if at < len(s.cones) else None for s in scores),
-            )
-            for at in range(most)
-        ]
-
-    def over(self, half: float | None) -> Numbers:
-        """Return the error of each over a field, as `MeasuredPipeline.over` finds it."""
-        if half is None:
-            return self.error
-        found = np.where(self.half_fov_deg >= half, self.error, np.inf)
-        for edge, error in reversed(self.cones):
-            found = np.where((edge >= half) & ~np.isnan(error), error, found)
-        return found
-
-
 def _nothing_drawn(_draws: Draws) -> list[tuple[Numbers, Numbers]]:
     """Return own errors and those at a confidence, to be filled."""
     return []
@@ -387,11 +370,6 @@ def begins(values: Positions) -> Flags:
     found[:1] = True
     np.not_equal(values[1:], values[:-1], out=found[1:])
     return found
-
-
-def numbers(values: Iterable[float | None]) -> Numbers:
-    """Return numbers as an array, NaN for None."""
-    return np.array([math.nan if value is None else value for value in values], float)
 
 
 def _scores(row: MeasuredPipeline) -> Iterable[Score]:

@@ -77,7 +77,7 @@ def pareto(costs: Sequence[tuple[float, float]]) -> frozenset[int]:
     """Return the positions of the costs that no other beats in both of their numbers."""
     least = math.nan
     unbeaten: set[tuple[float, float]] = set()
-    for cost in sorted(set(costs)):  # whoever beats one comes before it
+    for cost in sorted(costs):  # whoever beats one comes before it
         if not least <= cost[1]:
             unbeaten.add(cost)
             least = cost[1]

@@ -180,7 +180,9 @@ class Requirements:
     @property
     def largest_deg(self) -> float | None:
         """Largest allowed error: the number, or that of the coarsest required accuracy class."""
-        classes = [CLASSES_DEG.get(value) for value in self.include.get("accuracy", ())]
+        if "accuracy" not in self.include:
+            return self.max_error_deg
+        classes = [CLASSES_DEG.get(value) for value in self.include["accuracy"]]
         known = [limit for limit in classes if limit is not None]
         by_class = max(known) if known and len(known) == len(classes) else None
         return min((x for x in (self.max_error_deg, by_class) if x is not None), default=None)

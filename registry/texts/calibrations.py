@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property, lru_cache
-from itertools import product
 from typing import Any
+from weakref import WeakValueDictionary
 
 import numpy as np
 from pydantic_core import to_json
 
 from registry.design_arrays import DesignArrays
 from registry.designs import Limits
-from registry.measured_pipelines import MeasuredPipeline, PartialAnswer, finer_document
+from registry.measured_pipelines import finer_document
 from registry.pipelines import NOT_COUNTED, PipelineErrors
 from registry.ranking import support
 from registry.requirements import CONFIDENCE
@@ -58,6 +59,28 @@ class StudyTexts:
         )
 
 
+class PipelineText:
+    """The measured pipelines of a calibration as JSON: its best, and its best on other data sets.
+
+    Each is one object, however many questions select them: others are kept by it.
+
+    Attributes
+    ----------
+    text : without counts of units and without finer pipelines
+    numbers : of those whose units are known, among all pipelines of the calibration
+    errors_deg : of the pipelines
+    largest_deg : largest of the errors that are known; -inf without one
+    """
+
+    def __init__(
+        self, text: bytes, numbers: tuple[int, ...], errors_deg: tuple[float, ...]
+    ) -> None:
+        self.text = text
+        self.numbers = numbers
+        self.errors_deg = errors_deg
+        self.largest_deg = max(filter(math.isfinite, errors_deg), default=-math.inf)
+
+
 class CalibrationTexts:
     """Calibrations as JSON, each written once.
 
@@ -70,60 +93,81 @@ class CalibrationTexts:
     def __init__(self, arrays: DesignArrays, studies: StudyTexts) -> None:
         self.arrays = arrays
         self._studies = studies.text
-        self.text = lru_cache(MOST_TEXTS)(self._text)
+        self._used = lru_cache(MOST_TEXTS)(self._used_text)
         self._design = lru_cache(None)(self._design_text)
-        self._pipelines = lru_cache(MOST_PIPELINES)(self._pipeline_texts)
+        self._pipelines = lru_cache(MOST_PIPELINES)(self._pipeline_text)
+        self._kept: WeakValueDictionary[tuple[bytes, tuple[int, ...]], PipelineText] = (
+            WeakValueDictionary()
+        )
+        self._judged = lru_cache(MOST_TEXTS)(_judged_text)
         self._finer = lru_cache(MOST_TEXTS)(_finer_text)
-        self._support = lru_cache(MOST_TEXTS)(_support_text)
 
     def prepare(self) -> None:
-        """Write the pipelines that answers show over any field, with benches and without."""
+        """Write the pipelines that answers show over any field, as many as are kept."""
         draws = None, (None, CONFIDENCE)
-        for half, drawn in product((None, *self.arrays.edges, math.inf), draws):
+        for half, drawn in itertools.product((None, *self.arrays.edges, math.inf), draws):
             best = self.arrays.best_pipelines(Limits(half_field_deg=half, draws=drawn))
             for design in np.flatnonzero(best.row >= 0).tolist():
+                if self._pipelines.cache_info().currsize == MOST_PIPELINES:
+                    return
                 self._pipelines(design, int(best.row[design]), best.errors)
 
-    def _text(  # noqa: PLR0917 - by these it is kept
+    def parts(  # noqa: PLR0917 - all that a calibration hangs on
         self,
-        design: int,
-        row: int,
+        begun: Iterable[bytes],
+        designs: Iterable[int],
+        rows: Iterable[int],
         studies: int,
-        of_place: int,
-        errors: PipelineErrors | None = None,
-        finer: int = -1,
-        units_within: bytes = b"",
-    ) -> bytes:
-        """Return the members of a calibration between its rank and the basis.
+        stated: int,
+        errors: PipelineErrors,
+        finer: int,
+        units_within: bytes,
+        ends: tuple[bytes, bytes],
+    ) -> list[bytes]:
+        """Return calibrations of an architecture, each in four parts.
 
         Parameters
         ----------
-        design, row : its position, and that of its best pipeline; -1 for none
-        studies : studies of its architecture that count (bits)
-        of_place : studies of its architecture with what is asked of studies (bits)
-        errors : of all pipelines; None for no pipeline
-        finer : pipeline on its architecture below the availability limit; -1 for none
-        units_within : units of each of its pipelines that keep the limit, nothing without one
+        begun : how each begins, with its rank
+        designs, rows : their positions, and those of their best pipelines; -1 for none
+        studies : studies of the architecture with what is asked of studies (bits)
+        stated : those of them whose stated numbers keep the limits (bits)
+        errors : of all pipelines
+        finer : pipeline on the architecture below the availability limit; -1 for none
+        units_within : of all pipelines how many units keep the limit; nothing without one
+        ends : of calibrations that are measured, and of others
         """
-        of = self.arrays.designs[design]
-        with_model, taken = of.with_model & studies, of.users & studies
-        counts = (of_place.bit_count(), with_model.bit_count(), taken.bit_count())
-        measured = [b"null"]
-        if errors is not None:
-            named, finer_text = self._finer(errors, finer)
-            measured = []
-            for at, error_deg, text in self._pipelines(design, row, errors):
-                units = units_within[at] if units_within else NOT_COUNTED
-                number = b"null" if units == NOT_COUNTED else b"%d" % units
-                said = finer_text if named is not None and named.is_finer(error_deg) else b"null"
-                measured.append(b"%b%b}" % (number.join(text), said))
-        return b'%b%b],"with_model":%d,"support":%b,"measured":%b,"other_datasets":[%b]' % (
-            self._design(design),
-            self._studies(taken),
-            counts[1],
-            self._support(*counts),
-            measured[0],
-            b",".join(measured[1:]),
+        beside = NO_FINER if finer < 0 else self._finer(errors, finer)
+        first, of_place = self.arrays.first_row, studies.bit_count()
+        parts: list[bytes] = []
+        for begins, design, row in zip(begun, designs, rows, strict=True):
+            of, counting = self.arrays.designs[design], studies if row >= 0 else stated
+            with_model = (of.with_model & counting).bit_count()
+            used = self._used(design, of.users & counting, with_model, of_place)
+            if row < 0:
+                parts += (begins, used, _NOT_MEASURED, ends[1])
+                continue
+            pipelines = self._pipelines(design, row, errors)
+            text, is_coarse = pipelines.text, pipelines.largest_deg > beside[0]
+            if units_within or is_coarse:
+                units = units_within[first[design] : first[design + 1]]
+                text = self._judged(pipelines, units, *(beside if is_coarse else NO_FINER))
+            parts += (begins, used, text, ends[0])
+        return parts
+
+    def _used_text(self, design: int, taken: int, with_model: int, of_place: int) -> bytes:
+        """Return the members of a calibration between its rank and its pipelines.
+
+        Parameters
+        ----------
+        design : its position
+        taken : studies that used it (bits)
+        with_model, of_place : how many used its compensations and model, and its architecture
+        """
+        backing = round(support(of_place, with_model, taken.bit_count()), 4)
+        return b'%b%b],"with_model":%d,"support":%b,"measured":' % (
+            *(self._design(design), self._studies(taken)),
+            *(with_model, to_json_bytes(backing)),
         )
 
     def _design_text(self, design: int) -> bytes:
@@ -136,14 +180,8 @@ class CalibrationTexts:
         }
         return b',%b,"studies":[' % to_json_bytes(members)[1:-1]
 
-    def _pipeline_texts(
-        self, design: int, row: int, errors: PipelineErrors
-    ) -> tuple[tuple[int, float, tuple[bytes, ...]], ...]:
-        """Return the texts of a pipeline of a calibration, and of its best on each other data set.
-
-        Of each its number among those of the calibration, its error, and the text up to a finer
-        pipeline, in two parts about how many units keep a limit.
-        """
+    def _pipeline_text(self, design: int, row: int, errors: PipelineErrors) -> PipelineText:
+        """Return the pipeline of a calibration, and its best on each other data set."""
         arrays, first = self.arrays, self.arrays.first_row[design]
         others: dict[str, int] = {}
         for at in range(first, arrays.first_row[design + 1]):
@@ -152,30 +190,69 @@ class CalibrationTexts:
             if known is None or errors.error_deg[at] < errors.error_deg[known]:
                 others[dataset] = at
         del others[arrays.rows[row].dataset]
-        found = []
-        for at in (row, *others.values()):
-            *begun, ended = self._facts[at]
-            judged = to_json_bytes(errors.document(at))[1:-1]
-            text = (*begun, b'%b,%b,"finer":' % (ended, judged))
-            found.append((at - first, float(errors.error_deg[at]), text))
-        return tuple(found)
+        shown = (row, *others.values())
+        texts = [
+            b"%b,%b,%b}" % (self._facts[at], to_json_bytes(errors.document(at))[1:-1], _NOT_FINER)
+            for at in shown
+        ]
+        text = b'%b,"other_datasets":[%b]' % (texts[0], b",".join(texts[1:]))
+        numbers = tuple([at - first for at in shown if _NOT_COUNTED in self._facts[at]])
+        kept = self._kept.get((text, numbers))
+        if kept is None:
+            errors_deg = tuple(errors.error_deg[list(shown)].tolist())
+            kept = self._kept[text, numbers] = PipelineText(text, numbers, errors_deg)
+        return kept
 
     @cached_property
-    def _facts(self) -> list[list[bytes]]:
-        """Of each pipeline its first members, in two parts about how many units keep a limit."""
-        texts = [to_json_bytes(row.facts())[:-1] for row in self.arrays.rows]
-        counted, between = b'"within_limit":null', b'"within_limit":\0'
-        return [text.replace(counted, between).split(b"\0") for text in texts]
+    def _facts(self) -> list[bytes]:
+        """Of each pipeline its first members."""
+        return [to_json_bytes(row.facts())[:-1] for row in self.arrays.rows]
 
 
-def _support_text(*counts: int) -> bytes:
-    """Return how the literature backs a calibration (`registry.ranking.support`)."""
-    return to_json_bytes(round(support(*counts), 4))
+#: Of a pipeline, whose numbers of units and finer pipeline are put in where they are asked for.
+_NOT_MEASURED = b'null,"other_datasets":[]'
+_NOT_COUNTED, _NOT_FINER = b'"within_limit":null', b'"finer":null'
 
 
-def _finer_text(
-    errors: PipelineErrors, finer: int
-) -> tuple[PartialAnswer[MeasuredPipeline] | None, bytes]:
-    """Return the partial answer of a pipeline and its text; -1 for none."""
-    named = None if finer < 0 else errors.partial_answer(finer)
-    return named, b"" if named is None else to_json_bytes(finer_document(named))
+#: Error above which a pipeline is finer, and its text: for none.
+NO_FINER = math.inf, b""
+
+
+def _judged_text(
+    pipelines: PipelineText, units: bytes, coarse_deg: float, finer_text: bytes
+) -> bytes:
+    """Return the text of pipelines, with how many units of each keep a limit and a finer one.
+
+    Parameters
+    ----------
+    pipelines : of a calibration
+    units : of each pipeline of the calibration; none without a limit
+    coarse_deg, finer_text : error above which a pipeline below the availability limit is finer,
+        and its text; infinite for none
+    """
+    text = pipelines.text
+    if units:
+        counts = [
+            _NOT_COUNTED if units[at] == NOT_COUNTED else b'"within_limit":%d' % units[at]
+            for at in pipelines.numbers
+        ]
+        text = _put_in(text, _NOT_COUNTED, counts)
+    if pipelines.largest_deg > coarse_deg:
+        said = b'"finer":' + finer_text
+        coarse = [coarse_deg < error_deg < math.inf for error_deg in pipelines.errors_deg]
+        text = _put_in(text, _NOT_FINER, [said if one else _NOT_FINER for one in coarse])
+    return text
+
+
+def _put_in(text: bytes, place: bytes, parts: Sequence[bytes]) -> bytes:
+    """Return a text with parts put in the places of one that it has as often."""
+    begun, *others = text.split(place)
+    return begun + b"".join(itertools.chain.from_iterable(zip(parts, others, strict=True)))
+
+
+def _finer_text(errors: PipelineErrors, finer: int) -> tuple[float, bytes]:
+    """Return the partial answer of a pipeline, the error above which it is finer, and its text."""
+    named = errors.partial_answer(finer)
+    if named is None:
+        return NO_FINER
+    return named.coarse_deg, to_json_bytes(finer_document(named))
