@@ -275,9 +275,13 @@ class AnswerRoute(StrictRoute):
     `CacheableResponse`.
     """
 
+    def computing(self) -> Handler:
+        """Return what computes an answer that is not kept."""
+        return super().get_route_handler()
+
     def get_route_handler(self) -> Handler:
         """Return what handles a request."""
-        compute = super().get_route_handler()
+        compute = self.computing()
         offered = cast("type[CacheableResponse]", self.response_class).media_types
         whole = issubclass(cast("type[CacheableResponse]", self.response_class), LinkDocument)
 

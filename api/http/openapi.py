@@ -6,7 +6,7 @@ import csv
 import inspect
 import io
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from fastapi import FastAPI, Request
@@ -64,8 +64,6 @@ def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> N
     """Add the example, its answer, and the refusals to an operation."""
     declared = schemas(route.endpoint)
     example = _example(route)
-    if declared["query"] and "parameters" not in operation:
-        operation["parameters"] = [_query_parameter(*one) for one in declared["query"].items()]
     for parameter in operation.get("parameters", ()):
         given = example if parameter["in"] == "path" else example.get("query", {})
         if parameter["name"] in given:
@@ -88,13 +86,6 @@ def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> N
     refused = {str(status): _refuse(status, route, example, known) for status in sorted(statuses)}
     same = {"304": NOT_MODIFIED} if "body" not in declared else {}
     operation["responses"] = {"200": success, **same, **refused}
-
-
-def _query_parameter(name: str, schema: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a parameter of a query that a dependency reads, as FastAPI documents its own."""
-    kept = {key: value for key, value in schema.items() if (key, value) != ("default", None)}
-    described = {"name": name, "in": "query", "required": False, "schema": kept}
-    return {**described, "description": schema["description"]}
 
 
 def _answered(route: APIRoute, known: Knowledge, example: dict[str, Any]) -> Answer | None:

@@ -6,11 +6,12 @@ import json
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Body, Depends
+from fastapi import APIRouter, Body, Query
 
-from api.http.answers import Answer, AnswerRoute
-from api.http.dependencies import AS_ACCEPTED, Known, TableOnly, query_as
+from api.http.answers import Answer
+from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
 from api.http.knowledge import Knowledge
+from api.http.queries import QueryRoute
 from api.http.representations import digest_of
 from api.recommending import rows
 from api.schema.recommendations import RecommendationRow, Recommendations
@@ -20,9 +21,7 @@ from registry.answer_json import answer_digest, answer_json
 from registry.recommendation import answer
 from registry.requirements import PARAMETERS, SETTINGS
 
-router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
-
-READ = Depends(query_as(RequirementsQuery))
+router = APIRouter(prefix="/v1", route_class=QueryRoute, default_response_class=Answer)
 
 DESCRIPTION = (
     "Ranks architectures (detector + mask) and their calibrations (extractor + compensations + "
@@ -39,7 +38,7 @@ DESCRIPTION = (
     description=DESCRIPTION,
     response_model=Recommendations,
 )
-async def recommendations(known: Known, query: Annotated[RequirementsQuery, READ]) -> Answer:
+async def recommendations(known: Known, query: Annotated[RequirementsQuery, Query()]) -> Answer:
     """Recommend for requirements in a query."""
     return _answer(query, known)
 
