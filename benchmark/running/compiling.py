@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from contextlib import closing, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,11 +19,13 @@ from algorithms.contract import Extractor, Observation, UnusableDataError
 from algorithms.pipeline import Pipeline, extract_features
 from benchmark.contract import Preset
 from benchmark.datasets.corrected import correct, correction
+from benchmark.datasets.preset import Preset as SimulatedPreset
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback, silent
 from benchmark.running.threads import one_thread
 from benchmark.running.workers import as_completed
+from benchmark.simulator.sensors.line_sensor import LineSensor
 
 #: Samples of a split that are generated for a sensor's kernels, and that an extractor reads.
 _MADE, _READ = 1, 2
@@ -48,13 +50,18 @@ class _Data:
         for condition in (first, *(name for name in others if name in _OWN_KERNELS)):
             self.preset.generate(condition, "test", _MADE)
             self.preset.bound(condition, "test", _MADE)
+        if isinstance(self.preset, SimulatedPreset):
+            setup = self.preset.setups[first]
+            if isinstance(setup.sensor, LineSensor):  # a reader's design may leave diffraction out
+                plain = replace(setup, sensor=replace(setup.sensor, spectrum=None))
+                replace(self.preset, setups={first: plain}).generate(first, "test", _MADE)
 
 
 @dataclass(frozen=True)
 class _Reading:
     """Let an extractor read samples of the data sets that it fits, in every type it may meet.
 
-    Of each kind of observation the first data set where it finds anything: what finds nothing calls
+    Of frames, which cost most, the first data set where it finds anything: what finds nothing calls
     few of its kernels.
     """
 
@@ -153,13 +160,14 @@ def _call(work: _Work) -> str:
 
 
 def _readers(known: Parts) -> Iterator[_Reading]:
-    """Give each extractor with the data sets that it reads, by kind of observation."""
+    """Give each extractor with the data sets that it reads: all of frames, each of the others."""
     read = {(cell.extractor, cell.dataset) for cell in cells(parts=known)}
     for name, extractor in known.extractors.items():
-        kinds: dict[Observation, list[Preset]] = {}
+        kinds: dict[Observation | str, list[Preset]] = {}
         for dataset, preset in known.presets.items():
             if (name, dataset) in read:
-                kinds.setdefault(preset.observation, []).append(preset)
+                is_frames = preset.observation is Observation.FRAMES
+                kinds.setdefault(preset.observation if is_frames else dataset, []).append(preset)
         if kinds:
             yield _Reading(extractor, tuple(map(tuple, kinds.values())))
 

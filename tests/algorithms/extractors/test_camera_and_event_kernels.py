@@ -320,11 +320,11 @@ def test_light_is_the_inverse_of_times_but_for_hot_pixels():
     events = np.column_stack([np.zeros((7, 2)), times])
     out = np.empty(7)
     # lit: the fourth of five, at 3/4 of 1/200, 1/100, 1/100, 1/50, 1: 1/50
-    assert spikes._weights(events, 7, 3.0, -1, out)
+    assert spikes._weights.py_func(events, 7, 3.0, -1, out)
     np.testing.assert_allclose(out, [0.0, 0.02, 0.01, 0.0, 0.005, 0.01, 0.0])
-    assert spikes._weights(events, 7, 50.0001, -1, out)
+    assert spikes._weights.py_func(events, 7, 50.0001, -1, out)
     assert out[0] == 1.0
-    assert not spikes._weights(events[3:4], 1, 3.0, -1, out)
+    assert not spikes._weights.py_func(events[3:4], 1, 3.0, -1, out)
 
 
 @pytest.mark.parametrize("axis", [0, 1])

@@ -191,7 +191,10 @@ def test_hot_pixels_and_dead_ones_cost_little(which):
     assert np.abs(methods(GRID)[which].extract(frame[None]) - place).max() < 0.3
 
 
-@every_method
+# mean-shift's kernel has to be compiled for a single aperture
+@pytest.mark.parametrize(
+    "which", [0, pytest.param(1, marks=pytest.mark.slow), 2], ids=["mcam", "fmms", "feic"]
+)
 def test_one_aperture_is_a_mask_too(which):
     alone = ((0.0, 0.0, WIDTH),)
     places = np.random.default_rng(8).uniform(15, 45, (12, 2))

@@ -51,7 +51,10 @@ DESIGN = design(groups())
 
 
 def model_of(cls, geometry=DESIGN, **changes):
-    return replace(cls.for_sensor(geometry, FeatureKind.SPOTS), **changes)
+    model = replace(cls.for_sensor(geometry, FeatureKind.SPOTS), **changes)
+    # as one reads that is fitted and has found no error: for its places kernels are compiled
+    model.turn_, model.offsets_ = 0.0, np.zeros((len(geometry.apertures), 2))
+    return model
 
 
 def lists(places, displacements, spots):

@@ -14,6 +14,7 @@ import pytest
 
 from algorithms.contract import Observation
 from benchmark.running import compiling
+from benchmark.plan.parts import installed_parts
 from benchmark.running.compiling import compile_kernels
 
 PARTS = """
@@ -46,10 +47,14 @@ def test_what_was_compiled_ahead_is_not_compiled_again(tmp_path: Path) -> None:
     )
     later = """
 import json, sys
+from dataclasses import replace
 from numba.core.dispatcher import Dispatcher
 pda = presets["pda-slit"]
 samples = pda.generate("nominal", "calibration", 1)
 ProfileCentroid.for_sensor(pda.geometry).extract(samples.observations)
+setup = pda.setups["nominal"]
+plain = replace(setup, sensor=replace(setup.sensor, spectrum=None))
+replace(pda, setups={"nominal": plain}).generate("nominal", "test", 1)
 stats = [
     kernel.stats
     for name, module in list(sys.modules.items())
@@ -96,3 +101,14 @@ def test_an_extractor_reads_data_sets_until_it_finds_something_in_one() -> None:
     compiling._Reading(extractor, ((preset("empty"), preset("fits"), preset("spare")),))()
     arrays = ("uint16", True), ("float64", True), ("uint16", False)
     assert read == [(name, *array) for name in ("empty", "fits") for array in arrays]
+
+
+def test_every_data_set_but_those_of_frames_is_read() -> None:
+    """An L of slits and a single hole are both events, and read by kernels of their own."""
+    for reader in compiling._readers(installed_parts()):
+        for presets in reader.kinds:
+            kinds = {preset.observation for preset in presets}
+            assert len(presets) == 1 or kinds == {Observation.FRAMES}
+    (escm,) = [one for one in compiling._readers(installed_parts()) if one.name == "escm"]
+    read = {preset.name for presets in escm.kinds for preset in presets}
+    assert {"event-l-slit", "event-single-aperture"} <= read
