@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from algorithms.contract import Observation
-from benchmark.running import compiling
 from benchmark.plan.parts import installed_parts
+from benchmark.running import compiling
 from benchmark.running.compiling import compile_kernels
 
 PARTS = """
