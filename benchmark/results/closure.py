@@ -19,9 +19,11 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 import os
-from collections.abc import Iterable, Iterator
+import sys
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from pathlib import Path
+from typing import ClassVar, Self
 
 from benchmark.results.analyses import Analyses
 from benchmark.results.definitions import ClosureError, Definitions
@@ -34,6 +36,7 @@ _RUN, _RUN_ALONE = "", "^"
 
 #: Module, and a name in it, `EVERYTHING` or one of the above.
 _Node = tuple[str, str]
+_Stamp = tuple[int, int] | None
 
 
 def reachable_definitions(*entries: str) -> tuple[str, ...]:
@@ -41,23 +44,25 @@ def reachable_definitions(*entries: str) -> tuple[str, ...]:
 
     Parameters and errors as `Sources.digest`.
     """
-    found = Sources().walk(entries)
+    found = Sources.as_they_are().walk(entries)
     return tuple(sorted(f"{module}:{name}" for module, name in found if name.isidentifier()))
 
 
 def closure_digest(*entries: str) -> str:
     """Digest (32 hexadecimal digits) of the code that entries reach; see `Sources.digest`."""
-    return Sources().digest(*entries)
+    return Sources.as_they_are().digest(*entries)
 
 
 class Sources:
-    """The sources as they are now: each file is looked at once.
+    """The sources as they were when they were looked at, each file once.
 
     Parameters
     ----------
     analyses
         What is known of files already.
     """
+
+    _last: ClassVar[Sources | None] = None
 
     def __init__(self, analyses: Analyses | None = None) -> None:
         self._analyses = analyses or Analyses.of_user()
@@ -66,6 +71,26 @@ class Sources:
         self._definitions: dict[str, Definitions] = {}
         self._edges: dict[_Node, tuple[_Node, ...]] = {}
         self._lines: dict[_Node, str] = {}
+        self._digests: dict[tuple[str, ...], str] = {}
+        self._seen: dict[Path, _Stamp] = {}
+        self._search_path = tuple(sys.path)
+
+    @classmethod
+    def as_they_are(cls) -> Self:
+        """Return the sources last asked for, or new ones where a file or directory has changed.
+
+        Neither are they taken that have learnt of packages beside ours: for others those are not
+        first party.
+        """
+        last = cls._last
+        if not isinstance(last, cls) or last.is_outdated():
+            cls._last = last = cls()
+        return last
+
+    def is_outdated(self) -> bool:
+        """Return whether something has changed, or others would find other sources."""
+        known = self._roots == set(FIRST_PARTY) and self._search_path == tuple(sys.path)
+        return not known or any(_stamp(path) != then for path, then in self._seen.items())
 
     def digest(self, *entries: str) -> str:
         """Digest (32 hexadecimal digits) of the code that entries reach.
@@ -82,8 +107,10 @@ class Sources:
         ClosureError
             When a module of `entries` has no source file, or one that is reached cannot be parsed.
         """
-        lines = sorted(filter(None, map(self._spelt, self.walk(entries))))
-        return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:32]
+        if entries not in self._digests:
+            lines = sorted(filter(None, map(self._spelt, self.walk(entries))))
+            self._digests[entries] = hashlib.sha256("\n".join(lines).encode()).hexdigest()[:32]
+        return self._digests[entries]
 
     def walk(self, entries: Iterable[str]) -> set[_Node]:
         """Return all that entries reach."""
@@ -92,6 +119,7 @@ class Sources:
         if new := {module.partition(".")[0] for module, _ in split} - self._roots:
             self._roots |= new
             self._edges.clear()
+            self._digests.clear()
         for module, qualified in split:
             if self._path(module) is None:
                 raise ClosureError(f"no source file found for module {module!r}")
@@ -109,7 +137,9 @@ class Sources:
 
     def _path(self, module: str) -> Path | None:
         if module not in self._paths:
-            self._paths[module] = module_path(module)
+            found = self._paths[module] = module_path(module)
+            for one in () if found is None else _directories(module, found):
+                self._seen.setdefault(one, _stamp(one))
         return self._paths[module]
 
     def _of(self, module: str) -> Definitions:
@@ -117,6 +147,7 @@ class Sources:
             path = self._path(module)
             if path is None:
                 raise ClosureError(f"no source file found for module {module!r}")
+            self._seen[path] = _stamp(path)
             self._definitions[module] = self._analyses.of(path)
         return self._definitions[module]
 
@@ -252,6 +283,20 @@ class Sources:
             above = parts[: len(parts) - level + is_package]
             return ".".join([*above, bare] if bare else above)
         return name
+
+
+def _directories(module: str, path: Path) -> Sequence[Path]:
+    """Return a module's directory and those above it in its package: new modules change them."""
+    return path.parents[: module.count(".") + (path.name == "__init__.py")]
+
+
+def _stamp(path: Path) -> _Stamp:
+    """Return size and time of the last change of a file or directory; nothing of none."""
+    try:
+        status = path.stat()
+    except FileNotFoundError:
+        return None
+    return status.st_size, status.st_mtime_ns
 
 
 def module_path(name: str) -> Path | None:

@@ -231,7 +231,7 @@ def current(parts: Parts) -> Components:
     parts
         Data sets and implementations.
     """
-    sources = Sources()
+    sources = Sources.as_they_are()
     found = Components(
         stages=stage_digests(sources),
         datasets={name: _of_dataset(one, sources) for name, one in parts.presets.items()},

@@ -38,7 +38,7 @@ def condition_digests(preset: Preset, sources: Sources | None = None) -> dict[st
     """
     from benchmark.datasets.corrected import reference_condition  # noqa: PLC0415 - loads Numba
 
-    code = (sources or Sources()).digest(*entries_of(preset))
+    code = (sources or Sources.as_they_are()).digest(*entries_of(preset))
     parameters = {name: digest(preset.parameters(name)) for name in preset.conditions}
     return {
         name: short_digest(
@@ -57,7 +57,9 @@ def condition_digests(preset: Preset, sources: Sources | None = None) -> dict[st
 
 def series_digest(series: object) -> str:
     """Digest of a series of synthetic features: of what it holds, and of the code of it all."""
-    return short_digest({"holds": series, "code": Sources().digest(*entries_of(series))})
+    return short_digest(
+        {"holds": series, "code": Sources.as_they_are().digest(*entries_of(series))}
+    )
 
 
 def method_digest(method: type[Extractor] | Scored, sources: Sources | None = None) -> str:
@@ -66,7 +68,7 @@ def method_digest(method: type[Extractor] | Scored, sources: Sources | None = No
         {
             "name": method.about.name,
             "version": method.about.version,
-            "code": (sources or Sources()).digest(*method_entries(method)),
+            "code": (sources or Sources.as_they_are()).digest(*method_entries(method)),
         }
     )
 
@@ -77,7 +79,7 @@ def stage_digests(sources: Sources | None = None) -> dict[str, str]:
     What hands stages on, keeps, times or stores them is not among it, as it changes no number: no
     stage's function or argument names it (`tests/benchmark/results/test_what_moves_digests.py`).
     """
-    known = sources or Sources()
+    known = sources or Sources.as_they_are()
     return {name: short_digest(known.digest(*entries)) for name, entries in STAGES.items()}
 
 
