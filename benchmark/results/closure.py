@@ -20,7 +20,7 @@ import hashlib
 import importlib.util
 import os
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import ClassVar, Self
@@ -74,14 +74,11 @@ class Sources:
         self._digests: dict[tuple[str, ...], str] = {}
         self._seen: dict[Path, _Stamp] = {}
         self._search_path = tuple(sys.path)
+        self._beside: dict[frozenset[str], Sources] = {}
 
     @classmethod
     def as_they_are(cls) -> Self:
-        """Return the sources last asked for, or new ones where a file or directory has changed.
-
-        Neither are they taken that have learnt of packages beside ours: for others those are not
-        first party.
-        """
+        """Return the sources last asked for, or new ones where a file or directory has changed."""
         last = cls._last
         if not isinstance(last, cls) or last.is_outdated():
             cls._last = last = cls()
@@ -89,8 +86,21 @@ class Sources:
 
     def is_outdated(self) -> bool:
         """Return whether something has changed, or others would find other sources."""
-        known = self._roots == set(FIRST_PARTY) and self._search_path == tuple(sys.path)
-        return not known or any(_stamp(path) != then for path, then in self._seen.items())
+        moved = self._search_path != tuple(sys.path)
+        return moved or any(_stamp(path) != then for path, then in self._seen.items())
+
+    def _with_packages_of(self, entries: Sequence[str]) -> Sources:
+        """Return these sources with the top-level packages of entries as first party."""
+        packages = frozenset(entry.partition(":")[0].partition(".")[0] for entry in entries)
+        more = packages - self._roots
+        if not more:
+            return self
+        if more not in self._beside:
+            made = self._beside[more] = Sources(self._analyses)
+            made._roots |= more
+            made._paths, made._definitions = self._paths, self._definitions
+            made._lines, made._seen = self._lines, self._seen
+        return self._beside[more]
 
     def digest(self, *entries: str) -> str:
         """Digest (32 hexadecimal digits) of the code that entries reach.
@@ -112,15 +122,14 @@ class Sources:
             self._digests[entries] = hashlib.sha256("\n".join(lines).encode()).hexdigest()[:32]
         return self._digests[entries]
 
-    def walk(self, entries: Iterable[str]) -> set[_Node]:
+    def walk(self, entries: Sequence[str]) -> set[_Node]:
         """Return all that entries reach."""
+        known = self._with_packages_of(entries)
+        if known is not self:
+            return known.walk(entries)
         waiting: list[_Node] = []
-        split = [entry.partition(":")[::2] for entry in entries]
-        if new := {module.partition(".")[0] for module, _ in split} - self._roots:
-            self._roots |= new
-            self._edges.clear()
-            self._digests.clear()
-        for module, qualified in split:
+        for entry in entries:
+            module, _, qualified = entry.partition(":")
             if self._path(module) is None:
                 raise ClosureError(f"no source file found for module {module!r}")
             name = qualified.partition(".")[0]
