@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import os
 import socket
 import sys
@@ -57,7 +58,10 @@ def serve(
             _serve_by_many(listener, workers)
             return
         config = uvicorn.Config(application, **_QUIET, **bounds())
-        uvicorn.Server(config).run(sockets=[listener])
+        try:
+            uvicorn.Server(config).run(sockets=[listener])
+        finally:
+            gc.freeze()  # else Python walks all that was loaded before it ends, for a second or two
 
 
 def _serve_by_many(listener: socket.socket, workers: int) -> None:
