@@ -28,19 +28,12 @@ from registry.paths import path_table
 from registry.pipelines import PipelineErrors
 from registry.ranking import SORTS, TaskMeasure
 from registry.requirements import CONFIDENCE, Requirements
-from registry.texts.calibrations import (
-    MOST_TEXTS,
-    CalibrationTexts,
-    StudyTexts,
-    to_json_bytes,
-)
+from registry.texts.calibrations import MOST_TEXTS, CalibrationTexts, StudyTexts, to_json_bytes
 from registry.texts.paths import PathTexts
 
 #: Architectures whose calibrations are kept, some 7 kB each.
 MOST_ARCHITECTURES = 3072
-
-
-#: Limit on the error that all keep, and how much of an answer is usually asked for.
+#: An error limit that every pipeline meets; architectures and calibrations of a usual answer.
 _LARGEST_DEG, _USUAL_SIZE = 180.0, (20, 5)
 
 

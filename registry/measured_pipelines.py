@@ -48,7 +48,7 @@ class PartialAnswer(Generic[Of]):
 
     @property
     def coarse_deg(self) -> float:
-        """Error above which it is far more accurate; infinite if it answers too seldom."""
+        """Threshold: pipelines with a larger error name this one as finer; infinite for none."""
         return FINER * self.error_deg if self.availability >= LEAST_ANSWERED else math.inf
 
     def is_finer(self, error_deg: float) -> bool:

@@ -16,8 +16,9 @@ from api.http.requests import StrictRequest
 class QueryRoute(AnswerRoute):
     """A route whose path function takes, where it is asked by GET, `known` and `query` alone.
 
-    FastAPI resolves dependencies one after another and reads a query parameter by parameter: for
-    forty of them that takes longer than an empty endpoint. Here the model reads them all at once.
+    FastAPI reads a query parameter by parameter, which for forty of them takes half the time of an
+    empty endpoint, and resolves dependencies one after another, which takes an eighth. Here the
+    model reads the whole query.
     """
 
     def computing(self) -> Handler:

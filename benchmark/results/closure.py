@@ -54,7 +54,7 @@ def closure_digest(*entries: str) -> str:
 
 
 class Sources:
-    """The sources as they were when they were looked at, each file once.
+    """Source files, each read once: later changes are not seen (`is_outdated` tells of them).
 
     Parameters
     ----------
@@ -78,14 +78,14 @@ class Sources:
 
     @classmethod
     def as_they_are(cls) -> Self:
-        """Return the sources last asked for, or new ones where a file or directory has changed."""
+        """Return the sources of the last call, or new ones if `is_outdated`."""
         last = cls._last
         if not isinstance(last, cls) or last.is_outdated():
             cls._last = last = cls()
         return last
 
     def is_outdated(self) -> bool:
-        """Return whether something has changed, or others would find other sources."""
+        """Return whether a file that was read, its directory or `sys.path` has changed."""
         moved = self._search_path != tuple(sys.path)
         return moved or any(_stamp(path) != then for path, then in self._seen.items())
 
@@ -300,7 +300,7 @@ def _directories(module: str, path: Path) -> Sequence[Path]:
 
 
 def _stamp(path: Path) -> _Stamp:
-    """Return size and time of the last change of a file or directory; nothing of none."""
+    """Return size and time of the last change of a file or directory; None if it is missing."""
     try:
         status = path.stat()
     except FileNotFoundError:

@@ -160,7 +160,7 @@ def _call(work: _Work) -> str:
 
 
 def _readers(known: Parts) -> Iterator[_Reading]:
-    """Give each extractor with the data sets that it reads: all of frames, each of the others."""
+    """Yield each extractor with its data sets: those of frames as one group, each other alone."""
     read = {(cell.extractor, cell.dataset) for cell in cells(parts=known)}
     for name, extractor in known.extractors.items():
         kinds: dict[Observation | str, list[Preset]] = {}

@@ -62,7 +62,7 @@ class StudyTexts:
 class PipelineText:
     """The measured pipelines of a calibration as JSON: its best, and its best on other data sets.
 
-    Each is one object, however many questions select them: others are kept by it.
+    Equal pipelines share one object, so that it can be part of a cache key.
 
     Attributes
     ----------
@@ -209,11 +209,10 @@ class CalibrationTexts:
         return [to_json_bytes(row.facts())[:-1] for row in self.arrays.rows]
 
 
-#: Of a pipeline, whose numbers of units and finer pipeline are put in where they are asked for.
+#: Pipelines of a calibration that has none.
 _NOT_MEASURED = b'null,"other_datasets":[]'
+#: Members of a pipeline that are replaced where a question asks for units or a finer pipeline.
 _NOT_COUNTED, _NOT_FINER = b'"within_limit":null', b'"finer":null'
-
-
 #: Error above which a pipeline is finer, and its text: for none.
 NO_FINER = math.inf, b""
 
@@ -245,7 +244,7 @@ def _judged_text(
 
 
 def _put_in(text: bytes, place: bytes, parts: Sequence[bytes]) -> bytes:
-    """Return a text with parts put in the places of one that it has as often."""
+    """Replace every occurrence of `place` in a text, each by the next of as many parts."""
     begun, *others = text.split(place)
     return begun + b"".join(itertools.chain.from_iterable(zip(parts, others, strict=True)))
 

@@ -124,3 +124,11 @@ def test_a_pipeline_without_an_error_has_no_count() -> None:
     assert (
         table.errors(("albedo",), None, (0.0, 0.9)).units_within(1.0).tolist() == [NOT_COUNTED] * 2
     )
+
+
+@pytest.mark.parametrize("rows", [[], [pipeline(rms_deg=None)]])
+def test_nothing_measured_can_be_prepared_for(rows: list[object], facts_of: FactsOf) -> None:
+    facts, kept = facts_of([STUDY]), Measurements(rows)
+    fresh = recommend({"max_error_deg": 1.0}, list(rows), facts=facts).document
+    prepare(design_table(facts, kept))
+    assert recommend({"max_error_deg": 1.0}, kept, facts=facts).document == fresh

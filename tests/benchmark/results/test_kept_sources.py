@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -21,11 +22,14 @@ def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
     monkeypatch.setattr(closure, "FIRST_PARTY", ("sources_pkg",))
     monkeypatch.setattr(Sources, "_last", None)
     monkeypatch.syspath_prepend(tmp_path)
+    times = itertools.count(10**18, 10**9)
 
     def to(name: str, content: str) -> None:
         path = tmp_path / "sources_pkg" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(content)
+        # two writes within one tick of the file system's clock would have one time
+        os.utime(path, ns=(next(times), next(times)))
 
     to("__init__.py", "")
     to("inner/__init__.py", "")
