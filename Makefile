@@ -43,9 +43,11 @@ $(DEVELOPING): $(SERVING) requirements-dev.lock
 	$(PIP) --require-hashes -r requirements.lock -r requirements-dev.lock
 	touch $@
 
-# Numerical kernels, compiled once and kept: else every first call would wait for its own.
+# Numerical kernels, compiled once and kept: else every first call would wait for its own. Bytecode
+# of all that tests import: else each worker would make it.
 $(COMPILED): $(DEVELOPING)
 	$(BIN)/sunatlas compile --workers $(WORKERS) --quiet
+	-$(BIN)/python -m pytest --collect-only --quiet > /dev/null
 	touch $@
 
 # The guide, kept in the user's cache; quick where its pages have not changed.

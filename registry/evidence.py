@@ -14,7 +14,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from registry.catalogue import Catalogue
 from registry.fitting import stages
@@ -26,8 +26,7 @@ State = Literal["measured", "studied", "impossible", "unknown", "unstudied"]
 STATES: tuple[State, ...] = ("measured", "studied", "impossible", "unknown", "unstudied")
 
 
-@dataclass(frozen=True, order=True)
-class PipelineRun:
+class PipelineRun(NamedTuple):
     """A pipeline on a data set, by the names that the command line takes."""
 
     dataset: str

@@ -5,7 +5,9 @@ from __future__ import annotations
 import gc
 import hashlib
 import os
+import sys
 from collections.abc import Iterator
+from functools import lru_cache
 
 # A worker of xdist has a core of its own; threads of BLAS beside it would wait for each other.
 # Said before NumPy is loaded, and to the processes that tests start.
@@ -14,6 +16,7 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import pytest  # noqa: E402
 from hypothesis import HealthCheck, settings  # noqa: E402
+from threadpoolctl import ThreadpoolController  # noqa: E402
 
 settings.register_profile(
     "any-machine", deadline=None, suppress_health_check=[HealthCheck.too_slow]
@@ -146,4 +149,22 @@ def _same_scores_are_read_once() -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(store, "read_csv", kept)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _libraries_with_threads_are_looked_for_once() -> Iterator[None]:
+    """Every measurement looks for them anew, among all that any test has loaded by then.
+
+    They are looked for again where more modules are loaded than before.
+    """
+    from benchmark.running import threads
+
+    found = lru_cache(maxsize=1)(lambda modules: ThreadpoolController())
+
+    def limits(**asked):
+        return found(len(sys.modules)).limit(**asked)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(threads, "threadpool_limits", limits)
         yield

@@ -21,11 +21,12 @@ def problem(table: str, index: int, column: str, message: str) -> Problem:
 
 def texts(frame: pd.DataFrame, *columns: str) -> Iterator[tuple[int, tuple[str, ...]]]:
     """Yield (index, cells as text, '' where missing) of some columns."""
-    parts = [
-        ["" if missing else str(cell) for cell, missing in zip(column, column.isna(), strict=True)]
-        for column in (frame[name] for name in columns)
-    ]
-    yield from enumerate(zip(*parts, strict=True))
+    yield from enumerate(zip(*(_texts(frame[name]) for name in columns), strict=True))
+
+
+def _texts(column: pd.Series) -> list[str]:
+    cells = zip(column.tolist(), column.isna().tolist(), strict=True)  # lists: walked five times
+    return ["" if missing else str(cell) for cell, missing in cells]  # as fast as columns
 
 
 def known_values(frames: Frames) -> dict[tuple[str, str], set[str]]:
