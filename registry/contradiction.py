@@ -61,7 +61,7 @@ def design_words(candidate: Candidate) -> str:
 
 def is_contradicted(usual_deg: float, best_deg: float) -> bool:
     """Return whether an error is so much larger than the smallest that it contradicts studies."""
-    return math.isfinite(best_deg) and usual_deg >= LEAST_RATIO * best_deg
+    return usual_deg > best_deg and usual_deg >= LEAST_RATIO * best_deg
 
 
 def against_literature(usual: Candidate, used: int, best: Candidate, tried: int) -> str | None:
@@ -112,8 +112,8 @@ def against_advice(answer: Answer, tasks: Sequence[str]) -> tuple[str, ...]:
         mine, theirs = scale * reached[first], scale * reached[other]
         if math.isinf(mine) or mine <= theirs or abs(mine) == abs(theirs):
             continue
-        ratio = mine / theirs if mine > 0 else theirs / mine
-        if ratio < LEAST_RATIO:
+        less, more = sorted((abs(mine), abs(theirs)))
+        if more < LEAST_RATIO * less:
             continue
         named = ", ".join(_words(places[at]) for at in advised if math.isfinite(reached[at]))
         found.append(
@@ -165,7 +165,7 @@ def _error(candidate: Candidate) -> str:
 
 
 def _times(worse: Candidate, better: Candidate) -> str:
-    if not math.isfinite(worse.error_deg):
+    if not math.isfinite(worse.error_deg) or not better.error_deg:
         return ""
     return f", {worse.error_deg / better.error_deg:.3g} times smaller"
 

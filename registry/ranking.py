@@ -89,7 +89,7 @@ class Regret:
     """What the first calibration of an answer errs, beside the best measured one that meets all.
 
     ``ratio`` is the first's error over the best's: 1 where they are the same, None where the first
-    is not measured.
+    is not measured or the best has no error at all.
     """
 
     first: Candidate
@@ -98,9 +98,10 @@ class Regret:
     @property
     def ratio(self) -> float | None:
         """How many times the error."""
-        if not math.isfinite(self.first.error_deg):
-            return None
-        return self.first.error_deg / self.best.error_deg
+        first, best = self.first.error_deg, self.best.error_deg
+        if first == best:
+            return 1.0
+        return first / best if math.isfinite(first) and best else None
 
     def to_dict(self, sentence: str) -> dict[str, object]:
         """Return the regret as in the HTTP answer, beside a sentence that says it."""

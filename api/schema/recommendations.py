@@ -188,7 +188,7 @@ class Regret(Shape):
         description="Lowest measured error that meets the requirements, degrees."
     )
     ratio: float | None = Field(
-        description="Error of the first calibration divided by the lowest; null if not measured."
+        description="Error of the first calibration over the lowest; null if unknown or over zero."
     )
     sentence: str = Field(description="The comparison as a sentence.")
 

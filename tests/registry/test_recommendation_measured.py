@@ -284,6 +284,31 @@ def test_what_answers_too_seldom_is_contradicted_with_the_share_that_it_answers(
     assert "0.1 deg RMS at 70 % availability" in said
 
 
+@pytest.mark.parametrize(("usual_deg", "ratio"), [(0.1, None), (0.0, 1.0)])
+def test_beside_an_error_of_zero_no_ratio_is_said(
+    facts_of: Callable[[Rows], Facts], usual_deg: float, ratio: float | None
+) -> None:
+    """A pipeline on exact numbers may have one."""
+    facts = facts_of([STUDY, STUDY])
+    rows = [pipeline(rms_deg=usual_deg), pipeline(model="lut", stages=("LUT",), rms_deg=0.0)]
+    answer = recommend({}, rows, sort="support", facts=facts)
+    assert answer.regret is not None
+    assert (answer.regret["best_deg"], answer.regret["ratio"]) == (0.0, ratio)
+    said = only(answer).contradiction
+    assert (said is None) == (usual_deg == 0.0)
+    assert "times" not in f"{said} {answer.regret['sentence']}"
+
+
+def test_an_error_of_zero_that_is_not_advised_is_said(survey: Facts) -> None:
+    rows = [
+        pipeline(mask="Encoded", rms_deg=0.02),
+        pipeline(dataset="e", mask="Lens", rms_deg=0.0),
+    ]
+    (said,) = recommend({"task": "Accuracy"}, rows, facts=survey).contradictions
+    assert "0.02 deg" in said
+    assert said.endswith("not advised, reaches 0 deg")
+
+
 def test_errors_that_hardly_differ_contradict_nothing(facts_of: Callable[[Rows], Facts]) -> None:
     rows = [pipeline(), pipeline(model="lut", stages=("LUT",), rms_deg=0.092)]
     assert only(recommend({}, rows, facts=one_study(facts_of))).contradiction is None
