@@ -46,7 +46,7 @@ class RankedPlace(NamedTuple):
     key : what it is ranked by
     number, at : its position in the table, and among those that meet the requirements
     studies : its studies (bits) that have what is asked of studies
-    studies_within_limits : those of them whose stated numbers keep the limits, too
+    stated : those of them by which designs that are not measured are judged
     start, end : its part of `Answer.designs`
     best, row : the design with the smallest error and its pipeline, by position; -1 for none
     rank_of_best : of that design on the architecture
@@ -60,7 +60,7 @@ class RankedPlace(NamedTuple):
     at: int
     place: Place
     studies: int
-    studies_within_limits: int
+    stated: int
     start: int
     end: int
     best: int
@@ -88,7 +88,7 @@ class Answer:
         self.question = question
         self.sort = sort
         self.best = question.best_pipelines
-        counting = question.studies, question.studies_within_limits
+        counting = question.studies, question.stated_of_unmeasured
         every, used = question.arrays.rank_designs(self.best, *counting, sort)
         self.designs: Positions = every[question.matching_designs[every]]
         self._used = used
@@ -108,7 +108,7 @@ class Answer:
         question, best, sort = self.question, self.best, self.sort
         include, advising = question.requirements.include, question.advice_key
         tasks, of_errors = include.get("task", ()), "error" in include
-        studies, stated = question.studies, question.studies_within_limits
+        studies, stated = question.studies, question.stated_of_unmeasured
         facts = _place_facts(question.table)
         advice_of = facts.advice(advising)
         starts: list[int] = self._starts.tolist()

@@ -115,7 +115,7 @@ class AnswerTexts:
             shown = total if calibrations is None else min(calibrations, total)
             listed = slice(size * place.start, size * (place.start + shown))
             key = (
-                *(errors, judged, place.studies, place.studies_within_limits),
+                *(errors, judged, place.studies, place.stated),
                 *(finer.get(number), usual.get(number), place.best, place.rank_of_best),
                 *(designs[listed], rows[listed], self._units(place.best, designs[listed], within)),
             )
@@ -158,7 +158,7 @@ class AnswerTexts:
             (_rank_text(place.rank_of_best, first=True), *_rank_texts(shown)),
             (place.best, *listed.tolist()),
             (place.row, *answer.best.row[listed].tolist()),
-            *(studies, place.studies_within_limits, errors),
+            *(studies, place.stated, errors),
             *(answer.question.finest_partial_answers.get(number, -1), within, ends),
         )
         texts.append(b"]}")

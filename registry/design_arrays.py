@@ -9,7 +9,8 @@ from __future__ import annotations
 import itertools
 import weakref
 from collections.abc import Iterable, Mapping, Sequence
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, reduce
+from operator import or_
 from typing import NamedTuple
 
 import numpy as np
@@ -191,6 +192,8 @@ class DesignArrays(PipelineTable):
         )
         self.is_unmeasured = ~self.is_measured
         self.unmeasured_designs = np.flatnonzero(self.is_unmeasured)
+        unmeasured = (self.designs[at] for at in self.unmeasured_designs.tolist())
+        self.studies_of_unmeasured = reduce(or_, (d.users | d.with_model for d in unmeasured), 0)
         self.place_studies = self.words_of(place.studies for place in places)
         with_model = self.words_of(design.with_model for design in self.designs)
         sets = np.concatenate((self.place_studies, with_model, self.users), axis=1)

@@ -54,6 +54,14 @@ class Question:
         for name in self.limits:
             self.studies_within_limits &= self._studies_within[name]
 
+    @property
+    def stated_of_unmeasured(self) -> int:
+        """Those of `studies_within_limits` that use what an unmeasured design does (bits).
+
+        Stated numbers decide of such designs alone: many questions have the same of these studies.
+        """
+        return self.studies_within_limits & self.arrays.studies_of_unmeasured
+
     @staticmethod
     def limits_of(requirements: Requirements) -> Limits:
         """Return the limits by which measured pipelines are selected and judged."""
@@ -96,7 +104,7 @@ class Question:
         found: Flags = best.row >= 0
         if largest is not None:
             found &= best.error <= largest
-        found |= arrays.unmeasured_designs_of(self.studies_within_limits)
+        found |= arrays.unmeasured_designs_of(self.stated_of_unmeasured)
         for designs in self.designs_with.values():
             found &= designs
         if any(

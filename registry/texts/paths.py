@@ -88,7 +88,8 @@ class PathTexts:
             among & reduce(or_, compress(paths, designs[at].tolist()), 0)
             for at, paths in self._leading
         )
-        return self._all(measured, question.studies, others, question.studies_within_limits)
+        stated = question.studies_within_limits if others else 0
+        return self._all(measured, question.studies, others, stated)
 
     def _from_tasks(self, include: Iterable[str] | None, exclude: Iterable[str]) -> int:
         """Return the paths from a task that is asked for; None asks for every one."""
