@@ -23,7 +23,7 @@ from benchmark.plan.parts import Parts, installed_parts
 from benchmark.processes import call_to_end
 from benchmark.results.csv_tables import Row
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running.runner import run
+from benchmark.running.runner import RunInterruptedError, run
 from files.temporary import temporary_directory
 
 #: Units that no board is made of.
@@ -82,16 +82,25 @@ def first_groups(
 def score_fresh_units(
     store: Store, workers: int = 1, *, parts: Parts | None = None
 ) -> list[FreshUnitResult]:
-    """Score the first of every board on the fresh units; nothing is written to the store."""
+    """Score the first of every board on the fresh units; nothing is written to the store.
+
+    Raises
+    ------
+    RunInterruptedError
+        On Ctrl-C; nothing is kept.
+    """
     known = parts or installed_parts()
     scores = store.scores()
     groups = first_groups(scores, known)
     boards = {dataset: [*first, *behind] for dataset, (first, behind) in groups.items()}
     wanted = [replace(c, unit=unit) for cells in boards.values() for c in cells for unit in FRESH]
-    with temporary_directory() as temporary:
-        fresh = Store(temporary)
-        run(wanted, fresh, workers, parts=known)
-        measured = fresh.scores()
+    try:
+        with temporary_directory() as temporary:
+            fresh = Store(temporary)
+            run(wanted, fresh, workers, parts=known)
+            measured = fresh.scores()
+    except KeyboardInterrupt as interrupted:
+        raise RunInterruptedError("interrupted; nothing of it is kept") from interrupted
     found = []
     for dataset, cells in boards.items():
         logs = _logs(cells, measured, FRESH)

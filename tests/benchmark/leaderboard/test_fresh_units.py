@@ -13,6 +13,7 @@ from benchmark.leaderboard.fresh_units import FRESH, FreshUnitResult, first_grou
 from benchmark.leaderboard.scope import UNITS
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.store import PUBLISHED, Store
+from benchmark.running.runner import RunInterruptedError
 
 NAME = "qpd-single-aperture"
 
@@ -62,3 +63,14 @@ def test_it_fails_where_more_than_a_twentieth_of_the_leaders_are_behind(
     assert f"{40 - behind} of 40 leaders" in said
     with pytest.raises(SystemExit):
         fresh_units.main(["--workers", "0"])
+
+
+def test_ctrl_c_says_that_nothing_is_kept(parts: Parts, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was measured lay in a temporary store."""
+
+    def interrupted(*_arguments: object, **_options: object) -> None:
+        raise RunInterruptedError("interrupted; what was measured is kept")
+
+    monkeypatch.setattr(fresh_units, "run", interrupted)
+    with pytest.raises(RunInterruptedError, match=r"^interrupted; nothing of it is kept$"):
+        fresh_units.score_fresh_units(Store(PUBLISHED), parts=parts)
