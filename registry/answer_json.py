@@ -116,8 +116,8 @@ class AnswerTexts:
             listed = slice(size * place.start, size * (place.start + shown))
             key = (
                 *(errors, judged, place.studies, place.stated),
-                *(finer.get(number), usual.get(number), place.best, place.rank_of_best),
-                *(designs[listed], rows[listed], self._units(place.best, designs[listed], within)),
+                *(finer.get(number), usual.get(number), place.best, designs[listed], rows[listed]),
+                self._units(place.best, designs[listed], within),
             )
             texts = kept.get(key)
             if texts is None:
@@ -129,7 +129,8 @@ class AnswerTexts:
             best, contradiction, others = texts
             measures = self._measures(place.measures) if place.measures else b"[]"
             parts += (
-                *(_rank_text(at + 1), self._head(number, place.studies, advising), *best),
+                *(_rank_text(at + 1), self._head(number, place.studies, advising)),
+                *(_rank_text(place.rank_of_best, first=True), *best),
                 b',"pareto":%b,"contradiction":%b,"measures":%b,"count":%d,"calibrations":['
                 % (b"true" if at in unbeaten else b"false", contradiction, measures, total),
                 *others,
@@ -151,11 +152,14 @@ class AnswerTexts:
         within: bytes,
         ends: tuple[bytes, bytes],
     ) -> tuple[list[bytes], bytes, list[bytes]]:
-        """Return the best calibration of an architecture, what it contradicts, and those shown."""
+        """Return the best calibration of an architecture, what it contradicts, and those shown.
+
+        The rank of the best is left out.
+        """
         number, studies, errors = place.number, place.studies, answer.best.errors
         listed = answer.designs[place.start : place.start + shown]
         texts = self.calibrations.parts(
-            (_rank_text(place.rank_of_best, first=True), *_rank_texts(shown)),
+            (b"", *_rank_texts(shown)),
             (place.best, *listed.tolist()),
             (place.row, *answer.best.row[listed].tolist()),
             *(studies, place.stated, errors),
@@ -168,7 +172,7 @@ class AnswerTexts:
             if is_contradicted(error_deg, place.error_deg):
                 compared = design, row, place.best, place.row
                 contradiction = self._contradiction(errors, studies, *compared)
-        return texts[:4], contradiction, texts[4:]
+        return texts[1:4], contradiction, texts[4:]
 
     def _head_text(
         self, number: int, studies: int, advising: tuple[tuple[str, ...] | None, ...]
