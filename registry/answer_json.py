@@ -10,9 +10,8 @@ import hashlib
 import itertools
 import math
 import weakref
+from collections.abc import Sequence
 from functools import cached_property, lru_cache
-
-import numpy as np
 
 from registry.answer import Answer, RankedPlace
 from registry.contradiction import (
@@ -109,15 +108,17 @@ class AnswerTexts:
         size = answer.designs.itemsize
         largest = question.requirements.largest_deg
         within = b"" if largest is None else errors.units_within(largest).tobytes()
+        positions: list[int] = answer.designs.tolist() if within else []
         parts: list[bytes] = []
         for at, place in enumerate(answer.places[:limit]):
             number, total = place.number, place.end - place.start
             shown = total if calibrations is None else min(calibrations, total)
-            listed = slice(size * place.start, size * (place.start + shown))
+            end = place.start + shown
+            listed = slice(size * place.start, size * end)
             key = (
                 *(errors, judged, place.studies, place.stated),
                 *(finer.get(number), usual.get(number), place.best, designs[listed], rows[listed]),
-                self._units(place.best, designs[listed], within),
+                self._units([place.best, *positions[place.start : end]], within),
             )
             texts = kept.get(key)
             if texts is None:
@@ -137,12 +138,12 @@ class AnswerTexts:
             )
         return parts
 
-    def _units(self, best: int, designs: bytes, within: bytes) -> bytes:
-        """Return how many units keep the limit, of all pipelines of one design and of others."""
+    def _units(self, designs: Sequence[int], within: bytes) -> bytes:
+        """Return how many units keep the limit, of all pipelines of some designs."""
         if not within:
             return b""
-        every, first = (best, *np.frombuffer(designs, np.int64).tolist()), self.arrays.first_row
-        return b"".join([within[first[one] : first[one + 1]] for one in every])
+        first = self.arrays.first_row
+        return b"".join([within[first[one] : first[one + 1]] for one in designs])
 
     def _calibrations(
         self,

@@ -100,13 +100,13 @@ def against_advice(answer: Answer, tasks: Sequence[str]) -> tuple[str, ...]:
     for task, values_of, scale, unit in _MEASURED:
         if tasks and task not in tasks:
             continue
+        advised = [at for at, place in enumerate(places) if task in place.advised_tasks]
+        if len(advised) in {0, len(places)}:
+            continue
         values = values_of(answer)
         reached = answer.least_by_place(values)
-        other = reached.index(min(reached)) if reached else -1
-        if other < 0 or task in places[other].advised_tasks:
-            continue
-        advised = [at for at, place in enumerate(places) if task in place.advised_tasks]
-        if not advised:
+        other = reached.index(min(reached))
+        if other in advised:
             continue
         first = min(advised, key=reached.__getitem__)
         mine, theirs = scale * reached[first], scale * reached[other]
