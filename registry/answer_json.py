@@ -171,8 +171,9 @@ class AnswerTexts:
         if number in answer.usual:
             design, row, error_deg = answer.usual[number]
             if is_contradicted(error_deg, place.error_deg):
-                compared = design, row, place.best, place.row
-                contradiction = self._contradiction(errors, studies, *compared)
+                designs, compared = self.arrays.designs, (design, row, place.best, place.row)
+                counts = [(designs[one].users & studies).bit_count() for one in compared[::2]]
+                contradiction = self._contradiction(errors, *counts, *compared)
         return texts[1:4], contradiction, texts[4:]
 
     def _head_text(
@@ -206,7 +207,8 @@ class AnswerTexts:
     def _contradiction_text(  # noqa: PLR0917 - by these it is kept
         self,
         errors: PipelineErrors,
-        studies: int,
+        used: int,
+        tried: int,
         usual: int,
         usual_row: int,
         best: int,
@@ -215,11 +217,10 @@ class AnswerTexts:
         """Return the sentence where measurement contradicts the literature; null for none.
 
         It is of the calibration that most studies used and the one with the smallest error, both
-        measured: their positions and those of their pipelines, and the studies that count (bits).
+        measured: how many studies used each, and the positions of both and of their pipelines.
         """
-        arrays, pairs = self.arrays, ((usual, usual_row), (best, best_row))
-        first, second = (arrays.candidate(*pair, errors) for pair in pairs)
-        used, tried = ((arrays.designs[pair[0]].users & studies).bit_count() for pair in pairs)
+        pairs = (usual, usual_row), (best, best_row)
+        first, second = (self.arrays.candidate(*pair, errors) for pair in pairs)
         return to_json_bytes(against_literature(first, used, second, tried))
 
 

@@ -142,8 +142,8 @@ class CalibrationTexts:
         parts: list[bytes] = []
         for begins, design, row in zip(begun, designs, rows, strict=True):
             of, counting = self.arrays.designs[design], studies if row >= 0 else stated
-            with_model = (of.with_model & counting).bit_count()
-            used = self._used(design, of.users & counting, with_model, of_place)
+            taken, with_model = of.users & counting, (of.with_model & counting).bit_count()
+            used = self._used(design, taken, with_model, of_place if taken else 0)
             if row < 0:
                 parts += (begins, used, _NOT_MEASURED, ends[1])
                 continue
@@ -162,7 +162,8 @@ class CalibrationTexts:
         ----------
         design : its position
         taken : studies that used it (bits)
-        with_model, of_place : how many used its compensations and model, and its architecture
+        with_model, of_place : how many used its compensations and model, and its architecture; the
+            second is 0 where none used it
         """
         backing = round(support(of_place, with_model, taken.bit_count()), 4)
         return b'%b%b],"with_model":%d,"support":%b,"measured":' % (
