@@ -8,6 +8,7 @@ from itertools import compress
 from operator import or_
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic_core import to_json
 
 from registry.answer import Answer
@@ -49,14 +50,9 @@ class PathTexts:
         self._of_task: dict[str, int] = {}
         for at, (task, *_) in enumerate(table.paths):
             self._of_task[task] = self._of_task.get(task, 0) | 1 << at
-        # A link has the studies of its paths; a node those of the links to it, a task's from it.
-        node_at = {f"{level}:{value}": at for at, (level, value, _) in enumerate(table.nodes)}
-        ends = [(node_at[source], node_at[target]) for source, target in table.links]
-        tasks = {source for source, _ in ends} - {target for _, target in ends}
-        self._paths_of_links = _Groups(table.links_on)
-        self._links_of_nodes = _Groups([s, t] if s in tasks else [t] for s, t in ends)
         self._words_of = arrays.words_of
         self._studies = arrays.words_of(table.sets)
+        # A place of the three lists is a path, a node or a link; all have the studies of paths.
         begun = [
             *((dict(zip(PATH_LEVELS, path, strict=True)), b"") for path in table.paths),
             *(
@@ -72,7 +68,17 @@ class PathTexts:
             ),
         ]
         self._firsts = np.cumsum((len(table.paths), len(table.nodes)))
+        nodes_from, links_from = self._firsts.tolist()
+        on = zip(table.nodes_on, table.links_on, strict=True)
+        pairs = sorted(
+            (place, path)
+            for path, (nodes, links) in enumerate(on)
+            for place in (path, *(nodes_from + n for n in nodes), *(links_from + n for n in links))
+        )
+        places, self._members = np.array(pairs, int).reshape(-1, 2).T
+        self._starts = np.flatnonzero(begins(places))
         self._one = _KeptTexts([(to_json(m)[:-1], count) for m, count in begun], studies_text)
+        self._taken = lru_cache(MOST_SETS)(self._taken_by)
         self._all = lru_cache(MOST_SETS)(self._all_text)
 
     def text(self, answer: Answer) -> bytes:
@@ -98,11 +104,12 @@ class PathTexts:
 
     def _all_text(self, measured: int, studies: int, others: int, stated: int) -> bytes:
         """Return the text of paths of which some studies count, and others of which others do."""
-        paths = self._among(measured, studies)
+        paths = self._taken(studies) * self._flags(measured)
         if others:
-            paths |= self._among(others, stated)
-        links = self._paths_of_links.joined(paths)
-        words = np.concatenate((paths, self._links_of_nodes.joined(links), links), axis=1)
+            paths |= self._taken(stated) * self._flags(others)
+        if not len(self._starts):
+            return b'],"nodes":[],"links":['
+        words = np.bitwise_or.reduceat(paths.take(self._members, axis=1), self._starts, axis=1)
         at = np.bitwise_or.reduce(words, axis=0).nonzero()[0]
         packed = np.empty((len(at), 1 + len(words)), "<u8")
         packed[:, 0] = at
@@ -114,36 +121,16 @@ class PathTexts:
             for part in (keys[:node], keys[node:link], keys[link:])
         )
 
-    def _among(self, paths: int, studies: int) -> Words:
-        """Return the studies that took each of some paths (bits), among some (bits)."""
+    def _taken_by(self, studies: int) -> Words:
+        """Return those of some studies (bits) that took each path, shape (words, paths)."""
+        found: Words = self._studies & self._words_of([studies])
+        return found
+
+    def _flags(self, paths: int) -> NDArray[np.uint8]:
+        """Return 1 for each of some paths (bits), and 0 for the others."""
         size = self._studies.shape[1]
         bits = np.frombuffer(paths.to_bytes(size // 8 + 1, "little"), np.uint8)
-        flags = np.unpackbits(bits, count=size, bitorder="little")
-        return self._studies & self._words_of([studies]) * flags
-
-
-class _Groups:
-    """Groups of sets, none of them empty.
-
-    Parameters
-    ----------
-    groups_of : the groups of each set
-    """
-
-    def __init__(self, groups_of: Iterable[Iterable[int]]) -> None:
-        pairs = sorted((group, at) for at, groups in enumerate(groups_of) for group in groups)
-        groups, members = np.array(pairs, int).reshape(-1, 2).T
-        self._members = members
-        self._starts = np.flatnonzero(begins(groups))
-
-    def joined(self, sets: Words) -> Words:
-        """Return the union of the sets of each group, of shape (words, sets) as they are."""
-        if not len(self._starts):
-            return sets[:, :0]
-        joined: Words = np.bitwise_or.reduceat(
-            sets.take(self._members, axis=1), self._starts, axis=1
-        )
-        return joined
+        return np.unpackbits(bits, count=size, bitorder="little")
 
 
 class _KeptTexts(dict[bytes, bytes]):
