@@ -56,9 +56,10 @@ class Question:
 
     @property
     def stated_of_unmeasured(self) -> int:
-        """Those of `studies_within_limits` that use what an unmeasured design does (bits).
+        """Studies within all limits that use an unmeasured design, or its compensations and model.
 
-        Stated numbers decide of such designs alone: many questions have the same of these studies.
+        Stated numbers decide on unmeasured designs alone, so no other study has to be known. Many
+        questions have the same set (bits), and share what is kept by it.
         """
         return self.studies_within_limits & self.arrays.studies_of_unmeasured
 

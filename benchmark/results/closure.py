@@ -54,7 +54,7 @@ def closure_digest(*entries: str) -> str:
 
 
 class Sources:
-    """Source files, each read once: later changes are not seen (`is_outdated` tells of them).
+    """Source files, each read once; `is_outdated` says whether one has changed since.
 
     Parameters
     ----------

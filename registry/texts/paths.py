@@ -16,7 +16,7 @@ from registry.design_arrays import DesignArrays, Words
 from registry.paths import PATH_LEVELS, PathTable
 from registry.pipelines import begins
 
-#: Sets of paths whose whole text is kept, some 25 kB each.
+#: Sets of paths whose whole text is kept, some 25 kB each, and sets of studies that took them.
 MOST_SETS = 256
 #: Texts of single paths, nodes and links that are kept.
 MOST_TEXTS = 24576

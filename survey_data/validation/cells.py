@@ -25,8 +25,9 @@ def texts(frame: pd.DataFrame, *columns: str) -> Iterator[tuple[int, tuple[str, 
 
 
 def _texts(column: pd.Series) -> list[str]:
-    cells = zip(column.tolist(), column.isna().tolist(), strict=True)  # lists: walked five times
-    return ["" if missing else str(cell) for cell, missing in cells]  # as fast as columns
+    # Python walks lists several times as fast as columns.
+    cells = zip(column.tolist(), column.isna().tolist(), strict=True)
+    return ["" if missing else str(cell) for cell, missing in cells]
 
 
 def known_values(frames: Frames) -> dict[tuple[str, str], set[str]]:
