@@ -20,7 +20,7 @@ def only(answer: Recommendation) -> Architecture:
 def test_the_best_calibration_is_shown_where_no_study_used_it(
     facts_of: Callable[[Rows], Facts],
 ) -> None:
-    """Studies stand for one calibration; another, which nobody published, errs less."""
+    """Two studies used one calibration; one that no study used errs less."""
     facts = facts_of([STUDY, STUDY])
     rows = [pipeline(), pipeline(model="lut", stages=("LUT",), rms_deg=0.02)]
     place = only(recommend({}, rows, facts=facts))
