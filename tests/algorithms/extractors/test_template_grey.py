@@ -34,6 +34,7 @@ def test_the_light_inside_an_outline_is_that_of_its_samples(square, centre):
     assert found == pytest.approx(expected, rel=2e-3)
 
 
+@pytest.mark.compiles
 def test_a_clean_disc_is_found_far_finer_than_from_two_levels():
     centres = DISC.centres(100)
     frames = DISC.expected(centres)
@@ -67,6 +68,7 @@ def test_a_square_is_found_where_it_is():
     assert rms(found, centres) < 5e-3
 
 
+@pytest.mark.compiles
 def test_what_two_levels_do_not_find_grey_does_not_either():
     frames, _ = DISC.frames(4)
     frames = frames.copy()

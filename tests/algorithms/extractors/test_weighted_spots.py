@@ -133,6 +133,7 @@ def combined(away, variances, misfits=None):
     return found[0, 0], sure[0, 0], used[0]
 
 
+@pytest.mark.compiles
 def test_weights_are_one_over_the_variance_where_noise_explains_the_scatter():
     away, variances = np.array([0.1, -0.1, 0.0]), np.array([1.0, 4.0, 2.0])
     found, sure, used = combined(away, variances)

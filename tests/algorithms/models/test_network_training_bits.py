@@ -26,6 +26,7 @@ def summed(rows, others):
     return total
 
 
+@pytest.mark.compiles
 @pytest.mark.parametrize(
     ("widths", "kinds"),
     [
