@@ -6,7 +6,6 @@ questions import it.
 
 from __future__ import annotations
 
-import weakref
 from collections.abc import Sequence
 from functools import cached_property, lru_cache
 from operator import attrgetter
@@ -109,7 +108,7 @@ class Answer:
         include, advising = question.requirements.include, question.advice_key
         tasks, of_errors = include.get("task", ()), "error" in include
         studies, stated = question.studies, question.stated_of_unmeasured
-        facts = _place_facts(question.table)
+        facts = question.table.made(_PlaceFacts)
         advice_of = facts.advice(advising)
         starts: list[int] = self._starts.tolist()
         ends = (*starts[1:], self.count)
@@ -253,13 +252,3 @@ class _PlaceFacts:
         architecture = self._table.places[number].architecture
         measures = task_measures(tasks, architecture, pipeline, error)
         return joint_cost(measures), measures
-
-
-_FACTS: weakref.WeakKeyDictionary[DesignTable, _PlaceFacts] = weakref.WeakKeyDictionary()
-
-
-def _place_facts(table: DesignTable) -> _PlaceFacts:
-    found = _FACTS.get(table)
-    if found is None:
-        found = _FACTS[table] = _PlaceFacts(table)
-    return found

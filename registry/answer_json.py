@@ -9,7 +9,6 @@ from __future__ import annotations
 import hashlib
 import itertools
 import math
-import weakref
 from collections.abc import Sequence
 from functools import cached_property, lru_cache
 
@@ -118,7 +117,7 @@ class AnswerTexts:
             key = (
                 *(errors, judged, place.studies, place.stated),
                 *(finer.get(number), usual.get(number), place.best, designs[listed], rows[listed]),
-                self._units([place.best, *positions[place.start : end]], within),
+                within and self._units([place.best, *positions[place.start : end]], within),
             )
             texts = kept.get(key)
             if texts is None:
@@ -140,8 +139,6 @@ class AnswerTexts:
 
     def _units(self, designs: Sequence[int], within: bytes) -> bytes:
         """Return how many units keep the limit, of all pipelines of some designs."""
-        if not within:
-            return b""
         first = self.arrays.first_row
         return b"".join([within[first[one] : first[one + 1]] for one in designs])
 
@@ -256,9 +253,6 @@ def _ends_text(judged: tuple[str, ...], studied: bool) -> tuple[bytes, bytes]:
     return measured, stated
 
 
-_TEXTS: weakref.WeakKeyDictionary[DesignTable, AnswerTexts] = weakref.WeakKeyDictionary()
-
-
 def answer_json(answer: Answer, limit: int | None = None, calibrations: int | None = None) -> bytes:
     """Return an answer as JSON.
 
@@ -267,12 +261,13 @@ def answer_json(answer: Answer, limit: int | None = None, calibrations: int | No
     answer : the answer
     limit, calibrations : the most architectures, and calibrations of each; None for all
     """
-    return b"".join(_texts(answer.question.table).document(answer, limit, calibrations))
+    texts = answer.question.table.made(AnswerTexts)
+    return b"".join(texts.document(answer, limit, calibrations))
 
 
 def prepare(table: DesignTable) -> None:
     """Make what answers about a table share, so that no question has to wait for it."""
-    texts = _texts(table)
+    texts = table.made(AnswerTexts)
     texts.calibrations.prepare()
     arrays = texts.arrays
     for half in (None, *arrays.edges, math.inf):
@@ -302,12 +297,5 @@ def answer_digest(answer: Answer, *shown: object) -> bytes:
     shown : what else the JSON depends on
     """
     text = to_json_bytes((answer.sort, *shown))
-    digest = _texts(answer.question.table).digest
+    digest = answer.question.table.made(AnswerTexts).digest
     return b"%b[%b,%b" % (digest, answer.question.requirements_json, text[1:])
-
-
-def _texts(table: DesignTable) -> AnswerTexts:
-    texts = _TEXTS.get(table)
-    if texts is None:
-        texts = _TEXTS[table] = AnswerTexts(table)
-    return texts

@@ -7,7 +7,6 @@ over designs. Needs NumPy, so that only modules that answer questions import it.
 from __future__ import annotations
 
 import itertools
-import weakref
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property, lru_cache, reduce
 from operator import or_
@@ -354,12 +353,10 @@ def _repeat_positions(lengths: Sequence[int]) -> Positions:
     return np.repeat(np.arange(len(lengths)), np.array(lengths, int))
 
 
-_ARRAYS: weakref.WeakKeyDictionary[DesignTable, DesignArrays] = weakref.WeakKeyDictionary()
-
-
 def design_arrays(table: DesignTable) -> DesignArrays:
     """Return the designs of a table as arrays, made at the first call."""
-    found = _ARRAYS.get(table)
-    if found is None:
-        found = _ARRAYS[table] = DesignArrays(table.places, len(table.facts.keys))
-    return found
+    return table.made(_arrays)
+
+
+def _arrays(table: DesignTable) -> DesignArrays:
+    return DesignArrays(table.places, len(table.facts.keys))

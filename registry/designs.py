@@ -12,9 +12,10 @@ from __future__ import annotations
 import itertools
 import math
 import weakref
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any, TypeVar
 
 from registry.mapping.advice import Advice
 from registry.measured_pipelines import MeasuredPipeline, Measurements, PipelineJudgement
@@ -25,6 +26,7 @@ COMPENSATIONS = "Physics-Informed"
 """The category of models that compensate: beside them a study may state no other."""
 
 Stages = tuple[str, ...]
+Made = TypeVar("Made")
 
 NOTHING = PipelineJudgement(math.inf, "", None)
 """Judgement of a design without a measured pipeline."""
@@ -110,6 +112,7 @@ class DesignTable:
 
     def __init__(self, facts: Facts, measurements: Measurements) -> None:
         self.facts = facts
+        self._made: dict[object, Any] = {}
         self.designs_with = _designs_with(facts)
         self.stated_numbers = {
             attribute: tuple(
@@ -152,6 +155,13 @@ class DesignTable:
             )
             for architecture in architectures
         )
+
+    def made(self, kind: Callable[[DesignTable], Made]) -> Made:
+        """Return what something makes of the table, made at the first call."""
+        found: Made | None = self._made.get(kind)
+        if found is None:
+            found = self._made[kind] = kind(self)
+        return found
 
     def _place(
         self,

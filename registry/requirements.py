@@ -168,7 +168,7 @@ class Requirements:
                 for value in values:
                     taxonomy.require(attribute, value, parameter=prefix + attribute)
         for name in (*LIMITS, *SETTINGS):
-            bound = self.limit(name)
+            bound = getattr(self, name)
             if bound is not None:
                 _number(name, bound)
         lists = (("survive", HAZARDS), ("properties", properties), ("exclude_needs", NEEDS))
