@@ -89,9 +89,9 @@ class Answer:
         self.best = question.best_pipelines
         counting = question.studies, question.stated_of_unmeasured
         every, used = question.arrays.rank_designs(self.best, *counting, sort)
-        self.designs: Positions = every[question.matching_designs[every]]
+        self.designs: Positions = every[question.matching_designs.take(every)]
         self._used = used
-        self._of = question.arrays.place_of[self.designs]
+        self._of = question.arrays.place_of.take(self.designs)
         self._starts = np.flatnonzero(begins(self._of)) if len(self._of) else self._of
         self.places: Sequence[RankedPlace] = sorted(self._places(), key=attrgetter("key"))
 
@@ -115,19 +115,19 @@ class Answer:
         # Of each architecture the design that comes first by error, and its place among all.
         numbers = question.arrays.numbers[: self.count]
         bits = question.arrays.design_bits
-        first = np.minimum.reduceat(best.order[self.designs] << bits | numbers, self._starts)
+        first = np.minimum.reduceat(best.order.take(self.designs) << bits | numbers, self._starts)
         places_of_best = first & ((1 << bits) - 1)
-        least = self.designs[places_of_best]
+        least = self.designs.take(places_of_best)
         found = []
         for number, at, start, end, best_at, design, row, error in zip(
-            self._of[self._starts].tolist(),
+            self._of.take(self._starts).tolist(),
             range(len(starts)),
             starts,
             ends,
             places_of_best.tolist(),
             least.tolist(),
-            best.row[least].tolist(),
-            best.error[least].tolist(),
+            best.row.take(least).tolist(),
+            best.error.take(least).tolist(),
             strict=True,
         ):
             place = question.table.places[number]
@@ -168,11 +168,11 @@ class Answer:
 
         Of several the one with the smallest error, then the first. All by position.
         """
-        used = self._used[self.question.matching_designs[self._used]]
-        places = self.question.arrays.place_of[used]
+        used = self._used[self.question.matching_designs.take(self._used)]
+        places = self.question.arrays.place_of.take(used)
         first = begins(places)
         designs = used[first]
-        rows, errors = self.best.row[designs], self.best.error[designs]
+        rows, errors = self.best.row.take(designs), self.best.error.take(designs)
         found = zip(designs.tolist(), rows.tolist(), errors.tolist(), strict=True)
         return dict(zip(places[first].tolist(), found, strict=True))
 
@@ -184,7 +184,7 @@ class Answer:
         """Return the least of some values of designs on each architecture, best first."""
         if values is self.best.error:
             return [place.error_deg for place in self.places]
-        least: list[float] = np.minimum.reduceat(values[self.designs], self._starts).tolist()
+        least: list[float] = np.minimum.reduceat(values.take(self.designs), self._starts).tolist()
         return [least[place.at] for place in self.places]
 
     def design_with_least(self, place: RankedPlace, values: Numbers) -> int:
@@ -196,7 +196,7 @@ class Answer:
         order = self.best.order[designs[found == found.min()]].min()
         return int(self.best.at_order[order])
 
-    @cached_property
+    @property
     def regret(self) -> Regret | None:
         """Error of the first calibration beside the best one's; None if none is measured."""
         if not self.places:
@@ -205,7 +205,7 @@ class Answer:
         first = self.candidate(int(self.designs[self.places[0].start]))
         return regret(first, self.candidate(least.best))
 
-    @cached_property
+    @property
     def pareto(self) -> frozenset[int]:
         """Positions of the architectures that none beats in both studies and error."""
         return pareto([(-one.studies.bit_count(), one.error_deg) for one in self.places])
@@ -229,7 +229,7 @@ class Answer:
     @cached_property
     def blocking_constraint(self) -> BlockingConstraint | None:
         """Why nothing meets the requirements, if nothing does."""
-        return None if self.places else explain(self.question.table, self.question.requirements)
+        return None if self.places else explain(self.question)
 
 
 class _PlaceFacts:

@@ -103,7 +103,7 @@ class AnswerTexts:
         judged, advising = question.judged_requirements, question.advice_key
         finer, usual = question.finest_partial_answers, answer.usual
         # As bytes, which are quicker to cut and to compare than lists of numbers.
-        designs, rows = answer.designs.tobytes(), answer.best.row[answer.designs].tobytes()
+        designs, rows = answer.designs.tobytes(), answer.best.row.take(answer.designs).tobytes()
         size = answer.designs.itemsize
         largest = question.requirements.largest_deg
         within = b"" if largest is None else errors.units_within(largest).tobytes()

@@ -110,7 +110,7 @@ class Question:
             found &= designs
         asked = {*self.requirements.include, *self.requirements.exclude}
         if not asked.isdisjoint(OF_STUDIES):
-            found &= self._places_asked[arrays.place_of]
+            found &= self._places_asked.take(arrays.place_of)
         return found
 
     @property

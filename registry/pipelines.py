@@ -319,7 +319,7 @@ class PipelineErrors:
             return {}
         among = np.ones(len(rows), bool)
         for mask in designs:
-            among &= mask[designs_of_rows]
+            among &= mask.take(designs_of_rows)
         if limits.min_availability is not None:
             among &= self.availability[rows] >= limits.min_availability
         if limits.max_latency_us is not None:

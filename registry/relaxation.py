@@ -97,10 +97,11 @@ class BlockingConstraint:
         }
 
 
-def explain(table: DesignTable, requirements: Requirements) -> BlockingConstraint:
-    """Return what blocks `requirements`, which nothing meets."""
+def explain(question: Question) -> BlockingConstraint:
+    """Return what blocks the requirements of a question that nothing meets."""
+    table, requirements = question.table, question.requirements
     names = requirements.names
-    broken = _broken_sets(Question(table, requirements), names)
+    broken = _broken_sets(question, names)
     if not broken:
         return BlockingConstraint((), "no study has an architecture, and nothing is measured", ())
     fewest = min(bits.bit_count() for bits in broken)
@@ -125,7 +126,7 @@ def explain(table: DesignTable, requirements: Requirements) -> BlockingConstrain
         f"{'it' if len(first) == 1 else 'them'} {drops[0].architectures} "
         f"architecture{'s' * (drops[0].architectures != 1)} would"
     )
-    unknown = [n for n in first if not _has_evidence(table, requirements, n)]
+    unknown = [n for n in first if not _has_evidence(question, n)]
     if unknown:
         words = " or ".join(in_words(n, _ask(requirements, n)) for n in unknown)
         detail += f". Nothing measured or stated tells of {words}"
@@ -366,19 +367,19 @@ def _bench_that_would_do(table: DesignTable, requirements: Requirements) -> floa
     return float(bench_for(question.errors.own_deg[rows], ratios, limit, draws[1]).max())
 
 
-def _has_evidence(table: DesignTable, requirements: Requirements, name: str) -> bool:
+def _has_evidence(question: Question, name: str) -> bool:
     """Say whether anything measured or stated tells of a requirement at all."""
-    arrays = Question(table, requirements).arrays
+    arrays, stated_numbers = question.arrays, question.table.stated_numbers
     if name == "max_latency_us":
         return bool((arrays.latency_us < math.inf).any())
     if name == "min_availability":
         return bool(arrays.rows)
     if name == "survive":
-        return all(bool(arrays.covers(hazard).any()) for hazard in requirements.survive)
+        return all(bool(arrays.covers(hazard).any()) for hazard in question.requirements.survive)
     if name == "max_error_deg":
-        return bool(arrays.rows or table.stated_numbers["accuracy_deg"])
+        return bool(arrays.rows or stated_numbers["accuracy_deg"])
     if name == "min_fov_deg":
-        return bool(arrays.rows or table.stated_numbers["fov_deg"])
+        return bool(arrays.rows or stated_numbers["fov_deg"])
     return True
 
 
