@@ -127,6 +127,19 @@ def bench_for(own_deg: Numbers, ratios: Numbers, limit_deg: float, share: float)
     return np.asarray(np.clip(found, 0.0, limit_deg))
 
 
+def largest_bench(own_deg: Numbers, ratios: Numbers, limit_deg: float, share: float) -> float:
+    """Return the largest of `bench_for` of some pipelines (R >= 1), computed for few of them.
+
+    A pipeline's is at most what the benches that must do leave to its best unit, and at least what
+    they leave to its worst. Parameters as `bench_for`, ratios ascending.
+    """
+    benches = math.ceil(_fewest(share, UNITS * len(BENCHES)) / UNITS)
+    left = limit_deg**2 - (own_deg * ratios[:, [0, -1]].T) ** 2
+    most, least = np.sqrt(np.maximum(left, 0.0)) / BENCHES[benches - 1]
+    among = most >= min(least.max(), limit_deg)
+    return float(bench_for(own_deg[among], ratios[among], limit_deg, share).max())
+
+
 def _fewest(share: float, draws: int) -> int:
     """Return how many of some draws are a share of them at least."""
     return min(math.ceil(share * draws - 1e-9), draws)

@@ -356,7 +356,7 @@ def _bench_that_would_do(table: DesignTable, requirements: Requirements) -> floa
     limit, draws = requirements.largest_deg, requirements.draws
     if limit is None or draws is None:
         return None
-    from registry.draws import bench_for  # noqa: PLC0415 - NumPy
+    from registry.draws import largest_bench  # noqa: PLC0415 - NumPy
 
     question = Question(table, replace(requirements, bench_deg=0.0))
     rows = question.matching_designs[question.arrays.design_of]
@@ -364,7 +364,7 @@ def _bench_that_would_do(table: DesignTable, requirements: Requirements) -> floa
     if not rows.any():
         return None
     ratios = question.arrays.unit_ratios[rows]
-    return float(bench_for(question.errors.own_deg[rows], ratios, limit, draws[1]).max())
+    return largest_bench(question.errors.own_deg[rows], ratios, limit, draws[1])
 
 
 def _has_evidence(question: Question, name: str) -> bool:

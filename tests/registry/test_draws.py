@@ -7,7 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from registry.draws import BENCHES, bench_for, one_at_confidence, unit_errors, unit_ratios
+from registry.draws import (
+    BENCHES,
+    bench_for,
+    largest_bench,
+    one_at_confidence,
+    unit_errors,
+    unit_ratios,
+)
 from registry.measured_pipelines import MeasuredPipeline, Score
 from registry.recommendation import recommend
 
@@ -69,6 +76,23 @@ def test_the_bench_that_would_do_does_and_a_worse_one_does_not():
             assert one_at_confidence(*pair, (1 + 1e-9) * bench[at], share) > 0.01
     assert bench[0] > 0.0
     assert bench[2] == 0.0
+
+
+@settings(deadline=None, derandomize=True)
+@given(
+    pipelines=st.lists(
+        st.tuples(st.floats(1e-4, 0.05), st.lists(st.floats(0.1, 3.0), min_size=10, max_size=10)),
+        min_size=1,
+        max_size=6,
+    ),
+    limit=st.floats(1e-4, 0.1),
+    share=st.floats(0.5, 0.999),
+)
+def test_the_largest_bench_is_the_largest_of_all(pipelines, limit, share):
+    own = np.array([error for error, _ in pipelines])
+    ratios = np.sort([units for _, units in pipelines], axis=1)
+    found = largest_bench(own, ratios, limit, share)
+    assert found == bench_for(own, ratios, limit, share).max()
 
 
 def test_of_what_is_said_to_meet_a_limit_fresh_units_and_benches_do():
