@@ -15,19 +15,6 @@ from functools import lru_cache
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
-
-@atexit.register  # as the first, so that it is the last to be called
-def _leave_at_once() -> None:
-    """Leave a worker's million objects to the system: to free them takes Python two seconds.
-
-    Where coverage is measured, it has yet to write what it saw.
-    """
-    if "PYTEST_XDIST_WORKER" in os.environ and "coverage" not in sys.modules:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(0)
-
-
 import pytest  # noqa: E402
 from hypothesis import HealthCheck, settings  # noqa: E402
 from threadpoolctl import ThreadpoolController  # noqa: E402
@@ -44,6 +31,15 @@ gc.set_threshold(100_000, 20, 50)
 #: What waits for servers and processes comes first, while the other worker, which begins in the
 #: middle, computes. What compiles kernels comes last: extractors and models, then the simulator.
 FIRST, LAST = ("tests/api/http/", "tests/test_"), ("tests/algorithms/", "tests/benchmark/")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Leave a worker's million objects to the system at its end: Python would free them for 2 s.
+
+    Where coverage is measured, it has yet to write what it saw.
+    """
+    if hasattr(config, "workerinput") and "coverage" not in sys.modules:
+        atexit.register(os._exit, 0)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
