@@ -4,7 +4,7 @@ A process that is killed cannot end those that work for it. So each asks the sys
 when its coordinator ends (Linux's ``PR_SET_PDEATHSIG``), and elsewhere, or should that be missed,
 looks every half second. A request to terminate is taken as Ctrl-C is, so that what is half made
 goes. What does not end so within two seconds, such as a compiler at work, is ended hard: what is on
-disk is then as safe as when the process is killed.
+disk is then as safe as when the process is killed. Servers have longer (`take_time_to_end`).
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ COORDINATOR = "SUNATLAS_COORDINATOR"
 INTERRUPTED, TERMINATED = 128 + signal.SIGINT, 128 + signal.SIGTERM
 _PR_SET_PDEATHSIG = 1
 _EVERY_S = 0.5
-#: How long a process has to end tidily, seconds.
-_TIDY_S = 0.8
 
 #: Signals that ask this process to end.
 _told: list[int] = []
+#: How long it then has to end tidily, seconds.
+_tidy_s: list[float] = [0.8]
 #: Whether the end was spoken of.
 _said = threading.Event()
 
@@ -48,6 +48,11 @@ def terminate_as_interrupt() -> None:
     signal.signal(signal.SIGTERM, _tell)
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is to be ignored
         signal.signal(signal.SIGINT, _tell)
+
+
+def take_time_to_end(seconds: float) -> None:
+    """Let this process take longer to end tidily, as a server does that waits for its answers."""
+    _tidy_s[0] = seconds
 
 
 def termination_requested() -> bool:
@@ -96,7 +101,7 @@ def _end_for_certain() -> None:
         number = 0
         while number not in {signal.SIGINT, signal.SIGTERM}:
             number = os.read(heard, 1)[0]
-        time.sleep(_TIDY_S)
+        time.sleep(_tidy_s[0])
         if not _said.is_set():
             say_interrupted()
         os._exit(128 + number)

@@ -110,7 +110,8 @@ def test_what_does_not_end_in_time_is_ended_hard_and_says_so_once(
         ended.set()
 
     monkeypatch.setattr(os, "_exit", end)
-    monkeypatch.setattr(processes, "_TIDY_S", 0.0)
+    monkeypatch.setattr(processes, "_tidy_s", [9.0])
+    processes.take_time_to_end(0.0)
     monkeypatch.setattr(processes, "_said", said)
     before = signal.set_wakeup_fd(-1)
     try:

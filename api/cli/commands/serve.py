@@ -17,10 +17,13 @@ from uvicorn.supervisors import Multiprocess
 from api.cli.working import working_directory
 from api.http.server import serving
 from api.http.server.connections import bounds
+from benchmark.processes import take_time_to_end
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 _QUIET: dict[str, Any] = {"log_level": "warning", "access_log": False}
+#: How long a server may take to end, s: answers on their way have one; many workers end in turn.
+_ENDS_S, _ENDS_OF_MANY_S = 1.8, 15.0
 
 
 @app.command()
@@ -55,8 +58,10 @@ def serve(
             os.environ["PROMETHEUS_MULTIPROC_DIR"] = stack.enter_context(
                 tempfile.TemporaryDirectory(prefix="sunatlas-metrics-")
             )
+            take_time_to_end(_ENDS_OF_MANY_S)
             _serve_by_many(listener, workers)
             return
+        take_time_to_end(_ENDS_S)
         config = uvicorn.Config(application, **_QUIET, **bounds())
         try:
             uvicorn.Server(config).run(sockets=[listener])
