@@ -179,11 +179,12 @@ class Record:
             metric=known.metric,
         )
         if self._changed or used != self._components:
-            self.store.write(scores, pins, used)
+            # Scores last: while they are the old ones, the next call does all of it again.
             self.errors.write(
                 self.store.directory,
                 lambda cell: cell in scores and scores[cell]["status"] == "ok",
             )
+            self.store.write(scores, pins, used)
         self._journal.remove()
 
     def cut_torn(self) -> None:
@@ -226,7 +227,7 @@ class Record:
 def open_record(store: Store) -> Iterator[Record]:
     """Hold a store for writing; released by the system when the process ends, however it ends.
 
-    What killed runners left half written is removed.
+    What killed runners left half written is removed, or finished where only its end is missing.
 
     Raises
     ------
@@ -244,6 +245,7 @@ def open_record(store: Store) -> Iterator[Record]:
             raise StoreLockedError(error.holder, store.directory) from error
         for place in (store.directory, store.scores_directory, store.samples_directory, directory):
             remove_stale_files(place)
+        record_manifest.finish(store.directory)
         record_manifest.require_unchanged(store.directory)
         record = Record(store)
         record.cut_torn()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 
 from benchmark.results.csv_tables import StoreError
@@ -59,6 +60,15 @@ def require_unchanged(folder: Path, *, required: bool = False) -> None:
         raise StoreError(
             f"{folder}: {problems[0]}{more}; restore it, or take it over with `{COMMAND}`"
         )
+
+
+def finish(folder: Path) -> None:
+    """Finish what a killed command left half done, as `manifest.finish_interrupted_write`.
+
+    A manifest that cannot be read is left as it is: to be told of by who needs it.
+    """
+    with suppress(FileRefusedError):
+        manifest.finish_interrupted_write(folder)
 
 
 def write(folder: Path, contents: Mapping[str, str | bytes | None], *, start: bool = False) -> bool:

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from benchmark.results.journal import chain_rows
 from benchmark.results.record import Record, StoreLockedError, open_record
 from benchmark.results.samples import CellErrors, Directions
 from benchmark.results.store import Store
+from files import manifest
 
 
 @pytest.fixture
@@ -277,3 +279,63 @@ def test_a_second_runner_is_refused_with_the_first_ones_process(store):
         other.kill()
     with open_record(store) as record:
         assert record.scores == {}, "the lock went with its process"
+
+
+@pytest.mark.parametrize("kept", range(14))
+def test_a_write_killed_after_any_of_its_steps_is_finished_by_the_next(store, monkeypatch, kept):
+    """As when all went well, though the next has nothing to write of its own."""
+    one, other = cell("a", condition="nominal"), cell("b", condition="nominal")
+    errors = CellErrors.of([0.1, 0.2], [True, True])
+    directions = Directions(np.eye(3)[:2], np.ones(2, bool), np.full(2, 0.01))
+
+    def fill(where):
+        with open_record(where) as record:
+            record.keep(
+                components(),
+                pins=[pin()],
+                scores={one: numbers(), other: numbers()},
+                errors={one: errors, other: errors},
+                directions={one.dataset: directions},
+            )
+            record.write(components())
+
+    def tidy(where):
+        with open_record(where) as record:
+            record.drop(scores=lambda found: found == other)
+            record.write(components())
+
+    def files(where):
+        found = (path for path in where.directory.rglob("*") if path.is_file())
+        return {
+            path.relative_to(where.directory): path.read_bytes()
+            for path in found
+            if path.suffix != ".lock"
+        }
+
+    undisturbed = Store(store.directory.parent / "undisturbed")
+    for where in (undisturbed, store):
+        fill(where)
+    tidy(undisturbed)
+
+    class Killed(BaseException):
+        """As by SIGKILL: nothing is caught, and nothing done after it."""
+
+    left = iter(range(kept))
+    replace = manifest.replace_file
+    finish = manifest.finish_interrupted_write
+
+    def step(act):
+        def stepped(*given):
+            if next(left, None) is None:
+                raise Killed
+            return act(*given)
+
+        return stepped
+
+    with monkeypatch.context() as patch:
+        patch.setattr(manifest, "replace_file", step(replace))
+        patch.setattr(manifest, "finish_interrupted_write", step(finish))
+        with suppress(Killed):
+            tidy(store)
+    tidy(store)
+    assert files(store) == files(undisturbed)
