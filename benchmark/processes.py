@@ -4,7 +4,7 @@ A process that is killed cannot end those that work for it. So each asks the sys
 when its coordinator ends (Linux's ``PR_SET_PDEATHSIG``), and elsewhere, or should that be missed,
 looks every half second. A request to terminate is taken as Ctrl-C is, so that what is half made
 goes. What does not end so within two seconds, such as a compiler at work, is ended hard: what is on
-disk is then as safe as when the process is killed. Servers have longer (`take_time_to_end`).
+disk is then as safe as when the process is killed. A server of several processes has longer.
 """
 
 from __future__ import annotations
@@ -51,8 +51,14 @@ def terminate_as_interrupt() -> None:
 
 
 def take_time_to_end(seconds: float) -> None:
-    """Let this process take longer to end tidily, as a server does that waits for its answers."""
+    """Let this process take longer to end tidily, as one that waits for others to end."""
     _tidy_s[0] = seconds
+
+
+def end_in_time() -> None:
+    """End this process soon after a signal, whatever it is at, without a word of its own."""
+    _said.set()
+    _end_for_certain()
 
 
 def termination_requested() -> bool:

@@ -126,6 +126,15 @@ def test_what_does_not_end_in_time_is_ended_hard_and_says_so_once(
     assert capsys.readouterr().err == ("" if spoken else "interrupted\n")
 
 
+def test_a_worker_ends_in_time_without_a_word(monkeypatch: pytest.MonkeyPatch) -> None:
+    watched = []
+    monkeypatch.setattr(processes, "_said", threading.Event())
+    monkeypatch.setattr(processes, "_end_for_certain", lambda: watched.append(True))
+    processes.end_in_time()
+    assert processes._said.is_set()
+    assert watched == [True]
+
+
 def raiser(error: BaseException) -> Callable[[], int]:
     def main() -> NoReturn:
         raise error

@@ -22,8 +22,8 @@ from benchmark.processes import take_time_to_end
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 _QUIET: dict[str, Any] = {"log_level": "warning", "access_log": False}
-#: How long a server may take to end, s: answers on their way have one; many workers end in turn.
-_ENDS_S, _ENDS_OF_MANY_S = 1.8, 15.0
+#: How long workers may take to end, one after another, on a busy machine, s: usually 1.5.
+_WORKERS_END_S = 15.0
 
 
 @app.command()
@@ -54,25 +54,23 @@ def serve(
         application = serving.application(loaded=True)
         typer.echo(f"Sun Sensor Atlas: {address(host, listener.getsockname()[1])} (Ctrl-C stops)")
         sys.stdout.flush()  # who reads a pipe waits for the address
+        # Python walks all that was loaded before it ends, for a second or two, unless it is frozen.
+        stack.callback(gc.freeze)
         if workers > 1:
             os.environ["PROMETHEUS_MULTIPROC_DIR"] = stack.enter_context(
                 tempfile.TemporaryDirectory(prefix="sunatlas-metrics-")
             )
-            take_time_to_end(_ENDS_OF_MANY_S)
+            take_time_to_end(_WORKERS_END_S)
             _serve_by_many(listener, workers)
             return
-        take_time_to_end(_ENDS_S)
         config = uvicorn.Config(application, **_QUIET, **bounds())
-        try:
-            uvicorn.Server(config).run(sockets=[listener])
-        finally:
-            gc.freeze()  # else Python walks all that was loaded before it ends, for a second or two
+        uvicorn.Server(config).run(sockets=[listener])
 
 
 def _serve_by_many(listener: socket.socket, workers: int) -> None:
     """Serve by several processes that share a listening socket, until a signal ends them."""
     config = uvicorn.Config(
-        "api.http.server.serving:application",
+        "api.http.server.serving:application_of_worker",
         factory=True,
         workers=workers,
         timeout_worker_healthcheck=60,  # loading takes seconds, and more on a busy machine

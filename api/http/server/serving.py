@@ -15,6 +15,7 @@ from api.http.knowledge import Knowledge
 from api.http.measurements import Measurements
 from api.http.observation import log_requests
 from api.http.service import create_app
+from benchmark.processes import end_in_time
 
 ACCESS_LOG = "SUNATLAS_ACCESS_LOG"
 TIMES = "SUNATLAS_TIMES"
@@ -34,3 +35,9 @@ def application(*, loaded: bool = False) -> FastAPI:
     if loaded:
         known.load_all()
     return create_app(known)
+
+
+def application_of_worker() -> FastAPI:
+    """Make the service in one of several processes, which a signal ends within a second."""
+    end_in_time()
+    return application()

@@ -100,6 +100,44 @@ def running(group):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(("workers", "code", "says"), [(1, 143, "interrupted\n"), (2, 0, "")])
+def test_an_answer_on_its_way_does_not_hold_up_the_end(workers, code, says):
+    """A calibration takes seconds in a thread, which nothing can interrupt."""
+    row = b"%d,%d,%d,%d\n"
+    grid = [(x, y) for x in range(-40, 41, 10) for y in range(-40, 41, 10)]
+    rows = b"".join(row % (512 + 6 * x, 512 + 6 * y, x, y) for x, y in grid)
+    body = (
+        b'--a\r\nContent-Disposition: form-data; name="file"; filename="b.csv"\r\n\r\n'
+        b"x_px,y_px,theta_x_deg,theta_y_deg\n" + rows + b"\r\n--a--\r\n"
+    )
+    head = (
+        b"POST /v1/calibrations HTTP/1.1\r\nHost: a\r\nContent-Length: %d\r\n"
+        b"Content-Type: multipart/form-data; boundary=a\r\n\r\n" % len(body)
+    )
+    with subprocess.Popen(
+        [*SERVE, "--port", "0", "--workers", str(workers)],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        try:
+            assert process.stdout is not None
+            url = process.stdout.readline().split()[3]
+            urllib.request.urlopen(f"{url}/healthz", timeout=600).close()
+            with socket.create_connection(url.removeprefix("http://").split(":")) as plug:
+                plug.sendall(head + body)
+                time.sleep(0.5)  # it is being calibrated
+                process.send_signal(signal.SIGTERM)
+                _, said = process.communicate(timeout=600)
+                assert not plug.recv(1), "no answer, whole or half"
+        finally:
+            process.kill()
+    assert (process.returncode, said) == (code, says)
+
+
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="processes are read from /proc")
 def test_workers_add_up_their_counts_and_leave_nothing_behind(tmp_path):
     command = [*SERVE, "--port", "0", "--workers", "2", "--access-log"]
