@@ -13,18 +13,20 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin, Place
 from benchmark.results import record_manifest
-from benchmark.results.components import Components
+from benchmark.results.components import Components, ComponentsError
 from benchmark.results.csv_tables import Row, StoreError
 from benchmark.results.journal import Journal
 from benchmark.results.samples import CellErrors, Directions, SampleErrors
 from benchmark.results.store import Store
 from files.locks import LockedError, lock_or_refuse
 from files.temporary import remove_stale_files
+
+_What = TypeVar("_What")
 
 
 class StoreLockedError(LockedError):
@@ -61,9 +63,11 @@ class Record:
         self.scores: dict[Cell, Row] = store.scores()
         self.pins: dict[Place, Pin] = store.pins()
         self.errors = SampleErrors()
-        known = self._components
-        self._score_keys = {cell: known.cell_key(cell) for cell in self.scores}
-        self._pin_keys = {place: known.pin_key(*place[:2]) for place in self.pins}
+        known, unfinished = self._components, record_manifest.is_unfinished(store.directory)
+        self._score_keys = _keys(self.scores, known.cell_key, unfinished=unfinished)
+        self._pin_keys = _keys(
+            self.pins, lambda place: known.pin_key(*place[:2]), unfinished=unfinished
+        )
         self._changed = False
         self._read_journal()
 
@@ -250,6 +254,24 @@ def open_record(store: Store) -> Iterator[Record]:
         record = Record(store)
         record.cut_torn()
         yield record
+
+
+def _keys(
+    numbers: dict[_What, Any], key_of: Callable[[_What], Any], *, unfinished: bool
+) -> dict[_What, Any]:
+    """Return the key of each number; those without are forgotten where a write is unfinished.
+
+    Components are written last. The journal has what was written before them, too.
+    """
+    found = {}
+    for what in list(numbers):
+        try:
+            found[what] = key_of(what)
+        except ComponentsError:
+            if not unfinished:
+                raise
+            del numbers[what]
+    return found
 
 
 def _used(facts: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:

@@ -71,6 +71,11 @@ def finish(folder: Path) -> None:
         manifest.finish_interrupted_write(folder)
 
 
+def is_unfinished(folder: Path) -> bool:
+    """Say whether a killed command left some files of a record new and others old."""
+    return path_exists(folder / manifest.NEXT)
+
+
 def write(folder: Path, contents: Mapping[str, str | bytes | None], *, start: bool = False) -> bool:
     """Write files of a record and take them into its manifest, as `manifest.write_recorded`.
 

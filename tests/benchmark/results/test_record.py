@@ -1,5 +1,6 @@
 """A store open for writing: what is measured survives a kill, and one process writes at a time."""
 
+import itertools
 import json
 import subprocess
 import sys
@@ -281,61 +282,74 @@ def test_a_second_runner_is_refused_with_the_first_ones_process(store):
         assert record.scores == {}, "the lock went with its process"
 
 
-@pytest.mark.parametrize("kept", range(14))
-def test_a_write_killed_after_any_of_its_steps_is_finished_by_the_next(store, monkeypatch, kept):
-    """As when all went well, though the next has nothing to write of its own."""
+class KilledError(BaseException):
+    """As by SIGKILL: nothing catches it, and nothing is done after it."""
+
+
+def fill(store):
+    """Keep two scores with their errors, as a run does."""
     one, other = cell("a", condition="nominal"), cell("b", condition="nominal")
     errors = CellErrors.of([0.1, 0.2], [True, True])
     directions = Directions(np.eye(3)[:2], np.ones(2, bool), np.full(2, 0.01))
+    with open_record(store) as record:
+        record.keep(
+            components(),
+            pins=[pin()],
+            scores={one: numbers(), other: numbers()},
+            errors={one: errors, other: errors},
+            directions={one.dataset: directions},
+        )
+        record.write(components())
 
-    def fill(where):
-        with open_record(where) as record:
-            record.keep(
-                components(),
-                pins=[pin()],
-                scores={one: numbers(), other: numbers()},
-                errors={one: errors, other: errors},
-                directions={one.dataset: directions},
-            )
-            record.write(components())
 
-    def tidy(where):
-        with open_record(where) as record:
-            record.drop(scores=lambda found: found == other)
-            record.write(components())
+def drop_one(store):
+    with open_record(store) as record:
+        record.drop(scores=lambda found: found == cell("b", condition="nominal"))
+        record.write(components())
 
-    def files(where):
-        found = (path for path in where.directory.rglob("*") if path.is_file())
-        return {
-            path.relative_to(where.directory): path.read_bytes()
-            for path in found
-            if path.suffix != ".lock"
-        }
 
-    undisturbed = Store(store.directory.parent / "undisturbed")
-    for where in (undisturbed, store):
-        fill(where)
-    tidy(undisturbed)
+def files(store):
+    found = (path for path in store.directory.rglob("*") if path.is_file())
+    return {
+        path.relative_to(store.directory): path.read_bytes()
+        for path in found
+        if path.suffix != ".lock"
+    }
 
-    class Killed(BaseException):
-        """As by SIGKILL: nothing is caught, and nothing done after it."""
 
-    left = iter(range(kept))
-    replace = manifest.replace_file
-    finish = manifest.finish_interrupted_write
+@pytest.mark.parametrize(("before", "act", "steps"), [(None, fill, 6), (fill, drop_one, 7)])
+def test_a_write_killed_after_any_of_its_steps_is_finished_by_the_next(
+    tmp_path, monkeypatch, before, act, steps
+):
+    """As when all went well, though the next may have nothing to write of its own."""
+    undisturbed = Store(tmp_path / "undisturbed")
+    if before:
+        before(undisturbed)
+    act(undisturbed)
+    kills = 0
+    for at in itertools.count():
+        store = Store(tmp_path / f"killed-{at}")
+        if before:
+            before(store)
+        with monkeypatch.context() as patch, suppress(KilledError):
+            kill_after(at, patch)
+            act(store)
+            break
+        kills += 1
+        act(store)
+        assert files(store) == files(undisturbed), at
+    assert kills >= steps
 
-    def step(act):
-        def stepped(*given):
+
+def kill_after(steps, patch):
+    """Kill the first write that comes after some of them."""
+    left = iter(range(steps))
+    for name in ("replace_file", "finish_interrupted_write"):
+        act = getattr(manifest, name)
+
+        def stepped(*given, act=act):
             if next(left, None) is None:
-                raise Killed
+                raise KilledError
             return act(*given)
 
-        return stepped
-
-    with monkeypatch.context() as patch:
-        patch.setattr(manifest, "replace_file", step(replace))
-        patch.setattr(manifest, "finish_interrupted_write", step(finish))
-        with suppress(Killed):
-            tidy(store)
-    tidy(store)
-    assert files(store) == files(undisturbed)
+        patch.setattr(manifest, name, stepped)
