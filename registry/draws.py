@@ -130,11 +130,13 @@ def bench_for(own_deg: Numbers, ratios: Numbers, limit_deg: float, share: float)
 def largest_bench(own_deg: Numbers, ratios: Numbers, limit_deg: float, share: float) -> float:
     """Return the largest of `bench_for` of some pipelines (R >= 1), computed for few of them.
 
-    A pipeline's is at most what the benches that must do leave to its best unit, and at least what
-    they leave to its worst. Parameters as `bench_for`, ratios ascending.
+    So many draws meet the limit only if the best unit does on so many benches, and surely if the
+    worst does: both are quickly computed, and bound what `bench_for` gives. Left out is each
+    pipeline whose upper bound is below the lower bound of another. Parameters as `bench_for`.
     """
     benches = math.ceil(_fewest(share, UNITS * len(BENCHES)) / UNITS)
-    left = limit_deg**2 - (own_deg * ratios[:, [0, -1]].T) ** 2
+    best_and_worst = np.stack((ratios.min(axis=1), ratios.max(axis=1)))
+    left = limit_deg**2 - (own_deg * best_and_worst) ** 2
     most, least = np.sqrt(np.maximum(left, 0.0)) / BENCHES[benches - 1]
     among = most >= min(least.max(), limit_deg)
     return float(bench_for(own_deg[among], ratios[among], limit_deg, share).max())

@@ -48,7 +48,7 @@ class Question:
         self.arrays = design_arrays(table)
         self.requirements = requirements
         self.studies = self._find_studies()
-        self.limits = tuple([n for n in _MEASURED if getattr(requirements, n)])
+        self.limits = tuple(n for n in _MEASURED if getattr(requirements, n))
         self._studies_within = {name: self._find_studies_within(name) for name in self.limits}
         self.studies_within_limits = self.studies
         for name in self.limits:
@@ -163,7 +163,7 @@ class Question:
     @property
     def advice_key(self) -> tuple[tuple[str, ...] | None, ...]:
         """The required values of each attribute that the survey gives advice on."""
-        return tuple([self.requirements.include.get(name) for name in ADVISING])
+        return tuple(self.requirements.include.get(name) for name in ADVISING)
 
     def is_advised(self, place: Place, included: Sequence[str]) -> bool:
         """Return whether the survey advises an architecture for all of some requirements."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from collections.abc import Callable, Mapping
 
 import numpy as np
@@ -132,3 +134,13 @@ def test_nothing_measured_can_be_prepared_for(rows: list[object], facts_of: Fact
     fresh = recommend({"max_error_deg": 1.0}, list(rows), facts=facts).document
     prepare(design_table(facts, kept))
     assert recommend({"max_error_deg": 1.0}, kept, facts=facts).document == fresh
+
+
+def test_what_is_kept_of_measurements_goes_with_them(facts_of: FactsOf) -> None:
+    """As after an import, where others take their place."""
+    facts, measured = facts_of([STUDY]), Measurements([pipeline()])
+    recommend({}, measured, facts=facts)
+    table = weakref.ref(design_table(facts, measured))
+    del measured
+    gc.collect()
+    assert table() is None

@@ -10,6 +10,8 @@ from registry.recommendation import Architecture, Recommendation, recommend
 from registry.studies import Facts
 
 Rows = list[Mapping[str, list[str]]]
+#: On an architecture that is advised for accuracy.
+ADVISED = pipeline(mask="Encoded", rms_deg=0.02)
 
 
 def only(answer: Recommendation) -> Architecture:
@@ -79,10 +81,7 @@ def test_beside_an_error_of_zero_no_ratio_is_said(
 
 
 def test_an_error_of_zero_that_is_not_advised_is_said(survey: Facts) -> None:
-    rows = [
-        pipeline(mask="Encoded", rms_deg=0.02),
-        pipeline(dataset="e", mask="Lens", rms_deg=0.0),
-    ]
+    rows = [ADVISED, pipeline(dataset="e", mask="Lens", rms_deg=0.0)]
     (said,) = recommend({"task": "Accuracy"}, rows, facts=survey).contradictions
     assert "0.02 deg" in said
     assert said.endswith("not advised, reaches 0 deg")
@@ -94,10 +93,7 @@ def test_errors_that_hardly_differ_contradict_nothing(facts_of: Callable[[Rows],
 
 
 def test_an_architecture_that_is_not_advised_but_better_is_said(survey: Facts) -> None:
-    rows = [
-        pipeline(mask="Encoded", rms_deg=0.02),
-        pipeline(dataset="e", mask="Lens", rms_deg=0.01),
-    ]
+    rows = [ADVISED, pipeline(dataset="e", mask="Lens", rms_deg=0.01)]
     (said,) = recommend({"task": "Accuracy"}, rows, facts=survey).contradictions
     assert "CMOS + Encoded" in said
     assert "0.02 deg" in said
