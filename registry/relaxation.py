@@ -6,6 +6,7 @@ import itertools
 import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from decimal import ROUND_FLOOR, Context
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -131,10 +132,12 @@ def explain(question: Question) -> BlockingConstraint:
         words = " or ".join(in_words(n, _ask(requirements, n)) for n in unknown)
         detail += f". Nothing measured or stated tells of {words}"
     if bench := _bench_that_would_do(table, requirements):
-        detail += f". A calibration bench good to {bench:.2g} deg would do"
+        worth = _TWO_DIGITS.create_decimal(bench)  # rounded down: a worse bench would not do
+        detail += f". A calibration bench good to {float(worth):g} deg would do"
     return BlockingConstraint(first, detail, (*drops[:MOST_SETS], *changes))
 
 
+_TWO_DIGITS = Context(prec=2, rounding=ROUND_FLOOR)
 _WORDS = {
     "max_error_deg": "an error of at most {:g} deg",
     "min_fov_deg": "a full field of view of at least {:g} deg",

@@ -1,6 +1,7 @@
 """Requirements at a confidence against drawn units and benches, and closed forms."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -90,7 +91,7 @@ def test_the_bench_that_would_do_does_and_a_worse_one_does_not():
 )
 def test_the_largest_bench_is_the_largest_of_all(pipelines, limit, share):
     own = np.array([error for error, _ in pipelines])
-    ratios = np.sort([units for _, units in pipelines], axis=1)
+    ratios = np.array([units for _, units in pipelines])
     found = largest_bench(own, ratios, limit, share)
     assert found == bench_for(own, ratios, limit, share).max()
 
@@ -168,6 +169,22 @@ def test_units_within_a_limit_are_counted_for_each_calibration_of_an_architectur
         if one.measured
     }
     assert found == {"SPM": 9, "Linear": 10, "ANN": 9}
+
+
+@pytest.mark.parametrize(("own", "over"), [(0.004, 1.3), (0.004, 1.5), (0.0333, 2.2)])
+def test_the_bench_named_would_do_and_one_a_tenth_worse_would_not(own, over):
+    rows = [pipeline("a", own, bench_deg=1.0)]
+    only = {"mask": "Single-Ap.", "detector": "CMOS", "min_availability": 0.5}
+    asked = {"max_error_deg": over * own, **only}
+    blocked = recommend(asked, rows).blocking_constraint
+    assert blocked is not None
+    named = re.search(r"bench good to (\S+) deg would do", blocked.detail)
+    assert named is not None
+    counts = [
+        recommend({**asked, "bench_deg": times * float(named[1])}, rows).count
+        for times in (1.0, 1.11)
+    ]
+    assert counts == [1, 0]
 
 
 def test_what_a_calibration_reads_can_be_excluded():
