@@ -18,14 +18,14 @@ from survey_data.descriptor import primary_key
 from survey_data.findings.checks import FindingSyntaxError, Vocabulary, parse_clause
 from survey_data.reported import KIND_OF
 from survey_data.tables import FIRST_ROW
-from survey_data.validation import citations, provenance
+from survey_data.validation import built_sensors, citations, provenance
 from survey_data.validation.cells import Frames, Rule, known_values, problem, texts
 from survey_data.validation.extension import check_extension
 
 
 def check_rules(frames: Frames) -> list[Problem]:
     """Return the problems every rule finds whose tables are all in `frames`."""
-    rules = (*_RULES, *provenance.RULES, *citations.RULES)
+    rules = (*_RULES, *provenance.RULES, *citations.RULES, *built_sensors.RULES)
     ours = [
         found
         for needed, rule in rules

@@ -167,7 +167,10 @@ UNKNOWN = {
     "claims": [("section", "model:sundial"), ("study", "Nobody1999"), ("id", "claim")],
     "references": [("role", "friend"), ("mapped_key", "Nobody1999"), ("doi", "doi:10.1/x")],
     "counts": [("table", "sundials"), ("held", "many")],
-    "hardware": [("detector", "Sundial"), ("study", "Nobody1999"), ("accuracy_kind", "best")],
+    "hardware": [
+        ("detector", "Sundial"), ("study", "Nobody1999"), ("accuracy_kind", "best"),
+        ("family", ""), ("family", "Bradford CSS"), ("supply", "battery"),
+    ],
     "defaults": [("value", "Sundial"), ("attribute", "task"), ("given", "extractor=Sundial")],
     "purposes": [("given", "model=Sundial"), ("unless", "mask"), ("purpose", "fun")],
     "compensated_models": [("model", "Sundial"), ("relation", "behind"), ("study", "Nobody1999")],
