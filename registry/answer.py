@@ -1,254 +1,405 @@
-"""The designs that meet a question, ranked: all of them at once, as arrays.
-
-`registry.answer_json` writes an answer as JSON. Needs NumPy, so that only modules that answer
-questions import it.
-"""
+"""The architectures that meet a question, ranked, each with its evidence and calibrations."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import cached_property, lru_cache
-from operator import attrgetter
-from typing import NamedTuple
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from registry.designs import Candidate, DesignTable, Place
-from registry.judging import Question, advice_for
-from registry.mapping.advice import Advice
-from registry.pipelines import PipelineErrors, begins
-from registry.ranking import (
-    Regret,
-    Sort,
-    TaskMeasure,
-    joint_cost,
-    key_of,
-    pareto,
-    regret,
-    task_measures,
-)
-from registry.relaxation import BlockingConstraint, explain
+from registry.design_table import Flags, Numbers, Positions
+from registry.designs import Design, Place
+from registry.draws import unit_errors
+from registry.judging import MEETS, MISSES, Question, States
+from registry.measured_pipelines import MeasuredPipeline, PipelineJudgement
+from registry.ranking import ALIKE, Sort, TaskMeasure, in_words, joint_order, task_measure
+from registry.relaxation import Explanation, explain
+from registry.reports import Report
+from registry.requirements import OF_STUDIES
+from survey_data.processors import factor
 
-Numbers = NDArray[np.float64]
-Positions = NDArray[np.int64]
-
-#: Tasks and accuracies whose advice is kept, and architectures whose measures are.
-MOST_ADVISING, MOST_PLACES = 128, 4096
+STATE_NAMES = {MEETS: "meets", 0: "unknown", MISSES: "misses"}
 
 
-class RankedPlace(NamedTuple):
-    """An architecture that meets the requirements.
+@dataclass(frozen=True)
+class Calibration:
+    """A calibration of an architecture that meets the requirements, or comes nearest.
 
     Attributes
     ----------
-    key : what it is ranked by
-    number, at : its position in the table, and among those that meet the requirements
-    studies : its studies (bits) that have what is asked of studies
-    stated : those of them by which designs that are not measured are judged
-    start, end : its part of `Answer.designs`
-    best, row : the design with the smallest error and its pipeline, by position; -1 for none
-    rank_of_best : of that design on the architecture
-    advice : the survey's advice for what is asked
-    advised_tasks : tasks of that advice
+    design, pipeline : labels and studies; the measured pipeline, None where none is measured
+    own : own error over the required field and conditions, with the condition it is largest under
+    judged_deg : error that the stated share of units (and benches, if stated) stays within
+    interval_deg : own error times and over the standard error of its log over units
+    needs_bench_deg : bench error up to which the limit is kept; None without a limit, 0 for none
+    units_within : of ten units, how many keep the limit; None without one
+    """
+
+    design: Design
+    pipeline: MeasuredPipeline | None
+    own: PipelineJudgement | None = None
+    judged_deg: float | None = None
+    interval_deg: tuple[float, float] | None = None
+    needs_bench_deg: float | None = None
+    units_within: int | None = None
+    latency_us: float | None = None
+    availability: float | None = None
+
+
+@dataclass(frozen=True)
+class RankedArchitecture:
+    """An architecture of the answer.
+
+    Attributes
+    ----------
+    rank, tied : None and False where nothing is asked; equal errors share a rank
+    number, place : its position in the table
+    meets : kinds of evidence that meet all requirements: "reported", "measured"
+    evidence : for each requirement the state of reports, measurements and the survey's advice;
+        None where that kind of evidence says nothing about such a requirement
+    reports : best first; those that meet all requirements, or else the one that comes nearest
+    best : the most accurate calibration that meets all, or else the one that comes nearest
+    shown_deg : the error that it is ordered by; infinite where there is none
+    calibrations : how many meet the requirements
     measures : the own measures of the tasks asked for
     """
 
-    key: tuple[float, ...]
+    rank: int | None
+    tied: bool
     number: int
-    at: int
     place: Place
-    studies: int
-    stated: int
-    start: int
-    end: int
-    best: int
-    row: int
-    rank_of_best: int
-    error_deg: float
-    advice: tuple[Advice, ...]
-    advised_tasks: frozenset[str]
+    meets: tuple[str, ...]
+    evidence: Mapping[str, tuple[str | None, str | None, str | None]]
+    reports: tuple[Report, ...]
+    best: Calibration | None
+    shown_deg: float
+    calibrations: int
     measures: tuple[TaskMeasure, ...]
+
+    @property
+    def backing(self) -> int:
+        """Number of its studies and of products that none of these describes."""
+        products = sum(self.place.studies.keys().isdisjoint(p.studies) for p in self.place.products)
+        return len(self.place.studies) + products
 
 
 class Answer:
-    """Designs that meet a question, best first; equals in the order of the table.
+    """Architectures that meet a question, best first.
 
-    A calibration whose extractor or model has no name in the taxonomy comes last, but by what is
-    measured.
-
-    Attributes
+    Parameters
     ----------
-    designs : positions of the designs, by architecture and then best first
-    places : the architectures, best first
+    question : requirements put to a table of designs
+    sort : order of the architectures
     """
 
     def __init__(self, question: Question, sort: Sort) -> None:
         self.question = question
         self.sort = sort
-        self.best = question.best_pipelines
-        counting = question.studies, question.stated_of_unmeasured
-        every, used = question.arrays.rank_designs(self.best, *counting, sort)
-        self.designs: Positions = every[question.matching_designs.take(every)]
-        self._used = used
-        self._of = question.arrays.place_of.take(self.designs)
-        self._starts = np.flatnonzero(begins(self._of)) if len(self._of) else self._of
-        self.places: Sequence[RankedPlace] = sorted(self._places(), key=attrgetter("key"))
+
+    @cached_property
+    def architectures(self) -> tuple[RankedArchitecture, ...]:
+        """All architectures of the answer, best first."""
+        found = [self._architecture(int(n)) for n in np.flatnonzero(self.question.matching_places)]
+        keys = self._keys(found)
+        ordered = [found[at] for at in sorted(range(len(found)), key=keys.__getitem__)]
+        keys.sort()
+        return tuple(self._ranked(ordered, keys))
 
     @property
-    def count(self) -> int:
-        """How many designs meet the question."""
-        return len(self.designs)
+    def design_count(self) -> int:
+        """Number of calibrations that meet the requirements."""
+        return int(np.count_nonzero(self.question.matching_designs))
 
-    def _places(self) -> list[RankedPlace]:
-        """Return the architectures in the order of the table."""
-        if not self.count:
-            return []
-        question, best, sort = self.question, self.best, self.sort
-        include, advising = question.requirements.include, question.advice_key
-        tasks, of_errors = include.get("task", ()), "error" in include
-        studies, stated = question.studies, question.stated_of_unmeasured
-        facts = question.table.made(_PlaceFacts)
-        advice_of = facts.advice(advising)
-        starts: list[int] = self._starts.tolist()
-        ends = (*starts[1:], self.count)
-        # Of each architecture the design that comes first by error, and its place among all.
-        numbers = question.arrays.numbers[: self.count]
-        bits = question.arrays.design_bits
-        first = np.minimum.reduceat(best.order.take(self.designs) << bits | numbers, self._starts)
-        places_of_best = first & ((1 << bits) - 1)
-        least = self.designs.take(places_of_best)
-        found = []
-        for number, at, start, end, best_at, design, row, error in zip(
-            self._of.take(self._starts).tolist(),
-            range(len(starts)),
-            starts,
-            ends,
-            places_of_best.tolist(),
-            least.tolist(),
-            best.row.take(least).tolist(),
-            best.error.take(least).tolist(),
-            strict=True,
-        ):
-            place = question.table.places[number]
-            has = place.studies & studies
-            advice, advised_tasks = advice_of[number]
-            own: float | None = None
-            measures: tuple[TaskMeasure, ...] = ()
-            if tasks:
-                own, measures = facts.measures(number, tasks, best.errors, row, error)
-            backing = has.bit_count()
-            key = key_of(sort, bool(advice), backing, error, own, of_errors=of_errors)
-            within = place.studies & stated
-            rank = best_at - start + 1
-            found.append(
-                RankedPlace(
-                    key,
-                    number,
-                    at,
-                    place,
-                    has,
-                    within,
-                    start,
-                    end,
-                    design,
-                    row,
-                    rank,
-                    error,
-                    advice,
-                    advised_tasks,
-                    measures,
-                )
-            )
+    @property
+    def is_asked(self) -> bool:
+        """Whether anything is required."""
+        return bool(self.question.requirements.names)
+
+    @property
+    def order(self) -> str:
+        """The order as a sentence."""
+        tasks = self.question.requirements.include.get("task", ())
+        return in_words(self.sort, tasks, asked=self.is_asked, by_class=self._by_class)
+
+    @cached_property
+    def explanation(self) -> Explanation | None:
+        """Why nothing meets the requirements; None where something does."""
+        return None if self.question.matching_places.any() else explain(self.question)
+
+    @cached_property
+    def on_better_bench(self) -> tuple[int, float] | None:
+        """How many more architectures a better bench lets meet by measurement, and how good it is.
+
+        None where no bench is stated, or the bench stands in the way of none.
+        """
+        question, asked = self.question, self.question.requirements
+        if asked.bench_deg is None or asked.largest_deg is None:
+            return None
+        without = Question(question.table, replace(asked, bench_deg=None))
+        more = without.measured & ~_rows_of(question, _places_with(question, question.measured))
+        if not more.any():
+            return None
+        rows = np.flatnonzero(more).tolist()
+        best: dict[int, float] = {}
+        for row in sorted(rows, key=lambda at: float(without.shown_deg[at])):
+            best.setdefault(int(question.table.row_place[row]), without.bench_for(row) or 0.0)
+        return len(best), max(best.values())
+
+    def calibrations(self, one: RankedArchitecture) -> Iterator[Calibration]:
+        """Yield the calibrations of an architecture that meet the requirements, best first."""
+        table, best = self.question.table, self._best_row
+        designs = np.flatnonzero(
+            self.question.matching_designs & (table.design_place == one.number)
+        )
+        rows = best[designs]
+        errors = np.where(rows >= 0, self.question.shown_deg[rows], np.inf)
+        users = table.used[designs].sum(axis=1)
+        by = (~table.is_specified[designs], -users, ~table.is_advised[designs], errors)
+        order = np.lexsort((errors, -users) if self.sort == "studies" else by)
+        for at in order.tolist():
+            design = table.designs[int(designs[at])]
+            row = int(rows[at])
+            yield self._calibration(design, row) if row >= 0 else Calibration(design, None)
+
+    @cached_property
+    def _best_row(self) -> Positions:
+        """The most accurate pipeline of each design that meets the requirements; -1 for none."""
+        question, table = self.question, self.question.table
+        rows = np.flatnonzero(question.measured)
+        order = rows[np.lexsort((question.shown_deg[rows], table.row_design[rows]))]
+        found = np.full(len(table.designs), -1)
+        found[table.row_design[order][::-1]] = order[::-1]
         return found
 
     @cached_property
-    def usual(self) -> dict[int, tuple[int, int, float]]:
-        """The measured calibration that most studies used, by architecture, its pipeline and error.
-
-        Of several the one with the smallest error, then the first. All by position.
-        """
-        used = self._used[self.question.matching_designs.take(self._used)]
-        places = self.question.arrays.place_of.take(used)
-        first = begins(places)
-        designs = used[first]
-        rows, errors = self.best.row.take(designs), self.best.error.take(designs)
-        found = zip(designs.tolist(), rows.tolist(), errors.tolist(), strict=True)
-        return dict(zip(places[first].tolist(), found, strict=True))
-
-    def candidate(self, design: int) -> Candidate:
-        """Return a design, given by position, with its best pipeline."""
-        return self.best.candidate(design)
-
-    def least_by_place(self, values: Numbers) -> list[float]:
-        """Return the least of some values of designs on each architecture, best first."""
-        if values is self.best.error:
-            return [place.error_deg for place in self.places]
-        least: list[float] = np.minimum.reduceat(values.take(self.designs), self._starts).tolist()
-        return [least[place.at] for place in self.places]
-
-    def design_with_least(self, place: RankedPlace, values: Numbers) -> int:
-        """Return the design on an architecture that reaches the least of some values."""
-        if values is self.best.error:
-            return place.best
-        designs = self.designs[place.start : place.end]
-        found = values[designs]
-        order = self.best.order[designs[found == found.min()]].min()
-        return int(self.best.at_order[order])
-
-    @property
-    def regret(self) -> Regret | None:
-        """Error of the first calibration beside the best one's; None if none is measured."""
-        if not self.places:
-            return None
-        least = min(self.places, key=attrgetter("error_deg"))
-        first = self.candidate(int(self.designs[self.places[0].start]))
-        return regret(first, self.candidate(least.best))
-
-    @property
-    def pareto(self) -> frozenset[int]:
-        """Positions of the architectures that none beats in both studies and error."""
-        return pareto([(-one.studies.bit_count(), one.error_deg) for one in self.places])
-
-    @property
-    def untested_architectures(self) -> dict[str, tuple[tuple[str, str], ...]]:
-        """Architectures that no data set tries a hazard on, by the hazards asked for."""
-        question = self.question
-        return {
-            hazard: question.arrays.untested_architectures(hazard)
-            for hazard in question.requirements.survive
-        }
-
-    @property
-    def untimed_count(self) -> int:
-        """How many measured pipelines a limit on latency cannot judge; 0 where none is asked."""
-        if self.question.requirements.max_latency_us is None:
-            return 0
-        return int(np.isinf(self.question.arrays.latency_us).sum())
+    def _nearest_row(self) -> Mapping[int, int]:
+        """Of each architecture the pipeline that misses fewest requirements, then errs least."""
+        question, table = self.question, self.question.table
+        among = question.candidates & np.isfinite(question.errors.own_deg)
+        if not among.any():
+            among = question.candidates
+        return _nearest(among, question.by_pipeline, question.shown_deg, table.row_place)
 
     @cached_property
-    def blocking_constraint(self) -> BlockingConstraint | None:
-        """Why nothing meets the requirements, if nothing does."""
-        return None if self.places else explain(self.question)
+    def _nearest_report(self) -> Mapping[int, int]:
+        question, table = self.question, self.question.table
+        among = np.ones(len(table.reports), bool)
+        rms = table.report_numbers["rms_deg"]
+        return _nearest(among, question.by_report, rms, table.report_place)
+
+    def _architecture(self, number: int) -> RankedArchitecture:
+        question, table = self.question, self.question.table
+        place = table.places[number]
+        reporting = np.flatnonzero(question.reported & (table.report_place == number)).tolist()
+        rms = table.report_numbers["rms_deg"]
+        reporting.sort(key=lambda at: (math.isnan(rms[at]), rms[at]))
+        nearest_report = self._nearest_report.get(number, -1)
+        row = self._nearest_row.get(number, -1)
+        meets = (("reported",) * bool(reporting)) + (
+            ("measured",) * bool(row >= 0 and question.measured[row])
+        )
+        shown = float(question.shown_deg[row]) if "measured" in meets else math.inf
+        if math.isinf(shown) and reporting and not math.isnan(rms[reporting[0]]):
+            shown = float(rms[reporting[0]])
+        best = None
+        if row >= 0:
+            best = self._calibration(table.designs[int(table.row_design[row])], row)
+        listed = reporting or [nearest_report] * (nearest_report >= 0)
+        asked = question.requirements
+        time = factor(asked.processor)
+        return RankedArchitecture(
+            rank=None,
+            tied=False,
+            number=number,
+            place=place,
+            meets=meets,
+            evidence=dict(self._evidence(number, listed[0] if listed else -1, row)),
+            reports=tuple(table.reports[at] for at in listed),
+            best=best,
+            shown_deg=shown,
+            calibrations=int(self._design_counts[number]),
+            measures=tuple(
+                task_measure(task, place, best and best.pipeline, shown, time)
+                for task in asked.include.get("task", ())
+            ),
+        )
+
+    @cached_property
+    def _design_counts(self) -> Positions:
+        of = self.question.table.design_place[self.question.matching_designs]
+        return np.bincount(of, minlength=len(self.question.table.places))
+
+    def _evidence(
+        self, number: int, report: int, row: int
+    ) -> Iterator[tuple[str, tuple[str | None, str | None, str | None]]]:
+        """Yield for each requirement but detector and mask the states of the kinds of evidence."""
+        question, table = self.question, self.question.table
+        asked = question.requirements
+        for name in asked.names:
+            if name.removeprefix("exclude_") in {"detector", "mask"}:
+                continue
+            reported = _name_of(question.by_report, name, report)
+            measured = _name_of(question.by_pipeline, name, row)
+            if measured is None and row >= 0 and name in question.of_parts:
+                measured = "meets"  # only pipelines of the required parts are candidates
+            advised = None
+            if name in {*OF_STUDIES, "accuracy"}:
+                advised = "unknown"
+                if table.advised_for(name, asked.include[name])[number]:
+                    advised = "meets"
+            yield name, (reported, measured, advised)
+
+    def _calibration(self, design: Design, row: int) -> Calibration:
+        question, table = self.question, self.question.table
+        asked, pipeline = question.requirements, table.rows[row]
+        own = pipeline.judge(asked.hazards, asked.half_field_deg)
+        judged = float(question.judged_deg[row])
+        limit = asked.largest_deg
+        interval, within, needed = None, None, None
+        if math.isfinite(own.error_deg):
+            spread = math.exp(2.0 * float(table.log_error[row]))
+            interval = own.error_deg / spread, own.error_deg * spread
+            if limit is not None:
+                found = unit_errors(
+                    np.array([own.error_deg]),
+                    table.unit_ratios[[row]],
+                    np.array([asked.bench_deg or 0.0]),
+                    asked.share,
+                )
+                within = int(np.count_nonzero(found <= limit))
+                needed = question.bench_for(row)
+        time = pipeline.latency_us
+        return Calibration(
+            design=design,
+            pipeline=pipeline,
+            own=own,
+            judged_deg=judged if math.isfinite(judged) else None,
+            interval_deg=interval,
+            needs_bench_deg=needed,
+            units_within=within,
+            latency_us=None if time is None else time * factor(asked.processor),
+            availability=pipeline.availability(asked.hazards),
+        )
+
+    def _keys(self, found: Sequence[RankedArchitecture]) -> list[tuple[float, ...]]:
+        """Return what each architecture is ordered by; equal numbers keep the taxonomy's order."""
+        tasks = self.question.requirements.include.get("task", ())
+        by: list[tuple[float, ...]] = [(one.shown_deg,) for one in found]
+        if not self.is_asked or self.sort == "studies":
+            by = [(-one.backing,) for one in found]
+        elif self.sort == "evidence" and self._by_class:
+            by = [(-self._class_reports(one),) for one in found]
+        elif self.sort == "evidence" and len(tasks) == 1:
+            by = [self._by_task(one, 0) for one in found]
+        elif self.sort == "evidence" and tasks and found:
+            costs = [[self._by_task(one, at) for one in found] for at in range(len(tasks))]
+            by = [(total,) for total in joint_order(costs)]
+        tiered = self.is_asked and self.sort == "evidence"
+        return [
+            (not one.place.is_built, _tier(one) if tiered else 0, *key, at)
+            for at, (one, key) in enumerate(zip(found, by, strict=True))
+        ]
+
+    @property
+    def _by_class(self) -> bool:
+        """Whether an accuracy class is asked for, and no error limit: within a class none is better
+        for a smaller error."""
+        asked = self.question.requirements
+        return "accuracy" in asked.include and asked.max_error_deg is None
+
+    @staticmethod
+    def _class_reports(one: RankedArchitecture) -> int:
+        """Return how many distinct studies and products report all that is asked."""
+        return len({report.family for report in one.reports}) * ("reported" in one.meets)
+
+    def _by_task(self, one: RankedArchitecture, at: int) -> tuple[float, ...]:
+        measure = one.measures[at]
+        studies = sum(measure.task in study.of("task") for study in one.place.studies.values())
+        return (measure.cost, -studies if math.isinf(measure.cost) else 0.0)
+
+    def _ranked(
+        self, ordered: Sequence[RankedArchitecture], keys: Sequence[tuple[float, ...]]
+    ) -> Iterator[RankedArchitecture]:
+        """Give ranks: architectures with errors alike share one, those with more evidence first."""
+        if not self.is_asked:
+            yield from ordered
+            return
+        at = 0
+        while at < len(ordered):
+            end = at + 1
+            while end < len(ordered) and self._alike(ordered, keys, at, end):
+                end += 1
+            group = sorted(ordered[at:end], key=lambda one: -one.backing)
+            for one in group:
+                yield replace(one, rank=at + 1, tied=len(group) > 1)
+            at = end
+
+    def _alike(
+        self,
+        ordered: Sequence[RankedArchitecture],
+        keys: Sequence[tuple[float, ...]],
+        first: int,
+        other: int,
+    ) -> bool:
+        """Say whether an architecture shares the rank of the first of its group."""
+        if keys[first][:2] != keys[other][:2]:
+            return False
+        tasks = self.question.requirements.include.get("task", ())
+        of_numbers = self.sort == "evidence" and (
+            self._by_class or tasks not in {(), ("Accuracy",)}
+        )
+        if self.sort == "studies" or of_numbers:
+            return keys[first][2:-1] == keys[other][2:-1]
+        one, two = ordered[first], ordered[other]
+        if math.isinf(one.shown_deg):
+            return math.isinf(two.shown_deg)
+        spread = 0.0
+        if self.question.requirements.bench_deg is None:
+            spread = math.hypot(_log_error(one), _log_error(two))
+        return two.shown_deg <= one.shown_deg * max(ALIKE, math.exp(2.0 * spread))
 
 
-class _PlaceFacts:
-    """Advice and measures of the architectures of a table, kept for the next question."""
+def _tier(one: RankedArchitecture) -> int:
+    return {("reported", "measured"): 0, ("reported",): 1, ("measured",): 2}[one.meets]
 
-    def __init__(self, table: DesignTable) -> None:
-        self._table = table
-        self.advice = lru_cache(MOST_ADVISING)(self._advice)
-        self.measures = lru_cache(MOST_PLACES)(self._measures)
 
-    def _advice(
-        self, advising: tuple[tuple[str, ...] | None, ...]
-    ) -> list[tuple[tuple[Advice, ...], frozenset[str]]]:
-        return [advice_for(place, advising) for place in self._table.places]
+def _log_error(one: RankedArchitecture) -> float:
+    """Return the standard error of the log of the error shown; 0 for a reported one."""
+    if "measured" not in one.meets or one.best is None or one.best.interval_deg is None:
+        return 0.0
+    low, high = one.best.interval_deg
+    return math.log(high / low) / 4.0
 
-    def _measures(
-        self, number: int, tasks: tuple[str, ...], errors: PipelineErrors, row: int, error: float
-    ) -> tuple[float, tuple[TaskMeasure, ...]]:
-        pipeline = None if row < 0 else errors.table.rows[row]
-        architecture = self._table.places[number].architecture
-        measures = task_measures(tasks, architecture, pipeline, error)
-        return joint_cost(measures), measures
+
+def _nearest(
+    among: Flags, states: Mapping[str, States], values: Numbers, place: Positions
+) -> dict[int, int]:
+    """Return of each architecture the row that misses fewest requirements, then the least value."""
+    rows = np.flatnonzero(among)
+    failed = np.zeros(len(rows), int)
+    for one in states.values():
+        failed += one[rows] != MEETS
+    order = rows[np.lexsort((values[rows], failed, place[rows]))]
+    found: dict[int, int] = {}
+    for row in order.tolist():
+        found.setdefault(int(place[row]), row)
+    return found
+
+
+def _name_of(states: Mapping[str, States], name: str, at: int) -> str | None:
+    """Return the state of a requirement in words; None where this kind says nothing of it."""
+    if name not in states:
+        return None
+    return "unknown" if at < 0 else STATE_NAMES[int(states[name][at])]
+
+
+def _places_with(question: Question, rows: Flags) -> Flags:
+    found = np.zeros(len(question.table.places), bool)
+    found[question.table.row_place[rows]] = True
+    return found
+
+
+def _rows_of(question: Question, places: Flags) -> Flags:
+    return places[question.table.row_place]

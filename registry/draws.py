@@ -83,14 +83,6 @@ def at_confidence(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers, share: 
     return found
 
 
-def one_at_confidence(
-    own_deg: float, ratios: Sequence[float], bench_deg: float, share: float
-) -> float:
-    """Return the error that a share of the draws of one pipeline keeps within."""
-    found = at_confidence(np.array([own_deg]), np.array([ratios]), np.array([bench_deg]), share)
-    return float(found[0])
-
-
 def unit_errors(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers, share: float) -> Numbers:
     """Return the error (R, units) that each unit keeps on a share of the benches.
 
@@ -125,21 +117,6 @@ def bench_for(own_deg: Numbers, ratios: Numbers, limit_deg: float, share: float)
     place = draws.shape[1] - _fewest(share, draws.shape[1])
     found = np.partition(draws, place, axis=1)[:, place]
     return np.asarray(np.clip(found, 0.0, limit_deg))
-
-
-def largest_bench(own_deg: Numbers, ratios: Numbers, limit_deg: float, share: float) -> float:
-    """Return the largest of `bench_for` of some pipelines (R >= 1), computed for few of them.
-
-    So many draws meet the limit only if the best unit does on so many benches, and surely if the
-    worst does: both are quickly computed, and bound what `bench_for` gives. Left out is each
-    pipeline whose upper bound is below the lower bound of another. Parameters as `bench_for`.
-    """
-    benches = math.ceil(_fewest(share, UNITS * len(BENCHES)) / UNITS)
-    best_and_worst = np.stack((ratios.min(axis=1), ratios.max(axis=1)))
-    left = limit_deg**2 - (own_deg * best_and_worst) ** 2
-    most, least = np.sqrt(np.maximum(left, 0.0)) / BENCHES[benches - 1]
-    among = most >= min(least.max(), limit_deg)
-    return float(bench_for(own_deg[among], ratios[among], limit_deg, share).max())
 
 
 def _fewest(share: float, draws: int) -> int:

@@ -1,33 +1,38 @@
-"""Select the designs that meet requirements, and the evidence that decides each requirement."""
+"""Requirements put to the table of designs: what reports meet, and what measured pipelines do.
+
+Of each requirement a report or a pipeline *meets*, *misses* or leaves it *unknown*. The two kinds
+of evidence are judged apart, and neither stands in for the other.
+"""
 
 from __future__ import annotations
 
-import bisect
-from collections.abc import Iterable, Mapping, Sequence
-from functools import cached_property, reduce
-from operator import and_
-from typing import TYPE_CHECKING
+import math
+from collections.abc import Iterable, Mapping
+from decimal import ROUND_FLOOR, Context
+from functools import cached_property
 
-from pydantic_core import to_json
+import numpy as np
+from numpy.typing import NDArray
 
-from registry.designs import DesignTable, Limits, Place
-from registry.mapping.advice import ADVISING, Advice
-from registry.requirements import EXCLUDE, Requirements
+from registry.design_table import DesignTable, Flags, Numbers, PipelineErrors
+from registry.draws import bench_for
+from registry.requirements import CLASSES_DEG, EXCLUDE, OF_PRODUCTS, OF_STUDIES, Requirements
+from survey_data.processors import factor
 
-if TYPE_CHECKING:
-    from registry.design_arrays import BestPipelines
-    from registry.pipelines import Flags, PipelineErrors
+States = NDArray[np.int8]
+MEETS, UNKNOWN, MISSES = 1, 0, -1
 
-OF_STUDIES = ("task", "error", "accuracy")
-"""Requirements on the studies of an architecture, not on a design."""
+_TWO_DIGITS = Context(prec=2, rounding=ROUND_FLOOR)
 
-_STATED = {"max_error_deg": "accuracy_deg", "min_fov_deg": "fov_deg"}
-"""Limits that a study's stated number is compared with, where nothing is measured."""
-
-_MEASURED = (
-    *("max_error_deg", "min_fov_deg", "survive", "min_availability", "max_latency_us"),
-    "exclude_needs",
-)
+_OF_DESIGNS = ("detector", "mask", "model", "extractor")
+#: Limits on a reported number, and whether it must be at most or at least that.
+_REPORTED = {
+    "max_error_deg": ("rms_deg", True),
+    "min_fov_deg": ("fov_deg", False),
+    "max_mass_g": ("mass_g", True),
+    "max_power_mw": ("power_mw", True),
+    "min_rate_hz": ("rate_hz", False),
+}
 
 
 class Question:
@@ -35,211 +40,289 @@ class Question:
 
     Attributes
     ----------
-    arrays : the table as arrays
-    studies : bit set of the studies with the required tasks, errors and accuracies
-    studies_within_limits : bit set of those whose stated numbers are within all limits, too
-    limits : names of the required limits
+    table, requirements : what is asked of what
+    designs : designs that have the required parts
+    studies : studies with the required tasks and errors, none of which is excluded
+    places : architectures that one of these has, or that the survey advises for them
     """
 
     def __init__(self, table: DesignTable, requirements: Requirements) -> None:
-        from registry.design_arrays import design_arrays  # noqa: PLC0415 - NumPy
-
         self.table = table
-        self.arrays = design_arrays(table)
         self.requirements = requirements
+        self.designs = self._find_designs()
         self.studies = self._find_studies()
-        self.limits = tuple(n for n in _MEASURED if getattr(requirements, n))
-        self._studies_within = {name: self._find_studies_within(name) for name in self.limits}
-        self.studies_within_limits = self.studies
-        for name in self.limits:
-            self.studies_within_limits &= self._studies_within[name]
-
-    @property
-    def stated_of_unmeasured(self) -> int:
-        """Studies within all limits that use an unmeasured design, or its compensations and model.
-
-        Stated numbers decide on unmeasured designs alone, so no other study has to be known. Many
-        questions have the same set (bits), and share what is kept by it.
-        """
-        return self.studies_within_limits & self.arrays.studies_of_unmeasured
-
-    @staticmethod
-    def limits_of(requirements: Requirements) -> Limits:
-        """Return the limits by which measured pipelines are selected and judged."""
-        return Limits(
-            requirements.survive,
-            requirements.half_field_deg,
-            requirements.min_availability,
-            requirements.max_latency_us,
-            requirements.draws,
-            requirements.exclude_needs,
-        )
+        self.places = self._find_places()
 
     @cached_property
-    def requirements_json(self) -> bytes:
-        """The requirements as JSON."""
-        return to_json(self.requirements.to_dict())
-
-    @cached_property
-    def best_pipelines(self) -> BestPipelines:
-        """The most accurate pipeline within the limits, of each design."""
-        asked = self.requirements
-        # Fields between the same two edges select the same pipelines.
-        half = self.arrays.half_field(asked.half_field_deg)
-        return self.arrays.best_pipelines(
-            Limits(
-                *(asked.survive, half, asked.min_availability, asked.max_latency_us),
-                *(asked.draws, asked.exclude_needs),
-            )
-        )
-
-    @property
     def errors(self) -> PipelineErrors:
-        """Errors of all pipelines under the required hazards, field and confidence."""
-        return self.best_pipelines.errors
+        """Own errors of all pipelines under the required hazards and field."""
+        return self.table.errors(self.requirements.hazards, self.requirements.half_field_deg)
+
+    @cached_property
+    def candidates(self) -> Flags:
+        """Pipelines of the required designs on the required architectures."""
+        return self.designs[self.table.row_design] & self.places[self.table.row_place]
+
+    @cached_property
+    def judged_deg(self) -> Numbers:
+        """Error that a limit is compared with: kept by the share of units, and of benches if one is
+        stated."""
+        among = self.candidates & np.isfinite(self.errors.own_deg)
+        asked = self.requirements
+        return self.table.within(self.errors.own_deg, among, asked.bench_deg, asked.share)
+
+    @cached_property
+    def shown_deg(self) -> Numbers:
+        """Error that pipelines are ordered by: on the stated bench, else the own error."""
+        return self.judged_deg if self.requirements.bench_deg else self.errors.own_deg
+
+    @cached_property
+    def by_pipeline(self) -> Mapping[str, States]:
+        """State of each measured pipeline for every requirement that measurement can judge."""
+        table, asked, errors = self.table, self.requirements, self.errors
+        answered = np.isfinite(errors.own_deg)
+        found: dict[str, States] = {}
+        if asked.max_error_deg is not None:
+            found["max_error_deg"] = _states(self.judged_deg <= asked.max_error_deg, answered)
+            found["max_error_deg"][~answered & errors.covers] = MISSES
+        if classes := self._classes():
+            inside = self._in_classes(classes)
+            found["accuracy"] = _states(inside, answered)
+        if asked.min_fov_deg is not None:
+            found["min_fov_deg"] = _states(np.isfinite(errors.nominal_deg))
+        for name in ("survive", "sun_distance_au"):
+            if asked.survive if name == "survive" else asked.light and asked.light.hazard:
+                found[name] = _states(answered, errors.covers)
+        if asked.min_availability is not None:
+            known = ~np.isnan(errors.availability)
+            found["min_availability"] = _states(
+                errors.availability >= asked.min_availability, known
+            )
+        if asked.max_latency_us is not None:
+            time = table.latency_us * factor(asked.processor)
+            found["max_latency_us"] = _states(time <= asked.max_latency_us, ~np.isnan(time))
+        if asked.exclude_needs:
+            needs = [table.needs_input(need) for need in asked.exclude_needs]
+            found["exclude_needs"] = _states(~np.logical_or.reduce(needs))
+        return found
+
+    @cached_property
+    def by_report(self) -> Mapping[str, States]:
+        """State of each report for every requirement but detector and mask."""
+        table, asked = self.table, self.requirements
+        is_study, study = table.report_study >= 0, table.report_study
+        found: dict[str, States] = {}
+        for side, prefix in ((asked.include, ""), (asked.exclude, EXCLUDE)):
+            for name in (one for one in OF_STUDIES if one in side):
+                meets = self._studies_alone(prefix + name)
+                found[prefix + name] = _states(meets[study], is_study)
+        if classes := self._classes():
+            named = [table.report_classes[name] for name in CLASSES_DEG if name in classes]
+            every = np.logical_or.reduce(list(table.report_classes.values()))
+            found["accuracy"] = _states(np.logical_or.reduce(named), every)
+        if names := self.of_parts:
+            design, user = np.nonzero(table.used)
+            kept = self.designs[design]
+            meets = np.zeros((len(table.places), len(table.keys)), bool)
+            meets[table.design_place[design[kept]], user[kept]] = True
+            states = _states(meets[table.report_place, study], is_study)
+            found |= dict.fromkeys(names, states)
+        for name, (column, at_most) in _REPORTED.items():
+            limit = asked.value_of(name)
+            if isinstance(limit, float | int):
+                values = table.report_numbers[column]
+                kept = values <= limit if at_most else values >= limit
+                found[name] = _states(kept, ~np.isnan(values))
+                if name in OF_PRODUCTS:  # of a study without the number its products tell
+                    there = self.by_place[name][table.report_place]
+                    found[name] = np.where(found[name] == UNKNOWN, there, found[name])
+        for name in ("min_availability", "max_latency_us", "survive", "exclude_needs"):
+            if asked.value_of(name) is not None:
+                found[name] = np.zeros(len(table.reports), np.int8)
+        if asked.light and asked.light.hazard:
+            found["sun_distance_au"] = np.zeros(len(table.reports), np.int8)
+        return found
+
+    @cached_property
+    def by_place(self) -> Mapping[str, States]:
+        """State of each architecture for mass, power and rate, by all that is built of it."""
+        table, found = self.table, {}
+        for name in OF_PRODUCTS:
+            limit = self.requirements.value_of(name)
+            if isinstance(limit, float | int):
+                column, at_most = _REPORTED[name]
+                values = table.report_numbers[column]
+                known = ~np.isnan(values)
+                kept = (values <= limit if at_most else values >= limit) & known
+                of_place = (self._any_report(kept), self._any_report(known))
+                found[name] = _states(*of_place)
+        return found
+
+    @cached_property
+    def reported(self) -> Flags:
+        """Reports that meet all requirements; of mass, power and rate unknown is enough."""
+        table = self.table
+        found = self.places[table.report_place] & self._architectures[table.report_place]
+        for name, states in self.by_report.items():
+            found &= states >= (UNKNOWN if name in OF_PRODUCTS else MEETS)
+        return found
+
+    @cached_property
+    def measured(self) -> Flags:
+        """Measured pipelines that meet all requirements; of mass, power and rate unknown is
+        enough."""
+        found = self.candidates & np.isfinite(self.errors.own_deg)
+        for states in self.by_pipeline.values():
+            found &= states == MEETS
+        for states in self.by_place.values():
+            found &= states[self.table.row_place] >= UNKNOWN
+        return found
+
+    @cached_property
+    def matching_places(self) -> Flags:
+        """Architectures that the evidence asked for brings into the answer."""
+        reported = self._any_report(self.reported)
+        measured = np.zeros(len(self.table.places), bool)
+        measured[self.table.row_place[self.measured]] = True
+        wanted = self.requirements.evidence or "any"
+        return {
+            "any": reported | measured,
+            "reported": reported,
+            "measured": measured,
+            "both": reported & measured,
+        }[wanted]
 
     @cached_property
     def matching_designs(self) -> Flags:
-        """Mask over designs: true for those that meet all requirements."""
-        arrays, best, largest = self.arrays, self.best_pipelines, self.requirements.largest_deg
-        found: Flags = best.row >= 0
-        if largest is not None:
-            found &= best.error <= largest
-        found |= arrays.unmeasured_designs_of(self.stated_of_unmeasured)
-        for designs in self.designs_with.values():
-            found &= designs
-        asked = {*self.requirements.include, *self.requirements.exclude}
-        if not asked.isdisjoint(OF_STUDIES):
-            found &= self._places_asked.take(arrays.place_of)
-        return found
-
-    @property
-    def _places_asked(self) -> Flags:
-        """Mask over architectures: used by a study that meets the requirements, or advised."""
-        arrays = self.arrays
-        found: Flags = arrays.with_one_of(self.studies)
-        included = [name for name in OF_STUDIES if name in self.requirements.include]
-        if not included:
-            found |= arrays.without_studies
-            return found
-        advised = [arrays.advised_for(name, self.requirements.include[name]) for name in included]
-        found |= reduce(and_, advised)
-        return found
-
-    @cached_property
-    def designs_with(self) -> Mapping[str, Flags]:
-        """Masks over designs, one for each requirement on a design: true for those that meet it."""
-        arrays, facts = self.arrays, self.table.facts
-        kinds = facts.taxonomy.kinds
-        found: dict[str, Flags] = {}
-        for prefix, side in (("", self.requirements.include), (EXCLUDE, self.requirements.exclude)):
-            for attribute, values in side.items():
-                if attribute not in OF_STUDIES:
-                    has = arrays.designs_with(
-                        attribute, [k for v in values for k in kinds(attribute, v)]
-                    )
-                    found[prefix + attribute] = ~has if prefix else has
-        if self.requirements.properties:
-            marks = [facts.properties[name] for name in self.requirements.properties]
-            extractors = {design.extractor for design in arrays.designs}
-            marked = [e for e in extractors if all(of.get(e, 0) for of in marks)]
-            found["properties"] = arrays.designs_with("extractor", marked)
-        return found
-
-    def count(self) -> int:
-        """Return how many architectures meet the requirements."""
-        return self.arrays.count_places(self.matching_designs)
-
-    @cached_property
-    def finest_partial_answers(self) -> Mapping[int, int]:
-        """Most accurate pipeline below the availability limit, by architecture (positions).
-
-        Only calibrations that meet the requirements on model, extractor and properties count.
-        """
-        names = ("model", "exclude_model", "extractor", "exclude_extractor", "properties")
-        allowed = [self.designs_with[name] for name in names if name in self.designs_with]
-        return self.errors.finest(self.best_pipelines.limits, allowed)
-
-    @property
-    def advice_key(self) -> tuple[tuple[str, ...] | None, ...]:
-        """The required values of each attribute that the survey gives advice on."""
-        return tuple(self.requirements.include.get(name) for name in ADVISING)
-
-    def is_advised(self, place: Place, included: Sequence[str]) -> bool:
-        """Return whether the survey advises an architecture for all of some requirements."""
-        return all(
-            any(
-                a.requirement == name and a.value in self.requirements.include[name]
-                for a in place.advice
-            )
-            for name in included
-        )
-
-    def studies_within(self, limit: str) -> int:
-        """Return the bit set of the studies whose stated number is within a limit."""
-        return self._studies_within[limit]
-
-    @property
-    def judged_requirements(self) -> tuple[str, ...]:
-        """Requirements for which an answer states the evidence."""
-        of_studies = [name for name in OF_STUDIES if name in self.requirements.include]
-        return (
-            *self.limits,
-            *of_studies,
-            *(["properties"] if self.requirements.properties else ()),
-        )
-
-    def _find_studies(self) -> int:
-        """Return the bit set of the studies with the required tasks, errors and accuracies."""
+        """Designs with a pipeline that meets all, or unmeasured and used by a study that does."""
         table = self.table
-        kept = everyone = (1 << len(table.facts.keys)) - 1
-        for attribute, values in self.requirements.include.items():
-            if attribute in OF_STUDIES:
-                kept &= self._designs_with(attribute, values)
-        for attribute, values in self.requirements.exclude.items():
-            if attribute == "task":
-                tasks = {v for a, v in table.designs_with if a == "task"}
-                others = tasks - set(values)
-                others &= set(self.requirements.include.get("task", others))
-                without = everyone & ~self._designs_with("task", tasks)
-                kept &= self._designs_with("task", others) | without
-            elif attribute in OF_STUDIES:
-                kept &= ~self._designs_with(attribute, values)
-        return kept
+        found = np.zeros(len(table.designs), bool)
+        found[table.row_design[self.measured]] = True
+        counting = np.zeros((len(table.places), len(table.keys)), bool)
+        of_studies = self.reported & (table.report_study >= 0)
+        counting[table.report_place[of_studies], table.report_study[of_studies]] = True
+        found |= self.unmeasured & (table.used & counting[table.design_place]).any(axis=1)
+        return found & self.designs & self.matching_places[table.design_place]
 
-    def _designs_with(self, attribute: str, values: Iterable[str]) -> int:
-        found = 0
-        for value in values:
-            found |= self.table.designs_with.get((attribute, value), 0)
+    @cached_property
+    def unmeasured(self) -> Flags:
+        """Designs without any measured pipeline."""
+        found = np.ones(len(self.table.designs), bool)
+        found[self.table.row_design] = False
         return found
 
-    def _find_studies_within(self, limit: str) -> int:
-        if limit not in _STATED:
-            return 0
-        bound = self.requirements.limit(limit)
-        assert bound is not None  # noqa: S101 - only limits asked for are looked at
-        numbers, up_to = self.table.ascending[_STATED[limit]]
-        if limit == "min_fov_deg":
-            return up_to[-1] & ~up_to[bisect.bisect_left(numbers, bound)]
-        return up_to[bisect.bisect_right(numbers, bound)]
+    def bench_for(self, row: int) -> float | None:
+        """Return the bench error up to which a pipeline keeps the limit; None without a limit.
+
+        Rounded down to two digits, so that a bench of that error does.
+        """
+        limit, own = self.requirements.largest_deg, self.errors.own_deg[[row]]
+        if limit is None or not math.isfinite(own[0]):
+            return None
+        ratios, share = self.table.unit_ratios[[row]], self.requirements.share
+        needed = float(bench_for(own, ratios, limit, share)[0])
+        return float(_TWO_DIGITS.create_decimal(needed))
+
+    def _any_report(self, among: Flags) -> Flags:
+        found = np.zeros(len(self.table.places), bool)
+        found[self.table.report_place[among]] = True
+        return found
+
+    @property
+    def _architectures(self) -> Flags:
+        """Architectures with the required detector and mask."""
+        table, asked = self.table, self.requirements
+        found = np.ones(len(table.places), bool)
+        for at, name in enumerate(("detector", "mask")):
+            has = [place.architecture[at] for place in table.places]
+            if name in asked.include:
+                found &= np.isin(has, asked.include[name])
+            if name in asked.exclude:
+                found &= ~np.isin(has, asked.exclude[name])
+        return found
+
+    @property
+    def of_parts(self) -> tuple[str, ...]:
+        """Names of the requirements on model, extractor and its properties."""
+        names = ("model", "extractor", "exclude_model", "exclude_extractor", "properties")
+        return tuple(name for name in names if self.requirements.value_of(name) is not None)
+
+    def _classes(self) -> set[str]:
+        """Return the accuracy classes that are allowed; empty where none is asked for."""
+        asked = self.requirements
+        if "accuracy" not in {*asked.include, *asked.exclude}:
+            return set()
+        return set(asked.include.get("accuracy", CLASSES_DEG)) - {
+            *asked.exclude.get("accuracy", ())
+        }
+
+    def _in_classes(self, classes: Iterable[str]) -> Flags:
+        """Say of each pipeline whether its sensor is of a class: the best calibration is, and it."""
+        table, judged = self.table, self.judged_deg
+        best = np.full(len(table.places), np.inf)
+        np.minimum.at(best, table.row_place, judged)
+        found = np.zeros(len(judged), bool)
+        for name in classes:
+            least, most = CLASSES_DEG[name]
+            is_class = (best >= least) & (best < most)
+            found |= is_class[table.row_place] & (judged < most)
+        return found
+
+    def _find_designs(self) -> Flags:
+        table, asked = self.table, self.requirements
+        found = np.ones(len(table.designs), bool)
+        for side, wanted in ((asked.include, True), (asked.exclude, False)):
+            for attribute in (name for name in _OF_DESIGNS if name in side):
+                found &= table.designs_with(attribute, side[attribute]) == wanted
+        if asked.properties:
+            marks = [table.facts.properties[name] for name in asked.properties]
+            extractors = {design.extractor for design in table.designs}
+            found &= table.designs_with(
+                "extractor", [e for e in extractors if all(of.get(e, 0) for of in marks)]
+            )
+        return found
+
+    def _find_studies(self) -> Flags:
+        found = np.ones(len(self.table.keys), bool)
+        for prefix, side in (("", self.requirements.include), (EXCLUDE, self.requirements.exclude)):
+            for name in (one for one in OF_STUDIES if one in side):
+                found &= self._studies_alone(prefix + name)
+        if "accuracy" in self.requirements.exclude:
+            found &= ~self.table.studies_with("accuracy", self.requirements.exclude["accuracy"])
+        return found
+
+    def _studies_alone(self, name: str) -> Flags:
+        """Return the studies that meet one of the requirements on studies."""
+        table, asked = self.table, self.requirements
+        attribute = name.removeprefix(EXCLUDE)
+        if not name.startswith(EXCLUDE):
+            return table.studies_with(attribute, asked.include[attribute])
+        excluded = asked.exclude[attribute]
+        if attribute != "task":
+            return ~table.studies_with(attribute, excluded)
+        tasks = set(table.facts.taxonomy.values("task"))
+        wanted = set(asked.include.get("task", tasks)) - {*excluded}
+        return table.studies_with("task", wanted) | ~table.studies_with("task", tasks)
+
+    def _find_places(self) -> Flags:
+        """Return the architectures that a study with the tasks and errors has, or advice means."""
+        table, asked = self.table, self.requirements
+        include = [name for name in OF_STUDIES if name in asked.include]
+        if not include and not any(name in asked.exclude for name in OF_STUDIES):
+            return self._architectures
+        found = (table.place_studies & self.studies).any(axis=1)
+        if include:
+            found |= np.logical_and.reduce(
+                [table.advised_for(name, asked.include[name]) for name in include]
+            )
+        else:
+            found |= ~table.place_studies.any(axis=1)
+        return found & self._architectures
 
 
-def advice_for(
-    place: Place, advising: tuple[tuple[str, ...] | None, ...]
-) -> tuple[tuple[Advice, ...], frozenset[str]]:
-    """Return the survey's advice for an architecture that fits the requirements, and its tasks.
-
-    Parameters
-    ----------
-    place
-        The architecture.
-    advising
-        The required values (`Question.advice_key`); all advice fits if there are none.
-    """
-    include = {n: v for n, v in zip(ADVISING, advising, strict=True) if v is not None}
-    found = tuple(
-        a
-        for a in place.advice
-        if a.value in include.get(a.requirement, ()) or (not include and a.requirement != "error")
-    )
-    return found, frozenset(a.value for a in found if a.requirement == "task")
+def _states(meets: Flags, known: Flags | None = None) -> States:
+    """Return states of what meets, misses or (where not known) leaves unknown."""
+    found = np.where(meets, MEETS, MISSES).astype(np.int8)
+    if known is not None:
+        found[~known] = UNKNOWN
+    return found

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Generic, TypeVar
 
 from registry.requirements import UNITS
-
-Draws = tuple[float | None, float]
-"""Fixed error of the calibration bench in degrees (None: that of each data set), and the share of
-sensor units and benches that must stay within an error."""
 
 _NUMBERS = (
     *("rms_deg", "bound_deg", "over_bound", "repeatability_deg"),
@@ -113,10 +109,6 @@ class Score:
             if value is not None and not math.isfinite(value):
                 object.__setattr__(self, name, None)
 
-    def to_dict(self) -> dict[str, object]:
-        """Return the score as in the HTTP answer."""
-        return {name: getattr(self, name) for name in ("condition", *_NUMBERS)}
-
 
 @dataclass(frozen=True)
 class PipelineJudgement:
@@ -158,7 +150,10 @@ class MeasuredPipeline:
     unit_ratios
         Errors of ten units over their geometric mean (`registry.draws.unit_ratios`).
     bench_deg
-        Fixed error of the data set's standard calibration bench, root mean square.
+        Fixed error of the data set's standard calibration bench, root mean square; no limit is
+        judged by it unless the reader states it.
+    latency_us
+        Time of one sample on the machine of the published times; None where not timed.
     needs
         Inputs beside the sensor that the calibration reads (`registry.requirements.NEEDS`).
     """
@@ -180,29 +175,18 @@ class MeasuredPipeline:
     needs: tuple[str, ...] = ()
 
     def judge(
-        self,
-        hazards: Iterable[str] = (),
-        half_field_deg: float | None = None,
-        draws: Draws | None = None,
+        self, hazards: Iterable[str] = (), half_field_deg: float | None = None
     ) -> PipelineJudgement:
-        """Return the largest error, nominal and under every hazard, over a field.
+        """Return the largest own error, nominal and under every hazard, over a field.
 
-        With `draws`, it is the error that the given share of units and benches stays within. A
-        hazard without a condition adds no error: check `covers` first.
+        A hazard without a condition adds no error: check `covers` first.
         """
-        worst = self.over(self.nominal, half_field_deg)
-        for name in hazards:
-            for score in self.hazards.get(name, ()):
-                found = self.over(score, half_field_deg)
-                if found.error_deg > worst.error_deg:
-                    worst = found
-        if draws is None or math.isinf(worst.error_deg):
-            return worst
-        from registry.draws import one_at_confidence  # noqa: PLC0415 - NumPy
+        found = [self.over(score, half_field_deg) for score in self.scores(hazards)]
+        return max(found, key=lambda one: one.error_deg)
 
-        bench = self.bench_deg if draws[0] is None else draws[0]
-        error = one_at_confidence(worst.error_deg, self.unit_ratios, bench, draws[1])
-        return PipelineJudgement(error, worst.condition, worst.field_deg)
+    def scores(self, hazards: Iterable[str] = ()) -> list[Score]:
+        """Return the scores under the first condition, then under every hazard."""
+        return [self.nominal, *(s for name in hazards for s in self.hazards.get(name, ()))]
 
     def over(self, score: Score, half_field_deg: float | None = None) -> PipelineJudgement:
         """Return the error under one condition over a field; infinite where there is none.
@@ -231,115 +215,10 @@ class MeasuredPipeline:
 
         A refused run has availability 0.
         """
-        scores = [self.nominal, *(s for name in hazards for s in self.hazards.get(name, ()))]
+        scores = self.scores(hazards)
         shares = [0.0 if s.rms_deg is None else s.availability for s in scores]
         known = [share for share in shares if share is not None]
         return min(known) if len(known) == len(shares) else None
-
-    def partial_answer(
-        self, hazards: Iterable[str] = (), half_field_deg: float | None = None
-    ) -> PartialAnswer[MeasuredPipeline] | None:
-        """Return the largest error over the answered samples, if the availability is too low.
-
-        None where the availability is high enough, and where no error is known: a condition was
-        refused, a hazard has no condition, or the data set does not have the field.
-        """
-        names = tuple(hazards)
-        scores = [self.nominal, *(s for name in names for s in self.hazards.get(name, ()))]
-        whole = self.half_fov_deg
-        wide = half_field_deg is None or (whole is not None and whole >= half_field_deg)
-        if not (wide and all(map(self.covers, names))):
-            return None
-        errors, judged = [], True
-        for score in scores:
-            error = self.over(score, half_field_deg).error_deg
-            if math.isinf(error):
-                judged = False
-                if score.rms_deg is None:
-                    return None
-                error = score.rms_deg
-            errors.append(error)
-        share = self.availability(names)
-        return None if judged or share is None else PartialAnswer(max(errors), share, self)
-
-    def facts(self) -> dict[str, object]:
-        """Return the members of the HTTP answer that no question changes.
-
-        But for ``units.within_limit``, which is None here.
-        """
-        units = self.unit_own_deg
-        return {
-            "dataset": self.dataset,
-            "extractor": self.extractor,
-            "model": self.model,
-            "nominal": self.nominal.to_dict(),
-            "fov_deg": None if self.half_fov_deg is None else 2 * self.half_fov_deg,
-            "latency_us": self.latency_us,
-            "needs": list(self.needs),
-            "units": {
-                "count": len(units),
-                "least_deg": min(units),
-                "largest_deg": max(units),
-                "within_limit": None,
-                "of": UNITS,
-            }
-            if units
-            else None,
-        }
-
-    def judged(
-        self,
-        judged: PipelineJudgement,
-        own: PipelineJudgement,
-        hazards: Sequence[str] = (),
-        half_field_deg: float | None = None,
-        *,
-        bench_deg: float | None = None,
-    ) -> dict[str, object]:
-        """Return the members of the HTTP answer that a question decides, but for ``finer``.
-
-        Parameters
-        ----------
-        judged, own
-            The error with the calibration bench, and the one with true directions.
-        hazards, half_field_deg
-            Hazards and half field of view of both errors.
-        bench_deg
-            Fixed error of the calibration bench; None for the data set's own.
-        """
-        error, own_error = _finite(judged.error_deg), _finite(own.error_deg)
-        nominal = own_error
-        if hazards:
-            nominal = _finite(self.over(self.nominal, half_field_deg).error_deg)
-        return {
-            "error_deg": error,
-            "condition": judged.condition,
-            "field_deg": None if error is None else judged.field_deg,
-            "nominal_deg": nominal,
-            "conditions": {
-                score.condition: _finite(self.over(score, half_field_deg).error_deg)
-                for name in hazards
-                for score in self.hazards.get(name, ())
-            },
-            "availability": self.availability(hazards),
-            "own_deg": own_error,
-            "bench_deg": self.bench_deg if bench_deg is None else bench_deg,
-        }
-
-
-def finer_document(found: PartialAnswer[MeasuredPipeline]) -> dict[str, object]:
-    """Return a partial answer as ``finer`` of the HTTP answer."""
-    return {
-        "dataset": found.subject.dataset,
-        "extractor": found.subject.extractor,
-        "model": found.subject.model,
-        "error_deg": found.error_deg,
-        "availability": found.availability,
-    }
-
-
-def _finite(number: float) -> float | None:
-    return number if math.isfinite(number) else None
 
 
 class Measurements:

@@ -1,115 +1,130 @@
-"""The table of paths: every task > detector > mask > model > extractor that studies took.
-
-Built once from the facts. Study sets are integers, one bit a study.
-"""
+"""The decision flow behind an answer: the paths of studies that lead to its designs."""
 
 from __future__ import annotations
 
 import itertools
-import weakref
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
 
-from registry.designs import Design
-from registry.flows import LeftOut
+import numpy as np
+
+from registry.answer import Answer
+from registry.design_table import DesignTable
+from registry.flows import LeftOut, Link, Node
 from registry.studies import Facts, Study
 
 PATH_LEVELS = ("task", "detector", "mask", "model", "extractor")
 
+Path = tuple[str, ...]
 
-class PathTable:
-    """Paths and study sets of some facts.
+
+@dataclass(frozen=True)
+class AnswerFlow:
+    """Paths from task to extractor with their studies, and the nodes and links they make up."""
+
+    paths: Mapping[Path, tuple[str, ...]]
+    nodes: tuple[Node, ...]
+    links: tuple[Link, ...]
+    left_out: tuple[LeftOut, ...]
+
+
+def answer_flow(answer: Answer) -> AnswerFlow:
+    """Return the paths that studies took to the designs of an answer.
 
     A path exists if one study has all five of its values, on a sensor that it can have had; what a
-    study only compared is none of its values here. A study without a value at one of the levels is
-    on none and stands in ``left_out``.
+    study only compared is none of its values here.
     """
+    question = answer.question
+    table, asked = question.table, question.requirements
+    matching = question.matching_designs
+    tasks = set(asked.include.get("task", ())) or set(table.facts.taxonomy.values("task"))
+    tasks -= {*asked.exclude.get("task", ())}
+    kept = {key for key, has in zip(table.keys, question.studies, strict=True) if has}
+    found = {}
+    for path, (studies, designs) in _paths(table).items():
+        taken = tuple(key for key in studies if key in kept)
+        if taken and path[0] in tasks and matching[designs].any():
+            found[path] = taken
+    return AnswerFlow(found, *_drawn(found, table.facts), _left_out(table.facts))
 
-    def __init__(self, facts: Facts) -> None:
-        self.taxonomy = facts.taxonomy
-        self.keys = facts.keys
-        took: dict[tuple[str, ...], int] = {}
-        missing: dict[str, list[str]] = {}
-        for at, study in enumerate(facts.studies.values()):
-            bit = 1 << at
-            for level in PATH_LEVELS:
-                if not study.of(level):
-                    missing.setdefault(level, []).append(study.key)
-            for path in _paths_of(study):
-                took[path] = took.get(path, 0) | bit
-        order = [{v: i for i, v in enumerate(self.taxonomy.values(a))} for a in PATH_LEVELS]
-        self.paths: tuple[tuple[str, ...], ...] = tuple(
-            sorted(took, key=lambda path: [order[i][v] for i, v in enumerate(path)])
-        )
-        self.sets = tuple(took[path] for path in self.paths)
-        self._on: dict[tuple[str, str, str], list[int]] = {}
-        for at, (_, detector, mask, _, extractor) in enumerate(self.paths):
-            self._on.setdefault((detector, mask, extractor), []).append(at)
-        self._lay_out(order)
-        self.left_out = tuple(
-            LeftOut(lv, tuple(missing[lv])) for lv in PATH_LEVELS if lv in missing
-        )
 
-    def _lay_out(self, order: list[dict[str, int]]) -> None:
-        """Give every node and link of the paths a number, in chart order."""
-        nodes = sorted(
-            {(at, value) for path in self.paths for at, value in enumerate(path)},
-            key=lambda node: (node[0], order[node[0]][node[1]]),
-        )
-        links = sorted(
-            {
-                (at, *step)
-                for path in self.paths
-                for at, step in enumerate(itertools.pairwise(path))
-            },
-            key=lambda link: (link[0], order[link[0]][link[1]], order[link[0] + 1][link[2]]),
-        )
-        self.nodes = [
-            (PATH_LEVELS[at], value, self.taxonomy.name(PATH_LEVELS[at], value))
-            for at, value in nodes
-        ]
-        self.links = [
-            (f"{PATH_LEVELS[at]}:{source}", f"{PATH_LEVELS[at + 1]}:{target}")
-            for at, source, target in links
-        ]
-        node_at = {node: i for i, node in enumerate(nodes)}
-        link_at = {link: i for i, link in enumerate(links)}
-        self.nodes_on = [[node_at[node] for node in enumerate(path)] for path in self.paths]
-        self.links_on = [
-            [link_at[at, *step] for at, step in enumerate(itertools.pairwise(path))]
-            for path in self.paths
-        ]
-
-    def of(self, design: Design) -> tuple[int, ...]:
-        """Return the paths that lead to a design."""
-        kinds = self.taxonomy.kinds
-        return tuple(
+@lru_cache(maxsize=4)
+def _paths(table: DesignTable) -> Mapping[Path, tuple[tuple[str, ...], list[int]]]:
+    """Return the studies of every path, and the positions of the designs that it leads to."""
+    facts = table.facts
+    took: dict[Path, list[str]] = {}
+    for key, study in facts.studies.items():
+        for path in _paths_of(study):
+            took.setdefault(path, []).append(key)
+    order = _order(facts)
+    by_parts: dict[tuple[str, str, str], list[int]] = {}
+    for at, design in enumerate(table.designs):
+        by_parts.setdefault((*design.architecture, design.extractor), []).append(at)
+    found = {}
+    for path in sorted(took, key=lambda one: [order[i][v] for i, v in enumerate(one)]):
+        _, detector, mask, model, extractor = path
+        kinds = set(facts.taxonomy.kinds("model", model))
+        leads_to = [
             at
-            for at in self._on.get((*design.architecture, design.extractor), ())
-            if not set(kinds("model", self.paths[at][3])).isdisjoint(design.stages)
-        )
+            for at in by_parts.get((detector, mask, extractor), ())
+            if not kinds.isdisjoint(table.designs[at].stages)
+        ]
+        found[path] = tuple(took[path]), leads_to
+    return found
 
 
-def _paths_of(study: Study) -> Iterator[tuple[str, ...]]:
-    """Give every path of a study: what it stands for, on the sensors that it can have had."""
+def _order(facts: Facts) -> list[dict[str, int]]:
+    return [{v: i for i, v in enumerate(facts.taxonomy.values(level))} for level in PATH_LEVELS]
+
+
+def _paths_of(study: Study) -> Iterator[Path]:
     for path in itertools.product(*(study.has_value(level) for level in PATH_LEVELS)):
         if study.has_sensor(dict(zip(PATH_LEVELS, path, strict=True))):
             yield path
 
 
-_TABLES: weakref.WeakKeyDictionary[Facts, PathTable] = weakref.WeakKeyDictionary()
+def _drawn(
+    paths: Mapping[Path, tuple[str, ...]], facts: Facts
+) -> tuple[tuple[Node, ...], tuple[Link, ...]]:
+    """Return nodes and links of paths in chart order, each with its distinct studies."""
+    on_node: dict[tuple[int, str], set[str]] = {}
+    on_link: dict[tuple[int, str, str], set[str]] = {}
+    for path, studies in paths.items():
+        for level, value in enumerate(path):
+            on_node.setdefault((level, value), set()).update(studies)
+        for level, (one, next_one) in enumerate(itertools.pairwise(path)):
+            on_link.setdefault((level, one, next_one), set()).update(studies)
+    order = _order(facts)
+    nodes = sorted(on_node, key=lambda node: (node[0], order[node[0]][node[1]]))
+    links = sorted(
+        on_link, key=lambda one: (one[0], order[one[0]][one[1]], order[one[0] + 1][one[2]])
+    )
+    return tuple(
+        Node(
+            f"{PATH_LEVELS[level]}:{value}",
+            PATH_LEVELS[level],
+            value,
+            facts.taxonomy.name(PATH_LEVELS[level], value),
+            len(on_node[level, value]),
+            tuple(sorted(on_node[level, value])),
+        )
+        for level, value in nodes
+    ), tuple(
+        Link(
+            f"{PATH_LEVELS[level]}:{one}",
+            f"{PATH_LEVELS[level + 1]}:{next_one}",
+            len(on_link[level, one, next_one]),
+            tuple(sorted(on_link[level, one, next_one])),
+        )
+        for level, one, next_one in links
+    )
 
 
-def path_table(facts: Facts) -> PathTable:
-    """Return the path table of these facts, built at the first call."""
-    table = _TABLES.get(facts)
-    if table is None:
-        table = _TABLES[facts] = PathTable(facts)
-    return table
-
-
-def positions(bits: int) -> Iterator[int]:
-    """Yield the positions of the set bits, lowest first."""
-    while bits:
-        lowest = bits & -bits
-        yield lowest.bit_length() - 1
-        bits ^= lowest
+def _left_out(facts: Facts) -> tuple[LeftOut, ...]:
+    """Return the studies that are on no path as a value is unknown, by level."""
+    found = {
+        level: tuple(key for key, study in facts.studies.items() if not study.of(level))
+        for level in PATH_LEVELS
+    }
+    return tuple(LeftOut(level, keys) for level, keys in found.items() if keys)

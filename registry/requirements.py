@@ -1,4 +1,4 @@
-"""Requirements on a sun sensor: values to include or exclude, and numeric limits."""
+"""Requirements on a sun sensor: values to include or exclude, limits, settings, missions."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Self
+from typing import Any, Literal, Self
 
 from registry.taxonomy import ATTRIBUTES, InvalidValueError, Taxonomy, unknown_name
 
@@ -18,19 +18,34 @@ LIMITS: Mapping[str, str] = MappingProxyType(
         "min_fov_deg": "a number of degrees above 0, at most 360",
         "min_availability": "a share above 0, at most 1",
         "max_latency_us": "a positive number of microseconds",
+        "max_mass_g": "a positive number of grams",
+        "max_power_mw": "a positive number of milliwatts",
+        "min_rate_hz": "a positive number of updates a second",
     }
 )
-"""Numeric requirements and what they take. ``min_fov_deg`` is the full field of view."""
+"""Numeric requirements and their allowed values. ``min_fov_deg`` is the full field of view."""
+
+OF_PRODUCTS = ("max_mass_g", "max_power_mw", "min_rate_hz")
+"""Limits that only built sensors have numbers for: an unknown number does not exclude."""
+
+OF_STUDIES = ("task", "error")
+"""Requirements on the studies of an architecture, or on the survey's advice for it."""
+
+EVIDENCE = ("any", "reported", "measured", "both")
+Evidence = Literal["any", "reported", "measured", "both"]
 
 SETTINGS: Mapping[str, str] = MappingProxyType(
     {
         "bench_deg": "a number of degrees, 0 or more",
         "confidence": "a share from 0.5 to 0.999",
+        "sun_distance_au": "a number of astronomical units from 0.05 to 100",
+        "processor": "a processor's name, or a positive number",
+        "evidence": f"one of {', '.join(EVIDENCE)}",
     }
 )
-"""Settings of how errors are judged, and their allowed values: the fixed error of the calibration
-bench (by default that of each data set's standard bench), and the share of units and benches that
-must meet a limit."""
+"""How requirements are judged: error of the calibration bench (none stated: the answer says which
+bench it takes), share of units and benches that must meet a limit, distance from the Sun, time
+relative to the machine of the published times, and which evidence must meet all requirements."""
 
 CONFIDENCE = 0.9
 """Default share of units and benches that must meet a limit."""
@@ -38,15 +53,22 @@ CONFIDENCE = 0.9
 UNITS = 10
 """Number of sensor units over which a pipeline is judged."""
 
-CLASSES_DEG: Mapping[str, float] = MappingProxyType({"FSS": 0.5, "VFSS": 1 / 60, "UFSS": 10 / 3600})
-"""Largest error of each accuracy class of the survey; the coarsest class has no limit."""
+CLASSES_DEG: Mapping[str, tuple[float, float]] = MappingProxyType(
+    {
+        "CSS": (0.5, math.inf),
+        "FSS": (1 / 60, 0.5),
+        "VFSS": (10 / 3600, 1 / 60),
+        "UFSS": (0.0, 10 / 3600),
+    }
+)
+"""Accuracy classes of the survey: smallest error (included) and largest (not included)."""
 
 HAZARDS: Mapping[str, str] = MappingProxyType(
     {
         "albedo": "sunlight from the Earth, with clouds where they are drawn",
         "missing-apertures": "apertures that are closed, by dirt or in making",
         "ageing": "a detector at the end of its life, dead pixels",
-        "temperature": "hot and cold, calibrated at room temperature",
+        "temperature": "hot and cold",
         "misalignment": "turned in its mount and shifted against its mask",
         "glare": "glare, ghosts, stray light and gradients of it",
         "saturation": "an over-exposed detector",
@@ -73,13 +95,75 @@ NEEDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 )
 """Inputs that a calibration may read beside the sensor, and their columns of the context."""
 
+_SEVERAL = (*LISTS, "exclude_needs")
+
 PARAMETERS = (
-    *(*ATTRIBUTES, *(EXCLUDE + attribute for attribute in ATTRIBUTES), *LIMITS, *LISTS),
-    "exclude_needs",
+    *(*ATTRIBUTES, *(EXCLUDE + attribute for attribute in ATTRIBUTES), *LIMITS, *_SEVERAL),
 )
 """Names of all requirements, in reporting order."""
 
-_KNOWN = frozenset((*PARAMETERS, *SETTINGS))
+MISSIONS: Mapping[str, Mapping[str, Any]] = MappingProxyType(
+    {
+        "leo-cubesat": {
+            "max_error_deg": 0.5,
+            "min_fov_deg": 100.0,
+            "max_mass_g": 50.0,
+            "max_power_mw": 200.0,
+            "survive": ("albedo",),
+        },
+        "deep-space": {
+            "max_error_deg": 0.1,
+            "sun_distance_au": 3.0,
+            "exclude_needs": ("nadir", "magnetic-field", "eclipse"),
+        },
+        "lunar-surface": {
+            "max_error_deg": 0.1,
+            "min_fov_deg": 100.0,
+            "survive": ("temperature",),
+            "exclude_needs": ("nadir", "magnetic-field"),
+        },
+        "spinner": {"max_error_deg": 0.5, "min_rate_hz": 5.0, "exclude_needs": ("rates",)},
+        "ground-tracker": {
+            "max_error_deg": 0.05,
+            "min_fov_deg": 60.0,
+            "exclude_needs": ("rates", "nadir", "magnetic-field", "eclipse"),
+        },
+    }
+)
+"""Named sets of requirements to begin with; a requirement stated beside one replaces its own."""
+
+#: Light at 1 au over which, and under the inverse of which, another condition is nearer: it is half
+#: way (in ratio) to ten times the light or a tenth of it.
+_NEAR_LIGHT = math.sqrt(10.0)
+
+
+@dataclass(frozen=True)
+class Light:
+    """Sunlight at a distance: ``flux`` relative to 1 au, and the hazard whose condition is nearest.
+
+    ``hazard`` is empty where the nominal condition is the nearest.
+    """
+
+    distance_au: float
+    flux: float
+    hazard: str
+
+    @property
+    def words(self) -> str:
+        """What the distance is judged by."""
+        light = f"{self.distance_au:g} au: {self.flux:.2g} times the light of 1 au"
+        if not self.hazard:
+            return f"{light}; judged under the nominal condition, the nearest simulated"
+        return (
+            f"{light}; judged under `{self.hazard}` ({HAZARDS[self.hazard]}), the nearest simulated"
+        )
+
+
+def light_at(distance_au: float) -> Light:
+    """Return the light at a distance from the Sun, and which hazard it is judged by."""
+    flux = distance_au**-2
+    hazard = "saturation" if flux > _NEAR_LIGHT else "noise" if flux < 1 / _NEAR_LIGHT else ""
+    return Light(distance_au, flux, hazard)
 
 
 @dataclass(frozen=True)
@@ -88,9 +172,9 @@ class Requirements:
 
     Several values of one attribute are alternatives; different attributes must all be met. A
     parent value (ECM, ICM) includes its kinds. Detector, mask, model and extractor are parts of a
-    design; task, error and accuracy are attributes of its studies, or of the survey's advice. An
-    excluded error or accuracy removes every study that has it; an excluded task removes the
-    studies that have no other task.
+    design; task and error are attributes of its studies, or of the survey's advice; accuracy is a
+    class. An excluded error or accuracy removes every study that has it; an excluded task removes
+    the studies that have no other task.
 
     Under every hazard of ``survive`` the availability must be high enough, and the error within
     the largest error if there is one. An extractor must have all ``properties`` in the survey's
@@ -103,11 +187,18 @@ class Requirements:
     min_fov_deg: float | None = None  # full field of view
     min_availability: float | None = None
     max_latency_us: float | None = None
+    max_mass_g: float | None = None
+    max_power_mw: float | None = None
+    min_rate_hz: float | None = None
     survive: tuple[str, ...] = ()
     properties: tuple[str, ...] = ()
     exclude_needs: tuple[str, ...] = ()
     bench_deg: float | None = None
     confidence: float | None = None
+    sun_distance_au: float | None = None
+    processor: str | float | None = None
+    evidence: Evidence | None = None
+    mission: str | None = None
 
     @classmethod
     def parse(
@@ -118,8 +209,8 @@ class Requirements:
         Parameters
         ----------
         parameters : mapping
-            Names of `PARAMETERS`; one or several values for categories, a number for limits. None
-            and empty collections are no requirement.
+            Names of `PARAMETERS` and `SETTINGS`, and ``mission``; one or several values for
+            categories, a number for limits. None and empty collections are no requirement.
         taxonomy : Taxonomy
         properties : collection of str
             Names of the properties in the survey's assessment.
@@ -129,33 +220,26 @@ class Requirements:
         InvalidValueError
             For an unknown parameter or value, naming the nearest, or an impossible limit.
         """
-        include: dict[str, tuple[str, ...]] = {}
-        exclude: dict[str, tuple[str, ...]] = {}
-        limits: dict[str, float] = {}
-        lists: dict[str, tuple[str, ...]] = {}
-        for name, value in parameters.items():
-            if name not in _KNOWN:
-                raise unknown_name("parameter", name, PARAMETERS)
-            if value is None:
-                continue
+        given = {name: value for name, value in parameters.items() if value not in (None, (), [])}
+        mission = given.pop("mission", None)
+        if mission is not None:
+            if mission not in MISSIONS:
+                raise unknown_name("mission", mission, MISSIONS)
+            given = {**MISSIONS[str(mission)], **given}
+        sides: dict[str, dict[str, tuple[str, ...]]] = {"include": {}, "exclude": {}}
+        others: dict[str, Any] = {}
+        for name, value in given.items():
             if name in LIMITS or name in SETTINGS:
-                limits[name] = _number(name, value)
-                continue
-            values = _texts(name, value)
-            if name in LISTS or name == "exclude_needs":
-                lists[name] = values
-            elif values and name.startswith(EXCLUDE):
-                exclude[name.removeprefix(EXCLUDE)] = values
-            elif values:
-                include[name] = values
-        requirements = cls(
-            MappingProxyType(include),
-            MappingProxyType(exclude),
-            **limits,
-            survive=lists.get("survive", ()),
-            properties=lists.get("properties", ()),
-            exclude_needs=lists.get("exclude_needs", ()),
-        )
+                others[name] = value
+            elif name in _SEVERAL:
+                others[name] = _texts(name, value)
+            elif name in PARAMETERS:
+                side = "exclude" if name.startswith(EXCLUDE) else "include"
+                sides[side][name.removeprefix(EXCLUDE)] = _texts(name, value)
+            else:
+                raise unknown_name("parameter", name, (*PARAMETERS, *SETTINGS, "mission"))
+        frozen = {side: MappingProxyType(asked) for side, asked in sides.items()}
+        requirements = cls(**frozen, **others, mission=mission)
         requirements.check(taxonomy, properties)
         return requirements
 
@@ -167,104 +251,82 @@ class Requirements:
                     raise unknown_name("attribute", attribute, ATTRIBUTES)
                 for value in values:
                     taxonomy.require(attribute, value, parameter=prefix + attribute)
-        for name in (*LIMITS, *SETTINGS):
-            bound = getattr(self, name)
-            if bound is not None:
-                _number(name, bound)
+        for name in (*LIMITS, *_RANGES):
+            if getattr(self, name) is not None:
+                _require_number(name, getattr(self, name))
         lists = (("survive", HAZARDS), ("properties", properties), ("exclude_needs", NEEDS))
         for name, known in lists:
             for value in getattr(self, name):
                 if value not in known:
                     raise unknown_name(name, value, known)
+        if self.evidence not in (None, *EVIDENCE):
+            raise unknown_name("evidence", self.evidence, EVIDENCE)
 
     @property
     def largest_deg(self) -> float | None:
         """Largest allowed error: the number, or that of the coarsest required accuracy class."""
-        if "accuracy" not in self.include:
-            return self.max_error_deg
-        classes = [CLASSES_DEG.get(value) for value in self.include["accuracy"]]
-        known = [limit for limit in classes if limit is not None]
-        by_class = max(known) if known and len(known) == len(classes) else None
-        return min((x for x in (self.max_error_deg, by_class) if x is not None), default=None)
+        classes = [CLASSES_DEG[value][1] for value in self.include.get("accuracy", ())]
+        limits = [x for x in (self.max_error_deg, max(classes, default=None)) if x is not None]
+        least = min(limits, default=math.inf)
+        return least if math.isfinite(least) else None
 
     @property
-    def draws(self) -> tuple[float | None, float] | None:
-        """Bench error and share of units and benches; None if errors use true directions.
+    def share(self) -> float:
+        """Share of units and benches that must meet a limit."""
+        return self.confidence or CONFIDENCE
 
-        A bench error of None is that of each data set's standard bench.
-        """
-        if self.largest_deg is None and self.bench_deg is None:
-            return None
-        return self.bench_deg, self.confidence or CONFIDENCE
+    @property
+    def light(self) -> Light | None:
+        """Light at the distance asked for; None where none is."""
+        return None if self.sun_distance_au is None else light_at(self.sun_distance_au)
+
+    @property
+    def hazards(self) -> tuple[str, ...]:
+        """Hazards to tolerate, with the one that the distance from the Sun is judged by."""
+        of_light = self.light.hazard if self.light else ""
+        return tuple(dict.fromkeys((*self.survive, *filter(None, (of_light,)))))
 
     @property
     def half_field_deg(self) -> float | None:
         """Half of the required field of view."""
         return None if self.min_fov_deg is None else self.min_fov_deg / 2
 
-    def limit(self, name: str) -> float | None:
-        """Return a numeric requirement by name."""
-        value: float | None = getattr(self, name)
-        return value
-
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the parameters that are set, in the order of `PARAMETERS`."""
-        return tuple(name for name in PARAMETERS if self.value_of(name) is not None)
+        """Names of the requirements that are set, in the order of `PARAMETERS`."""
+        found = tuple(name for name in PARAMETERS if self.value_of(name) is not None)
+        return (*found, "sun_distance_au") if self.sun_distance_au is not None else found
 
     def value_of(self, name: str) -> tuple[str, ...] | float | None:
-        """Return the value of a parameter of `PARAMETERS`; None if it is not set."""
-        if name in LIMITS:
-            return self.limit(name)
-        if name in LISTS or name == "exclude_needs":
-            several: tuple[str, ...] = getattr(self, name)
-            return several or None
-        if name.startswith(EXCLUDE):
-            return self.exclude.get(name.removeprefix(EXCLUDE)) or None
-        return self.include.get(name) or None
+        """Return the value of a requirement; None if it is not set."""
+        if name in self.__dataclass_fields__:
+            value: tuple[str, ...] | float | None = getattr(self, name)
+            return None if value == () else value
+        side = self.exclude if name.startswith(EXCLUDE) else self.include
+        return side.get(name.removeprefix(EXCLUDE)) or None
 
     def without(self, *names: str) -> Requirements:
         """Return these requirements without some parameters."""
-        changed: dict[str, object] = {
-            name: () if name in LISTS or name == "exclude_needs" else None
-            for name in names
-            if name in LIMITS or name in LISTS or name == "exclude_needs"
-        }
-        for side, prefix in (("include", ""), ("exclude", EXCLUDE)):
-            values = getattr(self, side)
-            kept = {n: asked for n, asked in values.items() if prefix + n not in names}
-            if len(kept) < len(values):
-                changed[side] = MappingProxyType(kept)
-        return replace(self, **changed) if changed else self  # type: ignore[arg-type]  # of fields
+        found = self
+        for name in names:
+            found = found.with_value(name, None)
+        return found
 
     def with_value(self, name: str, value: tuple[str, ...] | float | None) -> Requirements:
         """Return these requirements with one parameter replaced (dropped if None or empty)."""
-        if name in LIMITS:
-            return replace(self, **{name: value})  # type: ignore[arg-type]  # name is a limit's
-        if name in LISTS or name == "exclude_needs":
+        if name in _SEVERAL:
             return replace(self, **{name: value or ()})  # type: ignore[arg-type]  # a list's
+        if name in self.__dataclass_fields__:
+            return replace(self, **{name: value})  # type: ignore[arg-type]  # a number's
         side = "exclude" if name.startswith(EXCLUDE) else "include"
-        values = dict(getattr(self, side))
-        values.pop(name.removeprefix(EXCLUDE), None)
-        if isinstance(value, tuple) and value:
-            values[name.removeprefix(EXCLUDE)] = value
-        kept = MappingProxyType(values)
-        return replace(self, exclude=kept) if side == "exclude" else replace(self, include=kept)
+        values = {**getattr(self, side), name.removeprefix(EXCLUDE): value}
+        kept = MappingProxyType({n: asked for n, asked in values.items() if asked})
+        return replace(self, exclude=kept) if side == "exclude" else replace(self, include=kept)  # type: ignore[arg-type]
 
-    def to_dict(self) -> dict[str, object]:
+    def to_dict(self) -> dict[str, Any]:
         """Return the parameters that are set, as `parse` takes them."""
-        asked: dict[str, tuple[str, ...] | float | None] = {
-            **self.include,
-            **{EXCLUDE + attribute: values for attribute, values in self.exclude.items()},
-            **{name: getattr(self, name) for name in (*LIMITS, *LISTS, "exclude_needs")},
-        }
-        pairs = [(name, asked.get(name)) for name in PARAMETERS]
-        pairs += [(name, getattr(self, name)) for name in SETTINGS]
-        return {
-            n: list(v) if isinstance(v, tuple) else v
-            for n, v in pairs
-            if v or (v == 0 and n in SETTINGS)
-        }
+        pairs = [(name, self.value_of(name)) for name in (*PARAMETERS, *SETTINGS, "mission")]
+        return {n: list(v) if isinstance(v, tuple) else v for n, v in pairs if v is not None}
 
 
 def _texts(name: str, value: object) -> tuple[str, ...]:
@@ -275,13 +337,18 @@ def _texts(name: str, value: object) -> tuple[str, ...]:
     raise InvalidValueError(name, value, "a value of the taxonomy or a list of them")
 
 
-def _number(name: str, value: object) -> float:
-    expected = LIMITS.get(name) or SETTINGS[name]
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise InvalidValueError(name, value, expected)
-    number = float(value)
-    most = {"min_fov_deg": 360.0, "min_availability": 1.0, "confidence": 0.999}
-    least = {"bench_deg": -1e-300, "confidence": 0.4999}.get(name, 0.0)
-    if not math.isfinite(number) or number <= least or number > most.get(name, math.inf):
-        raise InvalidValueError(name, value, expected)
-    return number
+#: Least and largest allowed values where they are not just above 0.
+_RANGES: Mapping[str, tuple[float, float]] = {
+    "bench_deg": (0.0, math.inf),
+    "confidence": (0.5, 0.999),
+    "sun_distance_au": (0.05, 100.0),
+}
+_MOST = {"min_fov_deg": 360.0, "min_availability": 1.0}
+
+
+def _require_number(name: str, value: object) -> None:
+    if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
+        least, most = _RANGES.get(name, (math.ulp(0.0), _MOST.get(name, math.inf)))
+        if least <= value <= most:
+            return
+    raise InvalidValueError(name, value, LIMITS.get(name) or SETTINGS[name])

@@ -16,9 +16,8 @@ from api.schema.table import columns_of
 from api.search.entries import entries
 from api.search.index import Index
 from files.manifest import manifest_digest
-from registry.answer_json import prepare
 from registry.catalogue import Catalogue, catalogue
-from registry.designs import design_table
+from registry.design_table import design_table
 from registry.evidence import Evidence
 from registry.measured_pipelines import Measurements as Measured
 from registry.resolution import Resolution, resolve_all, resolve_later
@@ -137,7 +136,7 @@ class Knowledge:
         _ = self.measurements.claims, self.index.find("warm")
         _ = self.facts_digest, self.measurements.digest
         _ = self.of("all").resolutions, self.editions
-        prepare(design_table(self.facts, self.measured_pipelines))
+        design_table(self.facts, self.measured_pipelines)
 
 
 class KnowledgeOfAll(Knowledge):

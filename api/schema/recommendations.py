@@ -1,4 +1,4 @@
-"""Architectures that meet requirements, and their calibrations."""
+"""Architectures that meet requirements, their evidence and their calibrations."""
 
 from __future__ import annotations
 
@@ -6,198 +6,210 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from api.schema.advice import ArchitectureAdvice
-from api.schema.base import OpenShape, Shape
+from api.schema.base import Shape
 from api.schema.flows import LeftOut, Link, Node
-from registry.measured_pipelines import FINER, LEAST_ANSWERED
+
+State = Literal["meets", "misses", "unknown"]
 
 
-class Nominal(Shape):
-    """Score under nominal conditions, over the whole field."""
+class Reported(Shape):
+    """What a study or a built sensor reports."""
 
-    condition: str
-    rms_deg: float | None
-    bound_deg: float | None
-    over_bound: float | None
-    repeatability_deg: float | None
-    availability: float | None = Field(
-        description="Availability: share of observable samples with an answer."
-    )
-    false_sun: float | None = Field(
-        description="False detections: share of unobservable samples with an answer."
-    )
-
-
-class Units(Shape):
-    """Own errors over the measured sensor units."""
-
-    count: int
-    least_deg: float = Field(description="Smallest error of a unit, degrees.")
-    largest_deg: float = Field(description="Largest error of a unit, degrees.")
-    within_limit: int | None = Field(
-        description="Number of ten units that meet the maximum error; null without one."
-    )
-    of: int = Field(description="Ten; extrapolated if fewer than five units were measured.")
-
-
-class Finer(Shape):
-    """A pipeline with a lower error at lower availability."""
-
-    dataset: str
-    extractor: str
-    model: str
-    error_deg: float = Field(description="Its maximum RMS error over conditions.")
-    availability: float = Field(description="Its lowest availability over conditions.")
+    key: str = Field(description="Key of the study, or id of the built sensor.")
+    kind: Literal["study", "product"]
+    name: str = Field(description="Title of the study, or name of the sensor; may be empty.")
+    year: int | None
+    doi: str
+    accuracy_deg: float | None = Field(description="Accuracy as published, degrees.")
+    accuracy_kind: str | None = Field(description="What that number is, in words.")
+    rms_deg: float | None = Field(description="The accuracy as an RMS, degrees.")
+    classes: list[str] = Field(description="Accuracy classes.")
+    fov_deg: float | None = Field(description="Full field of view, degrees.")
+    mass_g: float | None = Field(description="Mass, grams.")
+    power_mw: float | None = Field(description="Power from the spacecraft, milliwatts.")
+    supply: str = Field(description="self-powered, passive, or empty.")
+    rate_hz: float | None = Field(description="Update rate, hertz.")
 
 
 class Measured(Shape):
-    """A pipeline on a data set, with its error over the required field of view and conditions."""
+    """A pipeline on a data set, over the required field of view and conditions."""
 
     dataset: str
     extractor: str
     model: str
-    error_deg: float | None = Field(
-        description=(
-            "Error used for ranking: maximum RMS error over the required conditions. With "
-            "a maximum error or a bench: the error that the required share of units and "
-            "benches meets. Null below the required availability."
-        )
-    )
-    condition: str = Field(description="Condition with the maximum error.")
-    conditions: dict[str, float | None] = Field(
-        description="RMS errors under the conditions to tolerate."
-    )
+    condition: str = Field(description="Condition with the largest error.")
     field_deg: float | None = Field(description="Full field of view of the error.")
-    fov_deg: float | None = Field(description="Full field of view of the data set.")
-    availability: float | None = Field(description="Lowest availability over the conditions.")
-    latency_us: float | None = Field(
-        description="Time per sample on this machine, microseconds; null if not timed."
-    )
-    nominal_deg: float | None = Field(description="RMS error under nominal conditions.")
-    nominal: Nominal = Field(description="Score under nominal conditions.")
     own_deg: float | None = Field(
-        description="Own error: calibrated with true directions, over sensor units."
+        description="Own error: calibrated with true directions, geometric mean over sensor units."
     )
-    bench_deg: float = Field(description="Calibration-bench error used.")
+    own_low_deg: float | None = Field(description="Own error less two standard errors.")
+    own_high_deg: float | None = Field(description="Own error plus two standard errors.")
+    on_bench_deg: float | None = Field(
+        description="On your bench: error that the required share of units and benches meets; null "
+        "without a bench."
+    )
+    needs_bench_deg: float | None = Field(
+        description="Calibration bench that the maximum error takes; null without a limit, 0 if none "
+        "is good enough."
+    )
+    units_within: int | None = Field(description="Of ten units, how many meet the maximum error.")
+    bound_deg: float | None = Field(
+        description="Cramer-Rao bound for a known sensor unit; null over a part of the field."
+    )
+    availability: float | None
+    latency_us: float | None = Field(
+        description="Time per sample on your processor, microseconds; null if not timed."
+    )
     needs: list[str] = Field(description="Inputs that the calibration needs besides the sensor.")
-    units: Units | None
-    finer: Finer | None = Field(
-        description=f"Pipeline with the lowest error at {100 * LEAST_ANSWERED:.0f} % availability "
-        f"or more; null unless the error here is more than {FINER:g} times as large."
-    )
 
 
 class Calibration(Shape):
     """A calibration (extractor, compensations, model) in the survey's labels, with evidence."""
 
-    rank: int
+    name: str = Field(description="Measured pipeline, or the survey's labels.")
     extractor: str
     compensations: list[str]
     model: str
-    advised: list[str] = Field(description="Advice of the survey that names it.")
-    studies: list[str] = Field(description="Studies that used it; empty if none.")
+    advised: bool = Field(description="Whether the survey advises it by name.")
+    studies: list[str] = Field(description="Studies that used it.")
     with_model: int = Field(
         description="Number of studies that use this model and these compensations."
-    )
-    support: float = Field(
-        description="Geometric mean of the architecture's studies, `with_model` and `studies`."
-    )
-    measured: Measured | None = Field(
-        description="Its most accurate pipeline that meets the requirements."
-    )
-    other_datasets: list[Measured] = Field(
-        description="Its most accurate pipeline on each other data set."
-    )
-    basis: dict[str, Literal["measured", "stated", "studies", "advised", "assessed"]] = Field(
-        description="Evidence by which each requirement was checked."
-    )
-
-
-class RecommendationRow(Shape):
-    """A calibration of a recommended architecture: a row of the table."""
-
-    rank: int = Field(description="Rank of the architecture.")
-    detector: str
-    mask: str
-    advised: bool = Field(description="Whether the survey advises it for these requirements.")
-    studies: list[str] = Field(description="Studies with this architecture.")
-    pareto: bool = Field(description="Pareto: no other has both more studies and a lower error.")
-    calibration: int = Field(description="Rank of the calibration on the architecture.")
-    extractor: str
-    compensations: list[str]
-    model: str
-    calibration_studies: list[str] = Field(description="Studies that used the calibration.")
-    support: float = Field(
-        description="Geometric mean of the numbers of studies of architecture and calibration."
     )
     measured: Measured | None
 
 
-class Task(Shape):
-    """A task of an architecture."""
+class EvidenceState(Shape):
+    """What the kinds of evidence say of a requirement; null where a kind cannot judge it."""
 
-    task: str
-    studies: int
-    advised: bool = Field(description="Whether the survey advises it.")
+    requirement: str
+    reported: State | None
+    measured: State | None
+    advised: State | None
+
+
+class Advised(Shape):
+    """What the survey advises an architecture for."""
+
+    value: str = Field(description="Task, accuracy class or error.")
+    how: str = Field(description="Calibrations that the advice names; empty if open.")
+    section_name: str = Field(description="Name of the section, with printed number.")
 
 
 class TaskMeasure(Shape):
-    """Measure by which an architecture is ranked for a task."""
+    """Own measure of a task."""
 
     task: str
     value: float | None
     unit: str
-    basis: Literal["measured", "published"]
-    built: int = Field(description="Number of built sensors in the median.")
+    products: int = Field(description="Number of distinct products in the median.")
+    low: float | None = Field(description="Smallest value of a product.")
+    high: float | None = Field(description="Largest value of a product.")
     words: str
 
 
 class Architecture(Shape):
-    """An architecture with evidence and calibrations, best first."""
+    """An architecture with its evidence and its best calibration."""
 
-    rank: int
+    rank: int | None = Field(description="Rank; equal errors share one. Null if nothing is asked.")
+    tied: bool = Field(description="Whether the rank is shared.")
     detector: str
     mask: str
-    tasks: list[Task] = Field(
-        description="Tasks of the architecture's studies, or that it is advised for."
+    built: bool = Field(description="Whether a study or product realises it.")
+    meets: list[Literal["reported", "measured"]] = Field(
+        description="Kinds of evidence that meet all requirements."
     )
-    advised: bool = Field(description="Whether the survey advises it for these requirements.")
-    advice: list[ArchitectureAdvice] = Field(
-        description="Advice of the survey for these requirements."
+    reason: str = Field(description="Why it is in the answer, one sentence.")
+    evidence: list[EvidenceState] = Field(description="Evidence for each requirement.")
+    studies: int = Field(description="Number of its studies.")
+    products: int = Field(description="Number of distinct built sensors.")
+    reports: list[Reported] = Field(
+        description="The most accurate reports that meet all requirements, or the nearest one."
     )
-    studies: list[str]
-    best: Calibration = Field(description="The calibration with the lowest measured error.")
-    pareto: bool = Field(description="Pareto: no other has both more studies and a lower error.")
-    contradiction: str | None = Field(
-        description="Sentence, if the most accurate calibration is not the one most studies used."
+    advised: list[Advised] = Field(description="Advice of the survey for these requirements.")
+    best: Calibration | None = Field(
+        description="The most accurate calibration that meets all requirements, or the nearest one."
     )
     measures: list[TaskMeasure] = Field(description="Measures of the requested tasks.")
-    count: int = Field(description="Calibrations that meet the requirements.")
-    calibrations: list[Calibration] = Field(
-        description="Calibrations of the architecture, best first."
+    count: int = Field(description="Number of its calibrations that meet the requirements.")
+    calibrations: list[Calibration] | None = Field(
+        None, description="First calibrations; with include=calibrations."
     )
+    links: dict[str, str] = Field(description="Its page, studies and leaderboard.")
 
 
-class Regret(Shape):
-    """Accuracy lost by the ranking: first calibration compared with the most accurate one."""
+class Card(Shape):
+    """One way to begin, where nothing is asked."""
 
-    first_deg: float | None = Field(
-        description="Error of the first calibration, degrees; null if not measured."
-    )
-    best_deg: float = Field(
-        description="Lowest measured error that meets the requirements, degrees."
-    )
-    ratio: float | None = Field(
-        description="Error of the first calibration over the lowest; null if unknown or over zero."
-    )
-    sentence: str = Field(description="The comparison as a sentence.")
+    title: Literal["most built", "advised for accuracy", "lowest simulated"]
+    detector: str
+    mask: str
+    built: bool
+    words: str
 
 
-class Pair(Shape):
-    """An architecture: detector and mask."""
+class Contradiction(Shape):
+    """Two calibrations of an architecture on the same data set and condition."""
 
     detector: str
     mask: str
+    kind: Literal["studies", "advice"]
+    dataset: str
+    condition: str
+    first: str = Field(description="Calibration that most studies used, or that is advised.")
+    first_own_deg: float = Field(description="Its own error, degrees.")
+    other: str = Field(description="Calibration with the smallest own error there.")
+    other_own_deg: float = Field(description="Its own error, degrees.")
+    studies: int = Field(description="Number of studies that used the first.")
+    ratio: float | None
+    sentence: str
+
+
+class Relaxation(Shape):
+    """A change of the requirements that gives results."""
+
+    drop: dict[str, Any]
+    change: dict[str, Any]
+    architectures: int
+    words: str
+
+
+class Blocked(Shape):
+    """Why no architecture meets the requirements."""
+
+    constraint: str
+    detail: str
+    relaxations: list[Relaxation] = Field(description="Changes that give results.")
+
+
+class RecommendationRow(Shape):
+    """A calibration of a recommended architecture: a row of the table.
+
+    An architecture that reports alone bring into the answer has one row without a calibration.
+    """
+
+    rank: int | None = Field(description="Rank of the architecture; empty if nothing is asked.")
+    detector: str
+    mask: str
+    built: bool = Field(description="Whether a study or product realises it.")
+    meets: list[str] = Field(description="Kinds of evidence that meet all requirements.")
+    reported_by: list[str] = Field(description="Studies and products that report meeting all.")
+    reported_rms_deg: float | None = Field(description="Smallest reported accuracy, as an RMS.")
+    calibration: int | None = Field(description="Rank of the calibration on the architecture.")
+    name: str | None = Field(description="Measured pipeline, or the survey's labels.")
+    extractor: str | None
+    compensations: list[str]
+    model: str | None
+    advised: bool | None = Field(description="Whether the survey advises it by name.")
+    calibration_studies: list[str] = Field(description="Studies that used the calibration.")
+    measured: Measured | None
+
+
+class Designs(Shape):
+    """A page of all calibrations of an answer, as flat rows."""
+
+    items: list[RecommendationRow]
+    total: int = Field(description="Total number of rows.")
+    next: str | None = Field(description="Address of the next page; null on the last one.")
 
 
 class Path(Shape):
@@ -211,57 +223,38 @@ class Path(Shape):
     studies: list[str]
 
 
-class Relaxation(OpenShape):
-    """A change of the requirements that gives results."""
+class AnswerFlow(Shape):
+    """The decision flow of an answer, from task to feature extractor."""
 
-    constraint: str
-    architectures: int
-    words: str
-
-
-class Blocked(Shape):
-    """Why no architecture meets the requirements."""
-
-    constraint: str
-    detail: str
-    relaxations: list[Relaxation] = Field(
-        description="Changes of the requirements that give results."
-    )
-
-
-class Recommendations(Shape):
-    """Architectures for a set of requirements, their calibrations, and the studies behind them."""
-
-    requirements: dict[str, Any] = Field(description="Requirements as interpreted.")
-    sort: str = Field(description="Order of the list.")
-    count: int = Field(description="Number of architectures that meet the requirements.")
-    designs: int = Field(description="Number of their calibrations.")
-    architectures: list[Architecture]
-    contradictions: list[str] = Field(
-        description="Sentences, where an architecture that is not advised has better results."
-    )
-    regret: Regret | None = Field(
-        description=(
-            "Comparison of the first calibration with the most accurate one; null if none "
-            "is measured."
-        )
-    )
-    untimed: int = Field(
-        description=(
-            "Number of pipelines excluded by the latency limit because they were not timed."
-        )
-    )
-    untried: dict[str, list[Pair]] = Field(
-        description="Architectures without a data set that tests the required condition."
-    )
-    paths: list[Path] = Field(
-        description="Combinations of values from task to extractor, with their studies."
-    )
+    levels: list[str] = Field(description="Attributes from left to right.")
+    paths: list[Path] = Field(description="Combinations of values with their studies.")
     nodes: list[Node]
     links: list[Link]
     left_out: list[LeftOut] = Field(
         description="Studies not shown because an attribute is unknown."
     )
+
+
+class Recommendations(Shape):
+    """Architectures for a set of requirements, with the evidence behind each."""
+
+    requirements: dict[str, Any] = Field(description="Requirements as interpreted.")
+    sort: str = Field(description="Order of the list.")
+    order: str = Field(description="The order in one sentence.")
+    count: int = Field(description="Number of architectures that meet the requirements.")
+    designs: int = Field(description="Number of their calibrations.")
+    notes: list[str] = Field(
+        description="How the question was read, ties, and which bench stands in the way."
+    )
+    cards: list[Card] = Field(description="Three ways to begin; empty if anything is asked.")
+    architectures: list[Architecture]
+    next: str | None = Field(description="Cursor of the next page; null on the last page.")
+    contradictions: list[Contradiction] = Field(
+        description="At most two calibrations of the literature that err more than others there."
+    )
     blocked: Blocked | None = Field(
         description="Why no architecture meets the requirements; null otherwise."
     )
+    paths: list[Path] | None = Field(None, description="With include=paths.")
+    rows: Designs | None = Field(None, description="With include=designs.")
+    links: dict[str, str] = Field(description="The same as a table, and its decision flow.")

@@ -4,12 +4,24 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import ConfigDict, Field
+from pydantic import BeforeValidator, ConfigDict, Field
 
 from api.schema import words
 from api.schema.base import OfEdition, TableQuestion
-from api.schema.parameters import LARGEST_PAGE, NUMBER, WHOLE, Several, several
+from api.schema.parameters import (
+    GIVEN,
+    LARGEST_PAGE,
+    NUMBER,
+    WHOLE,
+    Cursor,
+    OneOf,
+    Several,
+    several,
+)
 from registry.ranking import Sort
+from registry.requirements import EVIDENCE, MISSIONS
+
+INCLUDE = ("calibrations", "paths", "designs")
 
 
 def _wanted(attribute: str) -> Any:
@@ -20,7 +32,16 @@ def _unwanted(attribute: str) -> Any:
     return several(f"Exclude these values of {attribute}.")
 
 
+def _split(value: Any) -> Any:
+    """Return a list of words that commas may separate."""
+    values = [value] if isinstance(value, str) else value
+    if not isinstance(values, list) or not all(isinstance(one, str) for one in values):
+        return value
+    return [word for one in values for word in one.split(",")]
+
+
 Number = Annotated[float | None, NUMBER]
+Included = Annotated[str, OneOf(lambda: INCLUDE)]
 
 
 class Requirements(OfEdition):
@@ -28,9 +49,15 @@ class Requirements(OfEdition):
 
     model_config = ConfigDict(defer_build=True)  # the command line reads the fields alone
 
+    mission: Annotated[str | None, OneOf(lambda: tuple(MISSIONS)), GIVEN] = Field(
+        None,
+        description="Named set of requirements; a requirement given beside it replaces its own.",
+    )
     task: Several[words.Task] = _wanted("task")
     error: Several[words.Error] = _wanted("error")
-    accuracy: Several[words.Accuracy] = _wanted("accuracy")
+    accuracy: Several[words.Accuracy] = several(
+        "Require a sensor of one of these classes: reported, or measured within its limits."
+    )
     detector: Several[words.Detector] = _wanted("detector")
     mask: Several[words.Mask] = _wanted("mask")
     model: Several[words.Model] = _wanted("model")
@@ -42,21 +69,18 @@ class Requirements(OfEdition):
     exclude_mask: Several[words.Mask] = _unwanted("mask")
     exclude_model: Several[words.Model] = _unwanted("model")
     exclude_extractor: Several[words.Extractor] = _unwanted("extractor")
-    # No more than directions, a full turn, and 11 days.
+    # No more than directions, a full turn, 11 days, a tonne, a kilowatt.
     max_error_deg: Number = Field(
         None,
         gt=0,
         le=180,
         description=(
-            "Maximum RMS error, degrees, over the required field of view and conditions. "
-            "Measured; if not measured, the stated accuracy converted to RMS."
+            "Maximum RMS error, degrees: reported (converted to RMS), or measured over the "
+            "required field of view and conditions."
         ),
     )
     min_fov_deg: Number = Field(
-        None,
-        gt=0,
-        le=360,
-        description="Minimum full field of view, degrees. Measured; if not measured, stated.",
+        None, gt=0, le=360, description="Minimum full field of view, degrees."
     )
     max_latency_us: Number = Field(
         None,
@@ -70,9 +94,27 @@ class Requirements(OfEdition):
         le=1,
         description="Minimum availability, nominal and under all required conditions.",
     )
+    max_mass_g: Number = Field(
+        None, gt=0, le=1e6, description="Maximum mass, grams, as published; unknown is shown."
+    )
+    max_power_mw: Number = Field(
+        None, gt=0, le=1e6, description="Maximum power, milliwatts, as published; unknown is shown."
+    )
+    min_rate_hz: Number = Field(
+        None,
+        gt=0,
+        le=1e9,
+        description="Minimum update rate, hertz, as published; unknown is shown.",
+    )
     survive: Several[words.Hazard] = several(
         "Conditions to tolerate: a data set must test each, with sufficient "
         "availability and within the maximum error."
+    )
+    sun_distance_au: Number = Field(
+        None,
+        ge=0.05,
+        le=100,
+        description="Distance from the Sun, astronomical units; judged by the nearest condition.",
     )
     properties: Several[words.Property] = several(
         "Required extractor properties, at least partly provided in the survey's assessment."
@@ -85,8 +127,8 @@ class Requirements(OfEdition):
         ge=0,
         le=180,
         description=(
-            "Calibration-bench error, degrees; by default that of each data set's "
-            "standard bench; 0 for own errors."
+            "Error of your calibration bench, degrees. Without it limits are judged on own errors, "
+            "and the answer says which bench they take."
         ),
     )
     confidence: Number = Field(
@@ -97,19 +139,31 @@ class Requirements(OfEdition):
             "Share of sensor units and benches that must meet the maximum error; default 0.9."
         ),
     )
-    sort: Sort = Field(
-        "advice",
+    processor: Annotated[str | None, Field(min_length=1, max_length=60), GIVEN] = Field(
+        None,
         description=(
-            "Ranking. advice: advised or used in studies first, then by the measure of "
-            "the tasks or by error. support: by number of studies. measured: by error."
+            "Your processor: a name of /v1/processors, or its time relative to the machine of the "
+            "published times."
         ),
     )
-    limit: Annotated[int, WHOLE] = Field(
-        20,
-        ge=1,
-        le=LARGEST_PAGE,
-        description="Maximum number of architectures; `count`, paths, nodes and links cover all.",
+    evidence: Annotated[str | None, OneOf(lambda: EVIDENCE), GIVEN] = Field(
+        None, description="Evidence that must meet all requirements; default any of the two kinds."
     )
+    sort: Sort = Field(
+        "evidence",
+        description=(
+            "Order. evidence: by evidence, then error or the measure of the task. error: by error. "
+            "studies: by number of studies and products. What nobody built is always last."
+        ),
+    )
+    include: Annotated[Several[Included], BeforeValidator(_split)] = several(
+        "More of the answer: calibrations of each architecture, paths of the studies, designs (all "
+        "calibrations as flat rows)."
+    )
+    limit: Annotated[int, WHOLE] = Field(
+        10, ge=1, le=LARGEST_PAGE, description="Maximum number of architectures per page."
+    )
+    cursor: Cursor = None
     calibrations: Annotated[int, WHOLE] = Field(
         5, ge=1, le=LARGEST_PAGE, description="Maximum number of calibrations per architecture."
     )
@@ -119,17 +173,7 @@ class RequirementsQuery(Requirements, TableQuestion):
     """Requirements in a query."""
 
     model_config = ConfigDict(
-        json_schema_extra={
-            "examples": [
-                {
-                    "task": ["Accuracy"],
-                    "detector": ["CMOS"],
-                    "mask": ["Single-Ap."],
-                    "limit": 1,
-                    "calibrations": 1,
-                }
-            ]
-        }
+        json_schema_extra={"examples": [{"detector": ["CMOS"], "max_error_deg": 0.01, "limit": 1}]}
     )
 
 
@@ -139,14 +183,6 @@ class RequirementsBody(Requirements, strict=True):
     model_config = ConfigDict(
         defer_build=False,
         json_schema_extra={
-            "examples": [
-                {
-                    "task": ["Accuracy"],
-                    "mask": ["Encoded"],
-                    "exclude_detector": ["CCD"],
-                    "limit": 1,
-                    "calibrations": 1,
-                }
-            ]
+            "examples": [{"mask": ["Encoded"], "exclude_detector": ["CCD"], "limit": 1}]
         },
     )

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import typer
 
 from api.cli import architectures
@@ -12,9 +9,7 @@ from api.cli.options import Asked, asked_by
 from api.cli.prepared_measurements import measure
 from api.cli.table_output import Format, FormatOption, emit, emit_json, line_width
 from api.cli.wrong_call import refuse
-from api.recommending import rows
 from api.schema.requirements import Requirements
-from registry.recommendation import recommend as ranked
 from registry.requirements import PARAMETERS, SETTINGS
 from registry.studies import facts
 from registry.taxonomy import InvalidValueError
@@ -23,7 +18,10 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 
 @app.command()
-@asked_by(Requirements, *PARAMETERS, *SETTINGS, "edition", "sort", "limit", "calibrations")
+@asked_by(
+    Requirements,
+    *("mission", *PARAMETERS, *SETTINGS, "edition", "sort", "include", "limit", "calibrations"),
+)
 def recommend(
     *,
     asked: Asked,
@@ -31,34 +29,31 @@ def recommend(
 ) -> None:
     """Rank sensors and calibrations that meet your requirements.
 
-    Lists architectures (detector + mask) with their calibrations (extractor + compensations +
-    model) and three kinds of evidence: advised by the survey, used in studies, measured here. The
-    measured error is the RMS error over the required field of view, in the worst required
-    condition. Contradictions between the kinds of evidence are reported. If no architecture meets
-    the requirements, the requirement that excludes all is named, with changes that would help; the
-    exit code is 0.
+    Lists architectures (detector + mask) whose reported or measured evidence meets all
+    requirements, each with its best calibration and the calibration bench that it takes; what
+    nobody built comes last. `--include calibrations` lists more of them; CSV has all. If no
+    architecture meets the requirements, the requirement that excludes all is named, with changes
+    that would help; the exit code is 0.
     """
-    document = _document(asked)
-    if form is Format.JSON:
-        emit_json(document)
-        return
+    from api.service import recommendations as service  # noqa: PLC0415 - NumPy
+
+    wanted = {name: sorted(set(v)) if isinstance(v, list) else v for name, v in asked.items()}
+    question = Requirements.model_construct(_fields_set=set(wanted), **wanted)
+    try:
+        answer = service.ask(question, measure(), facts(question.edition))
+    except InvalidValueError as error:
+        raise refuse(error.parameter, error.value, error.expected, error.nearest) from error
     if form is Format.CSV:
         from api.schema.recommendations import RecommendationRow  # noqa: PLC0415 - many models
         from api.schema.table import columns_of  # noqa: PLC0415 - beside its model
 
-        emit(list(rows(document)), columns_of(RecommendationRow), form)
+        rows = [row.model_dump() for row in service.rows(answer)]
+        emit(rows, columns_of(RecommendationRow), form)
+        return
+    document = service.document(answer, question, answer.architectures[: question.limit], None)
+    if form is Format.JSON:
+        emit_json(document.model_dump())
     else:
         typer.echo(architectures.text(document, line_width()), nl=False)
-    if document["blocked"]:
-        typer.echo(architectures.explanation(document["blocked"], line_width()), err=True)
-
-
-def _document(asked: Asked) -> Mapping[str, Any]:
-    """Answer as GET /v1/recommendations does, without the service: that takes a second to load."""
-    shown = {name: asked.pop(name) for name in ("sort", "limit", "calibrations")}
-    studies = facts(asked.pop("edition"))
-    wanted = {name: sorted(set(v)) if isinstance(v, list) else v for name, v in asked.items()}
-    try:
-        return ranked(wanted, measure(), facts=studies, **shown).document
-    except InvalidValueError as error:
-        raise refuse(error.parameter, error.value, error.expected, error.nearest) from error
+    if document.blocked:
+        typer.echo(architectures.explanation(document.blocked, line_width()), err=True)

@@ -1,34 +1,29 @@
-"""/v1/recommendations: ranked paths from a task to a calibrated sensor."""
+"""/v1/recommendations: sensors and calibrations that meet requirements."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Body, Query
 
-from api.http.answers import Answer
+from api.http.answers import Answer, AnswerRoute, list_answer
 from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
 from api.http.knowledge import Knowledge
-from api.http.queries import QueryRoute
-from api.http.representations import digest_of
-from api.recommending import rows
-from api.schema.recommendations import RecommendationRow, Recommendations
+from api.http.pagination import page
+from api.schema.recommendations import AnswerFlow, Designs, RecommendationRow, Recommendations
 from api.schema.requirements import Requirements, RequirementsBody, RequirementsQuery
 from api.schema.table import columns_of
-from registry.answer_json import answer_digest, answer_json
-from registry.recommendation import answer
-from registry.requirements import PARAMETERS, SETTINGS
+from api.service import recommendations as service
+from registry import answer as registered
 
-router = APIRouter(prefix="/v1", route_class=QueryRoute, default_response_class=Answer)
+router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
 DESCRIPTION = (
-    "Ranks architectures (detector + mask) and their calibrations (extractor + compensations + "
-    "model) that meet the requirements. Three kinds of evidence: advised by the survey, used in "
-    "studies, measured here. Values of one attribute are alternatives; all other requirements "
-    "must hold. An empty answer names the requirement that excludes all, and changes that would "
-    "help. CSV: a row per calibration."
+    "Ranks architectures (detector + mask) whose reported or measured evidence meets the "
+    "requirements, each with its best calibration (extractor + compensations + model). Values of "
+    "one attribute are alternatives; all other requirements must hold. An empty answer names the "
+    "requirement that excludes all, and changes that would help. CSV: a row per calibration, all "
+    "of them."
 )
 
 
@@ -40,7 +35,7 @@ DESCRIPTION = (
 )
 async def recommendations(known: Known, query: Annotated[RequirementsQuery, Query()]) -> Answer:
     """Recommend for requirements in a query."""
-    return _answer(query, known)
+    return recommended(query, known)
 
 
 @router.post(
@@ -55,45 +50,46 @@ async def recommend(
     query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
 ) -> Answer:
     """Recommend for requirements in a body."""
-    return _answer(body, known)
+    return recommended(body, known)
 
 
-class Recommendation(Answer):
-    """A recommendation, written as JSON already; its table is made from that where it is asked for.
-
-    Parameters
-    ----------
-    content : the JSON
-    digest : what its ETag is made of
-    """
-
-    def __init__(self, content: bytes, digest: str) -> None:
-        self._content = content
-        self.digest = digest
-        super().__init__({}, columns_of(RecommendationRow), lambda: list(rows(self.document)))
-
-    def render(self, content: Any) -> bytes:  # noqa: ARG002 - written already
-        """Return the JSON."""
-        return self._content
-
-    @property
-    def document(self) -> Mapping[str, Any]:
-        """The JSON object."""
-        document: Mapping[str, Any] = json.loads(self._content)
-        return document
-
-    @document.setter
-    def document(self, _document: Mapping[str, Any]) -> None:
-        """Ignore the empty one of `Answer`."""
+@router.get(
+    "/recommendations/flow",
+    summary="Decision flow of an answer",
+    description="Studies behind an answer, as paths, nodes and links from task to extractor.",
+    response_model=AnswerFlow,
+)
+async def recommendations_flow(
+    known: Known, query: Annotated[RequirementsQuery, Query()]
+) -> Answer:
+    """Return the flow of studies behind an answer."""
+    found = service.flow(_ask(query, known))
+    return Answer(found, columns_of(AnswerFlow), list)
 
 
-def _answer(requirements: Requirements, known: Knowledge) -> Recommendation:
-    given = requirements.model_fields_set
-    asked = {
-        name: getattr(requirements, name) for name in (*PARAMETERS, *SETTINGS) if name in given
-    }
-    studies = known.of(requirements.edition).facts
-    found = answer(asked, known.measured_pipelines, sort=requirements.sort, facts=studies)
-    shown = (requirements.limit, requirements.calibrations)
-    digest = digest_of(answer_digest(found, *shown))
-    return Recommendation(answer_json(found, *shown), digest)
+@router.get(
+    "/recommendations/designs",
+    summary="All calibrations of an answer",
+    description="Every calibration that meets the requirements, as flat rows, paged.",
+    response_model=Designs,
+)
+async def recommended_designs(known: Known, query: Annotated[RequirementsQuery, Query()]) -> Answer:
+    """Return a page of all calibrations."""
+    shown = service.design_page(_ask(query, known), query)
+    items = [row.model_dump() for row in shown.items]
+    return list_answer(shown, items, columns_of(RecommendationRow))
+
+
+def recommended(asked: Requirements, known: Knowledge) -> Answer:
+    """Return a page of the answer to requirements; its table has every calibration."""
+    answer = _ask(asked, known)
+    shown = page(answer.architectures, service.PATH, asked)
+    document = service.document(answer, asked, shown.items, shown.next)
+    table = columns_of(RecommendationRow)
+    return Answer(
+        document, table, lambda: [r.model_dump() for r in service.rows(answer)], shown.link
+    )
+
+
+def _ask(asked: Requirements, known: Knowledge) -> registered.Answer:
+    return service.ask(asked, known.measured_pipelines, known.of(asked.edition).facts)

@@ -1,1 +1,0 @@
-"""Parts of an answer as JSON, each written once and kept."""
