@@ -221,7 +221,7 @@ class Answer:
             shown_deg=shown,
             calibrations=int(self._design_counts[number]),
             measures=tuple(
-                task_measure(task, place, best and best.pipeline, shown, time)
+                task_measure(task, place, None if best is None else best.pipeline, shown, time)
                 for task in asked.include.get("task", ())
             ),
         )
@@ -304,8 +304,10 @@ class Answer:
 
     @property
     def _by_class(self) -> bool:
-        """Whether an accuracy class is asked for, and no error limit: within a class none is better
-        for a smaller error."""
+        """Whether an accuracy class is asked for without an error limit.
+
+        Within a class none is better for a smaller error.
+        """
         asked = self.question.requirements
         return "accuracy" in asked.include and asked.max_error_deg is None
 

@@ -66,7 +66,8 @@ class Question:
     @cached_property
     def judged_deg(self) -> Numbers:
         """Error that a limit is compared with: kept by the share of units, and of benches if one is
-        stated."""
+        stated.
+        """
         among = self.candidates & np.isfinite(self.errors.own_deg)
         asked = self.requirements
         return self.table.within(self.errors.own_deg, among, asked.bench_deg, asked.share)
@@ -170,7 +171,8 @@ class Question:
     @cached_property
     def measured(self) -> Flags:
         """Measured pipelines that meet all requirements; of mass, power and rate unknown is
-        enough."""
+        enough.
+        """
         found = self.candidates & np.isfinite(self.errors.own_deg)
         for states in self.by_pipeline.values():
             found &= states == MEETS

@@ -7,8 +7,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
-import numpy as np
-
 from registry.answer import Answer
 from registry.design_table import DesignTable
 from registry.flows import LeftOut, Link, Node

@@ -102,20 +102,23 @@ def in_words(name: str, asked: Value) -> str:
 
 def _drops(question: Question, size: int) -> list[Relaxation]:
     """Return every set of so many requirements whose removal helps, best first."""
-    asked, found = question.requirements, []
-    for names in itertools.combinations(asked.names, size):
-        if count := _count(question, asked.without(*names)):
-            found.append(Relaxation({name: _value(asked, name) for name in names}, {}, count))
+    asked = question.requirements
+    found = [
+        Relaxation({name: _value(asked, name) for name in names}, {}, count)
+        for names in itertools.combinations(asked.names, size)
+        if (count := _count(question, asked.without(*names)))
+    ]
     return sorted(found, key=lambda one: -one.architectures)
 
 
 def _changes(question: Question, drop: Relaxation) -> list[Relaxation]:
     """Return the values that the one requirement dropped could ask instead."""
     ((name, asked),) = drop.drop.items()
-    found = []
-    for value in _candidates(question, name, asked):
-        if count := _count(question, question.requirements.with_value(name, value)):
-            found.append(Relaxation({}, {name: value}, count))
+    found = [
+        Relaxation({}, {name: value}, count)
+        for value in _candidates(question, name, asked)
+        if (count := _count(question, question.requirements.with_value(name, value)))
+    ]
     found.sort(key=lambda one: -one.architectures)
     return found[:MOST_CHANGES]
 

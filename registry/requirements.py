@@ -238,8 +238,9 @@ class Requirements:
                 sides[side][name.removeprefix(EXCLUDE)] = _texts(name, value)
             else:
                 raise unknown_name("parameter", name, (*PARAMETERS, *SETTINGS, "mission"))
-        frozen = {side: MappingProxyType(asked) for side, asked in sides.items()}
-        requirements = cls(**frozen, **others, mission=mission)
+        include, exclude = (MappingProxyType(sides[side]) for side in ("include", "exclude"))
+        named = None if mission is None else str(mission)
+        requirements = cls(include, exclude, **others, mission=named)
         requirements.check(taxonomy, properties)
         return requirements
 
@@ -247,10 +248,7 @@ class Requirements:
         """Raise InvalidValueError unless every attribute, value and limit is possible."""
         for prefix, asked in (("", self.include), (EXCLUDE, self.exclude)):
             for attribute, values in asked.items():
-                if attribute not in ATTRIBUTES:
-                    raise unknown_name("attribute", attribute, ATTRIBUTES)
-                for value in values:
-                    taxonomy.require(attribute, value, parameter=prefix + attribute)
+                _require_values(taxonomy, prefix, attribute, values)
         for name in (*LIMITS, *_RANGES):
             if getattr(self, name) is not None:
                 _require_number(name, getattr(self, name))
@@ -321,7 +319,7 @@ class Requirements:
         side = "exclude" if name.startswith(EXCLUDE) else "include"
         values = {**getattr(self, side), name.removeprefix(EXCLUDE): value}
         kept = MappingProxyType({n: asked for n, asked in values.items() if asked})
-        return replace(self, exclude=kept) if side == "exclude" else replace(self, include=kept)  # type: ignore[arg-type]
+        return replace(self, **{side: kept})  # type: ignore[arg-type]  # one of the two
 
     def to_dict(self) -> dict[str, Any]:
         """Return the parameters that are set, as `parse` takes them."""
@@ -335,6 +333,15 @@ def _texts(name: str, value: object) -> tuple[str, ...]:
     if isinstance(value, Collection) and all(isinstance(item, str) for item in value):
         return tuple(dict.fromkeys(map(str, value)))
     raise InvalidValueError(name, value, "a value of the taxonomy or a list of them")
+
+
+def _require_values(
+    taxonomy: Taxonomy, prefix: str, attribute: str, values: Collection[str]
+) -> None:
+    if attribute not in ATTRIBUTES:
+        raise unknown_name("attribute", attribute, ATTRIBUTES)
+    for value in values:
+        taxonomy.require(attribute, value, parameter=prefix + attribute)
 
 
 #: Least and largest allowed values where they are not just above 0.

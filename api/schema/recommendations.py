@@ -49,8 +49,8 @@ class Measured(Shape):
         "without a bench."
     )
     needs_bench_deg: float | None = Field(
-        description="Calibration bench that the maximum error takes; null without a limit, 0 if none "
-        "is good enough."
+        description="Calibration bench that the maximum error takes; null without a limit, 0 if "
+        "none is good enough."
     )
     units_within: int | None = Field(description="Of ten units, how many meet the maximum error.")
     bound_deg: float | None = Field(
@@ -256,5 +256,5 @@ class Recommendations(Shape):
         description="Why no architecture meets the requirements; null otherwise."
     )
     paths: list[Path] | None = Field(None, description="With include=paths.")
-    rows: Designs | None = Field(None, description="With include=designs.")
+    rows: Designs | None = Field(None, description="All calibrations; with include=designs.")
     links: dict[str, str] = Field(description="The same as a table, and its decision flow.")

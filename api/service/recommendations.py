@@ -10,6 +10,7 @@ from urllib.parse import quote, urlencode
 
 from api.http.pagination import Page, page
 from api.schema.flows import LeftOut, Link, Node
+from api.schema.parameters import DEFAULT_PAGE
 from api.schema.recommendations import (
     Advised,
     AnswerFlow,
@@ -28,7 +29,6 @@ from api.schema.recommendations import (
     Reported,
     TaskMeasure,
 )
-from api.schema.parameters import DEFAULT_PAGE
 from api.schema.requirements import Requirements
 from registry import answer as found_by
 from registry.answer import Answer, RankedArchitecture
