@@ -65,9 +65,7 @@ class Question:
 
     @cached_property
     def judged_deg(self) -> Numbers:
-        """Error that a limit is compared with: kept by the share of units, and of benches if one is
-        stated.
-        """
+        """Error that a limit is compared with: kept by the share of units (and stated benches)."""
         among = self.candidates & np.isfinite(self.errors.own_deg)
         asked = self.requirements
         return self.table.within(self.errors.own_deg, among, asked.bench_deg, asked.share)
@@ -128,35 +126,36 @@ class Question:
             meets[table.design_place[design[kept]], user[kept]] = True
             states = _states(meets[table.report_place, study], is_study)
             found |= dict.fromkeys(names, states)
-        for name, (column, at_most) in _REPORTED.items():
-            limit = asked.value_of(name)
-            if isinstance(limit, float | int):
-                values = table.report_numbers[column]
-                kept = values <= limit if at_most else values >= limit
-                found[name] = _states(kept, ~np.isnan(values))
-                if name in OF_PRODUCTS:  # of a study without the number its products tell
-                    there = self.by_place[name][table.report_place]
-                    found[name] = np.where(found[name] == UNKNOWN, there, found[name])
-        for name in ("min_availability", "max_latency_us", "survive", "exclude_needs"):
-            if asked.value_of(name) is not None:
-                found[name] = np.zeros(len(table.reports), np.int8)
+        found |= {n: self._reports_within(n) for n in _REPORTED if asked.value_of(n) is not None}
+        untold = ("min_availability", "max_latency_us", "survive", "exclude_needs")
+        names = [name for name in untold if asked.value_of(name) is not None]
         if asked.light and asked.light.hazard:
-            found["sun_distance_au"] = np.zeros(len(table.reports), np.int8)
-        return found
+            names.append("sun_distance_au")
+        return found | {name: np.zeros(len(table.reports), np.int8) for name in names}
+
+    def _reports_within(self, name: str) -> States:
+        """Return the state of each report for a limit; products tell of a study without a number."""
+        found = _states(*self._within(name))
+        if name not in OF_PRODUCTS:
+            return found
+        return np.where(found == UNKNOWN, self.by_place[name][self.table.report_place], found)
+
+    def _within(self, name: str) -> tuple[Flags, Flags]:
+        """Return which reports keep a limit on a number, and which state the number."""
+        column, at_most = _REPORTED[name]
+        values, limit = self.table.report_numbers[column], self.requirements.value_of(name)
+        assert isinstance(limit, float | int)  # noqa: S101 - only limits asked for are looked at
+        known = ~np.isnan(values)
+        return (values <= limit if at_most else values >= limit) & known, known
 
     @cached_property
     def by_place(self) -> Mapping[str, States]:
         """State of each architecture for mass, power and rate, by all that is built of it."""
-        table, found = self.table, {}
-        for name in OF_PRODUCTS:
-            limit = self.requirements.value_of(name)
-            if isinstance(limit, float | int):
-                column, at_most = _REPORTED[name]
-                values = table.report_numbers[column]
-                known = ~np.isnan(values)
-                kept = (values <= limit if at_most else values >= limit) & known
-                of_place = (self._any_report(kept), self._any_report(known))
-                found[name] = _states(*of_place)
+        asked = [name for name in OF_PRODUCTS if self.requirements.value_of(name) is not None]
+        found = {}
+        for name in asked:
+            kept, known = self._within(name)
+            found[name] = _states(self._any_report(kept), self._any_report(known))
         return found
 
     @cached_property
@@ -170,9 +169,7 @@ class Question:
 
     @cached_property
     def measured(self) -> Flags:
-        """Measured pipelines that meet all requirements; of mass, power and rate unknown is
-        enough.
-        """
+        """Measured pipelines that meet all requirements; unknown mass, power and rate is enough."""
         found = self.candidates & np.isfinite(self.errors.own_deg)
         for states in self.by_pipeline.values():
             found &= states == MEETS
@@ -259,7 +256,7 @@ class Question:
         }
 
     def _in_classes(self, classes: Iterable[str]) -> Flags:
-        """Say of each pipeline whether its sensor is of a class: the best calibration is, and it."""
+        """Say of each pipeline whether it and the best one of its sensor are of a class."""
         table, judged = self.table, self.judged_deg
         best = np.full(len(table.places), np.inf)
         np.minimum.at(best, table.row_place, judged)

@@ -1,8 +1,8 @@
 """The order of an answer: what was built first, then both kinds of evidence, then the error.
 
 Where one task is asked for, its own measure takes the place of the error: repeatability, field,
-time, or what makers publish of at least three distinct products. Where fewer are known the number of
-studies with that task decides. Several tasks are ordered by the sum of the places in each.
+time, or what makers publish of at least three distinct products. Where fewer are known the number
+of studies with that task decides. Several tasks are ordered by the sum of the places in each.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class TaskMeasure:
     value
         None where too little is known: then the number of studies orders.
     products, low, high
-        Distinct products that it is the median of, and their range; 0 and None for what is measured.
+        Distinct products of the median, and their range; 0 and None for what is measured.
     words
         The same as a sentence.
     """
@@ -99,7 +99,7 @@ def task_measure(
 
 
 def _of_products(task: str, place: Place) -> TaskMeasure:
-    """Return the median over distinct products; without a value where fewer than three are known."""
+    """Return the median over distinct products; without a value for fewer than three."""
     column, noun = _PUBLISHED[task]
     drawn = [p for p in place.products if getattr(p, column) is not None]
     values = sorted(getattr(p, column) for p in drawn)
