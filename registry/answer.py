@@ -137,7 +137,7 @@ class Answer:
         question, asked = self.question, self.question.requirements
         if asked.bench_deg is None or asked.largest_deg is None:
             return None
-        without = Question(question.table, replace(asked, bench_deg=None))
+        without = question.relaxed(replace(asked, bench_deg=None))
         more = without.measured & ~_rows_of(question, _places_with(question, question.measured))
         if not more.any():
             return None
@@ -255,7 +255,7 @@ class Answer:
         question, table = self.question, self.question.table
         asked, pipeline = question.requirements, table.rows[row]
         own = pipeline.judge(asked.hazards, asked.half_field_deg)
-        judged = float(question.judged_deg[row])
+        judged = question.judged_alone_deg(row)
         limit = asked.largest_deg
         interval, within, needed = None, None, None
         if math.isfinite(own.error_deg):

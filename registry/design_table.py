@@ -17,7 +17,7 @@ from registry.designs import Design, Place, gather
 from registry.draws import at_confidence
 from registry.measured_pipelines import MeasuredPipeline, Measurements, Score
 from registry.reports import Report, reports
-from registry.requirements import CLASSES_DEG
+from registry.requirements import CLASSES_DEG, NEEDS
 from registry.studies import Facts
 
 Flags = NDArray[np.bool_]
@@ -161,9 +161,10 @@ class DesignTable:
         halves |= {row.half_fov_deg for row in self.rows if row.half_fov_deg is not None}
         return np.array(sorted(halves), float)
 
-    def needs_input(self, need: str) -> Flags:
-        """Return the pipelines that read an input beside the sensor."""
-        return np.array([need in row.needs for row in self.rows], bool)
+    @cached_property
+    def needs_input(self) -> Mapping[str, Flags]:
+        """Pipelines that read each input beside the sensor."""
+        return {need: np.array([need in row.needs for row in self.rows], bool) for need in NEEDS}
 
     @cached_property
     def _scores(self) -> Mapping[str, _Scores]:

@@ -41,21 +41,35 @@ class Question:
     Attributes
     ----------
     table, requirements : what is asked of what
+    like : a question of the same table whose errors may be the same
     designs : designs that have the required parts
     studies : studies with the required tasks and errors, none of which is excluded
     places : architectures that one of these has, or that the survey advises for them
     """
 
-    def __init__(self, table: DesignTable, requirements: Requirements) -> None:
+    def __init__(
+        self, table: DesignTable, requirements: Requirements, like: Question | None = None
+    ) -> None:
         self.table = table
         self.requirements = requirements
         self.designs = self._find_designs()
         self.studies = self._find_studies()
         self.places = self._find_places()
+        self._like = like
+
+    def relaxed(self, requirements: Requirements) -> Question:
+        """Return other requirements put to the same table; errors are shared where they can be."""
+        return Question(self.table, requirements, self)
 
     @cached_property
     def errors(self) -> PipelineErrors:
         """Own errors of all pipelines under the required hazards and field."""
+        like, asked = self._like, self.requirements
+        if like is not None and (
+            (like.requirements.hazards, like.requirements.half_field_deg)
+            == (asked.hazards, asked.half_field_deg)
+        ):
+            return like.errors
         return self.table.errors(self.requirements.hazards, self.requirements.half_field_deg)
 
     @cached_property
@@ -66,9 +80,23 @@ class Question:
     @cached_property
     def judged_deg(self) -> Numbers:
         """Error that a limit is compared with: kept by the share of units (and stated benches)."""
-        among = self.candidates & np.isfinite(self.errors.own_deg)
+        own, asked = self.errors.own_deg, self.requirements
+        among = self.candidates & np.isfinite(own)
+        found = self.table.within(own, among, None, asked.share)
+        if not asked.bench_deg:
+            return found
+        if asked.largest_deg is not None:  # what misses without a bench misses with one
+            among &= found <= asked.largest_deg
+        return self.table.within(own, among, asked.bench_deg, asked.share)
+
+    def judged_alone_deg(self, row: int) -> float:
+        """Return the same of one pipeline, also where it misses without a bench."""
+        only = np.zeros(len(self.table.rows), bool)
+        only[row] = np.isfinite(self.errors.own_deg[row])
         asked = self.requirements
-        return self.table.within(self.errors.own_deg, among, asked.bench_deg, asked.share)
+        return float(
+            self.table.within(self.errors.own_deg, only, asked.bench_deg, asked.share)[row]
+        )
 
     @cached_property
     def shown_deg(self) -> Numbers:
@@ -101,7 +129,7 @@ class Question:
             time = table.latency_us * factor(asked.processor)
             found["max_latency_us"] = _states(time <= asked.max_latency_us, ~np.isnan(time))
         if asked.exclude_needs:
-            needs = [table.needs_input(need) for need in asked.exclude_needs]
+            needs = [table.needs_input[need] for need in asked.exclude_needs]
             found["exclude_needs"] = _states(~np.logical_or.reduce(needs))
         return found
 
@@ -128,13 +156,13 @@ class Question:
             found |= dict.fromkeys(names, states)
         found |= {n: self._reports_within(n) for n in _REPORTED if asked.value_of(n) is not None}
         untold = ("min_availability", "max_latency_us", "survive", "exclude_needs")
-        names = [name for name in untold if asked.value_of(name) is not None]
+        silent = [name for name in untold if asked.value_of(name) is not None]
         if asked.light and asked.light.hazard:
-            names.append("sun_distance_au")
-        return found | {name: np.zeros(len(table.reports), np.int8) for name in names}
+            silent.append("sun_distance_au")
+        return found | {name: np.zeros(len(table.reports), np.int8) for name in silent}
 
     def _reports_within(self, name: str) -> States:
-        """Return the state of each report for a limit; products tell of a study without a number."""
+        """Return the state of each report for a limit; products tell of studies without one."""
         found = _states(*self._within(name))
         if name not in OF_PRODUCTS:
             return found

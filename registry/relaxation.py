@@ -138,7 +138,7 @@ def _nearest_limit(question: Question, name: str) -> float | None:
         widest = [2.0 * half for half in question.table.edges[::-1].tolist()]
         met = (w for w in widest if _count(question, question.requirements.with_value(name, w)))
         return next(met, None)
-    rest = type(question)(question.table, question.requirements.without(name))
+    rest = question.relaxed(question.requirements.without(name))
     table = question.table
     by_report = {
         "max_error_deg": "rms_deg",
@@ -164,7 +164,7 @@ def _bench(question: Question) -> str:
     asked = question.requirements
     if asked.bench_deg is None or asked.largest_deg is None:
         return ""
-    without = type(question)(question.table, replace(asked, bench_deg=None))
+    without = question.relaxed(replace(asked, bench_deg=None))
     rows = np.flatnonzero(without.measured).tolist()
     needed = max((without.bench_for(row) or 0.0 for row in rows), default=0.0)
     if not needed:
@@ -176,7 +176,7 @@ def _bench(question: Question) -> str:
 
 
 def _count(question: Question, requirements: Requirements) -> int:
-    return int(np.count_nonzero(type(question)(question.table, requirements).matching_places))
+    return int(np.count_nonzero(question.relaxed(requirements).matching_places))
 
 
 def _value(requirements: Requirements, name: str) -> Value:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any, Literal, Self
 
@@ -289,7 +290,7 @@ class Requirements:
         """Half of the required field of view."""
         return None if self.min_fov_deg is None else self.min_fov_deg / 2
 
-    @property
+    @cached_property
     def names(self) -> tuple[str, ...]:
         """Names of the requirements that are set, in the order of `PARAMETERS`."""
         found = tuple(name for name in PARAMETERS if self.value_of(name) is not None)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmark import datasets
-from tools.bench import growth, recommendations, startup
+from tools.bench import growth, startup
 from tools.bench import simulator as speed
 from tools.bench.comparing import Subject
 from tools.bench.light import diffracted_frames, light_of_frames
@@ -86,10 +86,9 @@ def test_no_repeats_are_refused(capsys):
     assert "1; got 0" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("harness", [recommendations, startup])
-def test_the_small_harnesses_prepare_what_runs(harness):
+def test_the_small_harness_prepares_what_runs():
     """Called once, not timed."""
-    for prepared in harness.subjects():
+    for prepared in startup.subjects():
         prepared.call()
         prepared.reference()
         before = prepared.clock()

@@ -24,7 +24,6 @@ NAMES = (
     "robustness",
     "covariances",
     "models",
-    "recommendations",
     "startup",
     "service",
     "growth",

@@ -64,7 +64,7 @@ async def recommendations_flow(
 ) -> Answer:
     """Return the flow of studies behind an answer."""
     found = service.flow(_ask(query, known))
-    return Answer(found, columns_of(AnswerFlow), list)
+    return Answer(found.model_dump(), columns_of(AnswerFlow), list)
 
 
 @router.get(

@@ -151,7 +151,7 @@ def test_every_module_of_the_folder_is_an_experiment() -> None:
     found = experiments()
     recorded = {name for name, kind in found.items() if issubclass(kind, RecordedExperiment)}
     assert recorded == {"claims", "error_budget", "learning_curves", "sweeps"}
-    assert found.keys() - recorded == {"networks", "regret", "selection"}
+    assert found.keys() - recorded == {"networks", "selection"}
 
 
 def test_calls_that_make_no_sense_are_refused(
