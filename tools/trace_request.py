@@ -19,7 +19,7 @@ from types import FrameType
 
 from starlette.types import ASGIApp, Message
 
-from api.http.service import create_app
+from api.server.app import create_app
 from tools.bench.service import random_paths
 
 ROOT = Path(__file__).parents[1]

@@ -8,9 +8,9 @@ from fastapi import Request, Response
 from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, ValidationError
 
-from api.http.answers import AnswerRoute, Handler
-from api.http.refusals import asked_models
-from api.http.requests import StrictRequest
+from api.service.refusals import asked_models
+from api.web.answers import AnswerRoute, Handler
+from api.web.requests import StrictRequest
 
 
 class QueryRoute(AnswerRoute):

@@ -8,15 +8,15 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Query
 
-from api.http.answers import Answer
-from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
-from api.http.knowledge import Knowledge
 from api.http.queries import QueryRoute
-from api.http.representations import digest_of
 from api.recommending import rows
 from api.schema.recommendations import RecommendationRow, Recommendations
 from api.schema.requirements import Requirements, RequirementsBody, RequirementsQuery
 from api.schema.table import columns_of
+from api.service.knowledge import Knowledge
+from api.web.answers import Answer
+from api.web.dependencies import AS_ACCEPTED, Known, TableOnly
+from api.web.representations import digest_of
 from registry.answer_json import answer_digest, answer_json
 from registry.recommendation import answer
 from registry.requirements import PARAMETERS, SETTINGS
