@@ -19,7 +19,7 @@ import pytest
 
 from algorithms.extractors.frames.centroid import BasicCentroid
 from algorithms.models.geometric.standard_projection import StandardProjection
-from api.http.service import create_app
+from api.server.app import create_app
 from benchmark import datasets
 from benchmark.results.closure import FIRST_PARTY
 from benchmark.running import condition_data
@@ -114,7 +114,7 @@ def test_a_query_passes_the_functions_listed_from_http_to_answer() -> None:
     landmarks = [
         "registry/judging.py: Question.matching_designs",
         "registry/answer_json.py: answer_json",
-        "api/http/answers.py: Answer.representation",
-        "api/http/representations.py: Representation.respond",
+        "api/web/answers.py: Answer.representation",
+        "api/web/representations.py: Representation.respond",
     ]
     assert on_the_way(ask, landmarks) == ways

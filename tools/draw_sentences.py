@@ -16,7 +16,7 @@ from typing import Any
 
 import httpx
 
-from api.http.service import create_app
+from api.server.app import create_app
 from tools.prose.texts import Block, documents, help_texts, html, openapi, sentences
 
 #: Kinds of text, and their shares in a draw.

@@ -9,10 +9,10 @@ from typing import Any
 from api.cli.working import working_directory
 from api.cli.wrong_call import WrongCallError, unfit
 from api.http import asking
-from api.http.answers import Answer
-from api.http.knowledge import Knowledge
-from api.http.measurements import Measurements
-from api.http.problems import Problem, Violation
+from api.service.knowledge import Knowledge
+from api.service.measurements import Measurements
+from api.service.problems import Problem, Violation
+from api.web.answers import Answer
 
 
 def ask(

@@ -200,7 +200,7 @@ def _stop(error: BaseException, code: int, message: str) -> None:
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from api.deposit import identity as deposit_identity  # noqa: PLC0415 - the help does without it
+        from api.metadata import identity as deposit_identity  # noqa: PLC0415 - the help does without it
 
         typer.echo(f"sunatlas {deposit_identity.version()}")
         raise typer.Exit

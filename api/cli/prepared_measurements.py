@@ -27,7 +27,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 _PUBLISHED = _ROOT / "benchmark" / "published"
 #: Python files that make it, and what they read beside the times.
 _CODE = ("algorithms", "benchmark", "files", "registry", "survey_data")
-_MAKERS = ("api/http/measurements.py", "api/cli/prepared_measurements.py")
+_MAKERS = ("api/service/measurements.py", "api/cli/prepared_measurements.py")
 _READ = ("components.json", "pins.csv", "scores/*.csv")
 _TIMES = "times.csv"
 
@@ -79,7 +79,7 @@ def _sources(directory: Path) -> Iterator[Path]:
 
 
 def _made(directory: Path) -> list[MeasuredPipeline]:
-    from api.http.measurements import Measurements as Published  # noqa: PLC0415 - slow, see above
+    from api.service.measurements import Measurements as Published  # noqa: PLC0415 - slow, see above
 
     return Published(times_directory=directory).pipelines
 

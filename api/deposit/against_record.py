@@ -20,9 +20,9 @@ from api.deposit.bundle import Sources, fill, write_other_forms
 from api.deposit.database import DATABASE
 from api.deposit.deposit_tables import measured_tables, read_descriptor
 from api.deposit.frames import FOLDER, SPLITS, sample, sample_size
-from api.deposit.identity import identity
 from api.deposit.package import DESCRIPTOR
 from api.deposit.verification import Problem
+from api.metadata.identity import identity
 from benchmark import datasets
 from benchmark.datasets.checksums import ChecksumFileError, contents
 from benchmark.datasets.export import ExportError, read_card

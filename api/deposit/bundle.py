@@ -18,15 +18,10 @@ from typing import Any
 
 import survey_data
 from api.citations import bibtex, ris
-from api.deposit.citation import of_dataset
-from api.deposit.codemeta import NAME as CODEMETA
-from api.deposit.codemeta import codemeta_text
 from api.deposit.crate import CRATE, crate
 from api.deposit.database import DATABASE, write_database
 from api.deposit.deposit_tables import MeasuredTable, frames_table, measured_tables, read_descriptor
-from api.deposit.errors import write_errors
 from api.deposit.frames import write_frames
-from api.deposit.identity import Identity, identity
 from api.deposit.package import DESCRIPTOR, NAME, package
 from api.deposit.packing import pack
 from api.deposit.parquet import write_parquet
@@ -34,6 +29,11 @@ from api.deposit.readme import BIBLIOGRAPHY, readme
 from api.deposit.terms import FACTS, terms
 from api.deposit.typed_tables import typed_tables
 from api.metadata.bundled import documents
+from api.metadata.citation import of_dataset
+from api.metadata.codemeta import NAME as CODEMETA
+from api.metadata.codemeta import codemeta_text
+from api.metadata.errors import write_errors
+from api.metadata.identity import Identity, identity
 from benchmark import datasets
 from benchmark.datasets.checksums import (
     CHECKSUMS,

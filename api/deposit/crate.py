@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 from urllib.parse import quote
 
-from api.deposit.citation import Author
-from api.deposit.identity import Identity
+from api.metadata.citation import Author
+from api.metadata.identity import Identity
 
 CRATE = "ro-crate-metadata.json"
 VERSION = "1.2"

@@ -11,7 +11,7 @@ from typing import Any
 
 from api.cells import cell
 from api.deposit import claim_tables, derived_tables
-from api.deposit.fields import schema
+from api.metadata.fields import schema
 from api.schema.algorithms import Algorithm
 from api.schema.curves import Curve
 from api.schema.deposited import (

@@ -15,11 +15,11 @@ from typing import Any
 
 from api.deposit.crate import CRATE, licence_address
 from api.deposit.database import DATABASE, write_database
-from api.deposit.identity import identity
 from api.deposit.package import CC_BY, MIT
 from api.deposit.parquet import arrow_table
 from api.deposit.terms import FACTS, terms
 from api.deposit.typed_tables import TypedTable, typed_tables
+from api.metadata.identity import identity
 from files.temporary import temporary_directory
 
 Problem = tuple[str, str]

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from api.deposit.citation import Author
 from api.deposit.deposit_tables import MeasuredTable
-from api.deposit.identity import Identity
+from api.metadata.citation import Author
+from api.metadata.identity import Identity
 from benchmark.datasets.checksums import sha256
 
 DESCRIPTOR = "datapackage.json"

@@ -8,8 +8,8 @@ from typing import Any
 from api.deposit.database import COLUMNS, DATABASE, TABLES
 from api.deposit.frames import FOLDER as FRAMES
 from api.deposit.frames import LEAST, ROOM, WHOLE
-from api.deposit.identity import Identity
 from api.metadata.bundled import FOLDER as CROISSANT
+from api.metadata.identity import Identity
 from benchmark.datasets.checksums import CHECKSUMS
 
 BIBLIOGRAPHY = "bibliography"

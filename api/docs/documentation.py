@@ -14,9 +14,20 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 
-from api.deposit import codemeta
-from api.deposit.identity import identity
-from api.docs import assessment, boards, claim_pages, curves, filters, front, limits, model_pages
+from api.docs import (
+    assessment,
+    boards,
+    claim_pages,
+    curves,
+    dictionary,
+    filters,
+    front,
+    limits,
+    measured_facts,
+    model_pages,
+    words,
+)
+from api.docs.blocks import rerun
 from api.docs.export import export_example
 from api.docs.parts import (
     command_line,
@@ -28,8 +39,8 @@ from api.docs.parts import (
     missing_implementations,
     resolutions,
 )
-from api.guide import dictionary, measured_facts, words
-from api.guide.blocks import rerun
+from api.metadata import codemeta
+from api.metadata.identity import identity
 from benchmark.processes import call_to_end
 from benchmark.progress import console_progress
 from benchmark.running.experiment import recorded_experiments

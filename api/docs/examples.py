@@ -10,10 +10,10 @@ from typing import Any
 from typer.testing import CliRunner
 
 from api.cli.command_line import COMMANDS, app, load
-from api.http.negotiation import CSV, JSON
-from api.http.problems import MEDIA_TYPE
 from api.http.reference import target, words
-from api.http.service import create_app
+from api.server.app import create_app
+from api.service.problems import MEDIA_TYPE
+from api.web.negotiation import CSV, JSON
 from registry.taxonomy import ATTRIBUTES
 
 LONGEST_LIST = 1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from api.http.knowledge import Knowledge
+from api.service.knowledge import Knowledge
 
 
 @cache

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from urllib.parse import urlencode
 
-from api.pages.addresses import study_page
+from api.addresses import study_page
 from registry.flows import Where
 from registry.studies import Facts
 from registry.taxonomy import attribute_of

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
+from typing import Annotated
 
 from api.figures import coordinates, matrix, publications, sunburst
 from api.figures.addresses import Addresses
@@ -12,8 +13,9 @@ from api.figures.figure import Figure
 from api.figures.flow_figures import CHAINS, flow_figure
 from api.figures.matrix import matrix_figure
 from api.figures.publications import publications_figure
-from api.figures.rows import COLUMNS, ROWS
 from api.figures.sunburst import sunburst_figure
+from api.schema.figure_rows import COLUMNS, ROWS
+from api.schema.parameters import OneOf
 from registry.catalogue import catalogue
 from registry.evidence import Evidence
 from registry.flows import Where
@@ -34,6 +36,7 @@ TITLES: Mapping[str, tuple[str, str]] = MappingProxyType(
     }
 )
 """The survey's figures: name -> title and caption."""
+FigureName = Annotated[str, OneOf(lambda: tuple(TITLES))]
 
 LEVELS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {

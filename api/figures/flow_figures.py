@@ -9,8 +9,8 @@ from types import MappingProxyType
 from api.figures import wording
 from api.figures.addresses import Addresses
 from api.figures.figure import Figure, in_words
-from api.figures.rows import FlowRow
 from api.figures.sankey_svg import Mark, SankeyMarks, draw_sankey
+from api.schema.figure_rows import FlowRow
 from api.schema.table import columns_of
 from registry.flows import Flows, Node, Where, flows
 from registry.studies import Facts

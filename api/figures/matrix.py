@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from api.addresses import architecture_page, dataset_page
 from api.figures import wording
 from api.figures.addresses import Addresses
 from api.figures.figure import Entry, Figure, in_words
 from api.figures.matrix_svg import Cell, Line, draw_matrix
-from api.figures.rows import PairRow
-from api.pages.addresses import architecture_page, dataset_page
+from api.schema.figure_rows import PairRow
 from api.schema.table import columns_of
 from registry.evidence import Evidence, PairEvidence, PipelineRun, count
 from registry.flows import LeftOut, Node, Where, allowed_values, flows

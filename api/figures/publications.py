@@ -13,8 +13,8 @@ from api.figures.bars import Bar, Part, horizontal_bars, upright_bars
 from api.figures.figure import Entry, Figure
 from api.figures.legend import legend
 from api.figures.lettering import line_height
-from api.figures.rows import PublicationRow
 from api.figures.svg import BODY, SMALL, Drawing
+from api.schema.figure_rows import PublicationRow
 from api.schema.table import columns_of
 from registry.flows import Where, flows
 from registry.studies import Facts, Study

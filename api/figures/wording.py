@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from api.pages.terms import NONE, WITHOUT
 from registry.taxonomy import Taxonomy, attribute_of
 
+NONE = "None"
+WITHOUT = {
+    "mask": "no mask",
+    "extractor": "no feature extraction",
+    "model": "no calibration model",
+    "error": "no error named",
+}
+"""What the survey's "None" says of an attribute."""
 LEVELS = {
     "task": "Task",
     "error": "Error addressed",

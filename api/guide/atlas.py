@@ -9,8 +9,7 @@ from functools import cache
 
 from docutils import nodes
 
-from api.pages.addresses import algorithm_page, claim_page, dataset_page, study_page
-from api.pages.rendering import NAVIGATION
+from api.addresses import NAVIGATION, algorithm_page, claim_page, dataset_page, study_page
 
 
 def atlas_links() -> str:

@@ -17,12 +17,12 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from api.cli.working import working_directory
 from api.guide.atlas import atlas_links
 from api.guide.chapters import ROOT
 from benchmark.progress import ProgressCallback, silent
 from files.atomic import replace_all, require_replaceable
 from files.temporary import temporary_directory
+from files.user_cache import user_cache
 
 BUILDERS = ("sphinx", "myst-parser", "furo")
 INSTALL = "pip install 'sun-sensor-atlas[guide]'"
@@ -99,7 +99,7 @@ def digest() -> str:
 
 def cached_site() -> Path | None:
     """Return where the site of these pages is kept, built or not; None where it cannot be built."""
-    return None if missing_builders() else working_directory() / "guide" / digest()
+    return None if missing_builders() else user_cache() / "guide" / digest()
 
 
 def build(out: Path, progress: ProgressCallback = silent) -> list[str]:

@@ -1,1 +1,1 @@
-"""Parts of the HTTP service; `api.http.service` puts them together."""
+"""Parts of the HTTP service; `api.server.app` puts them together."""

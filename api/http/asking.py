@@ -9,9 +9,9 @@ from typing import Any
 
 from pydantic import ConfigDict, ValidationError, validate_call
 
-from api.http.answers import Answer
-from api.http.knowledge import Knowledge
-from api.http.refusals import refusal
+from api.service.knowledge import Knowledge
+from api.service.refusals import refusal
+from api.web.answers import Answer
 
 PLACES = ("query", "body")  # what arguments that are models are called
 

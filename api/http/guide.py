@@ -8,9 +8,9 @@ from pathlib import Path
 from fastapi import Request, Response
 
 from api.guide import site
-from api.http.problems import Problem, Violation
-from api.http.representations import Representation
-from api.http.static_files import ALREADY_COMPRESSED, CONTENT_TYPES
+from api.service.problems import Problem, Violation
+from api.web.representations import Representation
+from api.web.static_files import ALREADY_COMPRESSED, CONTENT_TYPES
 
 INDEX = "index.html"
 _UNBUILT = """<!doctype html>

@@ -13,13 +13,13 @@ from fastapi import FastAPI, Request
 from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
 
-from api.http.answers import Answer, AnswerRoute, CitedAnswer
 from api.http.asking import ask
-from api.http.knowledge import Knowledge
-from api.http.negotiation import CITATIONS, CSL, CSV, JSON
-from api.http.problems import MEDIA_TYPE, Problem
-from api.http.refusals import asked_models, refusal, schemas
 from api.schema.service import ProblemDocument
+from api.service.knowledge import Knowledge
+from api.service.problems import MEDIA_TYPE, Problem
+from api.service.refusals import asked_models, refusal, schemas
+from api.web.answers import Answer, AnswerRoute, CitedAnswer
+from api.web.negotiation import CITATIONS, CSL, CSV, JSON
 from files.csv_writing import csv_text
 
 LONGEST_TEXT = 160  # characters of a text in an example

@@ -11,7 +11,7 @@ from urllib.parse import quote
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from api.http.negotiation import CSV, JSON
+from api.web.negotiation import CSV, JSON
 
 METHODS = ("get", "post")
 FEW = 6  # words that are listed; of more, as many and how many there are

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from api.deposit.identity import Identity
 from api.metadata.croissant import PARQUET, DatasetDescription, File, Table, croissant
+from api.metadata.identity import Identity
 from api.metadata.served import SUBJECTS, of_dataset, of_record, tables_of_samples
 from benchmark import datasets
 from benchmark.datasets.checksums import contents, sha256

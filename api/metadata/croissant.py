@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from hashlib import sha256
 from typing import Any
 
-from api.deposit.citation import Author
-from api.deposit.identity import Identity
+from api.metadata.citation import Author
+from api.metadata.identity import Identity
 from api.metadata.terms import LICENCES
 
 CONFORMS_TO = "http://mlcommons.org/croissant/1.0"

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from api.deposit.citation import Author, persistent
-from api.deposit.identity import Identity
+from api.metadata.citation import Author, persistent
+from api.metadata.identity import Identity
 from api.metadata.served import SUBJECTS
 from api.metadata.signposting import LandingPage
 from api.metadata.terms import LICENCES, SCHEMA

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from api.deposit.errors import DIRECTIONS, ERRORS
-from api.deposit.identity import Identity
 from api.metadata.croissant import PARQUET, Column, DatasetDescription, File, Table
+from api.metadata.errors import DIRECTIONS, ERRORS
+from api.metadata.identity import Identity
 from api.schema.datasets import Data
 from api.schema.scores import LeaderboardRow
 from api.schema.table import Model, described_columns

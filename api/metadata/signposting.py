@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from typing import Any
 from urllib.parse import quote, urljoin
 
-from api.deposit.citation import persistent
-from api.deposit.identity import Identity
+from api.metadata.citation import persistent
 from api.metadata.croissant import CONFORMS_TO
+from api.metadata.identity import Identity
 from api.metadata.terms import LD_JSON, LICENCES, LINKSET, SCHEMA
 
 HTML = "text/html"

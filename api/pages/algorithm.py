@@ -9,12 +9,9 @@ from typing import Annotated, Any
 
 from fastapi import Path
 
-from api.deposit.identity import identity
-from api.http.answers import Answer
-from api.http.dependencies import Known
-from api.http.knowledge import Knowledge
 from api.http.routers import algorithms as service
 from api.metadata import schema_org
+from api.metadata.identity import identity
 from api.metadata.signposting import landing_of_algorithm
 from api.pages import boards
 from api.pages.methods import docstring_parts
@@ -23,6 +20,9 @@ from api.pages.serving import PageRouter, View
 from api.pages.terms import term_name
 from api.schema.algorithms import Algorithm, AlgorithmsQuery
 from api.schema.parameters import OneOf
+from api.service.knowledge import Knowledge
+from api.web.answers import Answer
+from api.web.dependencies import Known
 from registry.catalogue import Implementation, catalogue
 
 router = PageRouter()

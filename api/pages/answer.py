@@ -8,16 +8,11 @@ from typing import Any
 from fastapi import Request
 from pydantic import ValidationError
 
-from api.deposit.identity import identity
-from api.http.answers import Answer
-from api.http.dependencies import Known
-from api.http.knowledge import Knowledge
-from api.http.problems import Problem
-from api.http.refusals import refusal
+from api.addresses import architecture_page
 from api.http.routers import recommendations as service
 from api.metadata import schema_org
+from api.metadata.identity import identity
 from api.metadata.signposting import landing_of_atlas
-from api.pages.addresses import architecture_page
 from api.pages.editions import edition_shown
 from api.pages.plots.scatter import Point, Scatter
 from api.pages.serving import PageRouter, View
@@ -25,6 +20,11 @@ from api.pages.study import NAMES
 from api.schema.recommendations import RecommendationRow
 from api.schema.requirements import RequirementsQuery
 from api.schema.table import columns_of
+from api.service.knowledge import Knowledge
+from api.service.problems import Problem
+from api.service.refusals import refusal
+from api.web.answers import Answer
+from api.web.dependencies import Known
 from registry.requirements import HAZARDS, LIMITS, SETTINGS
 from registry.taxonomy import ATTRIBUTES
 

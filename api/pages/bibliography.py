@@ -9,13 +9,13 @@ from typing import Annotated, Any
 import yaml
 
 from api.citations import blank_bibtex
-from api.deposit.identity import identity
-from api.http.answers import Answer
-from api.http.dependencies import NO_PARAMETERS, Known
-from api.http.negotiation import BIBTEX, CONTENT_TYPES
-from api.http.representations import Representation
+from api.metadata.identity import identity
 from api.pages.serving import PageRouter, View
 from api.pages.study import IDENTITIES
+from api.web.answers import Answer
+from api.web.dependencies import NO_PARAMETERS, Known
+from api.web.negotiation import BIBTEX, CONTENT_TYPES
+from api.web.representations import Representation
 
 router = PageRouter()
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from api.http.knowledge import Knowledge
 from api.pages.plots.line_chart import Line, LineChart
+from api.service.knowledge import Knowledge
 from benchmark.metrics.rings import RINGS
 
 Row = Mapping[str, Any]

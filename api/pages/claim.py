@@ -7,12 +7,12 @@ from typing import Annotated, Any
 
 from fastapi import Path, Query
 
-from api.http.dependencies import Known
 from api.http.routers import claims as service
 from api.pages.plots.line_chart import Line, LineChart
 from api.pages.serving import PageRouter, View
 from api.schema.claims import ClaimsQuery
 from api.schema.words import ClaimId
+from api.web.dependencies import Known
 from benchmark.claims.ledger import tally
 
 router = PageRouter()

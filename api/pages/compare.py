@@ -8,18 +8,19 @@ from typing import Annotated, Any
 from fastapi import Query, Request
 from pydantic import Field
 
-from api.comparing import MOST, SEPARATOR, compare_architectures, compare_pipelines
-from api.http.answers import Answer
-from api.http.dependencies import Known
-from api.http.knowledge import Knowledge
-from api.http.problems import Problem, Violation
 from api.pages.editions import edition_shown
 from api.pages.plots.line_chart import Line, LineChart
 from api.pages.sensors import best_built
 from api.pages.serving import PageRouter, View
 from api.schema import words
 from api.schema.base import OfEdition
+from api.schema.comparison import MOST, SEPARATOR
 from api.schema.parameters import GIVEN, Several, several
+from api.service.comparing import compare_architectures, compare_pipelines
+from api.service.knowledge import Knowledge
+from api.service.problems import Problem, Violation
+from api.web.answers import Answer
+from api.web.dependencies import Known
 from benchmark.metrics.score import AVAILABLE
 from registry.taxonomy import InvalidValueError
 

@@ -8,14 +8,10 @@ from typing import Annotated, Any, Literal
 from fastapi import Path, Query
 from pydantic import Field
 
-from api.deposit.identity import identity
-from api.http.answers import Answer
-from api.http.dependencies import Known
-from api.http.knowledge import Knowledge
-from api.http.problems import Problem, Violation
 from api.http.routers import datasets as service
 from api.http.routers.metadata import landing_of_dataset
 from api.metadata import schema_org
+from api.metadata.identity import identity
 from api.metadata.served import MEASURED
 from api.pages import boards
 from api.pages.plots.heat import heat_map
@@ -27,6 +23,10 @@ from api.schema import words
 from api.schema.base import Question
 from api.schema.datasets import DatasetsQuery
 from api.schema.parameters import GIVEN
+from api.service.knowledge import Knowledge
+from api.service.problems import Problem, Violation
+from api.web.answers import Answer
+from api.web.dependencies import Known
 from benchmark.error_budget import sentences
 from benchmark.error_budget.record import RECORD as ERROR_BUDGET
 from benchmark.leaderboard.architectures import architectures as best_of_each

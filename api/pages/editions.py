@@ -7,7 +7,7 @@ from urllib.parse import parse_qsl, urlencode
 
 from fastapi import Request
 
-from api.http.knowledge import Knowledge
+from api.service.knowledge import Knowledge
 from survey_data.editions import Choice
 
 

@@ -9,13 +9,13 @@ from typing import Annotated, Any, ClassVar
 
 from fastapi import APIRouter, Path, Response
 
-from api.http.answers import Answer, AnswerRoute
-from api.http.dependencies import NO_PARAMETERS, Known
-from api.http.knowledge import Knowledge
-from api.http.problems import Problem
-from api.http.representations import Representation
 from api.pages.serving import PageRouter, View
 from api.schema.parameters import OneOf
+from api.service.knowledge import Knowledge
+from api.service.problems import Problem
+from api.web.answers import Answer, AnswerRoute
+from api.web.dependencies import NO_PARAMETERS, Known
+from api.web.representations import Representation
 from benchmark.running.experiment import RecordedExperiment, recorded_experiments
 
 router = PageRouter()

@@ -9,22 +9,22 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Path, Query, Request, Response
 
 from api.figures import wording
-from api.figures.catalogue import MATRIX, evidence_map
+from api.figures.catalogue import MATRIX, FigureName, evidence_map
 from api.figures.catalogue import figure as drawn
 from api.figures.figure import Figure, Row
 from api.figures.interactive import specification
 from api.figures.statements import number_of_studies, statements
-from api.http.answers import Handler, StrictRoute
-from api.http.dependencies import NO_PARAMETERS, Known
-from api.http.knowledge import Knowledge
-from api.http.negotiation import media_type
-from api.http.representations import Representation, RepresentationCache
 from api.http.routers import figures as service
 from api.pages.editions import edition_shown
 from api.pages.numbers import degrees, kind_said, wide
 from api.pages.serving import PageRouter, View
-from api.schema.figures import FigureName, FigureQuery, MatrixQuery
+from api.schema.figures import FigureQuery, MatrixQuery
 from api.schema.studies import StudyFilters
+from api.service.knowledge import Knowledge
+from api.web.answers import Handler, StrictRoute
+from api.web.dependencies import NO_PARAMETERS, Known
+from api.web.negotiation import media_type
+from api.web.representations import Representation, RepresentationCache
 from registry.taxonomy import ATTRIBUTES, LEVELS
 from survey_data.reported import QUANTITIES
 

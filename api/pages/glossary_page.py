@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import asdict
 
-from api.http.answers import Answer
-from api.http.dependencies import Known
 from api.pages.serving import PageRouter, View
 from api.pages.study import NAMES
 from api.pages.terms import glossary
+from api.web.answers import Answer
+from api.web.dependencies import Known
 
 router = PageRouter()
 

@@ -8,10 +8,8 @@ from typing import Annotated, Any, Literal
 from fastapi import Query
 from pydantic import Field
 
-from api.deposit.identity import identity
-from api.http.answers import Answer
-from api.http.dependencies import Known
 from api.metadata import schema_org
+from api.metadata.identity import identity
 from api.metadata.signposting import landing_of_record
 from api.pages.sensors import best_built
 from api.pages.serving import PageRouter, View
@@ -19,6 +17,8 @@ from api.schema.base import Question
 from api.schema.boards import BestOfArchitecture
 from api.schema.parameters import GIVEN
 from api.schema.table import columns_of
+from api.web.answers import Answer
+from api.web.dependencies import Known
 from benchmark.leaderboard.overview import ROLES, overview
 from benchmark.leaderboard.summaries import tally
 

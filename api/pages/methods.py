@@ -10,8 +10,8 @@ from typing import Any
 
 from markupsafe import Markup
 
+from api.addresses import study_page
 from api.mathml import mathml
-from api.pages.addresses import study_page
 from api.pages.formulas import tex
 from api.pages.terms import term_label
 from registry.studies import facts

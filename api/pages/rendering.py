@@ -9,24 +9,10 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from algorithms.display_names import display_name
-from api.pages import addresses, numbers, terms
+from api import addresses
+from api.pages import numbers, terms
 from api.pages.methods import mark_up
 from api.pages.plots.sensors import sensor
-
-NAVIGATION = (
-    ("/", "Answer"),
-    ("/studies", "Studies"),
-    ("/algorithms", "Algorithms"),
-    ("/datasets", "Data sets"),
-    ("/leaderboard", "Leaderboard"),
-    ("/claims", "Claims"),
-    ("/figures", "Figures"),
-    ("/compare", "Compare"),
-    ("/search", "Search"),
-    ("/glossary", "Glossary"),
-    ("/guide", "Guide"),
-)
-"""Address and name of every part, in the order of the masthead."""
 
 
 @cache
@@ -40,7 +26,10 @@ def environment() -> Environment:
         lstrip_blocks=True,
     )
     made.globals.update(
-        navigation=NAVIGATION, sensor=sensor, glossary=terms.glossary(), **vars_of(addresses.GIVEN)
+        navigation=addresses.NAVIGATION,
+        sensor=sensor,
+        glossary=terms.glossary(),
+        **vars_of(addresses.GIVEN),
     )
     made.filters.update(
         mark_up=mark_up, display_name=display_name, **vars_of(numbers.GIVEN), **vars_of(terms.GIVEN)
@@ -62,7 +51,7 @@ def render(template: str, context: Mapping[str, Any]) -> str:
     context : by name; `path` and `query` are what was asked for
     """
     part = next(
-        (at for at, _ in NAVIGATION[1:] if context["path"].startswith(at)),
+        (at for at, _ in addresses.NAVIGATION[1:] if context["path"].startswith(at)),
         "/" if context["path"] == "/" else "",
     )
     return environment().get_template(template).render(part=part, **context)

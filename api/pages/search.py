@@ -7,15 +7,15 @@ from typing import Annotated, Any
 from fastapi import Query
 from pydantic import Field
 
-from api.http.answers import Answer
-from api.http.dependencies import Known
-from api.pages import addresses
+from api import addresses
 from api.pages.serving import PageRouter, View
 from api.pages.terms import glossary
 from api.schema.base import Question
 from api.schema.parameters import GIVEN, Several, several
-from api.search.entries import KINDS
-from api.search.index import Entry
+from api.service.index.entries import KINDS
+from api.service.index.index import Entry
+from api.web.answers import Answer
+from api.web.dependencies import Known
 from registry.taxonomy import ATTRIBUTES
 
 router = PageRouter()

@@ -8,9 +8,6 @@ from typing import Annotated, Any
 
 from fastapi import Path, Query, Request
 
-from api.http.answers import Answer
-from api.http.dependencies import Known
-from api.http.knowledge import Knowledge
 from api.http.routers import recommendations as service
 from api.pages import boards
 from api.pages.editions import edition_shown
@@ -18,6 +15,9 @@ from api.pages.serving import PageRouter, View
 from api.schema import words
 from api.schema.base import OfEdition
 from api.schema.requirements import RequirementsQuery
+from api.service.knowledge import Knowledge
+from api.web.answers import Answer
+from api.web.dependencies import Known
 from benchmark.leaderboard.architectures import architectures
 from registry.studies import Study
 

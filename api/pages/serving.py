@@ -9,13 +9,13 @@ from typing import Any, ClassVar
 from fastapi import APIRouter, Request, Response
 from fastapi.exceptions import RequestValidationError
 
-from api.http.answers import Answer, Handler, StrictRoute, as_asked
-from api.http.negotiation import BIBTEX, CSV, JSON, for_spreadsheets, media_type
-from api.http.problems import Problem
-from api.http.refusals import refusal
-from api.http.representations import Representation, RepresentationCache
 from api.metadata.signposting import LandingPage, headers
 from api.pages.rendering import render
+from api.service.problems import Problem
+from api.service.refusals import refusal
+from api.web.answers import Answer, Handler, StrictRoute, as_asked
+from api.web.negotiation import BIBTEX, CSV, JSON, for_spreadsheets, media_type
+from api.web.representations import Representation, RepresentationCache
 
 HTML = "text/html"
 OFFERED = (HTML, JSON, CSV)

@@ -7,7 +7,6 @@ from typing import Annotated, Literal
 from fastapi import Path, Query, Request
 from pydantic import Field
 
-from api.http.dependencies import Known
 from api.http.routers import studies as service
 from api.metadata import schema_org
 from api.metadata.signposting import landing_of_study
@@ -16,6 +15,7 @@ from api.pages.serving import PageRouter, View
 from api.schema.parameters import GIVEN
 from api.schema.studies import StudiesQuery
 from api.schema.words import StudyKey
+from api.web.dependencies import Known
 from registry.fidelity.grading import GRADES as IN_WORDS
 from registry.fidelity.grading import TALLIED, tally_text
 from registry.fidelity.purposes import PURPOSES

@@ -12,23 +12,16 @@ from functools import cache
 
 from markupsafe import Markup
 
+from api.addresses import anchor, study_page, value_page
+from api.figures.wording import NONE, WITHOUT
 from api.glossary import words
-from api.pages.addresses import anchor, study_page, value_page
 from registry.studies import facts
 from registry.taxonomy import ATTRIBUTES
 from survey_data import labels
 from survey_data.reported import KIND_OF, statistics
 from survey_data.sources import source_named
 
-NONE = "None"
 _LITERAL = re.compile(r"(?P<quotes>``?)(?P<code>[^`]+)(?P=quotes)")
-WITHOUT = {
-    "mask": "no mask",
-    "extractor": "no feature extraction",
-    "model": "no calibration model",
-    "error": "no error named",
-}
-"""What the survey's "None" says of an attribute."""
 
 
 @dataclass(frozen=True)

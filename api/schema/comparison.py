@@ -6,12 +6,15 @@ from typing import Annotated, Literal, TypeVar
 
 from pydantic import AfterValidator, ConfigDict, Field
 
-from api.comparing import FEWEST, MOST, SEPARATOR
 from api.schema.base import OfEdition, Shape, TableQuestion
 from api.schema.parameters import GIVEN, OneOf
 from api.schema.words import Condition, DatasetName
 from registry.measured_pipelines import FINER
 from registry.studies import facts
+
+FEWEST, MOST = 2, 4
+SEPARATOR = ":"
+"""Between extractor and model, and between detector and mask."""
 
 Word = TypeVar("Word")
 InOrder = Annotated[

@@ -6,21 +6,13 @@ from typing import Annotated
 
 from pydantic import ConfigDict, Field
 
-from api.figures.rows import COLUMNS, ROWS
 from api.schema.base import Shape
+from api.schema.figure_rows import COLUMNS, ROWS
 from api.schema.flows import LeftOut
 from api.schema.parameters import OneOf
 from api.schema.studies import StudyFilters
 from registry.taxonomy import LEVELS
 
-
-def _names() -> tuple[str, ...]:
-    from api.figures.catalogue import TITLES  # noqa: PLC0415 - draws
-
-    return tuple(TITLES)
-
-
-FigureName = Annotated[str, OneOf(_names)]
 Level = Annotated[str, OneOf(lambda: LEVELS)]
 
 

@@ -8,7 +8,6 @@ from itertools import islice
 from typing import Any
 from urllib.parse import quote, urlencode
 
-from api.http.pagination import Page, page
 from api.schema.flows import LeftOut, Link, Node
 from api.schema.parameters import DEFAULT_PAGE
 from api.schema.recommendations import (
@@ -30,6 +29,8 @@ from api.schema.recommendations import (
     TaskMeasure,
 )
 from api.schema.requirements import Requirements
+from api.service.pagination import Page, page
+from api.service.problems import Problem, Violation
 from registry import answer as found_by
 from registry.answer import Answer, RankedArchitecture
 from registry.comparison import calibration_name, contradictions
@@ -40,6 +41,7 @@ from registry.relaxation import Explanation
 from registry.reports import Report
 from registry.requirements import PARAMETERS, SETTINGS
 from registry.studies import Facts
+from registry.taxonomy import InvalidValueError
 from survey_data import labels
 
 MOST_REPORTS = 3
@@ -54,12 +56,16 @@ def ask(asked: Requirements, measured: Measurements, facts: Facts) -> Answer:
 
     Raises
     ------
-    InvalidValueError
-        For a value that the schema does not know of.
+    Problem
+        For a value that the schema does not know of, such as a processor.
     """
     names = [n for n in (*PARAMETERS, *SETTINGS, "mission") if n in asked.model_fields_set]
     given = {name: getattr(asked, name) for name in names}
-    return recommend(given, measured, sort=asked.sort, facts=facts)
+    try:
+        return recommend(given, measured, sort=asked.sort, facts=facts)
+    except InvalidValueError as error:
+        wrong = Violation(error.parameter, str(error.value), error.expected, error.nearest)
+        raise Problem(422, "invalid-value", errors=[wrong]) from error
 
 
 def document(

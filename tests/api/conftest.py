@@ -16,9 +16,9 @@ from fastapi import FastAPI
 from api.cli import asking, prepared_measurements
 from api.cli.commands import recommend
 from api.docs import knowledge as of_docs
-from api.http import service
-from api.http.knowledge import Knowledge
-from api.http.service import create_app
+from api.server import app as service
+from api.server.app import create_app
+from api.service.knowledge import Knowledge
 from benchmark.results.analyses import Analyses
 
 

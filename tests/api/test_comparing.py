@@ -5,13 +5,13 @@ import io
 
 import pytest
 
-from api import comparing
 from api.cells import cell
-from api.comparing import compare_architectures, compare_pipelines
-from api.http.knowledge import Knowledge
-from api.http.measurements import Measurements
 from api.schema.comparison import ComparedRow
 from api.schema.table import columns_of, csv_of
+from api.service import comparing
+from api.service.comparing import compare_architectures, compare_pipelines
+from api.service.knowledge import Knowledge
+from api.service.measurements import Measurements
 from benchmark.leaderboard import architectures as module
 from registry.taxonomy import InvalidValueError
 

@@ -13,11 +13,11 @@ from typer.testing import CliRunner
 
 from api.cli import command_line
 from api.cli.command_line import COMMANDS, app
-from api.http import handlers
-from api.http.answers import Answer, AnswerRoute
-from api.http.dependencies import AS_ACCEPTED, TableOnly
 from api.http.reference import target
-from api.http.representations import RepresentationCache
+from api.server import handlers
+from api.web.answers import Answer, AnswerRoute
+from api.web.dependencies import AS_ACCEPTED, TableOnly
+from api.web.representations import RepresentationCache
 from benchmark.leaderboard import pages
 from files.csv_writing import escape_formulas, unescape_formulas
 from registry.taxonomy import NONE_STATED, taxonomy_rows

@@ -26,7 +26,7 @@ NUMBERS = {"accuracy_deg": ("0.02", "0.5", "3"), "fov_deg": ("60", "90", "128")}
 #: Asks a service over the tables beside it for everything, and prints what failed.
 ASK = """
 import json, sys
-from api.http.service import create_app
+from api.server.app import create_app
 from registry.studies import facts
 from tests.api.conftest import Client
 from tests.api.pages.addresses import KINDS

@@ -8,9 +8,9 @@ import yaml
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
-from api.deposit.citation import of_dataset
-from api.deposit.identity import version
-from api.http.measurements import Measurements
+from api.metadata.citation import of_dataset
+from api.metadata.identity import version
+from api.service.measurements import Measurements
 from benchmark.datasets.pins import Pin
 from benchmark.results.components import Components
 from benchmark.results.store import PUBLISHED, Store

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from api.http.knowledge import Knowledge
+from api.service.knowledge import Knowledge
 from benchmark.leaderboard import board
 from benchmark.plan import combinations
 from benchmark.plan.parts import Parts

@@ -25,8 +25,8 @@ from urllib.parse import urlencode
 import uvicorn
 from fastapi import FastAPI
 
-from api.http.server.connections import bounds
-from api.http.service import create_app
+from api.server.app import create_app
+from api.server.connections import bounds
 from registry.ranking import SORTS
 from registry.requirements import HAZARDS, MISSIONS
 from registry.studies import facts

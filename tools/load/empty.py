@@ -5,7 +5,7 @@ from __future__ import annotations
 import uvicorn
 
 from api.cli.commands.serve import address, listen
-from api.http.server.connections import bounds
+from api.server.connections import bounds
 from tools.bench.service import empty_app
 
 

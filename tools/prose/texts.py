@@ -116,7 +116,7 @@ def help_texts() -> Iterator[Block]:
 
 def openapi() -> Iterator[Block]:
     """Give summaries and descriptions of the HTTP API."""
-    from api.http.service import create_app
+    from api.server.app import create_app
 
     for path, operations in create_app().openapi()["paths"].items():
         for method, operation in operations.items():

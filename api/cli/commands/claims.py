@@ -11,10 +11,10 @@ from api.cli.asking import ask
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, say
 from api.cli.wrong_call import WrongCallError
-from api.http.answers import Answer
 from api.http.routers import claims as endpoints
 from api.schema.claims import CheckedRule, ClaimRow, ClaimsQuery
 from api.schema.table import columns_of
+from api.web.answers import Answer
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 

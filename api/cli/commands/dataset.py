@@ -16,11 +16,11 @@ from api.cli.table_output import Format, FormatOption, emit, say
 from api.cli.wrong_call import WrongCallError
 from api.http.routers.datasets import errors as dataset_errors
 from api.http.routers.realism import realism as besides_built
-from api.http.sample_errors import choose, rows_of
 from api.schema.datasets import BuiltSensorRow, Data, Dataset, RealismQuery
 from api.schema.samples import SampleError, SampleErrorsQuery
 from api.schema.scores import ScoresQuery
 from api.schema.table import columns_of, csv_of
+from api.service.sample_errors import choose, rows_of
 from benchmark import datasets
 from benchmark.contract import UnknownNameError
 from benchmark.datasets import coverage as covered

@@ -39,7 +39,7 @@ def get(
     /v1/search. The JSON of a long list has the address of its next page.
     """
     from api.cli.asking import knowledge  # noqa: PLC0415 - slow; the help does without it
-    from api.http.service import create_app  # noqa: PLC0415
+    from api.server.app import create_app  # noqa: PLC0415
 
     path, _, query = address.partition("?")
     if not path.startswith("/"):

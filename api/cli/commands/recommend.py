@@ -10,9 +10,9 @@ from api.cli.prepared_measurements import measure
 from api.cli.table_output import Format, FormatOption, emit, emit_json, line_width
 from api.cli.wrong_call import refuse
 from api.schema.requirements import Requirements
+from api.service.problems import Problem
 from registry.requirements import PARAMETERS, SETTINGS
 from registry.studies import facts
-from registry.taxonomy import InvalidValueError
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -41,8 +41,9 @@ def recommend(
     question = Requirements.model_construct(_fields_set=set(wanted), **wanted)
     try:
         answer = service.ask(question, measure(), facts(question.edition))
-    except InvalidValueError as error:
-        raise refuse(error.parameter, error.value, error.expected, error.nearest) from error
+    except Problem as problem:
+        (wrong,) = problem.errors
+        raise refuse(wrong.parameter, wrong.value, wrong.expected, wrong.nearest) from problem
     if form is Format.CSV:
         from api.schema.recommendations import RecommendationRow  # noqa: PLC0415 - many models
         from api.schema.table import columns_of  # noqa: PLC0415 - beside its model

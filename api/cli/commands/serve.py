@@ -15,8 +15,8 @@ import uvicorn
 from uvicorn.supervisors import Multiprocess
 
 from api.cli.working import working_directory
-from api.http.server import serving
-from api.http.server.connections import bounds
+from api.server import serving
+from api.server.connections import bounds
 from benchmark.processes import take_time_to_end
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -70,7 +70,7 @@ def serve(
 def _serve_by_many(listener: socket.socket, workers: int) -> None:
     """Serve by several processes that share a listening socket, until a signal ends them."""
     config = uvicorn.Config(
-        "api.http.server.serving:application_of_worker",
+        "api.server.serving:application_of_worker",
         factory=True,
         workers=workers,
         timeout_worker_healthcheck=60,  # loading takes seconds, and more on a busy machine

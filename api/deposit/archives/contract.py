@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from api.deposit.citation import Author
+from api.metadata.citation import Author
 
 
 class ArchiveError(ValueError):

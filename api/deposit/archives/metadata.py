@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from api.deposit.citation import Author, authors
+from api.metadata.citation import Author, authors
 
 Scheme = Literal["arxiv", "doi"]
 

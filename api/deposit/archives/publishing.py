@@ -12,7 +12,7 @@ from api.deposit.archives.contract import (
     file_differences,
 )
 from api.deposit.archives.sealed import SealedBundle, seal
-from api.deposit.citation import author_problems
+from api.metadata.citation import author_problems
 
 
 class NotReadyError(ArchiveError):

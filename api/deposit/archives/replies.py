@@ -23,7 +23,7 @@ from pydantic import (
 
 from api.deposit.archives.contract import PublishedRecord, RefusedError, StoredFile
 from api.deposit.archives.responses import ReplyError, short
-from api.deposit.citation import Author
+from api.metadata.citation import Author
 
 _IDENTIFIER = re.compile(r"[A-Za-z0-9][A-Za-z0-9-]{0,63}")
 #: What a terminal would act on, and letters that turn the direction of reading.

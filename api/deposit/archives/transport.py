@@ -25,7 +25,7 @@ from api.deposit.archives.deadline import Deadline
 from api.deposit.archives.refusals import reasons
 from api.deposit.archives.responses import R, ReplyError, holds_json, parse_response, read_response
 from api.deposit.archives.server import Server, Token
-from api.deposit.identity import version
+from api.metadata.identity import version
 
 #: Pauses before further tries, in seconds, where the server names none.
 PAUSES = (1.0, 2.0, 4.0, 8.0, 16.0)

@@ -7,13 +7,13 @@ from typing import Any
 from fastapi import APIRouter, Request, Response
 from pydantic_core import to_json
 
-from api.http.answers import StrictRoute
-from api.http.dependencies import JSON_ONLY, NO_PARAMETERS, Known
-from api.http.negotiation import JSON
-from api.http.observation import exposition
 from api.http.reference import reference
-from api.http.representations import Representation, RepresentationCache
 from api.schema.service import Health
+from api.web.answers import StrictRoute
+from api.web.dependencies import JSON_ONLY, NO_PARAMETERS, Known
+from api.web.negotiation import JSON
+from api.web.observation import exposition
+from api.web.representations import Representation, RepresentationCache
 
 EXPOSITION = "text/plain; version=0.0.4; charset=utf-8"
 

@@ -6,13 +6,13 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from api.http.answers import Answer, AnswerRoute, list_answer
-from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
-from api.http.pagination import narrow, order, page
-from api.protocol import protocol as protocol_document
 from api.schema.advice import Advice, AdviceQuery, Advices, Protocol, Statement
 from api.schema.base import Selected
 from api.schema.table import columns_of
+from api.service.pagination import narrow, order, page
+from api.service.protocol import protocol as protocol_document
+from api.web.answers import Answer, AnswerRoute, list_answer
+from api.web.dependencies import AS_ACCEPTED, Known, TableOnly
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 

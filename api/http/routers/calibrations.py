@@ -11,11 +11,11 @@ from typing import Any
 from fastapi import APIRouter, Request, Response
 
 from api.calibrate.uploaded import UploadRefusedError, calibrate_uploads
-from api.http.answers import StrictRoute
-from api.http.dependencies import NO_PARAMETERS
-from api.http.negotiation import JSON, media_type
-from api.http.problems import Problem, Violation
-from api.http.uploads import Form, read_form
+from api.service.problems import Problem, Violation
+from api.web.answers import StrictRoute
+from api.web.dependencies import NO_PARAMETERS
+from api.web.negotiation import JSON, media_type
+from api.web.uploads import Form, read_form
 from survey_data.nearest import nearest_name
 
 HTML, ZIP = "text/html", "application/zip"
@@ -119,7 +119,7 @@ async def calibrated(request: Request, wanted: str) -> Response:
     Raises
     ------
     Problem
-        As `api.http.uploads.read_form`; 422 where the files settle no calibration, 503 where
+        As `api.web.uploads.read_form`; 422 where the files settle no calibration, 503 where
         another calibration runs.
     """
     form = await read_form(request)

@@ -7,13 +7,13 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query
 
-from api.http.answers import Answer, AnswerRoute, list_answer
-from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
-from api.http.pagination import order, page
 from api.schema.base import Selected
 from api.schema.claims import CheckedRule, ClaimDetail, ClaimRow, Claims, ClaimsQuery
 from api.schema.table import columns_of
 from api.schema.words import ClaimId
+from api.service.pagination import order, page
+from api.web.answers import Answer, AnswerRoute, list_answer
+from api.web.dependencies import AS_ACCEPTED, Known, TableOnly
 from benchmark.claims.ledger import Entry, tally
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)

@@ -6,13 +6,13 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
 
-from api.comparing import compare_architectures, compare_pipelines
-from api.http.answers import Answer, AnswerRoute
-from api.http.dependencies import Known
-from api.http.knowledge import Knowledge
-from api.http.problems import Problem, Violation
 from api.schema.comparison import ComparedRow, CompareQuery, Comparison
 from api.schema.table import columns_of
+from api.service.comparing import compare_architectures, compare_pipelines
+from api.service.knowledge import Knowledge
+from api.service.problems import Problem, Violation
+from api.web.answers import Answer, AnswerRoute
+from api.web.dependencies import Known
 from registry.taxonomy import InvalidValueError
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)

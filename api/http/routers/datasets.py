@@ -6,18 +6,18 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
 
-from api.deposit.identity import identity
-from api.http.answers import Answer, AnswerRoute, Columns, Picture, list_answer
-from api.http.dependencies import AS_ACCEPTED, NO_PARAMETERS, Known, TableOnly
-from api.http.pagination import order, page
-from api.http.problems import Problem
-from api.http.sample_errors import choose, rows_of
+from api.metadata.identity import identity
 from api.metadata.signposting import headers, landing_of_dataset
 from api.schema.base import Selected
 from api.schema.datasets import Data, Dataset, DatasetDetail, Datasets, DatasetsQuery
 from api.schema.samples import SampleError, SampleErrors, SampleErrorsQuery
 from api.schema.table import columns_of
 from api.schema.words import DatasetName
+from api.service.pagination import order, page
+from api.service.problems import Problem
+from api.service.sample_errors import choose, rows_of
+from api.web.answers import Answer, AnswerRoute, Columns, Picture, list_answer
+from api.web.dependencies import AS_ACCEPTED, NO_PARAMETERS, Known, TableOnly
 from benchmark.results import samples
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)

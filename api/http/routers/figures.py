@@ -6,13 +6,13 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
 
-from api.figures.catalogue import LEVELS, TITLES, evidence_map
+from api.figures.catalogue import LEVELS, TITLES, FigureName, evidence_map
 from api.figures.catalogue import figure as drawn
 from api.figures.figure import Figure as Drawn
-from api.http.answers import Answer, AnswerRoute
-from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
-from api.schema.figures import Figure, FigureName, FigureQuery, Figures, ListedFigure, MatrixQuery
+from api.schema.figures import Figure, FigureQuery, Figures, ListedFigure, MatrixQuery
 from api.schema.table import columns_of
+from api.web.answers import Answer, AnswerRoute
+from api.web.dependencies import AS_ACCEPTED, Known, TableOnly
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 

@@ -6,11 +6,11 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
 
-from api.http.answers import Answer, AnswerRoute
-from api.http.dependencies import Known
 from api.schema.flows import Flows, FlowsQuery, Link
 from api.schema.table import columns_of
 from api.schema.words import Chart
+from api.web.answers import Answer, AnswerRoute
+from api.web.dependencies import Known
 from registry.flows import chart as flows_of
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request, Response
 
-from api.http.answers import StrictRoute
 from api.http.guide import respond
+from api.web.answers import StrictRoute
 
 router = APIRouter(route_class=StrictRoute, include_in_schema=False)
 

@@ -7,10 +7,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query
 
-from api.deposit.identity import identity
-from api.http.answers import Answer, AnswerRoute, list_answer
-from api.http.dependencies import Known
-from api.http.pagination import Page, narrow, order, page
+from api.metadata.identity import identity
 from api.metadata.signposting import headers, landing_of_record
 from api.schema.base import Selected
 from api.schema.boards import (
@@ -30,6 +27,9 @@ from api.schema.scores import (
 )
 from api.schema.table import columns_of
 from api.schema.words import DatasetName
+from api.service.pagination import Page, narrow, order, page
+from api.web.answers import Answer, AnswerRoute, list_answer
+from api.web.dependencies import Known
 from benchmark.leaderboard.architectures import architectures as best_of_each
 from benchmark.leaderboard.board import at_field, within_error
 from benchmark.leaderboard.overview import overview as overview_of

@@ -7,19 +7,19 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Request
 
-from api.deposit.codemeta import codemeta
-from api.deposit.identity import identity
-from api.http.answers import AnswerRoute, LinkDocument
-from api.http.dependencies import NO_PARAMETERS, Known
-from api.http.knowledge import Knowledge
-from api.http.negotiation import CSV
 from api.http.routers.datasets import dataset
 from api.http.routers.leaderboard import leaderboard
 from api.metadata import served, signposting
+from api.metadata.codemeta import codemeta
 from api.metadata.croissant import croissant
+from api.metadata.identity import identity
 from api.metadata.terms import LD_JSON, LINKSET
 from api.schema.scores import WholeLeaderboardQuery
 from api.schema.words import DatasetName
+from api.service.knowledge import Knowledge
+from api.web.answers import AnswerRoute, LinkDocument
+from api.web.dependencies import NO_PARAMETERS, Known
+from api.web.negotiation import CSV
 from benchmark.results import samples
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, dependencies=[NO_PARAMETERS])

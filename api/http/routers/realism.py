@@ -7,10 +7,10 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
 
-from api.http.answers import Answer, AnswerRoute
-from api.http.dependencies import Known
 from api.schema.datasets import BuiltSensor, BuiltSensorRow, Realism, RealismQuery
 from api.schema.table import columns_of
+from api.web.answers import Answer, AnswerRoute
+from api.web.dependencies import Known
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 

@@ -6,14 +6,14 @@ from typing import Annotated
 
 from fastapi import APIRouter, Body, Query
 
-from api.http.answers import Answer, AnswerRoute, list_answer
-from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
-from api.http.knowledge import Knowledge
-from api.http.pagination import page
 from api.schema.recommendations import AnswerFlow, Designs, RecommendationRow, Recommendations
 from api.schema.requirements import Requirements, RequirementsBody, RequirementsQuery
 from api.schema.table import columns_of
 from api.service import recommendations as service
+from api.service.knowledge import Knowledge
+from api.service.pagination import page
+from api.web.answers import Answer, AnswerRoute, list_answer
+from api.web.dependencies import AS_ACCEPTED, Known, TableOnly
 from registry import answer as registered
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
@@ -87,7 +87,10 @@ def recommended(asked: Requirements, known: Knowledge) -> Answer:
     document = service.document(answer, asked, shown.items, shown.next)
     table = columns_of(RecommendationRow)
     return Answer(
-        document, table, lambda: [r.model_dump() for r in service.rows(answer)], shown.link
+        document.model_dump(),
+        table,
+        lambda: [r.model_dump() for r in service.rows(answer)],
+        shown.link,
     )
 
 

@@ -6,12 +6,12 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from api.http.answers import Answer, AnswerRoute, list_answer
-from api.http.dependencies import Known
-from api.http.pagination import narrow, order, page
 from api.schema.base import Selected
 from api.schema.scores import Score, Scores, ScoresQuery
 from api.schema.table import columns_of
+from api.service.pagination import narrow, order, page
+from api.web.answers import Answer, AnswerRoute, list_answer
+from api.web.dependencies import Known
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 

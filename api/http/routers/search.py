@@ -7,11 +7,11 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
 
-from api.http.answers import Answer, AnswerRoute, list_answer
-from api.http.dependencies import Known
-from api.http.pagination import page
 from api.schema.search import Found, SearchQuery, SearchResults
 from api.schema.table import columns_of
+from api.service.pagination import page
+from api.web.answers import Answer, AnswerRoute, list_answer
+from api.web.dependencies import Known
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request, Response
 
-from api.http.answers import StrictRoute
-from api.http.dependencies import NO_PARAMETERS
-from api.http.static_files import page_file
+from api.web.answers import StrictRoute
+from api.web.dependencies import NO_PARAMETERS
+from api.web.static_files import page_file
 
 router = APIRouter(route_class=StrictRoute, include_in_schema=False)
 

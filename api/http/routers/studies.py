@@ -7,11 +7,6 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query
 
-from api.http.answers import Answer, AnswerRoute, CitedAnswer, list_answer
-from api.http.dependencies import AS_ACCEPTED as TABLE_AS_ACCEPTED
-from api.http.dependencies import Known, TableOnly
-from api.http.knowledge import Knowledge
-from api.http.pagination import order, page
 from api.schema.base import Selected
 from api.schema.studies import (
     AttributeValue,
@@ -25,6 +20,11 @@ from api.schema.studies import (
 )
 from api.schema.table import columns_of
 from api.schema.words import StudyKey
+from api.service.knowledge import Knowledge
+from api.service.pagination import order, page
+from api.web.answers import Answer, AnswerRoute, CitedAnswer, list_answer
+from api.web.dependencies import AS_ACCEPTED as TABLE_AS_ACCEPTED
+from api.web.dependencies import Known, TableOnly
 from registry.fidelity.runnable import RunnablePipeline
 from registry.resolution import Resolution
 from registry.studies import Study

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
-from api.http.answers import Answer, AnswerRoute
-from api.http.dependencies import AS_ACCEPTED, Known, TableOnly
 from api.schema.table import columns_of
 from api.schema.taxonomy import Taxonomy, TaxonomyRow
+from api.web.answers import Answer, AnswerRoute
+from api.web.dependencies import AS_ACCEPTED, Known, TableOnly
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 

@@ -13,9 +13,9 @@ from typer.testing import CliRunner
 from algorithms.discovery import discover_extractors
 from api.cli.command_line import app
 from api.docs import assessment as pages
-from api.http.knowledge import Knowledge
-from api.http.measurements import Measurements
-from api.http.service import create_app
+from api.server.app import create_app
+from api.service.knowledge import Knowledge
+from api.service.measurements import Measurements
 from benchmark.assessment import assess as assessment
 from benchmark.assessment.definitions import DEFINITIONS
 from benchmark.experiments.sweeps import Sweeps

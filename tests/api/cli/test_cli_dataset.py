@@ -12,8 +12,8 @@ from typer.testing import CliRunner
 
 from api.cli.command_line import app
 from api.cli.commands import dataset
-from api.http.knowledge import Knowledge
-from api.http.measurements import Measurements
+from api.service.knowledge import Knowledge
+from api.service.measurements import Measurements
 from benchmark import datasets
 from benchmark.contract import SPLITS, Cell
 from benchmark.datasets.coverage import coverage

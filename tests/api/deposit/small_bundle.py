@@ -9,13 +9,13 @@ from functools import cache
 from pathlib import Path
 
 from api.deposit.bundle import write_other_forms
-from api.deposit.citation import authors
 from api.deposit.crate import CRATE, crate
 from api.deposit.deposit_tables import MeasuredTable
-from api.deposit.identity import Identity, identity
 from api.deposit.package import DESCRIPTOR, package
 from api.deposit.packing import pack
 from api.deposit.terms import terms
+from api.metadata.citation import authors
+from api.metadata.identity import Identity, identity
 from benchmark.datasets.checksums import contents, sha256, write_checksums
 from files.temporary import temporary_directory
 

@@ -7,7 +7,7 @@ import pytest
 from api.deposit.archives.metadata import description as described
 from api.deposit.archives.metadata import invenio, legacy
 from api.deposit.archives.replies import Deposition, Record
-from api.deposit.citation import (
+from api.metadata.citation import (
     Author,
     CitationError,
     author_problems,

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 import yaml
 
-from api.deposit.citation import persistent
-from api.deposit.codemeta import NAME, codemeta
+from api.metadata.citation import persistent
+from api.metadata.codemeta import NAME, codemeta
 
 ROOT = Path(__file__).resolve().parents[3]
 #: By Citation File Format: in CodeMeta (https://codemeta.github.io/crosswalk/).

@@ -18,8 +18,8 @@ from api.deposit.against_record import differences
 from api.deposit.crate import CRATE
 from api.deposit.database import DATABASE
 from api.deposit.frames import FOLDER
-from api.deposit.identity import identity
 from api.deposit.package import DESCRIPTOR
+from api.metadata.identity import identity
 from benchmark.datasets.checksums import contents
 from benchmark.datasets.export import CARD, SCHEMA_VERSION
 from tests.api.deposit import small_bundle

@@ -13,8 +13,8 @@ import pandas as pd
 import pytest
 
 from api.deposit.bundle import Bundle
-from api.deposit.codemeta import NAME, codemeta_text
-from api.deposit.identity import identity
+from api.metadata.codemeta import NAME, codemeta_text
+from api.metadata.identity import identity
 from benchmark.datasets.checksums import sha256
 
 #: The library warns of packages that it reads other formats with.

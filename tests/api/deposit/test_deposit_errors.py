@@ -9,8 +9,8 @@ import pytest
 import yaml
 
 from api.deposit.bundle import build
-from api.deposit.errors import DIRECTIONS, ERRORS
 from api.deposit.verification import verify
+from api.metadata.errors import DIRECTIONS, ERRORS
 from benchmark.contract import Cell
 from benchmark.results.samples import COLUMNS, DIRECTION_COLUMNS, Directions, SampleErrors
 from benchmark.results.store import PUBLISHED

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from api.deposit import identity as deposit_identity
-from api.deposit.identity import MissingFileError, generated_citation
+from api.metadata import identity as deposit_identity
+from api.metadata.identity import MissingFileError, generated_citation
 
 ROOT = Path(__file__).resolve().parents[3]
 

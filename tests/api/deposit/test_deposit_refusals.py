@@ -16,7 +16,7 @@ import pytest
 from frictionless import FrictionlessException, Resource, system
 from pyarrow import parquet
 
-from api.deposit import deposit_tables, forms, identity, verification
+from api.deposit import deposit_tables, forms, verification
 from api.deposit.bundle import DepositError, build
 from api.deposit.crate import CRATE
 from api.deposit.database import DATABASE, write_database
@@ -25,6 +25,7 @@ from api.deposit.package import DESCRIPTOR
 from api.deposit.packing import PackingError, check, pack
 from api.deposit.typed_tables import CellError, TypedTable, typed_tables
 from api.deposit.verification import NoBundleError, verify
+from api.metadata import identity
 from benchmark.datasets.checksums import CHECKSUMS, write_checksums
 from tests.api.deposit import small_bundle
 from tests.api.deposit.altered_zips import README, TOP, patched

@@ -20,11 +20,11 @@ from api.docs import (
     field_plots,
     front,
     limits,
+    measured_facts,
     model_pages,
     parts,
 )
 from api.docs.field_plots import PlottedPipeline
-from api.guide import measured_facts
 from benchmark.claims.judgement import Judgement
 from benchmark.claims.ledger import Entry
 from benchmark.claims.rules import Claim, Rule, claims

@@ -12,8 +12,8 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from api.figures.catalogue import evidence_map
-from api.http.knowledge import Knowledge
-from api.http.measurements import Measurements
+from api.service.knowledge import Knowledge
+from api.service.measurements import Measurements
 from benchmark.plan.combinations import cells
 from benchmark.results.store import PUBLISHED, Store
 from registry.catalogue import catalogue

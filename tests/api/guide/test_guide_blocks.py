@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from api.docs import documentation, model_pages
-from api.guide.blocks import NOT_RUN, BlockError, blocks, reason_not_to_run, rerun
+from api.docs.blocks import NOT_RUN, BlockError, blocks, reason_not_to_run, rerun
 
 ROOT = Path(__file__).resolve().parents[3]
 SLOW = {"docs/guide/tutorial.md", "docs/guide/calibrate.md", "docs/algorithms.md", "README.md"}

@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 from docutils import nodes
 
+from api.docs.blocks import rerun
 from api.guide import chapters, extension, site
-from api.guide.blocks import rerun
 from api.guide.site import GuideError
 from tests.api.guide.test_guide_blocks import fenced, page
 

@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 import survey_data
+from api.addresses import NAVIGATION
 from api.guide import extension, site
 from api.guide.chapters import CHAPTERS, ROOT, toctrees
 from api.mathml import mathml
-from api.pages.rendering import NAVIGATION
 from benchmark.progress import ProgressCallback
 from tests.api.conftest import Client
 

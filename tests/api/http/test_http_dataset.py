@@ -4,9 +4,9 @@ import cv2
 import numpy as np
 import pytest
 
-from api.http.knowledge import Knowledge
-from api.http.measurements import Measurements
-from api.http.service import create_app
+from api.server.app import create_app
+from api.service.knowledge import Knowledge
+from api.service.measurements import Measurements
 from benchmark import datasets
 from benchmark.datasets.pins import Pin
 from benchmark.results.components import Components

@@ -16,24 +16,25 @@ from prometheus_client.values import MultiProcessValue
 from pydantic import BaseModel, ConfigDict
 from starlette.types import Message, Receive, Scope, Send
 
-from api.http import observation, requests, service
-from api.http.answers import Answer, AnswerRoute, Columns
 from api.http.asking import ask
-from api.http.dependencies import Known
-from api.http.knowledge import Knowledge
-from api.http.middleware import EveryResponse
-from api.http.negotiation import PARQUET
 from api.http.openapi import describe
-from api.http.problems import Problem
 from api.http.reference import target
-from api.http.refusals import refusal
-from api.http.representations import Representation, RepresentationCache
-from api.http.requests import StrictRequest
 from api.http.routers import calibrations
 from api.http.routers.studies import studies
-from api.http.server import serving
-from api.http.service import create_app
 from api.schema.parameters import OneOf
+from api.server import app as service
+from api.server import serving
+from api.server.app import create_app
+from api.service.knowledge import Knowledge
+from api.service.problems import Problem
+from api.service.refusals import refusal
+from api.web import observation, requests
+from api.web.answers import Answer, AnswerRoute, Columns
+from api.web.dependencies import Known
+from api.web.middleware import EveryResponse
+from api.web.negotiation import PARQUET
+from api.web.representations import Representation, RepresentationCache
+from api.web.requests import StrictRequest
 from tests.api.conftest import Client
 
 

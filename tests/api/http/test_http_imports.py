@@ -15,8 +15,8 @@ ROOT = Path(__file__).parents[3]
     "code",
     [
         "import api",
-        "import api.http.service",
-        "import api.http.service; api.http.service.create_app()",
+        "import api.server.app",
+        "import api.server.app; api.server.app.create_app()",
     ],
 )
 def test_nothing_heavy_is_loaded_before_it_is_needed(code):

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from api.http.negotiation import CSV, JSON, accepts_gzip, media_type
-from api.http.problems import Problem
-from api.http.representations import Representation, RepresentationCache, matches
+from api.service.problems import Problem
+from api.web.negotiation import CSV, JSON, accepts_gzip, media_type
+from api.web.representations import Representation, RepresentationCache, matches
 from survey_data.nearest import nearest_name
 
 fuzz = settings(deadline=None, derandomize=True)

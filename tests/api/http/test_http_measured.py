@@ -3,9 +3,9 @@
 import jsonschema
 import pytest
 
-from api.http.knowledge import Knowledge
-from api.http.measurements import Measurements
-from api.http.service import create_app
+from api.server.app import create_app
+from api.service.knowledge import Knowledge
+from api.service.measurements import Measurements
 from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin
 from benchmark.metrics.score import METRICS

@@ -20,7 +20,7 @@ import rdflib
 import uvicorn
 from signposting import find_signposting_http, find_signposting_http_link, find_signposting_linkset
 
-from api.deposit.identity import identity
+from api.metadata.identity import identity
 from api.metadata.signposting import landing_of_study
 from api.schema.scores import LeaderboardRow
 from api.schema.table import columns_of

@@ -7,9 +7,9 @@ import pytest
 from fastapi import FastAPI
 from prometheus_client.parser import text_string_to_metric_families
 
-from api.http import observation
-from api.http.middleware import EveryResponse
-from api.http.service import create_app
+from api.server.app import create_app
+from api.web import observation
+from api.web.middleware import EveryResponse
 
 
 def numbers(client):

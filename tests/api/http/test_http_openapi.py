@@ -7,7 +7,7 @@ import json
 import jsonschema
 import pytest
 
-from api.http.service import ROUTES
+from api.server.app import ROUTES
 
 PROBLEM = "application/problem+json"
 

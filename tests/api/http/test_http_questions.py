@@ -12,14 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import Field
 
-from api.http import handlers
-from api.http.answers import Answer, AnswerRoute
 from api.http.asking import ask
-from api.http.dependencies import Known
-from api.http.knowledge import Knowledge
-from api.http.pagination import page
-from api.http.problems import Problem
-from api.http.representations import RepresentationCache
 from api.schema.base import Question
 from api.schema.parameters import (
     DEFAULT_PAGE,
@@ -31,6 +24,13 @@ from api.schema.parameters import (
     OneOf,
     Several,
 )
+from api.server import handlers
+from api.service.knowledge import Knowledge
+from api.service.pagination import page
+from api.service.problems import Problem
+from api.web.answers import Answer, AnswerRoute
+from api.web.dependencies import Known
+from api.web.representations import RepresentationCache
 
 fuzz = settings(deadline=None, derandomize=True)
 

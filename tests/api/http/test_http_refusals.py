@@ -5,8 +5,8 @@ import math
 
 import pytest
 
-from api.http.knowledge import Knowledge
-from api.http.service import create_app
+from api.server.app import create_app
+from api.service.knowledge import Knowledge
 
 LISTS = [
     "/v1/studies",

@@ -6,11 +6,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from api.http.knowledge import Knowledge
-from api.http.measurements import Measurements
-from api.http.service import create_app
 from api.schema.samples import SampleError
 from api.schema.table import columns_of
+from api.server.app import create_app
+from api.service.knowledge import Knowledge
+from api.service.measurements import Measurements
 from benchmark.contract import Cell
 from benchmark.results.samples import Directions, SampleErrors
 

@@ -6,7 +6,6 @@ import math
 
 import pytest
 
-from api.figures.rows import ArcRow, FlowRow, PairRow, PublicationRow, SensorRow
 from api.schema.advice import Advice, Statement
 from api.schema.algorithms import Algorithm
 from api.schema.assessment import Sweep, VerdictRow
@@ -15,6 +14,7 @@ from api.schema.claims import CheckedRule, ClaimRow
 from api.schema.comparison import ComparedRow
 from api.schema.curves import CurveRow
 from api.schema.datasets import BuiltSensorRow, Data, Dataset
+from api.schema.figure_rows import ArcRow, FlowRow, PairRow, PublicationRow, SensorRow
 from api.schema.figures import ListedFigure
 from api.schema.flows import Link
 from api.schema.recommendations import RecommendationRow

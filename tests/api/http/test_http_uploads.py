@@ -10,9 +10,9 @@ from fastapi import Request
 from starlette.types import Message
 
 from api.calibrate.uploaded import Upload
-from api.http import uploads
-from api.http.problems import Problem
-from api.http.uploads import Form, read_form
+from api.service.problems import Problem
+from api.web import uploads
+from api.web.uploads import Form, read_form
 
 FIELD = b'Content-Disposition: form-data; name="%s"\r\n\r\n%s'
 FILE = b'Content-Disposition: form-data; name="file"; filename="%s"\r\n\r\n%s'

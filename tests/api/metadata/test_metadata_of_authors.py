@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-from api.deposit.citation import Author
-from api.deposit.identity import Identity, identity
 from api.metadata import schema_org
 from api.metadata.bundled import documents
+from api.metadata.citation import Author
 from api.metadata.croissant import DatasetDescription, File, Table, cite_as, croissant
+from api.metadata.identity import Identity, identity
 from benchmark.datasets.export import SCHEMA_VERSION
 
 WHAT = DatasetDescription("Atlas: pd-slit", "A data set.", None, "1.0.0", ("sun sensor",))

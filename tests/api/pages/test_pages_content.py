@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from api.http.service import create_app
 from api.pages import dataset, sensors
 from api.pages.numbers import count_text, degrees, number, percent, times
 from api.pages.terms import display_text, explain_terms, glossary
+from api.server.app import create_app
 from benchmark.leaderboard.architectures import architectures
 from registry.studies import facts
 from tests.api.conftest import Client

@@ -12,7 +12,7 @@ from api.pages.formulas import tex
 from api.pages.methods import docstring_parts, mark_up
 from api.pages.plots.scatter import Point, Scatter
 from api.pages.search import page_of
-from api.search.index import Entry
+from api.service.index.index import Entry
 from survey_data import labels
 
 

@@ -10,9 +10,9 @@ import pytest
 from fastapi import FastAPI
 
 from api.docs.documentation import every_picture
-from api.http.knowledge import Knowledge
-from api.http.measurements import Measurements
-from api.http.service import create_app
+from api.server.app import create_app
+from api.service.knowledge import Knowledge
+from api.service.measurements import Measurements
 from benchmark import experiments as package
 from benchmark.experiments.__main__ import main
 from tests.api.conftest import Client

@@ -10,10 +10,10 @@ from urllib.parse import unquote, urlsplit
 import pytest
 from fastapi.routing import APIRoute
 
-from api.http.static_files import page_files
-from api.pages.rendering import NAVIGATION
+from api.addresses import NAVIGATION
 from api.pages.routers import ROUTERS
 from api.pages.serving import PageRouter
+from api.web.static_files import page_files
 from tests.api.conftest import Client
 from tests.api.pages.addresses import KINDS
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from api.http.knowledge import Knowledge
-from api.search.entries import KINDS
+from api.service.index.entries import KINDS
+from api.service.knowledge import Knowledge
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from functools import cache
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from api.search.index import EXCERPT, Entry, Index, excerpt, slips_between, tokens
+from api.service.index.index import EXCERPT, Entry, Index, excerpt, slips_between, tokens
 
 fuzz = settings(deadline=None, derandomize=True, max_examples=60)
 

@@ -166,7 +166,7 @@ def test_a_user_s_settings_change_no_picture():
 def test_matplotlib_is_loaded_by_pictures_alone():
     code = (
         "import sys\n"
-        "import api.http.service, benchmark.datasets.export, benchmark.datasets.preview_overlay\n"
+        "import api.server.app, benchmark.datasets.export, benchmark.datasets.preview_overlay\n"
         "import benchmark.running.task, benchmark.sweeps.plots, benchmark.experiments.sweeps\n"
         "assert 'matplotlib' not in sys.modules\n"
     )

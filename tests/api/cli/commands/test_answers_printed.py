@@ -21,7 +21,7 @@ from api.cli import architectures
 from api.cli.boards import overview_text
 from api.cli.command_line import app
 from api.cli.commands.get import fetch_answer
-from api.http import service
+from api.server import app as service
 from benchmark.leaderboard.overview import WITHIN, suffix
 from survey_data import Problem
 from tests.api.conftest import Client

@@ -19,7 +19,7 @@ from api.cli import asking
 from api.cli.command_line import app
 from api.cli.commands import rank as ranking
 from api.cli.contract import ContractResult
-from api.http.knowledge import Knowledge
+from api.service.knowledge import Knowledge
 from benchmark.contract import Cell
 from benchmark.leaderboard import candidate, check, update
 from benchmark.leaderboard.candidate import Ranking

@@ -11,7 +11,7 @@ import uvicorn
 from starlette.types import Receive, Scope, Send
 from uvicorn.server import ServerState
 
-from api.http.server.connections import BoundedProtocol, bounds
+from api.server.connections import BoundedProtocol, bounds
 
 WHOLE = b"GET /x HTTP/1.1\r\nHost: a\r\n\r\n"
 

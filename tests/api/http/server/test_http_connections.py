@@ -7,7 +7,7 @@ from contextlib import ExitStack
 
 import pytest
 
-from api.http.server.connections import BoundedProtocol
+from api.server.connections import BoundedProtocol
 from tools.bench.service import serve
 
 

@@ -67,9 +67,9 @@ _ASKED = """
 import api, sys
 from pathlib import Path
 from fastapi.testclient import TestClient
-from api.deposit.identity import identity
+from api.metadata.identity import identity
 from api.guide import site
-from api.http.service import create_app
+from api.server.app import create_app
 assert Path(api.__file__).is_relative_to(sys.argv[1]), api.__file__
 assert site.source().is_relative_to(sys.argv[1]), site.source()
 assert (site.source() / "http.md").is_file()

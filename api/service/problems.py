@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
-
-from fastapi import Request, Response
-from starlette.exceptions import HTTPException
 
 MEDIA_TYPE = "application/problem+json"
 TYPE_PREFIX = "urn:problem-type:sun-sensor-atlas:"
@@ -52,7 +48,7 @@ class Violation:
         return f"{shown['parameter']}: expected {self.expected}, got {got}{hint}"
 
 
-class Problem(HTTPException):
+class Problem(Exception):  # noqa: N818 - as RFC 9457 calls it
     """A request that is refused.
 
     Parameters
@@ -74,8 +70,10 @@ class Problem(HTTPException):
     ) -> None:
         self.kind = kind
         self.errors = tuple(errors)
-        said = detail or "; ".join(error.sentence() for error in self.errors)
-        super().__init__(status, said, headers)
+        self.status_code = status
+        self.detail = detail or "; ".join(error.sentence() for error in self.errors)
+        self.headers = headers
+        Exception.__init__(self, self.detail)  # whatever else it is (`api.web.requests`)
 
     def document(self, instance: str) -> dict[str, Any]:
         """Return the members of the problem document; `instance` is the path asked for."""
@@ -87,12 +85,3 @@ class Problem(HTTPException):
             "instance": instance,
             "errors": [error.document() for error in self.errors],
         }
-
-
-def respond(request: Request, problem: Problem) -> Response:
-    """Return `problem` as the response to `request`."""
-    # Not the answers' fast serialiser: input may hold lone surrogates, which only escaping carries.
-    # The path is not taken from `request.url`, which fails where the query is not UTF-8.
-    body = json.dumps(problem.document(request.scope["path"])).encode()
-    headers = {"Cache-Control": "no-store", **(problem.headers or {})}
-    return Response(body, problem.status_code, headers, media_type=MEDIA_TYPE)

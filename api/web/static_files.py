@@ -6,8 +6,8 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
-from api.http.problems import Problem, Violation
-from api.http.representations import Representation
+from api.service.problems import Problem, Violation
+from api.web.representations import Representation
 from survey_data.nearest import nearest_name
 
 CONTENT_TYPES = {

@@ -8,14 +8,19 @@ from typing import Any, NoReturn
 from urllib.parse import parse_qsl
 
 from starlette.datastructures import QueryParams
+from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect, Request
 
-from api.http.problems import Problem, Violation
+from api.service.problems import Problem, Violation
 
 MOST_FIELDS = 500  # of one query
 LARGEST_BODY = 64 * 1024  # bytes; the longest sensible set of requirements is a twentieth of it
 
 LARGEST_READ = 16 * 2**20  # bytes of a refused body that are read
+
+
+class BodyProblem(Problem, HTTPException):
+    """A body that is refused: what FastAPI, which reads it, passes on as it is."""
 
 
 class StrictQuery(QueryParams):
@@ -84,11 +89,11 @@ class StrictRequest(Request):
                     chunks.append(chunk)
         except ClientDisconnect as error:
             violation = Violation("body", f"{length} bytes", "all that its length promised")
-            raise Problem(400, "incomplete-body", errors=[violation]) from error
+            raise BodyProblem(400, "incomplete-body", errors=[violation]) from error
         if length > LARGEST_BODY:
             came = f"{length} bytes or more"
             violation = Violation("body", came, f"at most {LARGEST_BODY} bytes")
-            raise Problem(413, "content-too-large", errors=[violation])
+            raise BodyProblem(413, "content-too-large", errors=[violation])
         self._read = b"".join(chunks) or self._parse(b"")  # which FastAPI would take for no body
         return self._read
 
@@ -110,7 +115,7 @@ class StrictRequest(Request):
         except (ValueError, RecursionError) as error:
             reason = "nested too deeply" if isinstance(error, RecursionError) else str(error)
             violation = Violation("body", None, f"JSON in UTF-8 ({reason})")
-            raise Problem(400, "malformed-json", errors=[violation]) from error
+            raise BodyProblem(400, "malformed-json", errors=[violation]) from error
 
     def _refuse_at_once(self) -> None:
         """Refuse a body that is too long before it is sent, where the client asks first."""
@@ -119,7 +124,7 @@ class StrictRequest(Request):
         if asks and length.isascii() and length.isdigit() and int(length) > LARGEST_BODY:
             error = Violation("body", f"{length} bytes", f"at most {LARGEST_BODY} bytes")
             headers = {"Connection": "close"}
-            raise Problem(413, "content-too-large", errors=[error], headers=headers)
+            raise BodyProblem(413, "content-too-large", errors=[error], headers=headers)
 
     def _require_json(self) -> None:
         content_type = self.headers.get("content-type")
@@ -127,7 +132,7 @@ class StrictRequest(Request):
         charsets = [a.partition("=")[2].strip('"') for a in arguments if a[:8] == "charset="]
         if media != "application/json" or any(charset != "utf-8" for charset in charsets):
             error = Violation("Content-Type", content_type, "application/json in UTF-8")
-            raise Problem(
+            raise BodyProblem(
                 415,
                 "unsupported-media-type",
                 errors=[error],
@@ -136,7 +141,7 @@ class StrictRequest(Request):
         coding = self.headers.get("content-encoding", "identity")
         if coding.strip().lower() not in {"", "identity"}:
             error = Violation("Content-Encoding", coding, "identity: bodies are not compressed")
-            raise Problem(
+            raise BodyProblem(
                 415,
                 "unsupported-media-type",
                 errors=[error],

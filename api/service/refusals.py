@@ -12,7 +12,7 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel, TypeAdapter
 
-from api.http.problems import Problem, Violation
+from api.service.problems import Problem, Violation
 from survey_data.nearest import nearest_name
 
 MOST_LISTED = 20  # words for a part of a path that a refusal lists

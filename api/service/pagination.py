@@ -12,9 +12,9 @@ from typing import Any, Generic, TypeVar
 from urllib.parse import urlencode
 
 from api.cells import cell
-from api.http.problems import Problem, Violation
 from api.schema.base import Paged, Question
 from api.schema.table import flat
+from api.service.problems import Problem, Violation
 
 Row = TypeVar("Row")
 

@@ -6,7 +6,7 @@ import time
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from api.http.observation import keep
+from api.web.observation import keep
 
 _POLICY = {
     "default-src": "'none'",
@@ -58,7 +58,7 @@ def is_shared(path: str) -> bool:
 class EveryResponse:
     """ASGI middleware: adds the headers and answers HEAD by GET without its body.
 
-    What is answered is counted, timed and logged (`api.http.observation`); a failure counts as 500.
+    What is answered is counted, timed and logged (`api.web.observation`); a failure counts as 500.
     A browser's question whether another site may ask (a preflight) is answered here.
     """
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from api.deposit.fields import fields
+from api.metadata.fields import fields
 from api.schema.samples import SampleError
 from benchmark.results.samples import (
     COLUMNS,

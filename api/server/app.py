@@ -16,13 +16,14 @@ from typing import Any
 from fastapi import FastAPI
 from fastapi.routing import APIRoute
 
-from api.http import handlers, middleware
-from api.http.knowledge import Knowledge
 from api.http.openapi import describe
-from api.http.representations import RepresentationCache
 from api.http.routers import ROUTERS as SERVICE
 from api.http.routers import recommendations
 from api.pages.routers import ROUTERS as PAGES
+from api.server import handlers
+from api.service.knowledge import Knowledge
+from api.web import middleware
+from api.web.representations import RepresentationCache
 
 DESCRIPTION = (
     "Which sun sensor to build and how to calibrate it: published studies, their algorithms, and "

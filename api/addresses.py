@@ -5,6 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from urllib.parse import quote, urlencode
 
+NAVIGATION = (
+    ("/", "Answer"),
+    ("/studies", "Studies"),
+    ("/algorithms", "Algorithms"),
+    ("/datasets", "Data sets"),
+    ("/leaderboard", "Leaderboard"),
+    ("/claims", "Claims"),
+    ("/figures", "Figures"),
+    ("/compare", "Compare"),
+    ("/search", "Search"),
+    ("/glossary", "Glossary"),
+    ("/guide", "Guide"),
+)
+"""Address and name of every part, in the order of the masthead."""
 KINDS = {"detector": "/detectors", "mask": "/masks"}
 """Attributes whose values have a page of their own."""
 

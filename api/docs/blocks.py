@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from api.guide.commands import CommandError, run
+from api.docs.commands import CommandError, run
 
 #: How commands begin that no page's test runs, and why.
 NOT_RUN: Mapping[tuple[str, ...], str] = {

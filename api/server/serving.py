@@ -11,10 +11,10 @@ from pathlib import Path
 
 from fastapi import FastAPI
 
-from api.http.knowledge import Knowledge
-from api.http.measurements import Measurements
-from api.http.observation import log_requests
-from api.http.service import create_app
+from api.server.app import create_app
+from api.service.knowledge import Knowledge
+from api.service.measurements import Measurements
+from api.web.observation import log_requests
 from benchmark.processes import end_in_time
 
 ACCESS_LOG = "SUNATLAS_ACCESS_LOG"

@@ -9,7 +9,7 @@ from urllib.parse import parse_qsl
 
 from pydantic import TypeAdapter, ValidationError
 
-from api.http.problems import Problem, Violation
+from api.service.problems import Problem, Violation
 
 JSON = "application/json"
 CSV = "text/csv"

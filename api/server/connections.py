@@ -15,7 +15,7 @@ import h11
 from starlette.types import Receive, Scope, Send
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from api.http.problems import MEDIA_TYPE, Problem
+from api.service.problems import MEDIA_TYPE, Problem
 
 ARRIVES_S = 10.0  # from the first byte, or the opening of the connection, to the request's last
 READS_S = 20.0  # without a byte being taken of an answer that waits

@@ -12,7 +12,10 @@ from fastapi.routing import APIRoute
 from pydantic_core import to_json
 
 from api import citations
-from api.http.negotiation import (
+from api.schema.table import csv_of, flat
+from api.service.pagination import Page
+from api.service.problems import Problem, Violation
+from api.web.negotiation import (
     CITATIONS,
     CONTENT_TYPES,
     CSV,
@@ -22,11 +25,8 @@ from api.http.negotiation import (
     for_spreadsheets,
     wanted_type,
 )
-from api.http.pagination import Page
-from api.http.problems import Problem, Violation
-from api.http.representations import Representation, RepresentationCache
-from api.http.requests import StrictRequest
-from api.schema.table import csv_of, flat
+from api.web.representations import Representation, RepresentationCache
+from api.web.requests import StrictRequest
 
 Row = Mapping[str, Any]
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from api.http.measurements import Measurements
 from api.schema.samples import SampleError, SampleErrorsQuery
 from api.schema.table import columns_of
+from api.service.measurements import Measurements
 
 if TYPE_CHECKING:
     import pandas as pd

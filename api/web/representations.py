@@ -11,7 +11,7 @@ from functools import cached_property
 
 from fastapi import Request, Response
 
-from api.http.negotiation import accepts_gzip
+from api.web.negotiation import accepts_gzip
 from files.csv_writing import escape_formulas
 
 WORTH_COMPRESSING = 512  # bytes; below, the gzip frame eats what it saves

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from api.deposit import errors
 from api.deposit.deposit_tables import measured_tables
+from api.metadata import errors
 from benchmark.results.store import PUBLISHED
 from survey_data.descriptor import descriptor
 

@@ -6,9 +6,9 @@ from typing import Annotated
 
 from fastapi import Depends, Query, Request
 
-from api.http.knowledge import Knowledge
-from api.http.negotiation import JSON, media_type
 from api.schema.base import NoParameters, OnlyFormat
+from api.service.knowledge import Knowledge
+from api.web.negotiation import JSON, media_type
 
 
 async def knowledge(request: Request) -> Knowledge:

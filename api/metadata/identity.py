@@ -15,8 +15,8 @@ from functools import cache
 from importlib.metadata import Distribution, PackageNotFoundError, distribution
 from pathlib import Path
 
-from api.deposit.citation import Author
-from api.deposit.citation import authors as authors_of
+from api.metadata.citation import Author
+from api.metadata.citation import authors as authors_of
 
 DISTRIBUTION = "sun-sensor-atlas"
 ROOT = Path(__file__).resolve().parents[2]

@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from api.schema.comparison import FEWEST, MOST, SEPARATOR
 from benchmark.leaderboard.architectures import architectures as best_of_each
 from registry.measured_pipelines import PartialAnswer, finer_for
 from registry.taxonomy import InvalidValueError
 from survey_data.nearest import nearest_name
 
 if TYPE_CHECKING:
-    from api.http.knowledge import Knowledge
-
-FEWEST, MOST = 2, 4
-SEPARATOR = ":"
-"""Between extractor and model, and between detector and mask."""
+    from api.service.knowledge import Knowledge
 
 _SCORE = (
     *("dataset", "condition", "extractor", "model", "studies", "rms_deg", "bound_deg"),

@@ -9,7 +9,7 @@ from email.message import Message
 from fastapi import Request
 
 from api.calibrate.uploaded import LARGEST, Upload
-from api.http.problems import Problem, Violation
+from api.service.problems import Problem, Violation
 
 #: Bytes of a body: those of the files, a config, and what separates them.
 LARGEST_BODY = LARGEST + 100_000

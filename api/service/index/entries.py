@@ -8,12 +8,12 @@ from urllib.parse import quote
 
 import survey_data
 from api.glossary import glossary
-from api.search.index import Entry
+from api.service.index.index import Entry
 from registry.taxonomy import NO_IMPLEMENTATION_STATED
 from survey_data import labels
 
 if TYPE_CHECKING:
-    from api.http.measurements import Measurements
+    from api.service.measurements import Measurements
     from registry.catalogue import Catalogue
     from registry.studies import Facts
     from registry.taxonomy import Taxonomy
@@ -24,7 +24,7 @@ KINDS = ("study", "algorithm", "dataset", "claim", "attribute", "word")
 
 
 class EntrySources(Protocol):
-    """What entries are made from: `api.http.knowledge.Knowledge`, which imports this module."""
+    """What entries are made from: `api.service.knowledge.Knowledge`, which imports this module."""
 
     @property
     def facts(self) -> Facts:

@@ -56,7 +56,7 @@ def _sunatlas(arguments: list[str]) -> str:
 
 @cache
 def _service() -> Any:
-    from api.http.service import create_app  # noqa: PLC0415
+    from api.server.app import create_app  # noqa: PLC0415
 
     return create_app()
 

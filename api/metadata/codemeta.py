@@ -12,7 +12,7 @@ from typing import Any
 
 import yaml
 
-from api.deposit.citation import Author, authors, persistent
+from api.metadata.citation import Author, authors, persistent
 
 CONTEXT = "https://w3id.org/codemeta/3.0"
 NAME = "codemeta.json"

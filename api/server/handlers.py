@@ -10,16 +10,17 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.routing import APIRoute
 from starlette.exceptions import HTTPException
 
-from api.http.problems import Problem, Violation, respond
-from api.http.refusals import refusal
 from api.pages.serving import TWINS, refusal_page
+from api.service.problems import Problem, Violation
+from api.service.refusals import refusal
+from api.web.problem_responses import respond
 from survey_data.nearest import nearest_name
 
 
 def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
     """Make every refusal and failure of `app`, which serves `routes`, a problem document."""
 
-    async def refused(request: Request, error: HTTPException) -> Response:
+    async def refused(request: Request, error: HTTPException | Problem) -> Response:
         if not isinstance(error, Problem):
             error = _of_framework(error, request, routes)
             if _is_of_a_person(request):
@@ -34,6 +35,7 @@ def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
         return respond(request, Problem(500, "internal-server-error", detail))
 
     app.exception_handler(HTTPException)(refused)
+    app.exception_handler(Problem)(refused)
     app.exception_handler(RequestValidationError)(invalid)
     app.exception_handler(Exception)(failed)
 

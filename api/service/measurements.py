@@ -7,7 +7,7 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from api.deposit.identity import version
+from api.metadata.identity import version
 from api.schema.samples import SampleError
 from api.schema.table import columns_of
 from benchmark.datasets.pins import Pin

@@ -9,12 +9,12 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 import survey_data
-from api.http.measurements import Measurements
 from api.previews import Pictures
 from api.schema.advice import Advice
 from api.schema.table import columns_of
-from api.search.entries import entries
-from api.search.index import Index
+from api.service.index.entries import entries
+from api.service.index.index import Index
+from api.service.measurements import Measurements
 from files.manifest import manifest_digest
 from registry.catalogue import Catalogue, catalogue
 from registry.design_table import design_table

@@ -1,0 +1,1 @@
+"""What HTTP and pages share: requests read, answers written, in the media type asked for."""
