@@ -173,7 +173,8 @@ class RequirementsQuery(Requirements, TableQuestion):
     """Requirements in a query."""
 
     model_config = ConfigDict(
-        json_schema_extra={"examples": [{"detector": ["CMOS"], "max_error_deg": 0.01, "limit": 1}]}
+        defer_build=False,
+        json_schema_extra={"examples": [{"detector": ["CMOS"], "max_error_deg": 0.01, "limit": 1}]},
     )
 
 

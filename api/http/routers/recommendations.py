@@ -87,10 +87,7 @@ def recommended(asked: Requirements, known: Knowledge) -> Answer:
     document = service.document(answer, asked, shown.items, shown.next)
     table = columns_of(RecommendationRow)
     return Answer(
-        document.model_dump(),
-        table,
-        lambda: [r.model_dump() for r in service.rows(answer)],
-        shown.link,
+        document.model_dump(), table, lambda: [r.model_dump() for r in service.rows(answer)]
     )
 
 
