@@ -59,6 +59,15 @@ OFFENCES = {
         ("benchmark/simulator/masks/slits.py", "import benchmark.simulator.sensors.line_sensor",
          "benchmark.simulator.masks", "benchmark.simulator.sensors"),
     ],
+    "Inside the outward floor: schema < service < faces": [
+        ("api/schema/words.py", "import api.service.problems", "api.schema", "api.service"),
+        ("api/service/claims.py", "import api.web.requests", "api.service", "api.web"),
+        ("api/pages/claim.py", "import api.http.reference", "api.pages", "api.http"),
+        ("api/cli/commands/claims.py", "import api.pages.boards", "api.cli", "api.pages"),
+    ],
+    "Below the faces nothing knows HTTP": [
+        ("api/service/about.py", "import starlette", "api.service", "starlette"),
+    ],
     "Facts carry no scientific stack beyond pandas": [
         ("survey_data/tables.py", "import scipy.stats", "survey_data", "scipy"),
     ],
@@ -119,8 +128,8 @@ def test_every_contract_is_kept_here_and_fails_when_broken(broken: Path) -> None
     here, there = run(LINT, ROOT), run(LINT, broken)
     assert here.returncode == 0, here.stdout + here.stderr
     assert there.returncode == 1, there.stdout + there.stderr
-    assert set(re.findall(r"^(.+) KEPT$", here.stdout, re.MULTILINE)) == set(OFFENCES)
-    assert set(re.findall(r"^(.+) BROKEN$", there.stdout, re.MULTILINE)) == set(OFFENCES)
+    assert set(re.findall(r"^(.+) KEPT\b", here.stdout, re.MULTILINE)) == set(OFFENCES)
+    assert set(re.findall(r"^(.+) BROKEN\b", there.stdout, re.MULTILINE)) == set(OFFENCES)
     output = " ".join(there.stdout.split())
     for offences in OFFENCES.values():
         for name, statement, importer, imported in offences:

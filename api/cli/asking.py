@@ -1,28 +1,28 @@
-"""Asking in this process what the HTTP service answers, so that both always say the same."""
+"""Asking the service in this process, as HTTP does, so that both always say the same."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
 
 from api.cli.working import working_directory
 from api.cli.wrong_call import WrongCallError, unfit
-from api.http import asking
+from api.service import asking
+from api.service.documents import Document
 from api.service.knowledge import Knowledge
 from api.service.measurements import Measurements
 from api.service.problems import Problem, Violation
-from api.web.answers import Answer
 
 
 def ask(
-    endpoint: asking.PathFunction, query: Mapping[str, Any] | None = None, **parts: str
-) -> Answer:
-    """Return the service's answer.
+    function: Callable[..., Document], query: Mapping[str, Any] | None = None, **parts: str
+) -> Document:
+    """Return the service's document.
 
     Parameters
     ----------
-    endpoint : the path function that answers
+    function : of the service
     query : by parameter name; None and empty lists ask nothing
     parts : variable parts of the path
 
@@ -34,7 +34,7 @@ def ask(
     given = {name: value for name, value in (query or {}).items() if value not in (None, [], ())}
     arguments = parts if query is None else {**parts, "query": given}
     try:
-        return asking.ask(endpoint, knowledge(), **arguments)
+        return asking.ask(function, knowledge(), **arguments)
     except Problem as problem:
         raise WrongCallError("; ".join(_said(e, set(given)) for e in problem.errors)) from problem
 

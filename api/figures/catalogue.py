@@ -14,7 +14,7 @@ from api.figures.flow_figures import CHAINS, flow_figure
 from api.figures.matrix import matrix_figure
 from api.figures.publications import publications_figure
 from api.figures.sunburst import sunburst_figure
-from api.schema.figure_rows import COLUMNS, ROWS
+from api.schema.figures import COLUMNS, ROWS
 from api.schema.parameters import OneOf
 from registry.catalogue import catalogue
 from registry.evidence import Evidence

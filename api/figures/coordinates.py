@@ -10,7 +10,7 @@ from api.figures import wording
 from api.figures.addresses import Addresses
 from api.figures.coordinates_svg import Axis, Polyline, Tick, draw_coordinates
 from api.figures.figure import Entry, Figure
-from api.schema.figure_rows import SensorRow
+from api.schema.figures import SensorRow
 from api.schema.table import columns_of
 from registry.flows import LeftOut, Where, allowed_values, flows
 from registry.studies import Facts, Study

@@ -10,7 +10,7 @@ from api.figures import wording
 from api.figures.addresses import Addresses
 from api.figures.figure import Figure, in_words
 from api.figures.sankey_svg import Mark, SankeyMarks, draw_sankey
-from api.schema.figure_rows import FlowRow
+from api.schema.figures import FlowRow
 from api.schema.table import columns_of
 from registry.flows import Flows, Node, Where, flows
 from registry.studies import Facts

@@ -14,7 +14,7 @@ from api.figures import wording
 from api.figures.addresses import Addresses
 from api.figures.figure import Entry, Figure, in_words
 from api.figures.matrix_svg import Cell, Line, draw_matrix
-from api.schema.figure_rows import PairRow
+from api.schema.figures import PairRow
 from api.schema.table import columns_of
 from registry.evidence import Evidence, PairEvidence, PipelineRun, count
 from registry.flows import LeftOut, Node, Where, allowed_values, flows

@@ -14,7 +14,7 @@ from api.figures.figure import Entry, Figure
 from api.figures.legend import legend
 from api.figures.lettering import line_height
 from api.figures.svg import BODY, SMALL, Drawing
-from api.schema.figure_rows import PublicationRow
+from api.schema.figures import PublicationRow
 from api.schema.table import columns_of
 from registry.flows import Where, flows
 from registry.studies import Facts, Study

@@ -12,7 +12,7 @@ from api.figures import wording
 from api.figures.addresses import Addresses
 from api.figures.figure import Figure
 from api.figures.sunburst_svg import Sector, draw_sunburst
-from api.schema.figure_rows import ArcRow
+from api.schema.figures import ArcRow
 from api.schema.table import columns_of
 from registry.flows import Where, flows
 from registry.studies import Facts

@@ -9,7 +9,6 @@ from typing import Annotated, Any
 
 from fastapi import Path
 
-from api.http.routers import algorithms as service
 from api.metadata import schema_org
 from api.metadata.identity import identity
 from api.metadata.signposting import landing_of_algorithm
@@ -20,8 +19,9 @@ from api.pages.serving import PageRouter, View
 from api.pages.terms import term_name
 from api.schema.algorithms import Algorithm, AlgorithmsQuery
 from api.schema.parameters import OneOf
+from api.service import algorithms as service
+from api.service.documents import Document
 from api.service.knowledge import Knowledge
-from api.web.answers import Answer
 from api.web.dependencies import Known
 from registry.catalogue import Implementation, catalogue
 
@@ -42,7 +42,7 @@ Name = Annotated[str, OneOf(_names), Path()]
 @router.page("/algorithms")
 async def algorithms(known: Known) -> View:
     """Every implementation by role, family and value of the taxonomy, gaps included."""
-    answer = await service.algorithms(known, AlgorithmsQuery.model_validate({"limit": EVERY}))
+    answer = service.algorithms(known, AlgorithmsQuery.model_validate({"limit": EVERY}))
     every = known.catalogue.implementations(None)
     best = boards.best_of(known)
     groups = [
@@ -81,7 +81,7 @@ async def algorithm(known: Known, name: Name) -> View:
     landing = landing_of_algorithm(name, identity())
     return View(
         "algorithm.html",
-        Answer(document, columns, lambda: [{**about.to_dict(), **place} for place in places]),
+        Document(document, columns, lambda: [{**about.to_dict(), **place} for place in places]),
         landing=landing,
         entity=schema_org.algorithm(about, identity(), landing),
         about=about,

@@ -5,11 +5,11 @@ from __future__ import annotations
 from fastapi import APIRouter, Request, Response
 
 from api.calibrate.uploaded import LARGEST, LONGEST_S, MOST_ROWS
-from api.http.routers.calibrations import HTML, calibrated
 from api.pages.rendering import render
 from api.pages.serving import page_bytes, refusal_page
 from api.service.problems import Problem
 from api.web.answers import StrictRoute
+from api.web.calibrations import HTML, calibrated
 
 router = APIRouter(route_class=StrictRoute, include_in_schema=False)
 

@@ -7,11 +7,11 @@ from typing import Annotated, Any
 
 from fastapi import Path, Query
 
-from api.http.routers import claims as service
 from api.pages.plots.line_chart import Line, LineChart
 from api.pages.serving import PageRouter, View
 from api.schema.claims import ClaimsQuery
 from api.schema.words import ClaimId
+from api.service import claims as service
 from api.web.dependencies import Known
 from benchmark.claims.ledger import tally
 
@@ -35,7 +35,7 @@ RESULTS = {
 @router.page("/claims")
 async def claims(known: Known, query: Annotated[ClaimsQuery, Query()]) -> View:
     """List the claims with their verdicts and the number of each verdict."""
-    answer = await service.claims(known, query.model_copy(update={"limit": EVERY}))
+    answer = service.claims(known, query.model_copy(update={"limit": EVERY}))
     every = tally(known.measurements.claims.values())
     return View("claims.html", answer, asked=query, verdicts=VERDICTS, every=every)
 
@@ -43,7 +43,7 @@ async def claims(known: Known, query: Annotated[ClaimsQuery, Query()]) -> View:
 @router.page("/claims/{id}")
 async def claim(known: Known, id: Annotated[ClaimId, Path()]) -> View:  # noqa: A002 - as the service
     """Show a claim: statement, criteria, results and plot."""
-    answer = await service.claim(known, id)
+    answer = service.claim(known, id)
     entries = known.measurements.claims
     ids = list(entries)
     at = ids.index(id)

@@ -17,9 +17,9 @@ from api.schema.base import OfEdition
 from api.schema.comparison import MOST, SEPARATOR
 from api.schema.parameters import GIVEN, Several, several
 from api.service.comparing import compare_architectures, compare_pipelines
+from api.service.documents import Document
 from api.service.knowledge import Knowledge
 from api.service.problems import Problem, Violation
-from api.web.answers import Answer
 from api.web.dependencies import Known
 from benchmark.metrics.score import AVAILABLE
 from registry.taxonomy import InvalidValueError
@@ -58,7 +58,7 @@ async def compare(known: Known, query: Annotated[CompareQuery, Query()], request
     built = [f"{row['detector']}{SEPARATOR}{row['mask']}" for row in best_built(known)]
     return View(
         "compare.html",
-        Answer(document, COLUMNS, lambda: [{c: i.get(c) for c in COLUMNS} for i in items]),
+        Document(document, COLUMNS, lambda: [{c: i.get(c) for c in COLUMNS} for i in items]),
         asked=query,
         editions=edition_shown(known, query.edition, request),
         names=names,

@@ -8,8 +8,6 @@ from typing import Annotated, Any, Literal
 from fastapi import Path, Query
 from pydantic import Field
 
-from api.http.routers import datasets as service
-from api.http.routers.metadata import landing_of_dataset
 from api.metadata import schema_org
 from api.metadata.identity import identity
 from api.metadata.served import MEASURED
@@ -23,9 +21,11 @@ from api.schema import words
 from api.schema.base import Question
 from api.schema.datasets import DatasetsQuery
 from api.schema.parameters import GIVEN
+from api.service import datasets as service
+from api.service.documents import Document
 from api.service.knowledge import Knowledge
+from api.service.metadata import landing_of_dataset
 from api.service.problems import Problem, Violation
-from api.web.answers import Answer
 from api.web.dependencies import Known
 from benchmark.error_budget import sentences
 from benchmark.error_budget.record import RECORD as ERROR_BUDGET
@@ -60,7 +60,7 @@ class BoardQuery(Question):
 @router.page("/datasets")
 async def datasets(known: Known) -> View:
     """Every standard data set with its leader."""
-    answer = await service.datasets(known, DatasetsQuery.model_validate({"limit": EVERY}))
+    answer = service.datasets(known, DatasetsQuery.model_validate({"limit": EVERY}))
     leaders: dict[str, Mapping[str, Any]] = {}
     for row in boards.first_rows(known):
         if row["rank"] == 1:
@@ -101,7 +101,7 @@ async def dataset(
     landing = landing_of_dataset(known, name)
     return View(
         "dataset.html",
-        Answer(document, BOARD_COLUMNS, lambda: board),
+        Document(document, BOARD_COLUMNS, lambda: board),
         landing=landing,
         entity=schema_org.dataset(card, identity(), landing, MEASURED),
         condition=condition,

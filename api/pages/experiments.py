@@ -11,9 +11,10 @@ from fastapi import APIRouter, Path, Response
 
 from api.pages.serving import PageRouter, View
 from api.schema.parameters import OneOf
+from api.service.documents import Document
 from api.service.knowledge import Knowledge
 from api.service.problems import Problem
-from api.web.answers import Answer, AnswerRoute
+from api.web.answers import AnswerRoute
 from api.web.dependencies import NO_PARAMETERS, Known
 from api.web.representations import Representation
 from benchmark.running.experiment import RecordedExperiment, recorded_experiments
@@ -45,7 +46,7 @@ async def experiments(known: Known) -> View:
     """List the experiments with the number of their rows."""
     every = [_about(_experiment(name, known)) for name in recorded_experiments()]
     columns = ("name", "title", "description", "rows")
-    return View("experiments/list.html", Answer({"items": every}, columns, lambda: every))
+    return View("experiments/list.html", Document({"items": every}, columns, lambda: every))
 
 
 @router.page("/experiments/{name}")
@@ -56,7 +57,10 @@ async def experiment(known: Known, name: Name) -> View:
     columns = tuple(dict.fromkeys(column for row in rows for column in row))
     document = {**_about(found), "pictures": list(_drawn(found)), "items": rows}
     return View(
-        "experiments/one.html", Answer(document, columns, lambda: rows), columns=columns, most=SHOWN
+        "experiments/one.html",
+        Document(document, columns, lambda: rows),
+        columns=columns,
+        most=SHOWN,
     )
 
 

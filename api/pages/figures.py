@@ -14,12 +14,12 @@ from api.figures.catalogue import figure as drawn
 from api.figures.figure import Figure, Row
 from api.figures.interactive import specification
 from api.figures.statements import number_of_studies, statements
-from api.http.routers import figures as service
 from api.pages.editions import edition_shown
 from api.pages.numbers import degrees, kind_said, wide
 from api.pages.serving import PageRouter, View
 from api.schema.figures import FigureQuery, MatrixQuery
 from api.schema.studies import StudyFilters
+from api.service import figures as service
 from api.service.knowledge import Knowledge
 from api.web.answers import Handler, StrictRoute
 from api.web.dependencies import NO_PARAMETERS, Known
@@ -75,7 +75,7 @@ specifications = APIRouter(route_class=SpecificationRoute, include_in_schema=Fal
 @router.page("/figures")
 async def figures(known: Known, _asked: Annotated[None, NO_PARAMETERS] = None) -> View:
     """List the figures."""
-    answer = await service.figures(known)
+    answer = service.figures(known)
     return View(
         "figures.html",
         answer,
@@ -180,7 +180,7 @@ def _view(
     whole = not query.by_attribute() and query.edition == "survey"
     return View(
         "figure.html",
-        service.answer_of(found),
+        service.document_of(found),
         figure=found,
         abbreviations=_abbreviations(known, found),
         rows=rows,

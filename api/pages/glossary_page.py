@@ -7,7 +7,7 @@ from dataclasses import asdict
 from api.pages.serving import PageRouter, View
 from api.pages.study import NAMES
 from api.pages.terms import glossary
-from api.web.answers import Answer
+from api.service.documents import Document
 from api.web.dependencies import Known
 
 router = PageRouter()
@@ -23,7 +23,7 @@ async def words(known: Known) -> View:
     document = {"terms": terms, "taxonomy": taxonomy}
     return View(
         "glossary.html",
-        Answer(document, COLUMNS, lambda: terms),
+        Document(document, COLUMNS, lambda: terms),
         terms=glossary().values(),
         taxonomy=taxonomy,
         names=NAMES,

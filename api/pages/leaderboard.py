@@ -17,7 +17,7 @@ from api.schema.base import Question
 from api.schema.boards import BestOfArchitecture
 from api.schema.parameters import GIVEN
 from api.schema.table import columns_of
-from api.web.answers import Answer
+from api.service.documents import Document
 from api.web.dependencies import Known
 from benchmark.leaderboard.overview import ROLES, overview
 from benchmark.leaderboard.summaries import tally
@@ -50,7 +50,7 @@ async def leaderboard(known: Known, query: Annotated[LeaderboardQuery, Query()])
     landing = landing_of_record(identity())
     return View(
         "leaderboard.html",
-        Answer(document, columns_of(BestOfArchitecture), lambda: rows),
+        Document(document, columns_of(BestOfArchitecture), lambda: rows),
         landing=landing,
         entity=schema_org.record(identity(), landing, known.measurements.digest),
         order=order,

@@ -12,9 +12,9 @@ from api.pages.serving import PageRouter, View
 from api.pages.terms import glossary
 from api.schema.base import Question
 from api.schema.parameters import GIVEN, Several, several
+from api.service.documents import Document
 from api.service.index.entries import KINDS
 from api.service.index.index import Entry
-from api.web.answers import Answer
 from api.web.dependencies import Known
 from registry.taxonomy import ATTRIBUTES
 
@@ -66,7 +66,7 @@ async def search(known: Known, query: Annotated[SearchQuery, Query()]) -> View:
     document = {"q": query.q, "items": items, "total": len(hits)}
     return View(
         "search.html",
-        Answer(document, COLUMNS, lambda: items),
+        Document(document, COLUMNS, lambda: items),
         asked=query,
         kinds=KIND_NAMES,
     )

@@ -15,8 +15,8 @@ from api.pages.serving import PageRouter, View
 from api.schema import words
 from api.schema.base import OfEdition
 from api.schema.requirements import RequirementsQuery
+from api.service.documents import Document
 from api.service.knowledge import Knowledge
-from api.web.answers import Answer
 from api.web.dependencies import Known
 from benchmark.leaderboard.architectures import architectures
 from registry.studies import Study
@@ -78,7 +78,7 @@ def _every(known: Knowledge, query: OfEdition, request: Request, attribute: str)
     shown, known = edition_shown(known, query.edition, request), known.of(query.edition)
     values = known.taxonomy.values(attribute)
     items = [_document(known, attribute, value) for value in values]
-    answer = Answer(
+    answer = Document(
         {"attribute": attribute, "items": items},
         COLUMNS,
         lambda: [{name: row[name] for name in COLUMNS} for row in items],
@@ -101,7 +101,7 @@ def _one(
     hardware = [h for h in _hardware().values() if getattr(h, attribute) == value]
     return View(
         "value.html",
-        Answer(document, ARCHITECTURE_COLUMNS, lambda: rows),
+        Document(document, ARCHITECTURE_COLUMNS, lambda: rows),
         hardware=hardware,
         editions=shown,
     )

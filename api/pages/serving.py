@@ -11,6 +11,7 @@ from fastapi.exceptions import RequestValidationError
 
 from api.metadata.signposting import LandingPage, headers
 from api.pages.rendering import render
+from api.service.documents import Document
 from api.service.problems import Problem
 from api.service.refusals import refusal
 from api.web.answers import Answer, Handler, StrictRoute, as_asked
@@ -32,7 +33,7 @@ class View(Response):
     Parameters
     ----------
     template : file name in `templates/`
-    answer : the document, `document` in the template; JSON and CSV are made of it
+    found : the document, `document` in the template; JSON and CSV are made of it
     landing : links for machines; None for a page without metadata of its own
     entity : description of the page's subject in schema.org's terms, with `landing`
     context : further variables of the template
@@ -44,7 +45,7 @@ class View(Response):
     def __init__(
         self,
         template: str,
-        answer: Answer,
+        found: Document | Answer,
         /,
         *,
         landing: LandingPage | None = None,
@@ -53,7 +54,7 @@ class View(Response):
     ) -> None:
         super().__init__()
         self.template = template
-        self.answer = answer
+        self.found = found
         self.landing = landing
         self.context = {"entity": entity, **context}
 
@@ -61,8 +62,9 @@ class View(Response):
         """Return the page in a media type; `path` and `query` are what was asked for."""
         if wanted != HTML:
             links = self.landing.links_of_metadata() if self.landing else ()
-            return self.answer.representation(wanted).link(*headers(links))
-        context = {"document": self.answer.document, "path": path, "query": query, **self.context}
+            answer = Answer.of(self.found) if isinstance(self.found, Document) else self.found
+            return answer.representation(wanted).link(*headers(links))
+        context = {"document": self.found.document, "path": path, "query": query, **self.context}
         links = self.landing.links() if self.landing else ()
         return page_bytes(render(self.template, context)).link(*headers(links))
 

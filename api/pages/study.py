@@ -7,7 +7,6 @@ from typing import Annotated, Literal
 from fastapi import Path, Query, Request
 from pydantic import Field
 
-from api.http.routers import studies as service
 from api.metadata import schema_org
 from api.metadata.signposting import landing_of_study
 from api.pages.editions import edition_shown
@@ -15,6 +14,7 @@ from api.pages.serving import PageRouter, View
 from api.schema.parameters import GIVEN
 from api.schema.studies import StudiesQuery
 from api.schema.words import StudyKey
+from api.service import studies as service
 from api.web.dependencies import Known
 from registry.fidelity.grading import GRADES as IN_WORDS
 from registry.fidelity.grading import TALLIED, tally_text
@@ -76,7 +76,7 @@ async def studies(known: Known, query: Annotated[StudiesPage, Query()], request:
     every = StudiesQuery.model_validate(
         {**query.model_dump(exclude={"rows"}, exclude_defaults=True), "limit": EVERY}
     )
-    answer = await service.studies(known, every)
+    answer = service.studies(known, every)
     return View(
         "studies.html",
         answer,
@@ -96,7 +96,7 @@ async def studies(known: Known, query: Annotated[StudiesPage, Query()], request:
 @router.page("/studies/{key}")
 async def study(known: Known, key: Annotated[StudyKey, Path()]) -> View:
     """Show a study: attributes with basis, implementation, reported and measured accuracy."""
-    answer = await service.study(known, key)
+    answer = service.study(known, key)
     claims = [e.claim for e in known.measurements.claims.values() if key in e.claim.study]
     landing = landing_of_study(key, answer.document["doi"])
     return View(

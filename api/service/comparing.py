@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from api.schema.comparison import FEWEST, MOST, SEPARATOR
+from api.schema.comparison import FEWEST, MOST, SEPARATOR, ComparedRow, CompareQuery
+from api.schema.table import columns_of
+from api.service.documents import Document
+from api.service.knowledge import Knowledge
+from api.service.problems import Problem, Violation
 from benchmark.leaderboard.architectures import architectures as best_of_each
 from registry.measured_pipelines import PartialAnswer, finer_for
 from registry.taxonomy import InvalidValueError
 from survey_data.nearest import nearest_name
-
-if TYPE_CHECKING:
-    from api.service.knowledge import Knowledge
 
 _SCORE = (
     *("dataset", "condition", "extractor", "model", "studies", "rms_deg", "bound_deg"),
@@ -31,6 +32,35 @@ _SCORE = (
 _CURVE = ("needed_poses", "needed_low", "needed_high", "poses", "floor_error_deg")
 _FINER = ("dataset", "extractor", "model", "rms_deg", "availability")
 _RING = ("inner_deg", "outer_deg", "rms_deg")
+
+
+def compare(known: Knowledge, query: CompareQuery) -> Document:
+    """Compare two to four pipelines of a data set, or two to four architectures.
+
+    Raises
+    ------
+    Problem
+        400 for what cannot be compared.
+    """
+    try:
+        document = _compare(known.of(query.edition), query)
+    except InvalidValueError as error:
+        came = None if error.value is None else str(error.value)
+        violation = Violation(error.parameter, came, error.expected, error.nearest)
+        raise Problem(400, "not-comparable", errors=[violation]) from error
+    return Document(document, columns_of(ComparedRow), lambda: document["items"])
+
+
+def _compare(known: Knowledge, query: CompareQuery) -> dict[str, Any]:
+    if query.architecture:
+        for other in ("dataset", "pipeline", "condition"):
+            if given := getattr(query, other):
+                expected = "nothing beside `architecture`, which has data sets of its own"
+                raise InvalidValueError(other, str(given), expected)
+        return compare_architectures(known, query.architecture)
+    if query.dataset is None:
+        raise InvalidValueError("dataset", None, "a data set with its pipelines, or architectures")
+    return compare_pipelines(known, query.dataset, query.pipeline, query.condition)
 
 
 def compare_pipelines(

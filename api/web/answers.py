@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Coroutine, Mapping, Sequence
-from typing import Any, ClassVar, Protocol, cast
+from collections.abc import Callable, Coroutine, Mapping, Sequence
+from typing import Any, ClassVar, Protocol, Self, cast
 from urllib.parse import quote
 
 from fastapi import Request, Response
@@ -12,8 +12,8 @@ from fastapi.routing import APIRoute
 from pydantic_core import to_json
 
 from api import citations
-from api.schema.table import csv_of, flat
-from api.service.pagination import Page
+from api.schema.table import csv_of
+from api.service.documents import Document, Row
 from api.service.problems import Problem, Violation
 from api.web.negotiation import (
     CITATIONS,
@@ -27,8 +27,6 @@ from api.web.negotiation import (
 )
 from api.web.representations import Representation, RepresentationCache
 from api.web.requests import StrictRequest
-
-Row = Mapping[str, Any]
 
 
 class Answer(JSONResponse):
@@ -61,6 +59,12 @@ class Answer(JSONResponse):
         self.links = {} if link is None else {"Link": link}
         super().__init__(document, status_code, self.links)
 
+    @classmethod
+    def of(cls, found: Document) -> Self:
+        """Return a document of the service as an answer."""
+        link = ", ".join(found.links) or None
+        return cls(found.document, found.columns, found.rows, link)
+
     def render(self, content: Any) -> bytes:
         """Return the JSON."""
         return to_json(content, inf_nan_mode="null")
@@ -76,41 +80,12 @@ class Answer(JSONResponse):
         return Representation(bytes(self.body), CONTENT_TYPES[JSON], self.links, digest=self.digest)
 
 
-def list_answer(
-    shown: Page[Any],
-    items: Sequence[Row],
-    columns: Sequence[str],
-    rows: Callable[[], Sequence[Row]] | None = None,
-    *,
-    fields: Collection[str] = (),
-    **more: Any,
-) -> Answer:
-    """Return a page of a list as an answer.
-
-    Parameters
-    ----------
-    shown : the page
-    items : of the JSON
-    columns : of the table
-    rows : gives the rows of the CSV; the items where left out
-    fields : columns to which rows and items are narrowed; none of them where empty
-    more : members of the document beside the items
-    """
-    table = rows or (lambda: items)
-    if fields:
-        columns = tuple(name for name in columns if name in fields)
-        items = [flat(row, columns) for row in table()]
-        table = lambda: items  # noqa: E731
-    document = {"items": items, "total": shown.total, "next": shown.next, **more}
-    return Answer(document, columns, table, shown.link)
-
-
 class CitedAnswer(Answer):
     """An answer whose studies can be had as references, too.
 
     Parameters
     ----------
-    answer : the document and the table
+    found : the document and the table
     studies : that are cited
     name : file name without suffix that a client saves references under
     status_code : which FastAPI documents by its default
@@ -121,15 +96,15 @@ class CitedAnswer(Answer):
 
     def __init__(
         self,
-        answer: Answer,
+        found: Document,
         studies: Sequence[Row],
         name: str = "studies",
         status_code: int = 200,
         *,
         narrowed: bool = False,
     ) -> None:
-        link = answer.links.get("Link")
-        super().__init__(answer.document, answer.columns, answer.rows, link, status_code)
+        link = ", ".join(found.links) or None
+        super().__init__(found.document, found.columns, found.rows, link, status_code)
         self.studies = studies
         self.name = name
         self.narrowed = narrowed

@@ -10,9 +10,9 @@ import typer
 from api.cli.asking import ask
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, say
-from api.http.routers.assessment import assessment
 from api.schema.assessment import AssessmentQuery, VerdictRow
 from api.schema.table import columns_of
+from api.service.assessment import assessment
 from benchmark.assessment.definitions import DEFINITIONS
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)

@@ -11,10 +11,10 @@ from api.cli.asking import ask
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, say
 from api.cli.wrong_call import WrongCallError
-from api.http.routers import claims as endpoints
 from api.schema.claims import CheckedRule, ClaimRow, ClaimsQuery
 from api.schema.table import columns_of
-from api.web.answers import Answer
+from api.service import claims as service
+from api.service.documents import Document
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -47,11 +47,11 @@ def claims(
     if claim is not None:
         if asked:
             raise WrongCallError("an ID stands alone; leave out --verdict and --search")
-        _one(ask(endpoints.claim, id=claim.upper()), form)
+        _one(ask(service.claim, id=claim.upper()), form)
         return
     if not asked.get("q", "any").strip():
         raise WrongCallError("--search: got nothing; expected a word or several")
-    answer = ask(endpoints.claims, asked)
+    answer = ask(service.claims, asked)
     document = answer.document
     if form is Format.CSV:
         emit(answer.rows(), columns_of(ClaimRow), form)
@@ -66,7 +66,7 @@ def claims(
     )
 
 
-def _one(answer: Answer, form: Format) -> None:
+def _one(answer: Document, form: Format) -> None:
     document = answer.document
     if form is not Format.TABLE:
         emit(answer.rows(), columns_of(CheckedRule), form, document=document)

@@ -7,10 +7,10 @@ import typer
 from api.cli.asking import ask
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit
-from api.http.routers.curves import curves as endpoint
 from api.schema.curves import CurveRow, CurvesQuery
 from api.schema.parameters import LARGEST_PAGE
 from api.schema.table import columns_of
+from api.service.scores import curves as learning_curves
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -35,7 +35,7 @@ def curves(
     alone; of: poses in the data set. A dash means more poses than the data set has. Values are from
     the published results (docs/learning-curves.md).
     """
-    answer = ask(endpoint, {**asked, "limit": LARGEST_PAGE})
+    answer = ask(learning_curves, {**asked, "limit": LARGEST_PAGE})
     rows = answer.document["items"]
     if form is not Format.TABLE:
         emit(rows, columns_of(CurveRow), form, document=answer.document)

@@ -14,13 +14,13 @@ from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, say
 from api.cli.wrong_call import WrongCallError
-from api.http.routers.datasets import errors as dataset_errors
-from api.http.routers.realism import realism as besides_built
 from api.schema.datasets import BuiltSensorRow, Data, Dataset, RealismQuery
 from api.schema.samples import SampleError, SampleErrorsQuery
 from api.schema.scores import ScoresQuery
 from api.schema.table import columns_of, csv_of
-from api.service.sample_errors import choose, rows_of
+from api.service.datasets import choose, rows_of
+from api.service.datasets import errors as dataset_errors
+from api.service.datasets import realism as besides_built
 from benchmark import datasets
 from benchmark.contract import UnknownNameError
 from benchmark.datasets import coverage as covered

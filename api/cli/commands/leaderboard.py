@@ -267,8 +267,8 @@ def _architectures(query: Asked, form: Format) -> None:
         _tell(*known)
         return
     from api.cli.asking import ask, knowledge  # noqa: PLC0415 - slow; measuring does without it
-    from api.http.routers.leaderboard import architectures  # noqa: PLC0415
     from api.schema.parameters import LARGEST_PAGE  # noqa: PLC0415
+    from api.service.leaderboard import architectures  # noqa: PLC0415
 
     answer = ask(architectures, {**query, "limit": LARGEST_PAGE})
     rows = answer.rows()
@@ -291,7 +291,7 @@ def _tell(rows: Sequence[Row], record: str) -> None:
 def _overview(query: Asked, form: Format) -> None:
     """Print how near the bound each part comes, as the service answers it."""
     from api.cli.asking import ask  # noqa: PLC0415 - as above
-    from api.http.routers.leaderboard import overview  # noqa: PLC0415
+    from api.service.leaderboard import overview  # noqa: PLC0415
 
     answer = ask(overview, query)
     rows = answer.rows()

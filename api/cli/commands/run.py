@@ -24,9 +24,9 @@ from api.cli.measuring import (
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit
 from api.cli.wrong_call import WrongCallError
-from api.http.routers import studies
 from api.schema.scores import Score, ScoresQuery
 from api.schema.table import columns_of
+from api.service import studies
 from benchmark.contract import Cell, UnknownNameError
 from benchmark.plan.combinations import cells
 from benchmark.suites.planning import cells_of

@@ -14,10 +14,10 @@ from api.cli.asking import ask
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, emit, emit_json, say, write
 from api.cli.wrong_call import WrongCallError
-from api.http.routers import studies as answers
 from api.schema.parameters import LARGEST_PAGE
 from api.schema.studies import AttributeValue, StudiesQuery, StudyRow
 from api.schema.table import columns_of
+from api.service import studies as service
 from registry.fidelity.grading import tally_text
 from registry.taxonomy import ATTRIBUTES
 from survey_data import labels
@@ -80,7 +80,7 @@ def studies(
 
 
 def _list(filters: Mapping[str, Any], asked: StudyFormat) -> None:
-    found = ask(answers.studies, {**filters, "limit": LARGEST_PAGE}).document["items"]
+    found = ask(service.studies, {**filters, "limit": LARGEST_PAGE}).document["items"]
     if asked in FORMS:
         _cite(found, asked)
         return
@@ -100,7 +100,7 @@ def _cite(found: Sequence[Mapping[str, Any]], asked: StudyFormat) -> None:
 
 
 def _show(key: str, asked: StudyFormat) -> None:
-    study = ask(answers.study, key=key).document
+    study = ask(service.study, key=key).document
     if asked in FORMS:
         _cite([study], asked)
         return

@@ -9,6 +9,7 @@ from pydantic_core import to_json
 
 from api.http.reference import reference
 from api.schema.service import Health
+from api.service import about as service
 from api.web.answers import StrictRoute
 from api.web.dependencies import JSON_ONLY, NO_PARAMETERS, Known
 from api.web.negotiation import JSON
@@ -29,15 +30,7 @@ async def health(request: Request, response: Response, known: Known) -> dict[str
     Never cached.
     """
     response.headers["Cache-Control"] = "no-store"
-    return {
-        "status": "ok",
-        "version": request.app.version,
-        "studies": len(known.facts.studies),
-        "datasets": len(known.measurements.presets),
-        "scores": len(known.measurements.scores),
-        "facts_sha256": known.facts_digest,
-        "record_sha256": known.measurements.digest,
-    }
+    return service.health(known, request.app.version)
 
 
 @router.get("/openapi.json", include_in_schema=False)

@@ -6,12 +6,10 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from api.schema.advice import Advice, AdviceQuery, Advices, Protocol, Statement
+from api.schema.advice import AdviceQuery, Advices, Protocol
 from api.schema.base import Selected
-from api.schema.table import columns_of
-from api.service.pagination import narrow, order, page
-from api.service.protocol import protocol as protocol_document
-from api.web.answers import Answer, AnswerRoute, list_answer
+from api.service import advice as service
+from api.web.answers import Answer, AnswerRoute
 from api.web.dependencies import AS_ACCEPTED, Known, TableOnly
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
@@ -23,9 +21,7 @@ async def advice(known: Known, query: Annotated[AdviceQuery, Query()]) -> Answer
 
     Rows of errors name errors that occur, which is no recommendation.
     """
-    found = narrow(known.advice, query, ("requirement", "detector", "mask"))
-    shown = page(order(found, query.sort), "/v1/advice", query)
-    return list_answer(shown, shown.items, columns_of(Advice), fields=query.fields)
+    return Answer.of(service.advice(known, query))
 
 
 @router.get("/protocol", summary="Rules for studies and scores", response_model=Protocol)
@@ -37,7 +33,4 @@ async def protocol(
 
     CSV: a row per sentence.
     """
-    document = protocol_document()
-    return Answer(
-        document, columns_of(Statement), lambda: [*document["survey"], *document["scores"]]
-    )
+    return Answer.of(service.protocol())

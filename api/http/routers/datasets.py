@@ -6,19 +6,13 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
 
-from api.metadata.identity import identity
-from api.metadata.signposting import headers, landing_of_dataset
 from api.schema.base import Selected
-from api.schema.datasets import Data, Dataset, DatasetDetail, Datasets, DatasetsQuery
-from api.schema.samples import SampleError, SampleErrors, SampleErrorsQuery
-from api.schema.table import columns_of
+from api.schema.datasets import DatasetDetail, Datasets, DatasetsQuery
+from api.schema.samples import SampleErrors, SampleErrorsQuery
 from api.schema.words import DatasetName
-from api.service.pagination import order, page
-from api.service.problems import Problem
-from api.service.sample_errors import choose, rows_of
-from api.web.answers import Answer, AnswerRoute, Columns, Picture, list_answer
+from api.service import datasets as service
+from api.web.answers import Answer, AnswerRoute, Columns, Picture
 from api.web.dependencies import AS_ACCEPTED, NO_PARAMETERS, Known, TableOnly
-from benchmark.results import samples
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -30,9 +24,7 @@ Name = Annotated[
 @router.get("/datasets", summary="Data sets", response_model=Datasets | Selected)
 async def datasets(known: Known, query: Annotated[DatasetsQuery, Query()]) -> Answer:
     """List the simulated data sets."""
-    cards = order(known.measurements.cards, query.sort)
-    shown = page(cards, "/v1/datasets", query)
-    return list_answer(shown, shown.items, columns_of(Dataset), fields=query.fields)
+    return Answer.of(service.datasets(known, query))
 
 
 @router.get(
@@ -50,9 +42,7 @@ async def dataset(
     Geometry, conditions with all parameters, seeds, bounds, hashes, address of the picture. CSV:
     hashes and bounds.
     """
-    card = known.measurements.card(name)
-    link = ", ".join(_links(known, name))
-    return Answer(card, columns_of(Data), lambda: card["data"], link)
+    return Answer.of(service.dataset(known, name))
 
 
 @router.get(
@@ -80,10 +70,7 @@ async def errors(known: Known, name: Name, query: Annotated[SampleErrorsQuery, Q
     By extractor, model, unit and sample, with direction and bound. The whole table is
     /v1/datasets/{name}/errors.parquet.
     """
-    found = choose(known.measurements, name, query)
-    shown = page(range(len(found)), f"/v1/datasets/{name}/errors", query)
-    items = rows_of(found.iloc[list(shown.items)])
-    return list_answer(shown, items, columns_of(SampleError), fields=query.fields)
+    return Answer.of(service.errors(known, name, query))
 
 
 @router.get(
@@ -97,7 +84,7 @@ def errors_file(known: Known, name: Name) -> Columns:
 
     Columns: extractor, model, unit, sample, error_deg (NaN: no answer) and outcome.
     """
-    return _file(known, samples.path_of(name), f"{name}.errors.parquet")
+    return _file(known, name, "errors")
 
 
 @router.get(
@@ -111,19 +98,9 @@ def directions_file(known: Known, name: Name) -> Columns:
 
     Columns: sample, sun_x, sun_y, sun_z, observable and bound_deg (NaN: none).
     """
-    path = samples.path_of(name, directions=True)
-    return _file(known, path, f"{name}.directions.parquet")
+    return _file(known, name, "directions")
 
 
-def _file(known: Known, path: str, name: str) -> Columns:
-    try:
-        return Columns(known.measurements.file(path), name, _links(known, name.partition(".")[0]))
-    except FileNotFoundError:
-        raise Problem(404, "not-published", f"no {name} is published") from None
-
-
-def _links(known: Known, name: str) -> tuple[str, ...]:
-    """Return the links of a data set's content (Signposting)."""
-    sampled = samples.has_samples(name, known.measurements.directory)
-    landing = landing_of_dataset(name, identity(), sampled=sampled)
-    return headers(landing.links_of_content())
+def _file(known: Known, name: str, kind: str) -> Columns:
+    content = service.file(known, name, kind)
+    return Columns(content, f"{name}.{kind}.parquet", service.links_of(known, name))

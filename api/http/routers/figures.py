@@ -6,11 +6,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
 
-from api.figures.catalogue import LEVELS, TITLES, FigureName, evidence_map
-from api.figures.catalogue import figure as drawn
-from api.figures.figure import Figure as Drawn
-from api.schema.figures import Figure, FigureQuery, Figures, ListedFigure, MatrixQuery
-from api.schema.table import columns_of
+from api.figures.catalogue import FigureName
+from api.schema.figures import Figure, FigureQuery, Figures, MatrixQuery
+from api.service import figures as service
 from api.web.answers import Answer, AnswerRoute
 from api.web.dependencies import AS_ACCEPTED, Known, TableOnly
 
@@ -23,12 +21,7 @@ async def figures(
     query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
 ) -> Answer:
     """List the figures and the attributes they show. The evidence map is `matrix`."""
-    items = [
-        {"figure": name, "title": title, "caption": caption, "levels": list(LEVELS[name])}
-        for name, (title, caption) in TITLES.items()
-    ]
-    document = {"items": items, "studies": len(known.facts.studies)}
-    return Answer(document, columns_of(ListedFigure), lambda: items)
+    return Answer.of(service.figures(known))
 
 
 @router.get(
@@ -41,9 +34,7 @@ async def matrix(known: Known, query: Annotated[MatrixQuery, Query()]) -> Answer
     `reason`), `unknown` (a study has one value, the other is unknown) or `unstudied`. `command` and
     `leads_to` show how to measure the pair.
     """
-    studies = known.of(query.edition).facts
-    asked = (query.by_attribute(), query.rows, query.columns)
-    return answer_of(evidence_map(studies, *asked, evidence=known.evidence))
+    return Answer.of(service.matrix(known, query))
 
 
 @router.get("/figures/{figure}", summary="A figure of the survey", response_model=Figure)
@@ -58,9 +49,4 @@ async def figure(
     Publications: a row per year or venue and part of its bar. Parallel coordinates: a row per
     sensor.
     """
-    return answer_of(drawn(figure, known.of(query.edition).facts, query.by_attribute()))
-
-
-def answer_of(found: Drawn) -> Answer:
-    """Return a figure as an answer."""
-    return Answer(found.to_dict(), found.columns, lambda: found.rows)
+    return Answer.of(service.figure(known, figure, query))

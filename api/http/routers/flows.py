@@ -6,12 +6,11 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
 
-from api.schema.flows import Flows, FlowsQuery, Link
-from api.schema.table import columns_of
+from api.schema.flows import Flows, FlowsQuery
 from api.schema.words import Chart
+from api.service import taxonomy as service
 from api.web.answers import Answer, AnswerRoute
 from api.web.dependencies import Known
-from registry.flows import chart as flows_of
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -26,10 +25,4 @@ async def flows(
 
     Filters keep the studies with one of the values. CSV: the links.
     """
-    studies = known.of(query.edition).facts
-    found = flows_of(
-        chart, query.by_attribute(), query.counting, grouped=query.grouped, facts=studies
-    )
-    return Answer(
-        found.to_dict(), columns_of(Link), lambda: [link.to_dict() for link in found.links]
-    )
+    return Answer.of(service.flows(known, chart, query))

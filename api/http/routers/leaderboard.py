@@ -2,37 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
 
-from api.metadata.identity import identity
-from api.metadata.signposting import headers, landing_of_record
 from api.schema.base import Selected
 from api.schema.boards import (
     Architectures,
     ArchitecturesQuery,
-    BestOfArchitecture,
     Overview,
     OverviewQuery,
-    PartOverview,
 )
 from api.schema.scores import (
     Leaderboard,
     LeaderboardQuery,
-    LeaderboardRow,
     LeaderboardRows,
     WholeLeaderboardQuery,
 )
-from api.schema.table import columns_of
 from api.schema.words import DatasetName
-from api.service.pagination import Page, narrow, order, page
-from api.web.answers import Answer, AnswerRoute, list_answer
+from api.service import leaderboard as service
+from api.web.answers import Answer, AnswerRoute
 from api.web.dependencies import Known
-from benchmark.leaderboard.architectures import architectures as best_of_each
-from benchmark.leaderboard.board import at_field, within_error
-from benchmark.leaderboard.overview import overview as overview_of
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -49,26 +39,7 @@ async def leaderboard(known: Known, query: Annotated[WholeLeaderboardQuery, Quer
     availability rank last. Ranks are shared if a paired test over sensor units cannot separate
     them. `whole` returns all rows at once.
     """
-    board = {k: v for k, v in known.measurements.leaderboard.items() if k != "sweeps"}
-    rows = known.measurements.board_rows()
-    shown = Page(rows, len(rows), None, None)
-    if not query.whole:
-        shown = page(rows, "/v1/leaderboard", query)
-        board["datasets"] = _with_rows(board["datasets"], shown.items)
-    board |= {"record": known.measurements.record, "total": shown.total, "next": shown.next}
-    links = headers(landing_of_record(identity()).links_of_content())
-    link = ", ".join((*links, *([shown.link] if shown.link else ())))
-    return Answer(board, columns_of(LeaderboardRow), lambda: shown.items, link)
-
-
-def _with_rows(
-    boards: Iterable[Mapping[str, Any]], rows: Iterable[Mapping[str, Any]]
-) -> list[dict[str, Any]]:
-    """Return boards with those of their rows that are among some."""
-    of: dict[str, list[Mapping[str, Any]]] = {}
-    for row in rows:
-        of.setdefault(row["dataset"], []).append(row)
-    return [{**board, "rows": of.get(board["name"], [])} for board in boards]
+    return Answer.of(service.leaderboard(known, query))
 
 
 @router.get(
@@ -82,9 +53,7 @@ async def architectures(known: Known, query: Annotated[ArchitecturesQuery, Query
     Uncertainty: standard error of the ratio to the bound, errors on other sensor units, and ties
     with the runner-up.
     """
-    rows = narrow(best_of_each(known.measurements.leaderboard), query, ("detector", "mask"))
-    shown = page(order(rows, query.sort), "/v1/leaderboard/architectures", query)
-    return list_answer(shown, shown.items, columns_of(BestOfArchitecture), fields=query.fields)
+    return Answer.of(service.architectures(known, query))
 
 
 @router.get(
@@ -97,11 +66,7 @@ async def overview(known: Known, query: Annotated[OverviewQuery, Query()]) -> An
 
     `says` describes the aggregation. CSV: a row per part.
     """
-    board = known.measurements.leaderboard
-    boards = narrow(board["datasets"], query, ("detector", "mask"))
-    document = overview_of({"datasets": boards})
-    parts = narrow(document["parts"], query, ("role",))
-    return Answer({**document, "parts": parts}, columns_of(PartOverview), lambda: parts)
+    return Answer.of(service.overview(known, query))
 
 
 @router.get(
@@ -121,16 +86,4 @@ async def leaderboard_of_dataset(
     `field_deg` ranks by the error over part of the field, `max_error_deg` by the field of view for
     a maximum error.
     """
-    ranked = known.measurements.board_rows(dataset)
-    if query.field_deg is not None:
-        ranked = at_field(ranked, int(query.field_deg))
-    if query.max_error_deg is not None:
-        ranked = within_error(ranked, query.max_error_deg)
-    rows = [
-        row
-        for row in narrow(ranked, query, ("condition", "extractor", "model"))
-        if row["best_of_extractor"] >= query.best_of_extractor
-        and bool(row["studies"]) >= query.studied
-    ]
-    shown = page(order(rows, query.sort), f"/v1/leaderboard/{dataset}", query)
-    return list_answer(shown, shown.items, columns_of(LeaderboardRow), fields=query.fields)
+    return Answer.of(service.leaderboard_of_dataset(known, dataset, query))

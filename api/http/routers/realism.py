@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from api.schema.datasets import BuiltSensor, BuiltSensorRow, Realism, RealismQuery
-from api.schema.table import columns_of
+from api.schema.datasets import Realism, RealismQuery
+from api.service import datasets as service
 from api.web.answers import Answer, AnswerRoute
 from api.web.dependencies import Known
 
@@ -23,17 +22,4 @@ async def realism(known: Known, query: Annotated[RealismQuery, Query()]) -> Answ
     repeatability. Differences of more than a factor of two are explained. CSV: a row per data set
     and sensor.
     """
-    chosen = [
-        row
-        for row in known.measurements.realism
-        if not query.dataset or row["dataset"] in query.dataset
-    ]
-    return Answer({"datasets": chosen}, columns_of(BuiltSensorRow), lambda: _rows(chosen))
-
-
-def _rows(chosen: list[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    return [
-        {**row, **sensor, "explanation": row["idealisation"] or row["sentence"]}
-        for row in chosen
-        for sensor in row["sensors"] or [dict.fromkeys(BuiltSensor.model_fields)]
-    ]
+    return Answer.of(service.realism(known, query))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
-from api.schema.table import columns_of
-from api.schema.taxonomy import Taxonomy, TaxonomyRow
+from api.schema.taxonomy import Taxonomy
+from api.service import taxonomy as service
 from api.web.answers import Answer, AnswerRoute
 from api.web.dependencies import AS_ACCEPTED, Known, TableOnly
 
@@ -25,13 +25,4 @@ async def taxonomy(
 
     Each has name, category and section of the survey. Other endpoints take them as filters.
     """
-    attributes = known.taxonomy.to_dict()
-    return Answer(
-        {"attributes": attributes},
-        columns_of(TaxonomyRow),
-        lambda: [
-            {"attribute": attribute, **entry}
-            for attribute, entries in attributes.items()
-            for entry in entries
-        ],
-    )
+    return Answer.of(service.taxonomy(known))

@@ -14,7 +14,7 @@ from docutils import nodes
 from api.docs.blocks import rerun
 from api.guide import chapters, extension, site
 from api.guide.site import GuideError
-from tests.api.guide.test_guide_blocks import fenced, page
+from tests.api.docs.test_guide_blocks import fenced, page
 
 
 def test_pages_are_those_of_the_checkout_else_of_the_package_else_none(

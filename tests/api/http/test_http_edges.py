@@ -16,19 +16,18 @@ from prometheus_client.values import MultiProcessValue
 from pydantic import BaseModel, ConfigDict
 from starlette.types import Message, Receive, Scope, Send
 
-from api.http.asking import ask
 from api.http.openapi import describe
 from api.http.reference import target
-from api.http.routers import calibrations
-from api.http.routers.studies import studies
 from api.schema.parameters import OneOf
 from api.server import app as service
 from api.server import serving
 from api.server.app import create_app
+from api.service.asking import ask
 from api.service.knowledge import Knowledge
 from api.service.problems import Problem
 from api.service.refusals import refusal
-from api.web import observation, requests
+from api.service.studies import studies
+from api.web import calibrations, observation, requests
 from api.web.answers import Answer, AnswerRoute, Columns
 from api.web.dependencies import Known
 from api.web.middleware import EveryResponse

@@ -14,8 +14,7 @@ from api.schema.claims import CheckedRule, ClaimRow
 from api.schema.comparison import ComparedRow
 from api.schema.curves import CurveRow
 from api.schema.datasets import BuiltSensorRow, Data, Dataset
-from api.schema.figure_rows import ArcRow, FlowRow, PairRow, PublicationRow, SensorRow
-from api.schema.figures import ListedFigure
+from api.schema.figures import ArcRow, FlowRow, ListedFigure, PairRow, PublicationRow, SensorRow
 from api.schema.flows import Link
 from api.schema.recommendations import RecommendationRow
 from api.schema.samples import SampleError

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from api.cli.asking import ask
 from api.cli.command_line import app
 from api.cli.commands import studies
-from api.http.routers import studies as endpoints
+from api.service import studies as service
 from tests.api.conftest import Client
 
 FORMS = ("bibtex", "ris", "csl")
@@ -58,7 +58,7 @@ def test_an_added_study_is_told_from_those_of_the_survey() -> None:
 @pytest.fixture
 def document(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """The service's answer about a study, to be altered."""
-    found = dict(ask(endpoints.study, key=STUDY).document)
+    found = dict(ask(service.study, key=STUDY).document)
     monkeypatch.setattr(studies, "ask", lambda *_, **__: SimpleNamespace(document=found))
     return found
 

@@ -17,7 +17,7 @@ import typer
 
 from api.cli.commands.serve import app
 
-ROOT = Path(__file__).resolve().parents[4]
+ROOT = Path(__file__).resolve().parents[3]
 UNIT = ROOT / "deploy" / "sunatlas.service"
 CONTAINER = (ROOT / "deploy" / "Containerfile").read_text()
 

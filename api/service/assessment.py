@@ -1,0 +1,25 @@
+"""Properties of methods, as scored by the survey and as measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from api.schema.assessment import AssessmentQuery, VerdictRow
+from api.schema.table import columns_of
+from api.service.documents import Document
+from api.service.knowledge import Knowledge
+
+
+def assessment(known: Knowledge, query: AssessmentQuery) -> Document:
+    """Return the survey's score, the measured one and their agreement by method and property."""
+    whole = known.measurements.assessment
+    methods = [m for m in whole["methods"] if not query.method or m["method"] in query.method]
+    rows: list[Mapping[str, Any]] = [
+        {**{name: method[name] for name in ("method", "taxonomy", "case_study")}, **verdict}
+        for method in methods
+        for verdict in method["properties"]
+    ]
+    totals = {name: sum(method["counts"][name] for method in methods) for name in whole["totals"]}
+    document = {"definitions": whole["definitions"], "methods": methods, "totals": totals}
+    return Document(document, columns_of(VerdictRow), lambda: rows)

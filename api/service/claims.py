@@ -1,0 +1,55 @@
+"""The survey's statements about algorithms, with verdicts."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from api.schema.claims import CheckedRule, ClaimRow, ClaimsQuery
+from api.schema.table import columns_of
+from api.schema.words import ClaimId
+from api.service.documents import Document, list_document
+from api.service.knowledge import Knowledge
+from api.service.pagination import order, page
+from benchmark.claims.ledger import Entry, tally
+
+
+def claims(known: Knowledge, query: ClaimsQuery) -> Document:
+    """List the claims of the survey about algorithms with their verdicts."""
+    found = [entry for entry in known.measurements.claims.values() if _is_wanted(entry, query)]
+    items = order([entry.to_dict() for entry in found], query.sort)
+    shown = page(items, "/v1/claims", query)
+    counts = tally(found)
+    return list_document(
+        shown, shown.items, columns_of(ClaimRow), fields=query.fields, tally=counts
+    )
+
+
+def claim(known: Knowledge, id: ClaimId) -> Document:  # noqa: A002 - the parameter's name
+    """Return a claim with its criteria, the results of all trials and its plot."""
+    document = detail(known.measurements.claims[id])
+    second = {rule["rule"]: rule["result"] for rule in document["second"]}
+    rows = [{**rule, "second_result": second.get(rule["rule"])} for rule in document["rules"]]
+    return Document(document, columns_of(CheckedRule), lambda: rows)
+
+
+def detail(entry: Entry) -> dict[str, Any]:
+    """Return a claim as `GET /v1/claims/{id}` tells it; NaN stands for none."""
+    outcome = entry.outcome
+    return {
+        **entry.to_dict(),
+        "how_to_test": entry.claim.how_to_test,
+        "values": dict(outcome.values) if outcome else {},
+        "second_values": dict(outcome.second) if outcome else {},
+        "across": entry.claim.across,
+        "up": entry.claim.up,
+        "lines": {name: asdict(line) for name, line in outcome.lines.items()} if outcome else {},
+    }
+
+
+def _is_wanted(entry: Entry, query: ClaimsQuery) -> bool:
+    if query.verdict and (entry.verdict or "not measured") not in query.verdict:
+        return False
+    said = entry.claim
+    text = f"{said.id} {said.section} {said.study} {said.statement}".casefold()
+    return query.q is None or all(word in text for word in query.q.casefold().split())

@@ -1,0 +1,33 @@
+"""Scores, sweeps on reference features and learning curves, as they are published."""
+
+from __future__ import annotations
+
+from api.schema.assessment import Sweep, SweepsQuery
+from api.schema.curves import CurveRow, CurvesQuery
+from api.schema.scores import Score, ScoresQuery
+from api.schema.table import columns_of
+from api.service.documents import Document, list_document
+from api.service.knowledge import Knowledge
+from api.service.pagination import narrow, order, page
+
+
+def results(known: Knowledge, query: ScoresQuery) -> Document:
+    """Return scores: a row per data set, condition, extractor and model, including failures."""
+    names = ("dataset", "condition", "extractor", "model")
+    rows = order(narrow(known.measurements.scores, query, names), query.sort)
+    shown = page(rows, "/v1/results", query)
+    return list_document(shown, shown.items, columns_of(Score), fields=query.fields)
+
+
+def sweeps(known: Knowledge, query: SweepsQuery) -> Document:
+    """Return the error of every extractor against noise, feature size, sub-pixel phase and more."""
+    rows = narrow(known.measurements.sweeps, query, ("series", "sweep", "extractor"))
+    shown = page(order(rows, query.sort), "/v1/sweeps", query)
+    return list_document(shown, shown.items, columns_of(Sweep), fields=query.fields)
+
+
+def curves(known: Knowledge, query: CurvesQuery) -> Document:
+    """Return the error of leading pipelines against the number of calibration poses."""
+    rows = narrow(known.measurements.curves, query, ("dataset", "extractor", "model"))
+    shown = page(order(rows, query.sort), "/v1/curves", query)
+    return list_document(shown, shown.items, columns_of(CurveRow), fields=query.fields)

@@ -1,0 +1,162 @@
+"""The studies and their implementation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from api.schema.studies import AttributeValue, Edition, StudiesQuery, StudyRow
+from api.schema.table import columns_of
+from api.schema.words import StudyKey
+from api.service.documents import Document, list_document
+from api.service.knowledge import Knowledge
+from api.service.pagination import order, page
+from registry.fidelity.runnable import RunnablePipeline
+from registry.resolution import Resolution
+from registry.studies import Study
+from survey_data.reported import Quantity
+
+
+def studies(known: Knowledge, query: StudiesQuery) -> Document:
+    """List the studies of the survey: 129 keys in its tables, 128 in its text."""
+    known = known.of(query.edition)
+    found = [study for study in known.facts.studies.values() if _is_wanted(study, query, known)]
+    rows = order([_row(study, known) for study in found], query.sort)
+    shown = page(rows, "/v1/studies", query)
+    return list_document(
+        shown,
+        shown.items,
+        columns_of(StudyRow),
+        lambda: [{**item, **item["values"], "verified": _said(item)} for item in shown.items],
+        fields=query.fields,
+    )
+
+
+def editions(known: Knowledge) -> Document:
+    """List the editions of the studies, for citation."""
+    items = [one.to_dict() for one in known.editions]
+    return Document({"items": items}, columns_of(Edition), lambda: items)
+
+
+def study(known: Knowledge, key: StudyKey) -> Document:
+    """Return a study: values with basis, implementation and scores."""
+    known = known.of("all")
+    found = known.facts.study(key)
+    resolution = known.resolutions[key]
+    described = found.to_dict()
+    document = {
+        **_row(found, known),
+        "note": described["note"],
+        "attributes": described["attributes"],
+        "departures": [departure.to_dict() for departure in resolution.fidelity.departures],
+        "purposes": dict(resolution.fidelity.purposes),
+        "reported_accuracy": _report(found, "accuracy"),
+        "reported_precision": _report(found, "precision"),
+        "pipelines": [
+            {**pipeline.to_dict(), "scores": _scores(pipeline, known)}
+            for pipeline in resolution.pipelines
+        ],
+        "gaps": [gap.to_dict() for gap in resolution.gaps],
+    }
+    return Document(document, columns_of(AttributeValue), lambda: document["attributes"])
+
+
+def _report(study: Study, quantity: Quantity) -> dict[str, Any] | None:
+    found = study.report(quantity)
+    return None if found is None else found.to_dict()
+
+
+def _row(study: Study, known: Knowledge) -> dict[str, Any]:
+    summary = study.summary()
+    values = summary.pop("values")
+    resolution = known.resolutions[study.key]
+    best = resolution.best_pipeline
+    graded = resolution.fidelity
+    scored = [_scores(pipeline, known) for pipeline in resolution.pipelines]
+    runs = {
+        "pipelines": len(resolution.pipelines),
+        "cells": sum(map(len, scored)),
+        "scored": sum(score["status"] is not None for scores in scored for score in scores),
+        "basis": {} if best is None else dict(best.basis),
+        "assumed": {} if best is None else dict(best.assumed),
+    }
+    return {
+        **summary,
+        "grade": graded.grade,
+        "sentence": graded.sentence,
+        "state": resolution.state,
+        "runs": runs,
+        "headline": headline(resolution, known),
+        "values": values,
+    }
+
+
+_NUMBERS = ("status", "rms_deg", "bound_deg", "availability")
+
+
+def _said(item: Mapping[str, Any]) -> list[str]:
+    """Return the confirmations of a study in words, for a cell of a table."""
+    return [f"{one['name']}, {one['date']}: {one['confirms']}" for one in item["verified"]]
+
+
+def _scores(pipeline: RunnablePipeline, known: Knowledge) -> list[dict[str, Any]]:
+    """Return a pipeline's published scores in each setting used for the study."""
+    found = []
+    for one in pipeline.settings:
+        at = one.dataset, one.condition, pipeline.extractor, pipeline.model
+        row = known.measurements.score_of.get(at, {})
+        found.append({**one.to_dict(), **{name: row.get(name) for name in _NUMBERS}})
+    return found
+
+
+def headline(resolution: Resolution, known: Knowledge) -> dict[str, Any] | None:
+    """Return the score that a study is shown by, or None where it is not measured.
+
+    Of the pipelines that rest on most, each in the setting that tells most of the study, the one of
+    the least error.
+    """
+    found = []
+    for pipeline in resolution.strongest_pipelines:
+        score = _scores(pipeline, known)[0]
+        if score["rms_deg"] is not None:
+            members = {name: score[name] for name in ("dataset", "condition", *_NUMBERS[1:])}
+            found.append({"extractor": pipeline.extractor, "model": pipeline.model, **members})
+    return min(found, key=lambda score: score["rms_deg"], default=None)
+
+
+def _is_wanted(study: Study, query: StudiesQuery, known: Knowledge) -> bool:
+    """Say whether a study is among those asked for."""
+    return (
+        (not query.key or study.key in query.key)
+        and _in_years(study, query.year_min, query.year_max)
+        and _has_words(study, query.q)
+        and (not query.grade or known.resolutions[study.key].fidelity.grade in query.grade)
+        and (not query.state or known.resolutions[study.key].state in query.state)
+        and _has_values(study, query.by_attribute(), known)
+    )
+
+
+def _has_values(study: Study, wanted: dict[str, list[str]], known: Knowledge) -> bool:
+    """Say whether a study has, of every attribute, one of the wanted values or of their kinds."""
+    kinds = known.taxonomy.kinds
+    return all(
+        not set(study.of(attribute)).isdisjoint(
+            kind for value in values for kind in kinds(attribute, value)
+        )
+        for attribute, values in wanted.items()
+    )
+
+
+def _in_years(study: Study, first: int | None, last: int | None) -> bool:
+    if first is None and last is None:
+        return True
+    if study.year is None:
+        return False
+    return (first is None or first <= study.year) and (last is None or study.year <= last)
+
+
+def _has_words(study: Study, words: str | None) -> bool:
+    if words is None:
+        return True
+    text = f"{study.key} {study.title} {study.authors} {study.venue}".casefold()
+    return all(word in text for word in words.casefold().split())
