@@ -8,13 +8,13 @@ from typing import Annotated, Any
 
 from fastapi import Path, Query, Request
 
-from api.http.routers import recommendations as service
 from api.pages import boards
 from api.pages.editions import edition_shown
 from api.pages.serving import PageRouter, View
 from api.schema import words
 from api.schema.base import OfEdition
 from api.schema.requirements import RequirementsQuery
+from api.service import recommendations as service
 from api.service.documents import Document
 from api.service.knowledge import Knowledge
 from api.web.dependencies import Known
@@ -162,7 +162,7 @@ async def architecture(
         "edition": query.edition,
     }
     asked = RequirementsQuery.model_validate(given)
-    answer = await service.recommendations(known, asked)
+    answer = service.recommendations(known, asked)
     found = answer.document["architectures"]
     every = known.of(query.edition).facts.studies.values()
     studies = [s.key for s in every if (detector, mask) in s.architectures]

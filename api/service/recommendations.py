@@ -29,6 +29,9 @@ from api.schema.recommendations import (
     TaskMeasure,
 )
 from api.schema.requirements import Requirements
+from api.schema.table import columns_of
+from api.service.documents import Document, list_document
+from api.service.knowledge import Knowledge
 from api.service.pagination import Page, page
 from api.service.problems import Problem, Violation
 from registry import answer as found_by
@@ -66,6 +69,30 @@ def ask(asked: Requirements, measured: Measurements, facts: Facts) -> Answer:
     except InvalidValueError as error:
         wrong = Violation(error.parameter, str(error.value), error.expected, error.nearest)
         raise Problem(422, "invalid-value", errors=[wrong]) from error
+
+
+def recommendations(known: Knowledge, asked: Requirements) -> Document:
+    """Return a page of the answer to requirements; its table has every calibration."""
+    answer = ask(asked, known.measured_pipelines, known.of(asked.edition).facts)
+    shown = page(answer.architectures, PATH, asked)
+    return Document(
+        document(answer, asked, shown.items, shown.next).model_dump(),
+        columns_of(RecommendationRow),
+        lambda: [row.model_dump() for row in rows(answer)],
+    )
+
+
+def flow_of_answer(known: Knowledge, asked: Requirements) -> Document:
+    """Return the decision flow behind the answer to requirements; its table has the paths."""
+    found = flow(ask(asked, known.measured_pipelines, known.of(asked.edition).facts)).model_dump()
+    return Document(found, columns_of(Path), lambda: found["paths"])
+
+
+def designs(known: Knowledge, asked: Requirements) -> Document:
+    """Return a page of all calibrations of the answer to requirements."""
+    shown = _design_page(ask(asked, known.measured_pipelines, known.of(asked.edition).facts), asked)
+    items = [row.model_dump() for row in shown.items]
+    return list_document(shown, items, columns_of(RecommendationRow))
 
 
 def document(
@@ -259,12 +286,12 @@ def _notes(answer: Answer) -> Iterator[str]:
 def _designs(answer: Answer, asked: Requirements) -> Designs:
     """Return the first page of all calibrations, with the address of the next."""
     whole = asked.model_copy(update={"limit": DEFAULT_PAGE, "cursor": None, "include": []})
-    shown = design_page(answer, whole)
+    shown = _design_page(answer, whole)
     address = None if shown.link is None else shown.link[1 : shown.link.index(">")]
     return Designs(items=list(shown.items), total=shown.total, next=address)
 
 
-def design_page(answer: Answer, asked: Requirements) -> Page[RecommendationRow]:
+def _design_page(answer: Answer, asked: Requirements) -> Page[RecommendationRow]:
     """Return a page of all calibrations of an answer."""
     return page(list(rows(answer)), f"{PATH}/designs", asked)
 

@@ -6,15 +6,11 @@ from typing import Annotated
 
 from fastapi import APIRouter, Body, Query
 
-from api.schema.recommendations import AnswerFlow, Designs, RecommendationRow, Recommendations
-from api.schema.requirements import Requirements, RequirementsBody, RequirementsQuery
-from api.schema.table import columns_of
+from api.schema.recommendations import AnswerFlow, Designs, Recommendations
+from api.schema.requirements import RequirementsBody, RequirementsQuery
 from api.service import recommendations as service
-from api.service.knowledge import Knowledge
-from api.service.pagination import page
-from api.web.answers import Answer, AnswerRoute, list_answer
+from api.web.answers import Answer, AnswerRoute
 from api.web.dependencies import AS_ACCEPTED, Known, TableOnly
-from registry import answer as registered
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -35,7 +31,7 @@ DESCRIPTION = (
 )
 async def recommendations(known: Known, query: Annotated[RequirementsQuery, Query()]) -> Answer:
     """Recommend for requirements in a query."""
-    return recommended(query, known)
+    return Answer.of(service.recommendations(known, query))
 
 
 @router.post(
@@ -50,7 +46,7 @@ async def recommend(
     query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
 ) -> Answer:
     """Recommend for requirements in a body."""
-    return recommended(body, known)
+    return Answer.of(service.recommendations(known, body))
 
 
 @router.get(
@@ -63,8 +59,7 @@ async def recommendations_flow(
     known: Known, query: Annotated[RequirementsQuery, Query()]
 ) -> Answer:
     """Return the flow of studies behind an answer."""
-    found = service.flow(_ask(query, known))
-    return Answer(found.model_dump(), columns_of(AnswerFlow), list)
+    return Answer.of(service.flow_of_answer(known, query))
 
 
 @router.get(
@@ -75,21 +70,4 @@ async def recommendations_flow(
 )
 async def recommended_designs(known: Known, query: Annotated[RequirementsQuery, Query()]) -> Answer:
     """Return a page of all calibrations."""
-    shown = service.design_page(_ask(query, known), query)
-    items = [row.model_dump() for row in shown.items]
-    return list_answer(shown, items, columns_of(RecommendationRow))
-
-
-def recommended(asked: Requirements, known: Knowledge) -> Answer:
-    """Return a page of the answer to requirements; its table has every calibration."""
-    answer = _ask(asked, known)
-    shown = page(answer.architectures, service.PATH, asked)
-    document = service.document(answer, asked, shown.items, shown.next)
-    table = columns_of(RecommendationRow)
-    return Answer(
-        document.model_dump(), table, lambda: [r.model_dump() for r in service.rows(answer)]
-    )
-
-
-def _ask(asked: Requirements, known: Knowledge) -> registered.Answer:
-    return service.ask(asked, known.measured_pipelines, known.of(asked.edition).facts)
+    return Answer.of(service.designs(known, query))
