@@ -19,7 +19,7 @@ _STILL = 3
 
 
 def errors() -> str:
-    """Tables of root mean square errors, degrees, of filters and of the best other models."""
+    """Tables of the RMS of unit 0, degrees, of filters and of the best other models."""
     scores = Store().scores()
     return "\n\n".join(_table(scores, *place, shown) for place, shown in SHOWN.items())
 
@@ -32,7 +32,7 @@ def _table(
 
     def error(model: str, condition: str) -> float | None:
         row = scores.get(Cell(dataset, condition, extractor, model))
-        found = None if row is None else row["rms_deg"]
+        found = None if row is None else row["charged_deg"]
         return float(found) if isinstance(found, float | int) else None
 
     still = {name: error(name, "nominal") for name in known if name not in filters}
@@ -40,7 +40,7 @@ def _table(
     lines = [
         f"### {dataset}, `{extractor}`",
         "",
-        "| model | " + " | ".join(conditions) + " |",
+        "| unit 0 RMS, deg | " + " | ".join(conditions) + " |",
         "|---|" + "---|" * len(conditions),
     ]
     for name in [*filters, *(name for _, name in best)]:

@@ -3,29 +3,40 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
+from markupsafe import Markup
+
+from benchmark.leaderboard import summaries
 from survey_data.reported import UNSPECIFIED, statistics
 
 NOTHING = "–"
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """Return a number with so many significant digits."""
-    if value is None or not math.isfinite(value):
-        return NOTHING
-    if value == 0:
-        return "0"
-    if abs(value) >= 1000:  # all its digits would say more than is known
-        power = 10 ** (math.floor(math.log10(abs(value))) - digits + 1)
-        return f"{round(value / power) * power:,}"
-    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
-    return f"{value:.{min(decimals, 8)}f}"
+    """Return a number with so many significant digits, as commands and documents spell it."""
+    return summaries.digits(value, digits, NOTHING)
 
 
 def degrees(value: float | None) -> str:
     """Return an error in degrees."""
     text = number(value)
     return text if text == NOTHING else f"{text}°"
+
+
+def own_error(row: Mapping[str, Any]) -> Markup:
+    """Return the own error of a row, marked so that a reader of pages finds it.
+
+    Parameters
+    ----------
+    row : with `own_deg`, and `dataset`, `extractor` and `model`
+    """
+    if row["own_deg"] is None:
+        return Markup(NOTHING)
+    of = "|".join(row[name] for name in ("dataset", "extractor", "model"))
+    shown = Markup('<data class="own-error" value="{}" data-of="{}">{}</data>')
+    return shown.format(row["own_deg"], of, degrees(row["own_deg"]))
 
 
 def wide(value: float | None) -> str:
@@ -88,6 +99,7 @@ GIVEN = (
     *(
         number,
         degrees,
+        own_error,
         wide,
         times,
         percent,

@@ -12,7 +12,7 @@ from benchmark import datasets
 from benchmark.datasets.hazards import hazards
 from benchmark.datasets.pins import Pin
 from benchmark.metrics.rings import EDGES_DEG, field_error
-from benchmark.metrics.score import is_available
+from benchmark.metrics.score import is_available, store
 from registry.catalogue import catalogue
 from registry.draws import FEWEST_UNITS, unit_ratios
 from registry.fitting import stages
@@ -157,5 +157,5 @@ def _score(row: Row, share: float) -> Score:
         if edge >= half:
             break
     plain: dict[str, Any] = {name: row[name] for name in _PLAIN}
-    own = None if error is None else share * error
+    own = None if error is None else store(share * error)
     return Score(**plain, rms_deg=own, is_available=is_available(row), cones=tuple(cones))

@@ -22,7 +22,7 @@ HTML, ZIP = "text/html", "application/zip"
 OFFERED = (JSON, HTML, ZIP)
 #: What the field `answer` calls them.
 ANSWERS: Mapping[str, str] = {"json": JSON, "report": HTML, "zip": ZIP}
-_FIELDS = ("config", "apply", "answer")
+_FIELDS = ("config", "model", "apply", "answer")
 #: One calibration at a time in a process of the server: each keeps a core busy.
 _BUSY = asyncio.Semaphore(1)
 _RETRY_S = "30"
@@ -49,6 +49,7 @@ _BODY: dict[str, Any] = {
                         "description": "TOML, as `sunatlas calibrate --init` writes it; guessed "
                         "from the header by default.",
                     },
+                    "model": {**_TEXT, "description": "The only model tried; all by default."},
                     "apply": {
                         **_TEXT,
                         "enum": ["true", "false"],
@@ -134,6 +135,7 @@ async def calibrated(request: Request, wanted: str) -> Response:
                 form.files,
                 form.fields.get("config", ""),
                 apply=form.fields.get("apply", "false") == "true",
+                model=form.fields.get("model", "").strip(),
             )
         except UploadRefusedError as error:
             raise Problem(422, "no-calibration", str(error)) from error
