@@ -189,7 +189,7 @@ def _methods() -> str:
     low, middle, high = statistics.quantiles(factors, n=4)
     return (
         "**Better methods exist than those of most studies.** On the same data set the best "
-        f"method that a study used has {middle:.1f} times the own error of the best method measured "
+        f"method that a study used has {middle:.1f} times the own error of the best one measured "
         f"(median of {len(factors)} studies; middle half {low:.1f} to {high:.1f}; "
         "`sunatlas leaderboard`)."
     )

@@ -17,7 +17,7 @@ from benchmark.results.store import Store
 
 
 def best_pipelines() -> str:
-    """Set the own error of every data set's best pipeline, and its unit 0, beside the bound and the built sensors' accuracy."""
+    """Set every data set's best pipeline beside its bound and the built sensors' accuracy."""
     built, pins, own = _build(), Store().pins(), knowledge().measurements.nominal
     rows = []
     for name, row in ERROR_BUDGET.read().items():

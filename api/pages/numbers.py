@@ -9,7 +9,7 @@ from typing import Any
 from markupsafe import Markup
 
 from benchmark.leaderboard import summaries
-from survey_data.reported import UNSPECIFIED, statistics
+from survey_data.reported import UNSPECIFIED, reported_accuracies, statistics
 
 NOTHING = "–"
 
@@ -33,7 +33,7 @@ def own_error(row: Mapping[str, Any]) -> Markup:
     row : with `own_deg`, and `dataset`, `extractor` and `model`
     """
     if row["own_deg"] is None:
-        return Markup(NOTHING)
+        return Markup.escape(NOTHING)
     of = "|".join(row[name] for name in ("dataset", "extractor", "model"))
     shown = Markup('<data class="own-error" value="{}" data-of="{}">{}</data>')
     return shown.format(row["own_deg"], of, degrees(row["own_deg"]))
@@ -95,6 +95,11 @@ def kind_said(kind: str) -> str:
     return "of which kind is not said" if kind == UNSPECIFIED else statistics()[kind].name
 
 
+def reported_rms(value: float | None, kind: str) -> float | None:
+    """Return a published accuracy as RMS, by the rule of its kind."""
+    return None if value is None else reported_accuracies("accuracy", value, kind).rms_deg
+
+
 GIVEN = (
     *(
         number,
@@ -110,5 +115,6 @@ GIVEN = (
         unit_name,
     ),
     kind_said,
+    reported_rms,
 )
 """What templates are given as filters."""

@@ -63,8 +63,8 @@ class Accuracy(OpenShape):
     )
     charged_deg: float | None = Field(
         description=(
-            "RMS of this unit over all answers, including those to unobservable samples; own errors "
-            "are its mean over units."
+            "RMS of this unit over all answers, including those to unobservable samples; own "
+            "errors are its mean over units."
         )
     )
     aligned_deg: float | None = Field(description="RMS error after boresight alignment.")
