@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from benchmark.contract import Cell
+from benchmark.leaderboard.summaries import digits
 from benchmark.plan.parts import installed_parts
 from benchmark.results.csv_tables import Row
 from benchmark.results.store import Store
@@ -45,6 +46,6 @@ def _table(
     ]
     for name in [*filters, *(name for _, name in best)]:
         cells = (error(name, condition) for condition in conditions)
-        shown = ("–" if cell is None else f"{cell:.3g}" for cell in cells)
+        shown = ("–" if cell is None else digits(cell) for cell in cells)
         lines.append(f"| `{name}` | " + " | ".join(shown) + " |")
     return "\n".join(lines)

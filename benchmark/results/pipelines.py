@@ -11,8 +11,9 @@ from typing import Any
 from benchmark import datasets
 from benchmark.datasets.hazards import hazards
 from benchmark.datasets.pins import Pin
+from benchmark.metrics.ranking import UnitErrors
 from benchmark.metrics.rings import EDGES_DEG, field_error
-from benchmark.metrics.score import is_available, store
+from benchmark.metrics.score import is_available
 from registry.catalogue import catalogue
 from registry.draws import FEWEST_UNITS, unit_ratios
 from registry.fitting import stages
@@ -77,7 +78,7 @@ def pipelines(
                 extractor_taxonomy=first["extractor_taxonomy"],
                 model=model,
                 stages=known[model],
-                nominal=_score(first, share),
+                nominal=dataclasses.replace(_score(first, share), rms_deg=UnitErrors(units).own_deg),
                 hazards={
                     hazard: tuple(_score(scores[name, 0], share) for name in names)
                     for hazard, names in hazards(conditions[dataset]).items()
@@ -157,5 +158,5 @@ def _score(row: Row, share: float) -> Score:
         if edge >= half:
             break
     plain: dict[str, Any] = {name: row[name] for name in _PLAIN}
-    own = None if error is None else store(share * error)
+    own = None if error is None else share * error
     return Score(**plain, rms_deg=own, is_available=is_available(row), cones=tuple(cones))
