@@ -49,6 +49,11 @@ def dataset_page(name: str, **asked: str) -> str:
     return _ask(f"/datasets/{quote(name, safe='')}", asked)
 
 
+def calibrate_page(model: str) -> str:
+    """Return the form that calibrates a file by a model."""
+    return _ask("/calibrate", {"model": model})
+
+
 def claim_page(identifier: str) -> str:
     """Return the address of a claim."""
     return f"/claims/{quote(identifier, safe='')}"
@@ -90,7 +95,7 @@ def _ask(path: str, asked: dict[str, str]) -> str:
 
 GIVEN = (
     *(study_page, cited_study, cited_studies),
-    *(algorithm_page, dataset_page, claim_page, architecture_page, value_page),
+    *(algorithm_page, dataset_page, calibrate_page, claim_page, architecture_page, value_page),
     *(anchor, twin, for_spreadsheets),
 )
 """What templates are given."""

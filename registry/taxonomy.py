@@ -44,6 +44,8 @@ NO_IMPLEMENTATION_STATED = "None"
 """The taxonomy's own value for a study without a model, an extractor or an error."""
 NONE_STATED = "none stated"
 """That value in tables for others: programs that read tables take the word None for no value."""
+NOT_IN_SURVEY = "own method, not in the survey"
+"""That value of an implementation, for people: the survey has no such method."""
 _OF_IMPLEMENTATIONS = frozenset({"taxonomy", "extractor_taxonomy", "model_taxonomy", "category"})
 
 _CALIBRATION_NAMES = {"offline": "Offline calibration", "online": "Online calibration"}

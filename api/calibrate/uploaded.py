@@ -48,6 +48,7 @@ def calibrate_uploads(
     config: str = "",
     *,
     apply: bool = False,
+    model: str = "",
     longest_s: float = LONGEST_S,
 ) -> dict[str, str]:
     """Calibrate files in a process of its own; returns the text of each product by its name.
@@ -60,6 +61,8 @@ def calibrate_uploads(
         TOML, as `api.calibrate.settings.read_settings` takes it; columns are guessed where empty.
     apply : bool
         Whether conventions found with certainty are applied.
+    model : str
+        The only one tried; all that apply where empty.
     longest_s : float
         Seconds after which the process is ended.
 
@@ -74,7 +77,7 @@ def calibrate_uploads(
         for name, one in zip(names, uploads, strict=True):
             (directory / name).parent.mkdir()
             (directory / name).write_bytes(one.data)
-        task = {"names": names, "config": config, "apply": apply}
+        task = {"names": names, "config": config, "apply": apply, "model": model}
         (directory / _TASK).write_text(json.dumps(task), "utf-8")
         try:
             done = subprocess.run(  # noqa: S603 - this interpreter, and a directory made here
@@ -138,7 +141,8 @@ def _calibrate(directory: Path) -> dict[str, dict[str, str]]:
         rows = sum(len(read_table(path)) for path in paths)
         if rows > MOST_ROWS:
             return {"refused": {"why": f"expected at most {MOST_ROWS} rows in all; got {rows}"}}
-        found = calibrate(paths, settings, apply=task["apply"])
+        models = [task["model"]] if task["model"] else None
+        found = calibrate(paths, settings, apply=task["apply"], models=models)
         return {"products": products(found, "sun_sensor", "POST /v1/calibrations")}
     except (TableError, SettingsError, UnusableDataError, tomllib.TOMLDecodeError) as error:
         return {"refused": {"why": str(error)}}

@@ -28,7 +28,8 @@ def architectures_text(rows: Sequence[Row], width: int = WIDTH) -> str:
     lines = [
         *prose(
             "The best pipeline of each architecture (detector, mask) under nominal conditions, by "
-            "own error, deg. ±: standard error. bounds: RMS error over the Cramer-Rao bound. "
+            "own error, deg. ±: standard error. bounds: RMS of unit 0 over the Cramer-Rao bound "
+            "with the unit known. "
             "bench: error on the standard bench, deg. =: tie with the runner-up in a paired test. "
             f"{tally(rows)}",
             room,
@@ -129,7 +130,7 @@ def _seldom(rows: Sequence[Row]) -> str:
 def _finer(rows: Sequence[Row]) -> str:
     """Name pipelines with a lower error at lower availability."""
     named = [
-        f"{row['detector']} {row['mask']} {digits(row['finer_rms_deg'])} deg "
+        f"{row['detector']} {row['mask']} {digits(row['finer_own_deg'])} deg "
         f"({row['finer_extractor']} + {row['finer_model']}, "
         f"{100 * row['finer_availability']:.0f} %)"
         for row in rows

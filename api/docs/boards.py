@@ -15,10 +15,10 @@ from benchmark.results.store import Store
 
 PARTS = (
     "A board is a data set under its first condition. A part (extractor, compensation or model) is "
-    "judged on each board by the pipeline with it that is nearest to the bound and has at least "
-    "95 % availability. *Within 1.5* counts the boards on which the error of that pipeline is at "
-    "most 1.5 times the Cramer-Rao bound on unit 0, and so on. Parts run on different "
-    "boards, and on some boards no pipeline is near the bound."
+    "judged on each board, on unit 0, by the pipeline with it that is nearest to the bound and "
+    "has at least 95 % availability. *Within 1.5* counts the boards on which the RMS of that "
+    "pipeline on unit 0 is at most 1.5 times the Cramer-Rao bound, and so on. Parts run on "
+    "different boards, and on some boards no pipeline is near the bound."
 )
 
 

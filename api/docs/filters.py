@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from benchmark.contract import Cell
+from benchmark.leaderboard.summaries import digits
 from benchmark.plan.parts import installed_parts
 from benchmark.results.csv_tables import Row
 from benchmark.results.store import Store
@@ -19,7 +20,7 @@ _STILL = 3
 
 
 def errors() -> str:
-    """Tables of root mean square errors, degrees, of filters and of the best other models."""
+    """Tables of the RMS of unit 0, degrees, of filters and of the best other models."""
     scores = Store().scores()
     return "\n\n".join(_table(scores, *place, shown) for place, shown in SHOWN.items())
 
@@ -32,7 +33,7 @@ def _table(
 
     def error(model: str, condition: str) -> float | None:
         row = scores.get(Cell(dataset, condition, extractor, model))
-        found = None if row is None else row["rms_deg"]
+        found = None if row is None else row["charged_deg"]
         return float(found) if isinstance(found, float | int) else None
 
     still = {name: error(name, "nominal") for name in known if name not in filters}
@@ -40,11 +41,11 @@ def _table(
     lines = [
         f"### {dataset}, `{extractor}`",
         "",
-        "| model | " + " | ".join(conditions) + " |",
+        "| unit 0 RMS, deg | " + " | ".join(conditions) + " |",
         "|---|" + "---|" * len(conditions),
     ]
     for name in [*filters, *(name for _, name in best)]:
         cells = (error(name, condition) for condition in conditions)
-        shown = ("–" if cell is None else f"{cell:.3g}" for cell in cells)
+        shown = ("–" if cell is None else digits(cell) for cell in cells)
         lines.append(f"| `{name}` | " + " | ".join(shown) + " |")
     return "\n".join(lines)

@@ -53,7 +53,7 @@ def figure() -> Figure:
         range(len(rows)), [f"{row['detector']}, {row['mask']}" for row in rows], fontsize="small"
     )
     axes.set_ylim(-0.8, len(rows) - 0.2)
-    axes.set_xlabel("Own RMS error of the direction to the Sun, deg (nominal condition)")
+    axes.set_xlabel("Own error of the direction to the Sun, deg (nominal condition)")
     axes.grid(axis="x", color="#e3e7eb")
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
@@ -61,8 +61,8 @@ def figure() -> Figure:
     names = {
         "best calibration measured": (_BEST, "o", "full"),
         "best that a mapped study used": (_STUDIES, "o", "none"),
-        "built sensors, as published": (_BUILT, "^", "full"),
-        "Cramer-Rao bound": (_BOUND, "|", "full"),
+        "built sensors, reported": (_BUILT, "^", "full"),
+        "Cramer-Rao bound, unit known": (_BOUND, "|", "full"),
     }
     for name, (colour, mark, fill) in names.items():
         axes.plot([], [], mark, color=colour, label=name, fillstyle=fill)
@@ -163,7 +163,7 @@ def _distance() -> str:
     near = sum(verdict(row).is_near_bound for row in rows)
     return (
         f"**On {near} of {len(rows)} data sets the best pipeline is within {NEAR:g} times the "
-        f"physical limit.** Its error is {middle:.1f} times the Cramer-Rao bound "
+        f"physical limit.** Its error on unit 0 is {middle:.1f} times the Cramer-Rao bound "
         f"(median of the data sets; middle half {low:.1f} to {high:.1f}). The bound is for an "
         "estimator that knows the sensor unit only through its dark and flat frames "
         "([docs/limits.md](docs/limits.md))."
@@ -191,7 +191,7 @@ def _methods() -> str:
     low, middle, high = statistics.quantiles(factors, n=4)
     return (
         "**Better methods exist than those of most studies.** On the same data set the best "
-        f"method that a study used has {middle:.1f} times the error of the best method measured "
+        f"method that a study used has {middle:.1f} times the own error of the best one measured "
         f"(median of {len(factors)} studies; middle half {low:.1f} to {high:.1f}; "
         "`sunatlas leaderboard`)."
     )

@@ -6,17 +6,19 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
+from api.docs.knowledge import knowledge
 from api.docs.markdown import table
 from benchmark.error_budget.record import RECORD as ERROR_BUDGET
 from benchmark.error_budget.sentences import NEAR, PARTS, bound_of, verdict
 from benchmark.leaderboard.headlines import headlines
 from benchmark.leaderboard.realism import realism
+from benchmark.leaderboard.summaries import digits
 from benchmark.results.store import Store
 
 
 def best_pipelines() -> str:
     """Set every data set's best pipeline beside its bound and the built sensors' accuracy."""
-    built, pins = _build(), Store().pins()
+    built, pins, own = _build(), Store().pins(), knowledge().measurements.nominal
     rows = []
     for name, row in ERROR_BUDGET.read().items():
         judged, bound = verdict(row), bound_of(row)
@@ -25,11 +27,12 @@ def best_pipelines() -> str:
             (
                 f"[{name}](datasets.md#{name})",
                 f"{row['extractor']} + {row['model']}",
-                _number(row["rms_deg"]),
-                _number(bound),
+                digits(own[name, row["extractor"], row["model"]]["own_deg"]),
+                digits(row["rms_deg"]),
+                digits(bound),
                 f"{row['rms_deg'] / bound:.3g}",
                 "–" if judged.is_near_bound else PARTS[judged.leading_part],
-                _number(pin.bench_deg if pin else None),
+                digits(pin.bench_deg if pin else None),
                 _sensors(built.get(name)),
             )
         )
@@ -37,11 +40,12 @@ def best_pipelines() -> str:
         "data set",
         "best pipeline",
         "own error (deg)",
+        "unit 0 RMS (deg)",
         "bound (deg)",
-        "ratio",
+        "unit 0 / bound",
         "main error source",
     )
-    return table((*header, "bench adds (deg)", "built sensors' accuracy (deg rms)"), rows)
+    return table((*header, "bench adds (deg)", "built sensors, reported (deg RMS)"), rows)
 
 
 def sentences() -> str:
@@ -78,7 +82,7 @@ def headline_table() -> str:
             )
         )
         said.append(f"- {row['study']}, {row['kind']}: {row['difference']}")
-    header = ("study", "quantity", "published", "data set", "pipeline", "ours", "ratio")
+    header = ("study", "quantity", "reported", "data set", "pipeline", "ours, unit 0", "ratio")
     return table((*header, "bench adds", "answered"), rows) + "\n\n" + "\n".join(said)
 
 
@@ -101,11 +105,5 @@ def _conditions() -> Mapping[str, str]:
 def _sensors(beside: Mapping[str, Any] | None) -> str:
     sensors = (beside or {}).get("sensors", ())
     known = [sensor for sensor in sensors if sensor["accuracy_rms_deg"] is not None]
-    said = [f"{sensor['accuracy_rms_deg']:.2g} ({sensor['name']})" for sensor in known]
+    said = [f"{digits(sensor['accuracy_rms_deg'])} ({sensor['name']})" for sensor in known]
     return "; ".join(said) or "none published"
-
-
-def _number(value: float | None) -> str:
-    if value is None:
-        return "–"
-    return f"{value:.2g}" if value >= 1e-6 else "0"

@@ -22,6 +22,7 @@ from api.docs.field_plots import PlottedPipeline
 from api.docs.knowledge import knowledge
 from api.docs.markdown import table
 from benchmark.leaderboard.board import board_of
+from benchmark.leaderboard.summaries import digits
 from benchmark.metrics.score import AVAILABLE
 from benchmark.results.store import Store
 
@@ -161,8 +162,8 @@ def measure(category: str) -> str:
                 str(len({row["dataset"] for row in scored if row["rank"] == 1})),
                 nearest["dataset"],
                 nearest["extractor"],
-                f"{nearest['rms_deg']:.2g}",
-                f"{nearest['over_bound']:.3g}",
+                digits(nearest["own_deg"]),
+                digits(nearest["over_bound"]),
             )
         )
     header = ("model", "data sets", "first on", "nearest its bound on", "behind")
@@ -170,15 +171,15 @@ def measure(category: str) -> str:
         "Under the first condition of each data set, with the best extractor for each model; "
         f"pipelines with less than {AVAILABLE:.0%} availability are left out."
     )
-    return f"{said}\n\n" + table((*header, "rms error (deg)", "times the bound"), rows)
+    return f"{said}\n\n" + table((*header, "own error (deg)", "unit 0 / bound"), rows)
 
 
 def gains(category: str) -> str:
     """Set every chain beside its model alone, on the same data sets behind the same extractors."""
     errors = {
-        (row["model"], row["dataset"], row["extractor"]): row["rms_deg"]
+        (row["model"], row["dataset"], row["extractor"]): row["own_deg"]
         for row in _board()
-        if row["rms_deg"] is not None and row["availability"] >= AVAILABLE
+        if row["own_deg"] is not None and row["availability"] >= AVAILABLE
     }
     rows = []
     for name in (model.name for model in _of(category) if " + " in model.name):
@@ -197,12 +198,12 @@ def gains(category: str) -> str:
                 f"`{name}`",
                 str(len({where for _, where, *_ in pairs})),
                 f"{factor:.3g}",
-                f"{before:.2g} to {after:.2g}",
+                f"{digits(before)} to {digits(after)}",
                 f"{dataset}, {extractor}",
                 f"{min(pairs)[0]:.3g} ({min(pairs)[1]})",
             )
         )
-    header = ("chain", "data sets", "at best better by", "deg", "there", "at worst")
+    header = ("chain", "data sets", "at best better by", "own error (deg)", "there", "at worst")
     return table(header, rows)
 
 
@@ -212,8 +213,8 @@ def picture(category: str) -> str:
     if shown is None:
         return "Nothing is published yet."
     errors = field_plots.rms_deg(shown)
-    said = f"`{shown.extractor} + {shown.model}` on `{shown.dataset}`: {errors['as_is']:.2g} deg "
-    said += "as published"
+    said = f"`{shown.extractor} + {shown.model}` on `{shown.dataset}`, RMS of unit 0: "
+    said += f"{errors['as_is']:.2g} deg as published"
     if "perfect" in errors:
         said += f", {errors['perfect']:.2g} deg with calibration, unit and readings perfect"
         said += " ([explanation](../limits.md#what-is-made-perfect))"

@@ -16,6 +16,7 @@ from registry.fidelity.purposes import PURPOSES
 from registry.fidelity.runnable import ESSENTIAL
 from registry.resolution import Resolution
 from registry.sensors import BASES
+from registry.taxonomy import NO_IMPLEMENTATION_STATED, NOT_IN_SURVEY
 from survey_data import labels
 
 #: Values of a finding whose counts are printed.
@@ -39,7 +40,7 @@ def extractors() -> str:
         (
             f"`{i.name}`",
             i.title,
-            i.taxonomy,
+            NOT_IN_SURVEY if i.taxonomy == NO_IMPLEMENTATION_STATED else i.taxonomy,
             i.summary,
             f"{i.observation} → {i.kind}",
             ", ".join(i.studies),

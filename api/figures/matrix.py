@@ -16,6 +16,7 @@ from api.figures.figure import Entry, Figure, in_words
 from api.figures.matrix_svg import Cell, Line, draw_matrix
 from api.schema.figures import PairRow
 from api.schema.table import columns_of
+from benchmark.leaderboard.summaries import digits
 from registry.evidence import Evidence, PairEvidence, PipelineRun, count
 from registry.flows import LeftOut, Node, Where, allowed_values, flows
 from registry.possibility import RULE, Value
@@ -157,7 +158,7 @@ def _title(pair: tuple[Value, Value], count: int, known: PairEvidence) -> str:
     if known.pipelines:
         parts.append(f"{wording.plural(known.pipelines, 'pipeline', 'pipelines')} measured here")
     if (best := known.best_pipeline) is not None:
-        parts.append(f"best own error {best.nominal.rms_deg:.3g}° on {best.dataset}")
+        parts.append(f"best own error {digits(best.nominal.rms_deg)}° on {best.dataset}")
     if known.state == "impossible":
         parts.append(f"impossible ({known.reason})")
     if known.state == "unknown":

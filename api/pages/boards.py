@@ -11,7 +11,7 @@ from benchmark.metrics.rings import RINGS
 
 Row = Mapping[str, Any]
 
-COLUMNS = ("dataset", "condition", "rank", "of", "partner", "rms_deg", "bound_deg", "over_bound")
+COLUMNS = ("dataset", "condition", "rank", "of", "partner", "own_deg", "bound_deg", "over_bound")
 """What a place tells."""
 MOST_LINES = 5
 PARTNERS = {"extractor": "model", "model": "extractor"}
@@ -79,6 +79,6 @@ def field_chart(rows: Sequence[Row], named: str = "dataset") -> LineChart:
     return LineChart(
         [line for line in lines if line.points],
         "angle off the boresight, °",
-        "RMS error, °",
+        "Unit 0 RMS, °",
         "Error against the Sun's angle off the boresight",
     )

@@ -16,9 +16,17 @@ router = APIRouter(route_class=StrictRoute, include_in_schema=False)
 
 @router.get("/calibrate")
 async def form(request: Request) -> Response:
-    """Give the form."""
+    """Give the form; `model` in the query is filled in."""
     context = {"path": "/calibrate", "query": "", "megabytes": LARGEST // 1_000_000}
-    page = render("calibrate/form.html", {**context, "rows": MOST_ROWS, "seconds": int(LONGEST_S)})
+    page = render(
+        "calibrate/form.html",
+        {
+            **context,
+            "rows": MOST_ROWS,
+            "seconds": int(LONGEST_S),
+            "model": request.query_params.get("model", ""),
+        },
+    )
     return page_bytes(page).respond(request)
 
 

@@ -27,7 +27,7 @@ from registry.taxonomy import InvalidValueError
 router = PageRouter()
 
 COLUMNS = (
-    *("detector", "mask", "dataset", "condition", "extractor", "model", "status", "rms_deg"),
+    *("detector", "mask", "dataset", "condition", "extractor", "model", "status", "own_deg"),
     *("bound_deg", "over_bound", "over_least", "availability", "half_fov_deg", "rank"),
     *("low_deg", "high_deg", "needed_poses", "latency_us", "studies", "proposed"),
 )
@@ -111,6 +111,6 @@ def _chart(items: list[Mapping[str, Any]], names: list[str]) -> LineChart:
     return LineChart(
         lines,
         "angle off the boresight, °",
-        "RMS error, °",
+        "Unit 0 RMS, °",
         "Errors of those compared against the Sun's angle off the boresight",
     )

@@ -98,6 +98,9 @@ async def dataset(
     document = {**card, "condition": condition, "board": board}
     held = ERROR_BUDGET.read().get(name)
     realism = next((r for r in known.measurements.realism if r["dataset"] == name), None)
+    ours = realism and known.measurements.nominal.get(
+        (name, realism["extractor"], realism["model"])
+    )
     landing = landing_of_dataset(known, name)
     return View(
         "dataset.html",
@@ -113,6 +116,7 @@ async def dataset(
         held=sentences.verdict(held).sentence if held else None,
         facts=next((one for one in every_board if one["name"] == name), None),
         realism=realism,
+        ours=ours,
     )
 
 
@@ -139,7 +143,7 @@ def _curve(known: Knowledge, name: str) -> LineChart:
     return LineChart(
         lines,
         "calibration poses",
-        "RMS error, °",
+        "RMS, °",
         f"Error of the leaders on {name} against the number of calibration poses",
         log_across=True,
     )

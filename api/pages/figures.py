@@ -15,7 +15,7 @@ from api.figures.figure import Figure, Row
 from api.figures.interactive import specification
 from api.figures.statements import number_of_studies, statements
 from api.pages.editions import edition_shown
-from api.pages.numbers import degrees, kind_said, wide
+from api.pages.numbers import degrees, kind_said, own_error, wide
 from api.pages.serving import PageRouter, View
 from api.schema.figures import FigureQuery, MatrixQuery
 from api.schema.studies import StudyFilters
@@ -303,8 +303,13 @@ def _matrix_cells(row: Row) -> list[Cell]:
     return [
         *pair,
         ("Measured here", measured if row["pipelines"] else "–", row["best_dataset"] or ""),
-        ("Best own error", degrees(row["best_own_deg"]), ""),
+        ("Best own error", _own_error(row), ""),
     ]
+
+
+def _own_error(row: Row) -> str:
+    names = ("dataset", "extractor", "model", "own_deg")
+    return own_error({name: row[f"best_{name}"] for name in names})
 
 
 _CELLS: Mapping[str, Callable[[Row], list[Cell]]] = {

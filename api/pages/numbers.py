@@ -3,29 +3,40 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
-from survey_data.reported import UNSPECIFIED, statistics
+from markupsafe import Markup
+
+from benchmark.leaderboard import summaries
+from survey_data.reported import UNSPECIFIED, reported_accuracies, statistics
 
 NOTHING = "–"
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """Return a number with so many significant digits."""
-    if value is None or not math.isfinite(value):
-        return NOTHING
-    if value == 0:
-        return "0"
-    if abs(value) >= 1000:  # all its digits would say more than is known
-        power = 10 ** (math.floor(math.log10(abs(value))) - digits + 1)
-        return f"{round(value / power) * power:,}"
-    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
-    return f"{value:.{min(decimals, 8)}f}"
+    """Return a number with so many significant digits, as commands and documents spell it."""
+    return summaries.digits(value, digits, NOTHING)
 
 
 def degrees(value: float | None) -> str:
     """Return an error in degrees."""
     text = number(value)
     return text if text == NOTHING else f"{text}°"
+
+
+def own_error(row: Mapping[str, Any]) -> Markup:
+    """Return the own error of a row, marked so that a reader of pages finds it.
+
+    Parameters
+    ----------
+    row : with `own_deg`, and `dataset`, `extractor` and `model`
+    """
+    if row["own_deg"] is None:
+        return Markup.escape(NOTHING)
+    of = "|".join(row[name] for name in ("dataset", "extractor", "model"))
+    shown = Markup('<data class="own-error" value="{}" data-of="{}">{}</data>')
+    return shown.format(row["own_deg"], of, degrees(row["own_deg"]))
 
 
 def wide(value: float | None) -> str:
@@ -84,10 +95,16 @@ def kind_said(kind: str) -> str:
     return "of which kind is not said" if kind == UNSPECIFIED else statistics()[kind].name
 
 
+def reported_rms(value: float | None, kind: str) -> float | None:
+    """Return a published accuracy as RMS, by the rule of its kind."""
+    return None if value is None else reported_accuracies("accuracy", value, kind).rms_deg
+
+
 GIVEN = (
     *(
         number,
         degrees,
+        own_error,
         wide,
         times,
         percent,
@@ -98,5 +115,6 @@ GIVEN = (
         unit_name,
     ),
     kind_said,
+    reported_rms,
 )
 """What templates are given as filters."""

@@ -24,9 +24,9 @@ from registry.studies import Study
 router = PageRouter()
 
 OTHER = {"detector": "mask", "mask": "detector"}
-COLUMNS = ("value", "name", "category", "studies", "datasets", "best_deg", "best_dataset")
+COLUMNS = ("value", "name", "category", "studies", "datasets", "best_own_deg", "best_dataset")
 ARCHITECTURE_COLUMNS = (
-    *("detector", "mask", "studies", "datasets", "dataset", "extractor", "model", "rms_deg"),
+    *("detector", "mask", "studies", "datasets", "dataset", "extractor", "model", "own_deg"),
     *("bound_deg", "over_bound", "half_fov_deg"),
 )
 MOST = 500
@@ -43,13 +43,14 @@ def _document(known: Knowledge, attribute: str, value: str) -> dict[str, Any]:
     studies = [s for s in known.facts.studies.values() if value in s.of(attribute)]
     built = [row for row in best_built(known) if row[attribute] == value]
     cards = [c for c in known.measurements.cards if c[attribute] == value]
-    measured = [row for row in built if row["rms_deg"] is not None]
-    best = min(measured, key=lambda row: row["rms_deg"], default=None)
+    measured = [row for row in built if row["own_deg"] is not None]
+    best = min(measured, key=lambda row: row["own_deg"], default=None)
     return {
         **entry,
         "studies": [s.key for s in studies],
         "datasets": [c["name"] for c in cards],
-        "best_deg": best and best["rms_deg"],
+        "best": best,
+        "best_own_deg": best and best["own_deg"],
         "best_dataset": best and best["dataset"],
         "architectures": _pairs(studies, built, attribute, value),
     }

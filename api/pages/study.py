@@ -16,6 +16,8 @@ from api.schema.studies import StudiesQuery
 from api.schema.words import StudyKey
 from api.service import studies as service
 from api.web.dependencies import Known
+from benchmark.leaderboard.board import NOMINAL
+from benchmark.metrics.score import AVAILABLE
 from registry.fidelity.grading import GRADES as IN_WORDS
 from registry.fidelity.grading import TALLIED, tally_text
 from registry.fidelity.purposes import PURPOSES
@@ -104,6 +106,8 @@ async def study(known: Known, key: Annotated[StudyKey, Path()]) -> View:
         answer,
         landing=landing,
         entity=schema_org.study(answer.document, landing),
+        available=AVAILABLE,
+        nominal=NOMINAL,
         names=NAMES,
         bases=BASES,
         grades=GRADES,

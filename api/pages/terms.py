@@ -16,7 +16,7 @@ from api.addresses import anchor, study_page, value_page
 from api.figures.wording import NONE, WITHOUT
 from api.glossary import words
 from registry.studies import facts
-from registry.taxonomy import ATTRIBUTES
+from registry.taxonomy import ATTRIBUTES, NOT_IN_SURVEY
 from survey_data import labels
 from survey_data.reported import KIND_OF, statistics
 from survey_data.sources import source_named
@@ -138,6 +138,11 @@ def value(text: str, attribute: str) -> Markup:
     return link.format(at=at, name=term_name(text, attribute), text=display_text(text, attribute))
 
 
+def method_value(text: str, attribute: str) -> Markup:
+    """Return the survey's value of an implementation, which for an own method is none."""
+    return Markup.escape(NOT_IN_SURVEY) if text == NONE else value(text, attribute)
+
+
 def term_label(text: str) -> Markup:
     """Return a text, what each label of the survey's source in it names in the label's place."""
     alone = text in labels.labels()
@@ -176,6 +181,7 @@ GIVEN = (
     term_name,
     local_term_name,
     value,
+    method_value,
     term_label,
     cite_study,
 )

@@ -33,7 +33,7 @@ class Sweep(OpenShape):
     extractor: str
     rms: float | None = Field(description="Root mean square error of one coordinate.")
     bound: float | None = Field(description="Cramer-Rao bound of one coordinate.")
-    over_bound: float | None = Field(description="RMS error divided by the bound.")
+    over_bound: float | None = Field(description="Unit 0 RMS divided by the bound.")
     status: Literal["ok", "refused", "failed"]
     value: float | None = Field(
         description="Position on the axis of the sweep; null if it is a word."

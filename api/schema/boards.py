@@ -57,12 +57,16 @@ class BestOfArchitecture(Shape):
     on_bench_basis: Literal["measured", "estimated"] | None = Field(
         description="measured on random benches, or estimated."
     )
-    rms_deg: float | None = Field(description="RMS error on the standard sensor unit.")
+    rms_deg: float | None = Field(description="Unit 0 RMS, over answers to observable samples.")
     bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
-    over_bound: float | None = Field(description="RMS error divided by the bound.")
+    over_bound: float | None = Field(
+        description="Unit 0: RMS over all answers divided by the bound of the same samples."
+    )
     over_bound_se: float | None = Field(description="Standard error of that ratio.")
     bound_unit_deg: float | None
-    over_bound_unit: float | None = Field(description="RMS error divided by bound_unit_deg.")
+    over_bound_unit: float | None = Field(
+        description="Unit 0: RMS over all answers divided by bound_unit_deg."
+    )
     availability: float | None = Field(
         description="Availability: share of observable samples with an answer."
     )
@@ -101,8 +105,8 @@ class BestOfArchitecture(Shape):
         description="Extractor of a pipeline with lower error at lower availability."
     )
     finer_model: str | None = Field(description="Model of that pipeline.")
-    finer_rms_deg: float | None = Field(description="Its RMS error, degrees.")
-    finer_over_bound: float | None = Field(description="Its error divided by the bound.")
+    finer_own_deg: float | None = Field(description="Its own error, degrees.")
+    finer_over_bound: float | None = Field(description="Unit 0: its RMS divided by the bound.")
     finer_availability: float | None = Field(description="Availability of that pipeline.")
 
 

@@ -62,22 +62,33 @@ class CompareQuery(OfEdition, TableQuestion):
     )
 
 
-class FinerPipeline(Shape):
+class PartialPipeline(Shape):
     """A pipeline of the same architecture with a much lower error."""
 
     dataset: str
     extractor: str
     model: str
-    rms_deg: float
     availability: float = Field(description="Availability.")
 
 
-class ConditionError(Shape):
-    """Error under a condition."""
+class FinerPipeline(PartialPipeline):
+    """A pipeline with a much lower own error."""
 
-    rms_deg: float | None
+    own_deg: float = Field(description="Own error: geometric mean over sensor units.")
+
+
+class FinerThere(PartialPipeline):
+    """A pipeline with a much lower error of unit 0 under a condition."""
+
+    charged_deg: float = Field(description="Unit 0 RMS, over all answers.")
+
+
+class ConditionError(Shape):
+    """Error of unit 0 under a condition; own errors are over all units, under the first."""
+
+    charged_deg: float | None = Field(description="Unit 0 RMS, over all answers.")
     availability: float | None
-    finer: FinerPipeline | None = Field(
+    finer: FinerThere | None = Field(
         description="Pipeline of the architecture with the lowest error under this condition at "
         f"50 % availability or more; null unless the error is more than {FINER:g} times as large."
     )
@@ -101,14 +112,18 @@ class ComparedRow(Shape):
     extractor: str | None
     model: str | None
     studies: list[str] = Field(description="Studies that used it on such a sensor.")
-    rms_deg: float | None
+    own_deg: float | None = Field(
+        description="Own error: geometric mean over the measured sensor units; unit 0 alone under "
+        "conditions other than the first."
+    )
     over_least: float | None = Field(
-        description="RMS error divided by the lowest of those compared."
+        description="Own error divided by the lowest of those compared."
     )
     bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
-    over_bound: float | None
+    over_bound: float | None = Field(
+        description="Unit 0: RMS over all answers divided by the bound of the same samples."
+    )
     over_bound_se: float | None = Field(description="Standard error of that ratio.")
-    own_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
     on_bench_deg: float | None = Field(
         description="Error expected with the standard calibration bench."
     )
@@ -153,8 +168,8 @@ class Compared(ComparedRow):
 
     proposed: list[str] | None = Field(description="Studies with this architecture.")
     unit_rms_deg: list[float | None] | None = Field(description="Error on each sensor unit.")
-    conditions: dict[str, ConditionError] = Field(description="RMS error by condition.")
-    rings: list[RingError] = Field(description="RMS error by off-axis angle.")
+    conditions: dict[str, ConditionError] = Field(description="Unit 0 RMS by condition.")
+    rings: list[RingError] = Field(description="Unit 0 RMS by off-axis angle.")
 
 
 class Comparison(Shape):

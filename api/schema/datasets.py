@@ -80,7 +80,9 @@ class BestOnDataset(Shape):
     )
     model: str | None
     half_fov_deg: float | None
-    rms_deg: float | None
+    rms_deg: float | None = Field(
+        description="Unit 0 RMS, over answers to observable samples, of that pipeline."
+    )
     bound_deg: float | None = Field(description="Cramer-Rao bound over the field of the data set.")
     repeatability_deg: float | None
 
@@ -99,9 +101,9 @@ class PublishedFigures(Shape):
     precision_deg: float | None
     basis: str = Field(description="page: seen on a public page; recalled: not checked.")
     our_rms_deg: float | None = Field(
-        description="Our RMS error, over its field of view if narrower."
+        description="Our unit 0 RMS on the standard bench, over its field of view if narrower."
     )
-    accuracy_ratio: float | None = Field(description="Our error divided by its accuracy.")
+    accuracy_ratio: float | None = Field(description="`our_rms_deg` divided by its accuracy.")
     precision_ratio: float | None = Field(description="Our repeatability divided by its precision.")
 
 

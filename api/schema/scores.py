@@ -57,13 +57,14 @@ class Accuracy(OpenShape):
 
     rms_deg: float | None = Field(
         description=(
-            "RMS error over the observable samples with an answer, calibrated with true "
+            "RMS of this unit over the observable samples with an answer, calibrated with true "
             "directions; under `on-bench` with directions of random benches."
         )
     )
     charged_deg: float | None = Field(
         description=(
-            "RMS error over all answers, including those to unobservable samples. Ranks use it."
+            "RMS of this unit over all answers, including those to unobservable samples; own "
+            "errors are its mean over units."
         )
     )
     aligned_deg: float | None = Field(description="RMS error after boresight alignment.")
@@ -125,9 +126,11 @@ class Statistics(OpenShape):
             "Repeatability: standard deviation of answers at a fixed pose, over both axes."
         )
     )
-    over_bound: float | None = Field(description="RMS error divided by the bound.")
+    over_bound: float | None = Field(
+        description="RMS over all answers divided by the bound of the same samples and unit."
+    )
     over_bound_se: float | None = Field(description="Standard error of that ratio.")
-    over_bound_unit: float | None = Field(description="RMS error divided by that bound.")
+    over_bound_unit: float | None = Field(description="The same RMS divided by that bound.")
 
 
 class RingErrors(OpenShape):
@@ -246,7 +249,7 @@ class Units(OpenShape):
         None, description="Off-axis angle that the rank is for; null if not asked for."
     )
     field_rms_deg: float | None = Field(
-        None, description="RMS error within that angle; null if not asked for."
+        None, description="Unit 0 RMS within that angle; null if not asked for."
     )
     widest_field_deg: float | None = Field(
         None, description="Widest field within the maximum error; null if not asked for."

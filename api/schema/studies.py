@@ -76,16 +76,28 @@ class Verification(Shape):
     source: str
 
 
-class Headline(Shape):
-    """Best score of a study's pipelines."""
+class PublishedScore(Shape):
+    """Published numbers of a pipeline on a data set under a condition."""
+
+    own_deg: float | None = Field(
+        description="Own error: geometric mean over the measured sensor units; unit 0 alone under "
+        "conditions other than the first."
+    )
+    rms_deg: float | None = Field(description="Unit 0 RMS, over answers to observable samples.")
+    bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
+    over_bound: float | None = Field(
+        description="Unit 0: RMS over all answers divided by the bound of the same samples."
+    )
+    availability: float | None
+
+
+class Headline(PublishedScore):
+    """Score with the lowest own error of a study's pipelines."""
 
     extractor: str
     model: str
     dataset: str
     condition: str
-    rms_deg: float
-    bound_deg: float | None
-    availability: float | None
 
 
 class Departure(Shape):
@@ -134,7 +146,7 @@ class Study(StudyRow):
     sentence: str = Field(description="Implementation and its differences, one sentence.")
     runs: Runs = Field(description="Implementation in the Atlas.")
     headline: Headline | None = Field(
-        description="Lowest error of the best-supported pipelines; null if not measured."
+        description="Lowest own error of the best-supported pipelines; null if not measured."
     )
 
 
@@ -162,13 +174,10 @@ class Setting(Shape):
     purposes: list[Purpose] = Field(description="Purpose of the study that this shows.")
 
 
-class SettingScore(Setting):
+class SettingScore(Setting, PublishedScore):
     """Published score of a pipeline on a data set and condition; status is null if none."""
 
     status: str | None
-    rms_deg: float | None
-    bound_deg: float | None
-    availability: float | None
 
 
 class StudyPipeline(Shape):
@@ -219,6 +228,32 @@ class Reported(Shape):
     )
 
 
+class Rung(Shape):
+    """A method with its own error."""
+
+    extractor: str
+    model: str
+    own_deg: float
+    availability: float | None
+
+
+class Ladder(Shape):
+    """A study's own method, the best method and the bound on one data set and condition."""
+
+    dataset: str
+    condition: str
+    nominal: bool = Field(
+        description="Whether it is the first condition; under others `own_deg` is of unit 0 alone."
+    )
+    own: Rung = Field(description="The study's own method, as in `headline`.")
+    best: Rung = Field(description="First pipeline of the leaderboard.")
+    bound_deg: float | None = Field(description="Cramer-Rao bound with the sensor unit known.")
+    bound_unit_deg: float | None = Field(
+        description="Cramer-Rao bound with the unit known by its darks and flats; null if not "
+        "computed."
+    )
+
+
 class StudyDetail(Study):
     """A study with the basis of every value and its implementation."""
 
@@ -234,6 +269,9 @@ class StudyDetail(Study):
         description=(
             "Precision (scatter of repeated readings) that the study reports; not an accuracy."
         )
+    )
+    ladder: Ladder | None = Field(
+        description="Rungs below the reported accuracy; null if the study's method has no error."
     )
     departures: list[Departure] = Field(description="Differences from the study.")
     purposes: dict[Purpose, str] = Field(

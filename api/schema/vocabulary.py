@@ -56,7 +56,7 @@ MEANINGS: Mapping[str, str] = {
     "name": "Unique name.",
     "nodes": "Values of the chart with their studies.",
     "note": "Remark; empty where there is none.",
-    "over_bound": "RMS error divided by the bound.",
+    "over_bound": "RMS of one sensor unit divided by the bound of the same samples.",
     "pipelines": "Number or list of pipelines.",
     "precision_deg": "Published precision, degrees.",
     "properties": "Outcome for each property.",
@@ -66,7 +66,7 @@ MEANINGS: Mapping[str, str] = {
     "repeatability_deg": (
         "Repeatability: standard deviation of answers at a fixed pose, over both axes, degrees."
     ),
-    "rms_deg": "RMS separation angle of observable samples with an answer, degrees.",
+    "rms_deg": "RMS separation angle of one unit, observable samples with an answer, degrees.",
     "role": "extractor or model.",
     "rows": "Rows of the table.",
     "rule": "Name of the criterion within its claim.",

@@ -16,21 +16,15 @@ from registry.taxonomy import InvalidValueError
 from survey_data.nearest import nearest_name
 
 _SCORE = (
-    *("dataset", "condition", "extractor", "model", "studies", "rms_deg", "bound_deg"),
-    *(
-        "over_bound",
-        "over_bound_se",
-        "own_deg",
-        "on_bench_deg",
-        "low_deg",
-        "high_deg",
-        "unit_rms_deg",
-    ),
+    *("dataset", "condition", "extractor", "model", "studies", "own_deg", "low_deg", "high_deg"),
+    *("unit_rms_deg", "on_bench_deg", "bound_deg", "over_bound", "over_bound_se"),
     *("availability", "false_sun", "latency_us", "time_ratio", "half_fov_deg", "rank", "status"),
     "reason",
 )
 _CURVE = ("needed_poses", "needed_low", "needed_high", "poses", "floor_error_deg")
-_FINER = ("dataset", "extractor", "model", "rms_deg", "availability")
+_NAMED = ("dataset", "extractor", "model")
+_FINER = (*_NAMED, "own_deg", "availability")
+_OF_CONDITION = ("charged_deg", "availability")
 _RING = ("inner_deg", "outer_deg", "rms_deg")
 
 
@@ -79,12 +73,12 @@ def compare_pipelines(
     -------
     dict
         ``dataset``, ``condition`` and ``items``: one item a pipeline, in the given order, with
-        names, error, bound, availability, times and studies. ``needed_poses`` and the other members
-        of its learning curve are None for a pipeline without a curve (most have none).
-        ``conditions`` holds error and availability by condition, ``rings`` the error by angle from
-        the boresight. Undefined numbers are None; ``reason`` says why a pipeline has no score.
-        ``over_least`` is its error divided by the smallest error compared. ``finer`` is for
-        architectures only, and None here.
+        names, own error, bound, availability, times and studies. ``needed_poses`` and the other
+        members of its learning curve are None for a pipeline without a curve (most have none).
+        ``conditions`` holds the error of unit 0 and its availability by condition, ``rings`` that
+        error by angle from the boresight. Undefined numbers are None; ``reason`` says why a
+        pipeline has no score. ``over_least`` is its own error divided by the smallest compared.
+        ``finer`` is for architectures only, and None here.
 
     Raises
     ------
@@ -173,7 +167,7 @@ def _architecture(known: Knowledge, name: str, best: Mapping[str, Any] | None) -
     item = _item(known, rows, known.measurements.presets[best["dataset"]].conditions[0])
     for condition, scored in item["conditions"].items():
         others = [row for row in board if row["condition"] == condition and _name(row) != wanted]
-        scored["finer"] = _finer(others, scored["rms_deg"])
+        scored["finer"] = _finer(others, scored["charged_deg"])
     finer = {name: best[f"finer_{name}"] for name in _FINER}
     return {**item, "finer": None if finer["dataset"] is None else finer}
 
@@ -185,12 +179,14 @@ def _finer(rows: Sequence[Mapping[str, Any]], error_deg: float | None) -> dict[s
     found = finer_for(
         error_deg,
         [
-            PartialAnswer(row["rms_deg"], row["availability"] or 0.0, row)
+            PartialAnswer(row["charged_deg"], row["availability"] or 0.0, row)
             for row in rows
-            if row["rms_deg"] is not None
+            if row["charged_deg"] is not None
         ],
     )
-    return None if found is None else {name: found.subject[name] for name in _FINER}
+    if found is None:
+        return None
+    return {name: found.subject[name] for name in (*_NAMED, *_OF_CONDITION)}
 
 
 def _item(
@@ -201,7 +197,7 @@ def _item(
         row = rows[condition]
     else:
         # Not planned under this condition: names only.
-        named = ("dataset", "extractor", "model", "half_fov_deg")
+        named = (*_NAMED, "half_fov_deg")
         row = {
             **dict.fromkeys(_SCORE),
             **{name: any_row[name] for name in named},
@@ -210,14 +206,14 @@ def _item(
             "status": "none",
             "reason": "not measured under this condition",
         }
-    place = tuple(any_row[name] for name in ("dataset", "extractor", "model"))
+    place = tuple(any_row[name] for name in _NAMED)
     curve = known.measurements.curve_of.get(place, {})
     return {
         **{name: any_row[name] for name in ("detector", "mask")},
         **{name: row[name] for name in _SCORE},
         **{name: curve.get(name) for name in _CURVE},
         "conditions": {
-            name: {**{what: scored[what] for what in ("rms_deg", "availability")}, "finer": None}
+            name: {**{what: scored[what] for what in _OF_CONDITION}, "finer": None}
             for name, scored in rows.items()
         },
         "finer": None,
@@ -237,10 +233,10 @@ def _rings(row: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def _with_ratio(items: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Add to each item its error divided by the smallest of them."""
-    least = min((i["rms_deg"] for i in items if i["rms_deg"] is not None), default=None)
+    """Add to each item its own error divided by the smallest of them."""
+    least = min((i["own_deg"] for i in items if i["own_deg"] is not None), default=None)
     for item in items:
-        error = item["rms_deg"]
+        error = item["own_deg"]
         item["over_least"] = error / least if least and error is not None else None
         item.setdefault("proposed", None)
     return items

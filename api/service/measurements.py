@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Any
 from api.metadata.identity import version
 from api.schema.samples import SampleError
 from api.schema.table import columns_of
+from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin
 from benchmark.leaderboard.board import build
 from benchmark.leaderboard.scope import Studied, studies_of_pipelines
 from benchmark.learning_curves import record as curves
+from benchmark.metrics.ranking import spreads
 from benchmark.results import record_manifest, samples
 from benchmark.results.pipelines import pipelines, standard_benches
 from benchmark.results.store import PUBLISHED, Store
@@ -73,17 +75,25 @@ class Measurements:
 
     @cached_property
     def score_of(self) -> Mapping[tuple[str, str, str, str], Row]:
-        """Score of the standard unit by data set, condition, extractor and model."""
-        names = ("dataset", "condition", "extractor", "model")
-        return {(*(str(row[name]) for name in names),): row for row in self.scores}  # type: ignore[misc]
+        """Score of unit 0 by data set, condition, extractor and model, with the `own_deg` there.
+
+        That is the geometric mean over the units measured under the condition.
+        """
+        own = spreads(self._every_unit)
+        found = {}
+        for row in self.scores:
+            cell = Cell(row["dataset"], row["condition"], row["extractor"], row["model"])
+            place = (cell.dataset, cell.condition, cell.extractor, cell.model)
+            found[place] = {**row, "own_deg": own[cell].own_deg}
+        return found
 
     @cached_property
     def nominal(self) -> Mapping[tuple[str, str, str], Row]:
-        """Score under the first condition of each data set, by data set, extractor and model."""
+        """The same under the first condition of each data set, by data set, extractor and model."""
         first = {name: preset.conditions[0] for name, preset in self.presets.items()}
         return {
             (row["dataset"], row["extractor"], row["model"]): row
-            for row in self.scores
+            for row in self.score_of.values()
             if row["condition"] == first.get(row["dataset"])
         }
 

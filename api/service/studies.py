@@ -10,6 +10,7 @@ from api.schema.table import columns_of
 from api.schema.words import StudyKey
 from api.service.documents import Document, list_document
 from api.service.knowledge import Knowledge
+from api.service.ladder import ladder
 from api.service.pagination import order, page
 from registry.fidelity.runnable import RunnablePipeline
 from registry.resolution import Resolution
@@ -52,6 +53,7 @@ def study(known: Knowledge, key: StudyKey) -> Document:
         "purposes": dict(resolution.fidelity.purposes),
         "reported_accuracy": _report(found, "accuracy"),
         "reported_precision": _report(found, "precision"),
+        "ladder": ladder(headline(resolution, known), known.measurements),
         "pipelines": [
             {**pipeline.to_dict(), "scores": _scores(pipeline, known)}
             for pipeline in resolution.pipelines
@@ -91,7 +93,7 @@ def _row(study: Study, known: Knowledge) -> dict[str, Any]:
     }
 
 
-_NUMBERS = ("status", "rms_deg", "bound_deg", "availability")
+_NUMBERS = ("status", "own_deg", "rms_deg", "bound_deg", "over_bound", "availability")
 
 
 def _said(item: Mapping[str, Any]) -> list[str]:
@@ -113,15 +115,15 @@ def headline(resolution: Resolution, known: Knowledge) -> dict[str, Any] | None:
     """Return the score that a study is shown by, or None where it is not measured.
 
     Of the pipelines that rest on most, each in the setting that tells most of the study, the one of
-    the least error.
+    the least own error.
     """
     found = []
     for pipeline in resolution.strongest_pipelines:
         score = _scores(pipeline, known)[0]
-        if score["rms_deg"] is not None:
+        if score["own_deg"] is not None:
             members = {name: score[name] for name in ("dataset", "condition", *_NUMBERS[1:])}
             found.append({"extractor": pipeline.extractor, "model": pipeline.model, **members})
-    return min(found, key=lambda score: score["rms_deg"], default=None)
+    return min(found, key=lambda score: score["own_deg"], default=None)
 
 
 def _is_wanted(study: Study, query: StudiesQuery, known: Knowledge) -> bool:

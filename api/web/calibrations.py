@@ -19,7 +19,7 @@ HTML, ZIP = "text/html", "application/zip"
 OFFERED = (JSON, HTML, ZIP)
 #: What the field `answer` calls them.
 ANSWERS: Mapping[str, str] = {"json": JSON, "report": HTML, "zip": ZIP}
-_FIELDS = ("config", "apply", "answer")
+_FIELDS = ("config", "model", "apply", "answer")
 #: One calibration at a time in a process of the server: each keeps a core busy.
 _BUSY = asyncio.Semaphore(1)
 _RETRY_S = "30"
@@ -46,6 +46,7 @@ async def calibrated(request: Request, wanted: str) -> Response:
                 form.files,
                 form.fields.get("config", ""),
                 apply=form.fields.get("apply", "false") == "true",
+                model=form.fields.get("model", "").strip(),
             )
         except UploadRefusedError as error:
             raise Problem(422, "no-calibration", str(error)) from error

@@ -56,7 +56,7 @@ def figure(rows: Sequence[Row]) -> Figure:
         [rows] if rows else [],
         _fill,
         title="Error budget of every data set's leader",
-        explained="across: degrees; own error of the standard unit, its bound, and what each part "
+        explained="across: degrees; RMS of unit 0, its bound, and what each part "
         "contributes (root mean square); the largest part is named",
         legend=_legend(),
         handle=1.0,
@@ -100,7 +100,7 @@ def _legend() -> list[Line2D]:
     from matplotlib.lines import Line2D  # noqa: PLC0415 - a second that only pictures need
 
     return [
-        Line2D([], [], label="own error", **dots(BLUE, _DOT)),
+        Line2D([], [], label="RMS of unit 0", **dots(BLUE, _DOT)),
         Line2D([], [], label="Cramer-Rao bound", **_TICK),
         Line2D([], [], label="largest part", **dots(VERMILION, 8.6, edge=1.4, hollow=True)),
         Line2D([], [], label="other parts", **_SMALL),

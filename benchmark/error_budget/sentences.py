@@ -16,7 +16,7 @@ from benchmark.error_budget.variants import SINGLE
 
 Row = Mapping[str, Any]
 
-#: Ratio of own error to bound up to which no error source is named.
+#: Ratio of the RMS of unit 0 to its bound up to which no error source is named.
 NEAR = 2.0
 
 #: Every part, in the order of ties, with what it is called.
@@ -78,7 +78,7 @@ def verdict(row: Row) -> Verdict:
     parts = contributions(row)
     leading = max(parts, key=lambda part: parts[part])
     ratio = row["rms_deg"] / bound_of(row)
-    said = f"`{row['dataset']}`: the own error of {row['extractor']} + {row['model']} is "
+    said = f"`{row['dataset']}`: the RMS of {row['extractor']} + {row['model']} on unit 0 is "
     said += f"{degrees(row['rms_deg'])}, {times(ratio)} its bound"
     if ratio <= NEAR:
         return Verdict(True, parts, leading, f"{said}.")

@@ -24,7 +24,7 @@ _OF_SCORE = (
     *("bound_unit_deg", "over_bound_unit", "availability", "unit_rms_deg"),
 )
 #: Members of a pipeline that errs far less on what it answers, named `finer_...`.
-_OF_FINER = ("dataset", "extractor", "model", "rms_deg", "over_bound", "availability")
+_OF_FINER = ("dataset", "extractor", "model", "own_deg", "over_bound", "availability")
 #: Members of the runner-up, named `runner_up_...`.
 _OF_RUNNER_UP = ("extractor", "model", "own_deg", "unit_rms_deg")
 
@@ -119,7 +119,7 @@ def _quote(ranked: Sequence[Sequence[Row]]) -> float | None:
 def _finer(best: Row, ranked: Sequence[Sequence[Row]]) -> Row:
     """Return what errs far less than the best, answering seldom; nothing where nothing does."""
     seldom = (
-        PartialAnswer(row["charged_deg"], row["availability"] or 0.0, row)
+        PartialAnswer(row["own_deg"], row["availability"] or 0.0, row)
         for rows in ranked
         for row in rows
         if not is_available(row)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -72,16 +73,29 @@ def _finer(row: Row) -> str:
     if row["finer_extractor"] is None:
         return ""
     return (
-        f" ({row['finer_extractor']} + {row['finer_model']}: {digits(row['finer_rms_deg'])} deg at "
+        f" ({row['finer_extractor']} + {row['finer_model']}: {digits(row['finer_own_deg'])} deg at "
         f"{100 * row['finer_availability']:.0f} % availability)"
     )
 
 
-def digits(value: float | None) -> str:
-    """Spell a number in three significant digits; a dash for none."""
-    if value is None:
-        return "-"
-    return f"{value:.0f}" if 1000 <= value < 1e6 else f"{value:#.3g}".rstrip(".")
+def digits(value: float | None, count: int = 3, nothing: str = "-") -> str:
+    """Spell a number in so many significant digits, never with an exponent.
+
+    This is the one spelling of an error on pages, in commands and in documents.
+
+    Parameters
+    ----------
+    value : None, NaN and infinities for none
+    count : significant digits
+    nothing : what stands for none
+    """
+    if value is None or not math.isfinite(value):
+        return nothing
+    if value == 0:
+        return "0"
+    rounded = float(f"{value:.{count - 1}e}")
+    decimals = count - 1 - math.floor(math.log10(abs(rounded)))
+    return f"{rounded:,.{max(0, min(decimals, 8))}f}"
 
 
 def _table(headings: Mapping[str, str], rows: Iterable[Sequence[str]]) -> str:

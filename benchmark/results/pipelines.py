@@ -11,6 +11,7 @@ from typing import Any
 from benchmark import datasets
 from benchmark.datasets.hazards import hazards
 from benchmark.datasets.pins import Pin
+from benchmark.metrics.ranking import UnitErrors
 from benchmark.metrics.rings import EDGES_DEG, field_error
 from benchmark.metrics.score import is_available
 from registry.catalogue import catalogue
@@ -77,7 +78,7 @@ def pipelines(
                 extractor_taxonomy=first["extractor_taxonomy"],
                 model=model,
                 stages=known[model],
-                nominal=_score(first, share),
+                nominal=dataclasses.replace(_score(first, share), rms_deg=UnitErrors(units).own_deg),
                 hazards={
                     hazard: tuple(_score(scores[name, 0], share) for name in names)
                     for hazard, names in hazards(conditions[dataset]).items()

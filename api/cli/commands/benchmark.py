@@ -103,7 +103,7 @@ def _on_own_data(data: Path, config: Path | None, models: list[str] | None, form
             "rms_deg": one.rms_deg if not one.refused else None,
             "standard_error_deg": one.spread_deg if not one.refused else None,
             "dataset": nearest.dataset if nearest else None,
-            "dataset_rms_deg": nearest.errors_deg.get(one.name) if nearest else None,
+            "dataset_own_deg": nearest.errors_deg.get(one.name) if nearest else None,
             "reason": one.refused,
         }
         for one in found.candidates

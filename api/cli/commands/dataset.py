@@ -234,8 +234,8 @@ def realism(
 ) -> None:
     """Compare each data set with built sensors and their published figures.
 
-    Our accuracy is the RMS error of the best pipeline under nominal conditions, our precision its
-    repeatability. Published accuracies are converted to RMS. Differences of more than a factor of
+    rms_deg is the RMS of unit 0 of the best pipeline under nominal conditions; its repeatability is
+    our precision. Published accuracies are converted to RMS. Differences of more than a factor of
     two are explained; data sets without a built sensor are called idealised.
     """
     answer = ask(besides_built, asked)

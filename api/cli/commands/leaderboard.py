@@ -37,11 +37,11 @@ COLUMNS = (
 )
 FIELD_COLUMNS = (
     *("rank", "dataset", "condition", "extractor", "model", "field_deg", "field_rms_deg"),
-    *("rms_deg", "availability", "false_sun"),
+    *("own_deg", "availability", "false_sun"),
 )
 WIDEST_COLUMNS = (
     *("rank", "dataset", "condition", "extractor", "model", "widest_field_deg", "half_fov_deg"),
-    *("rms_deg", "availability", "false_sun"),
+    *("own_deg", "availability", "false_sun"),
 )
 DIFFERENCES = ("file", "cell", "committed", "measured", "kernels")
 
@@ -130,8 +130,8 @@ def leaderboard(
 ) -> None:
     """Show the leaderboard, update it or check it.
 
-    Without options: the best pipeline of each architecture with its error and its ratio to the
-    Cramer-Rao bound. --overview counts how often each extractor and model is near the bound.
+    Without options: the best pipeline of each architecture with its own error and unit 0's ratio to
+    the Cramer-Rao bound. --overview counts how often each extractor and model is near the bound.
     --dataset lists all pipelines of a data set; --each lists the best of every data set. --field
     uses the error within an angle of the boresight, so that data sets with different fields of view
     can be compared. --max-error compares them by field of view. --check measures all published
@@ -332,7 +332,7 @@ def _show(
     if judged == "field_rms_deg":
         chosen.sort(key=lambda row: (row[judged] is None, row[judged] or 0.0))
     elif judged == "widest_field_deg":
-        chosen.sort(key=lambda row: (-(row[judged] or 0), row["rms_deg"] or 0.0))
+        chosen.sort(key=lambda row: (-(row[judged] or 0), row["own_deg"] or 0.0))
     title = ", ".join(datasets) if datasets else "Best of each data set"
     document = {"items": chosen, "total": len(chosen)}
     if form is Format.TABLE:

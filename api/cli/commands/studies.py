@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from enum import StrEnum
 from typing import Annotated, Any
 
@@ -18,6 +18,8 @@ from api.schema.parameters import LARGEST_PAGE
 from api.schema.studies import AttributeValue, StudiesQuery, StudyRow
 from api.schema.table import columns_of
 from api.service import studies as service
+from benchmark.leaderboard.board import NOMINAL
+from benchmark.leaderboard.summaries import digits
 from registry.fidelity.grading import tally_text
 from registry.taxonomy import ATTRIBUTES
 from survey_data import labels
@@ -25,6 +27,7 @@ from survey_data import labels
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 COLUMNS = ("key", "year", "grade", "detector", "mask", "extractor", "model", "title")
+OWN = "own error"
 DETAILS = (
     *("attribute", "value", "name_in_study", "nearest", "role", "basis", "source_name", "note"),
 )
@@ -124,22 +127,43 @@ def _show(key: str, asked: StudyFormat) -> None:
     emit(study["attributes"], columns_of(AttributeValue) if form is Format.CSV else DETAILS, form)
     if form is Format.TABLE:
         reported = [study[f"reported_{quantity}"] for quantity in ("accuracy", "precision")]
-        said = [f"{one['label']} {one['value_deg']:g} deg" for one in reported if one is not None]
+        said = [
+            f"{digits(one['rms_deg'])} deg RMS ({one['value_deg']:g} deg, {one['label']})"
+            for one in reported
+            if one is not None
+        ]
         typer.echo()
         say(f"Reported by the study of its own sensor: {', '.join(said) or 'no number is known'}")
+        for line in _rungs(study["ladder"]):
+            say(line)
         typer.echo()
-        pipelines = (*("detector", "mask", "extractor", "model", "measured here"), "assumed")
+        pipelines = (*("detector", "mask", "extractor", "model", OWN), "assumed")
         emit(
-            [
-                {**p, "measured here": _measure(p), "assumed": _assume(p)}
-                for p in study["pipelines"]
-            ],
+            [{**p, OWN: _measure(p), "assumed": _assume(p)} for p in study["pipelines"]],
             *(pipelines, form),
             title=f"Runs: {len(study['pipelines'])}",
         )
         typer.echo()
         gaps = ("attribute", "value", "reason")
         emit(study["gaps"], gaps, form, title=f"Gaps: {len(study['gaps'])}")
+
+
+def _rungs(ladder: Mapping[str, Any] | None) -> Iterator[str]:
+    """Give a line for each rung below a study's reported figure."""
+    if ladder is None:
+        yield "Its own method here, the best method and the bound: not known"
+        return
+    label = OWN if ladder["nominal"] else "unit 0 RMS"
+    yield f"Here, on {ladder['dataset']}, {ladder['condition']}:"
+    for name, rung in (("its own method", ladder["own"]), ("best method", ladder["best"])):
+        yield (
+            f"  {name}: {label} {digits(rung['own_deg'])} deg, {rung['extractor']} + "
+            f"{rung['model']}"
+        )
+    yield (
+        f"  bound: {digits(ladder['bound_deg'])} deg with the unit known, "
+        f"{digits(ladder['bound_unit_deg'])} deg with the unit known by its darks and flats"
+    )
 
 
 def _assume(pipeline: Mapping[str, Any]) -> list[str]:
@@ -151,13 +175,14 @@ def _assume(pipeline: Mapping[str, Any]) -> list[str]:
 
 
 def _measure(pipeline: Mapping[str, Any]) -> list[str]:
-    """Return each setting of a pipeline with its published error there."""
+    """Return each setting of a pipeline with its own error there."""
     return [
         f"{score['dataset']}, {score['condition']}: {_error(score)}" for score in pipeline["scores"]
     ]
 
 
 def _error(score: Mapping[str, Any]) -> str:
-    if score["rms_deg"] is not None:
-        return f"{score['rms_deg']:.3g} deg"
+    if score["own_deg"] is not None:
+        alone = "" if score["condition"] == NOMINAL else " (unit 0 RMS)"
+        return f"{digits(score['own_deg'])} deg{alone}"
     return "not measured yet" if score["status"] is None else "without an error"

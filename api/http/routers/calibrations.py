@@ -33,6 +33,7 @@ _BODY: dict[str, Any] = {
                         "description": "TOML, as `sunatlas calibrate --init` writes it; guessed "
                         "from the header by default.",
                     },
+                    "model": {**_TEXT, "description": "The only model tried; all by default."},
                     "apply": {
                         **_TEXT,
                         "enum": ["true", "false"],

@@ -18,8 +18,8 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 async def realism(known: Known, query: Annotated[RealismQuery, Query()]) -> Answer:
     """Compare each data set with built sensors and their published figures.
 
-    Our accuracy is the RMS error of the best pipeline under nominal conditions, our precision its
-    repeatability. Differences of more than a factor of two are explained. CSV: a row per data set
-    and sensor.
+    Our accuracy is the RMS of unit 0 of the best pipeline under nominal conditions, on the standard
+    bench; our precision is its repeatability. Differences of more than a factor of two are
+    explained. CSV: a row per data set and sensor.
     """
     return Answer.of(service.realism(known, query))

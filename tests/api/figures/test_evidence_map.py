@@ -62,13 +62,14 @@ def place(row: Any) -> tuple[str, str, str]:
 
 @pytest.fixture(scope="module")
 def own_errors(measurements: Measurements) -> dict[tuple[str, str, str], float]:
-    """Geometric mean over units of the error under the first condition, by pipeline."""
+    """Geometric mean over units of the error under the first condition, in five digits."""
     units: dict[tuple[str, str, str], list[float]] = defaultdict(list)
     for row in Store(PUBLISHED).rows(unit=None):
         first = measurements.presets[row["dataset"]].conditions[0]
         if row["condition"] == first and row["charged_deg"]:
             units[place(row)].append(row["charged_deg"])
-    return {key: math.exp(sum(map(math.log, of)) / len(of)) for key, of in units.items()}
+    means = {key: math.exp(sum(map(math.log, of)) / len(of)) for key, of in units.items()}
+    return {key: float(f"{mean:.5g}") for key, mean in means.items()}
 
 
 @pytest.mark.parametrize(

@@ -31,8 +31,9 @@ CELLS = [
 #: Errors of bctm's pipelines on units 1 to 4: spm's overlap those of lsq.
 UNITS = {"spm": (0.009, 0.03, 0.02, 0.02), "lsq": (0.011, 0.012, 0.01, 0.01)}
 #: Geometric mean of the five errors of bctm with spm, and its ratio to the standard unit's.
-OWN = (0.02 * 0.009 * 0.03 * 0.02 * 0.02) ** (1 / 5)
-SHARE = OWN / 0.02
+MEAN = (0.02 * 0.009 * 0.03 * 0.02 * 0.02) ** (1 / 5)
+OWN = float(f"{MEAN:.5g}")  # as boards have it
+SHARE = MEAN / 0.02
 
 
 def numbers_of(rms, bound, availability):

@@ -32,7 +32,7 @@ def test_a_study_shows_every_value_with_its_basis_and_every_score(atlas: Client)
     for cell in document["attributes"]:
         assert cell["value"] in page
         assert cell["note"] in page
-    errors = [s["rms_deg"] for p in document["pipelines"] for s in p["scores"]]
+    errors = [s["own_deg"] for p in document["pipelines"] for s in p["scores"]]
     assert len(errors) > 4
     assert all(degrees(error) in page for error in errors if error is not None)
 
@@ -150,14 +150,14 @@ def test_comparison_names_what_is_far_finer_under_a_condition(atlas: Client) -> 
         by = f"({f['extractor']} + {f['model']})"
         if f["availability"] < 0.95:
             by = f"at {percent(f['availability'])} {by}"
-        assert f"{degrees(f['rms_deg'])} {by}" in page
+        assert f"{degrees(f['charged_deg'])} {by}" in page
     seldom = [t for t in document if t["availability"] < 0.95]
     assert all(f"availability {percent(t['availability'])}" in page for t in seldom)
 
 
 def finer_built(board: Mapping[str, Any]) -> list[dict[str, Any]]:
     """The best of each architecture, some with a far finer one beside, as once there were."""
-    finer = {"dataset": "ccd-lens", "extractor": "bcm", "model": "lut", "rms_deg": 0.000123}
+    finer = {"dataset": "ccd-lens", "extractor": "bcm", "model": "lut", "own_deg": 0.000123}
     finer["availability"] = 0.789
     return [
         {**row, **{f"finer_{name}": value for name, value in finer.items()}}

@@ -125,7 +125,7 @@ def test_what_errs_far_less_but_answers_too_seldom_is_named_beside_the_best():
     seldom = row("b", 0.1, dataset="e", availability=0.7)
     found = one(row("a", 2.0), seldom, row("c", 0.05, availability=0.4))
     assert (found["model"], found["finer_model"], found["finer_dataset"]) == ("a", "b", "e")
-    assert (found["finer_rms_deg"], found["finer_availability"]) == (0.1, 0.7)
+    assert (found["finer_own_deg"], found["finer_availability"]) == (0.1, 0.7)
     assert "b: 0.100 deg at 70 %" in best_per_architecture_table([found])
     assert one(row("a", 0.25), seldom)["finer_model"] is None, "not three times as fine"
     assert one(seldom)["finer_model"] is None, "it is what stands there"

@@ -51,7 +51,7 @@ def test_rows_of_a_pipeline_become_one():
     assert found.nominal.condition == names[0]
     assert found.unit_own_deg == (0.5, 0.4, 0.3)
     middle = (0.5 * 0.4 * 0.3) ** (1 / 3)
-    assert found.nominal.rms_deg == pytest.approx(middle)
+    assert found.nominal.rms_deg == float(f"{middle:.5g}")  # as boards have it
     assert found.latency_us == 7.0
     assert found.stages == ("SPM",)
     tried = hazards(names)

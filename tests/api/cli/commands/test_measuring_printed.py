@@ -287,4 +287,4 @@ def test_own_data_on_which_few_models_answer_are_like_no_data_set(
         ("spm", None, None),
     ]
     assert [row["reason"] for row in rows] == ["", "too few poses"]
-    assert {row["dataset"] for row in rows} == {row["dataset_rms_deg"] for row in rows} == {None}
+    assert {row["dataset"] for row in rows} == {row["dataset_own_deg"] for row in rows} == {None}

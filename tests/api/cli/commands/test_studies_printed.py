@@ -75,9 +75,9 @@ def test_who_confirmed_a_study_is_said(document: dict[str, Any]) -> None:
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
-        ({"rms_deg": 0.012345}, "nominal: 0.0123 deg"),
-        ({"rms_deg": None, "status": "unavailable"}, "nominal: without an error"),
-        ({"rms_deg": None, "status": None}, "nominal: not measured yet"),
+        ({"own_deg": 0.012345}, "nominal: 0.0123 deg"),
+        ({"own_deg": None, "status": "unavailable"}, "nominal: without an error"),
+        ({"own_deg": None, "status": None}, "nominal: not measured yet"),
     ],
 )
 def test_a_pipeline_without_an_error_is_told_from_one_that_never_ran(

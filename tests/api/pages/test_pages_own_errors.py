@@ -1,0 +1,192 @@
+"""One own error a pipeline and data set, the same on every page, in commands and documents."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from html import unescape
+from pathlib import Path
+from typing import Any
+
+import pytest
+from api.pages.addresses import algorithm_page, architecture_page, dataset_page, study_page
+
+from api.cli.commands.studies import _rungs
+from api.pages.numbers import degrees, own_error
+from api.service.knowledge import Knowledge
+from benchmark.leaderboard.summaries import digits
+from tests.api.conftest import Client
+from tests.api.pages.addresses import KINDS
+from tests.api.pages.test_pages_content import text_of
+
+DOCS = Path(__file__).resolve().parents[3] / "docs"
+HOOK = re.compile(
+    r'<data class="own-error" value="(?P<value>[^"]+)" data-of="(?P<of>[^"]+)">'
+    r"(?P<text>[^<]+)</data>"
+)
+BELOW = re.compile(r'<span class="below[^"]*">.*?</span>', re.DOTALL)
+CELL = re.compile(r'<td data-label="Own error[^"]*"[^>]*>(.*?)</td>', re.DOTALL)
+LABEL = re.compile(r"\b(?:sec|tab|fig|rq|rqsum):\w+")
+Place = tuple[str, ...]
+
+
+def shown(html: str) -> Iterator[tuple[Place, float, str]]:
+    """Own errors of a page: data set, extractor and model, number, and what is read."""
+    for hook in HOOK.finditer(html):
+        yield tuple(unescape(hook["of"]).split("|")), float(hook["value"]), hook["text"]
+
+
+def addresses(known: Knowledge) -> Iterator[str]:
+    """Pages that show pipelines under nominal conditions: one of each kind, and all that vary."""
+    yield from KINDS.values()
+    for board in known.measurements.leaderboard["datasets"]:
+        yield dataset_page(board["name"], rows="all")
+    designs = {(c["detector"], c["mask"]) for c in known.measurements.cards}
+    for detector, mask in sorted(designs):
+        yield architecture_page(detector, mask)
+    for side, attribute in enumerate(("detectors", "masks")):
+        yield from (f"/{attribute}/{value}" for value in sorted({pair[side] for pair in designs}))
+    pairs = [f"{detector}:{mask}" for detector, mask in sorted(designs)]
+    for at in range(0, len(pairs) - 1, 3):
+        yield "/compare?" + "&".join(f"architecture={pair}" for pair in pairs[at : at + 4])
+    yield from (study_page(key) for key in known.of("all").facts.studies)
+    yield from (algorithm_page(one.name) for one in known.catalogue.implementations(None))
+
+
+def require_the_record(known: Knowledge, client: Client, pages: Iterable[str]) -> int:
+    """Require that every own error of some pages is the record's; return of how many pipelines."""
+    record: Mapping[Any, Mapping[str, Any]] = known.measurements.nominal
+    board = {
+        (row["dataset"], row["extractor"], row["model"]): row["own_deg"]
+        for row in known.measurements.board_rows()
+        if row["condition"] == "nominal"
+    }
+    met: dict[Place, set[str]] = {}
+    for address in pages:
+        html = client.get(address, accept="text/html").text
+        for place, value, text in shown(html):
+            assert value == record[place]["own_deg"] == board[place], (address, place)
+            met.setdefault(place, set()).add(text)
+        for cell in CELL.findall(html):
+            bare = BELOW.sub("", HOOK.sub("", cell))
+            assert "unit 0 RMS" in cell or "°" not in bare, (address, cell)
+    for place, texts in met.items():
+        assert texts == {degrees(board[place])}, place
+    return len(met)
+
+
+def test_own_errors_of_one_page_of_each_kind_are_the_records(
+    knowledge: Knowledge, atlas: Client
+) -> None:
+    assert require_the_record(knowledge, atlas, KINDS.values()) > 40
+
+
+@pytest.mark.slow
+def test_own_errors_of_all_pages_are_the_records(knowledge: Knowledge, atlas: Client) -> None:
+    assert require_the_record(knowledge, atlas, addresses(knowledge)) > 4000
+
+
+@pytest.mark.parametrize(
+    "kind", ["data sets", "data set", "leaderboard", "masks", "mask", "detectors", "detector",
+             "architecture", "compared", "study"],
+)  # fmt: skip
+def test_errors_of_pipelines_have_no_label_without_a_meaning(atlas: Client, kind: str) -> None:
+    page = text_of(atlas.get(KINDS[kind], accept="text/html").text)
+    assert "RMS error" not in page
+    assert "own error" in page.casefold()
+
+
+def test_other_conditions_are_labelled_as_of_unit_0(atlas: Client) -> None:
+    html = atlas.get("/datasets/ccd-lens?condition=hot", accept="text/html").text
+    board = html[html.index('id="board"') : html.index('id="heat"')]
+    assert not HOOK.search(board)
+    assert 'data-label="Unit 0 RMS"' in board
+    assert 'data-label="Own error"' not in board
+
+
+@pytest.mark.parametrize("address", KINDS.values(), ids=KINDS.keys())
+def test_no_label_of_the_surveys_source_is_read(atlas: Client, address: str) -> None:
+    assert not LABEL.findall(text_of(atlas.get(address, accept="text/html").text))
+
+
+def test_an_own_method_is_not_called_one_without_feature_extraction(atlas: Client) -> None:
+    page = text_of(atlas.get("/architectures/CMOS/Single-Ap.", accept="text/html").text)
+    assert "own method, not in the survey" in page
+    assert "no feature extraction" not in page
+
+
+def test_a_study_is_a_ladder_on_one_data_set_and_condition(
+    knowledge: Knowledge, atlas: Client
+) -> None:
+    document = atlas.get("/v1/studies/Zhang2021").json()
+    ladder = document["ladder"]
+    rows = [
+        row
+        for row in knowledge.measurements.board_rows(ladder["dataset"])
+        if row["condition"] == ladder["condition"]
+    ]
+    own = next(
+        row for row in rows if all(row[n] == ladder["own"][n] for n in ("extractor", "model"))
+    )
+    assert ladder["own"]["own_deg"] == own["own_deg"]
+    assert ladder["best"]["own_deg"] == rows[0]["own_deg"]
+    assert ladder["own"]["own_deg"] == min(
+        score["own_deg"]
+        for pipeline in document["pipelines"]
+        for score in pipeline["scores"]
+        if (score["dataset"], score["condition"]) == (ladder["dataset"], ladder["condition"])
+    )
+    html = atlas.get("/studies/Zhang2021", accept="text/html").text
+    rungs = html[html.index('class="ladder"') : html.index('id="attributes"')]
+    read = text_of(rungs)
+    reported = document["reported_accuracy"]
+    assert f"{degrees(reported['rms_deg'])} RMS" in read
+    assert f"{degrees(ladder['bound_deg'])} with the unit known" in read
+    assert f"/datasets/{ladder['dataset']}?condition={ladder['condition']}#board" in rungs
+    assert f"/calibrate?model={ladder['own']['model']}" in rungs
+    lines = " ".join(_rungs(ladder))
+    for rung in (ladder["own"], ladder["best"]):
+        assert degrees(rung["own_deg"]) in read
+        assert f"own error {digits(rung['own_deg'])} deg" in lines
+
+
+def test_rungs_that_are_unknown_say_so(knowledge: Knowledge, atlas: Client) -> None:
+    unknown = [
+        key
+        for key in knowledge.of("all").facts.studies
+        if atlas.get(f"/v1/studies/{key}").json()["ladder"] is None
+    ]
+    assert unknown
+    for key in unknown:
+        read = text_of(atlas.get(f"/studies/{key}", accept="text/html").text)
+        assert len(re.findall("not measured yet|its method is not implemented", read)) >= 3
+
+
+def test_an_own_error_that_is_none_is_a_dash() -> None:
+    row = {"dataset": "d", "extractor": "e", "model": "m", "own_deg": None}
+    assert own_error(row) == "–"
+
+
+def test_documents_have_the_records_own_errors(knowledge: Knowledge) -> None:
+    own = {
+        (row["dataset"], f"{row['extractor']} + {row['model']}"): row["own_deg"]
+        for row in knowledge.measurements.nominal.values()
+    }
+    text = (DOCS / "limits.md").read_text("utf-8")
+    rows = re.findall(
+        r"^\| \[([\w-]+)\]\(datasets\.md#[^)]+\) \| ([^|]+) \| ([^|]+) \|", text, re.MULTILINE
+    )
+    assert len(rows) > 40
+    for dataset, pipeline, error in rows:
+        assert error == digits(own[dataset, pipeline]), dataset
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.00069213, "0.000692"), (9.996, "10.0"), (0.00009996, "0.000100"), (1234.0, "1,230"),
+     (1.0, "1.00"), (0.0, "0"), (None, "-")],
+)  # fmt: skip
+def test_errors_have_three_significant_digits_and_no_exponent(
+    value: float | None, text: str
+) -> None:
+    assert digits(value) == text
