@@ -29,7 +29,8 @@ ARCHITECTURE_COLUMNS = (
     *("detector", "mask", "studies", "datasets", "dataset", "extractor", "model", "own_deg"),
     *("bound_deg", "over_bound", "half_fov_deg"),
 )
-MOST = 500
+#: Calibrations of an architecture that its page lists.
+SHOWN = 40
 
 
 def best_built(known: Knowledge) -> list[dict[str, Any]]:
@@ -155,14 +156,13 @@ async def architecture(
     request: Request,
 ) -> View:
     """One architecture: advice, studies, data sets, and every calibration of it."""
-    given = {
-        "detector": [detector],
-        "mask": [mask],
-        "limit": 1,
-        "calibrations": MOST,
-        "edition": query.edition,
-    }
-    asked = RequirementsQuery.model_validate(given)
+    asked = RequirementsQuery(
+        detector=[detector],
+        mask=[mask],
+        calibrations=SHOWN,
+        include=["calibrations"],
+        edition=query.edition,
+    )
     answer = service.recommendations(known, asked)
     found = answer.document["architectures"]
     every = known.of(query.edition).facts.studies.values()

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from api.pages.addresses import algorithm_page, architecture_page, dataset_page, study_page
+from api.addresses import algorithm_page, architecture_page, dataset_page, study_page
 
 from api.cli.commands.studies import _rungs
 from api.pages.numbers import degrees, own_error
