@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from api.addresses import algorithm_page, architecture_page, dataset_page, study_page
 
+from api.addresses import algorithm_page, architecture_page, dataset_page, study_page
 from api.cli.commands.studies import _rungs
 from api.pages.numbers import degrees, own_error
 from api.service.knowledge import Knowledge
