@@ -147,7 +147,7 @@ def test_a_wrong_value_is_refused_in_one_line():
     wrong = (
         ("--mission", "leo", "leo-cubesat"),
         ("--detector", "CMOSS", "CMOS"),
-        ("--max-error-deg", -1, "positive"),
+        ("--max-error-deg", -1, "above 0"),
     )
     for option, value, named in wrong:
         refused = sunatlas(option, value)
