@@ -221,7 +221,7 @@ class Rung(Shape):
 
     extractor: str
     model: str
-    own_deg: float
+    own_deg: float = Field(description="Own error, or RMS of unit 0: see `nominal`.")
     availability: float | None
 
 
