@@ -14,7 +14,7 @@ from api.schema.parameters import (
 )
 from api.schema.words import Detector, Mask
 from benchmark.leaderboard.overview import ROLES
-from registry.measured_pipelines import FINER
+from benchmark.leaderboard.partial_answers import FINER
 
 RoleName = Annotated[str, OneOf(lambda: ROLES)]
 

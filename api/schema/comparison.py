@@ -9,7 +9,7 @@ from pydantic import AfterValidator, ConfigDict, Field
 from api.schema.base import OfEdition, Shape, TableQuestion
 from api.schema.parameters import GIVEN, OneOf
 from api.schema.words import Condition, DatasetName
-from registry.measured_pipelines import FINER
+from benchmark.leaderboard.partial_answers import FINER
 from registry.studies import facts
 
 FEWEST, MOST = 2, 4
