@@ -150,9 +150,9 @@ class DesignTable:
 
     @cached_property
     def log_error(self) -> Numbers:
-        """Standard error of the log of each own error over units."""
-        logs = np.log(self.unit_ratios)
-        return np.asarray(logs.std(axis=1, ddof=1) / math.sqrt(max(logs.shape[1], 1)))
+        """Standard error of the log of each own error, the mean over the units measured."""
+        measured = np.sqrt([max(len(row.unit_own_deg), 1) for row in self.rows])
+        return np.asarray(np.log(self.unit_ratios).std(axis=1, ddof=1) / measured)
 
     @cached_property
     def edges(self) -> Numbers:
