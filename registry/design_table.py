@@ -17,7 +17,7 @@ from registry.designs import Design, Place, gather
 from registry.draws import at_confidence
 from registry.measured_pipelines import MeasuredPipeline, Measurements, Score
 from registry.reports import Report, reports
-from registry.requirements import CLASSES_DEG
+from registry.requirements import CLASSES_DEG, UNITS
 from registry.studies import Facts
 
 Flags = NDArray[np.bool_]
@@ -146,7 +146,7 @@ class DesignTable:
     @cached_property
     def unit_ratios(self) -> Numbers:
         """Errors of ten units over their geometric mean, shape (pipelines, 10)."""
-        return np.array([row.unit_ratios for row in self.rows], float).reshape(len(self.rows), -1)
+        return np.array([row.unit_ratios for row in self.rows], float).reshape(-1, UNITS)
 
     @cached_property
     def log_error(self) -> Numbers:
