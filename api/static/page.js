@@ -63,9 +63,16 @@ async function show(query, { ofForm = false } = {}) {
   await drawFlow(query, signal);
 }
 
+/** A query in the one order that can be compared. */
+function sorted(query) {
+  const pairs = new URLSearchParams(query);
+  pairs.sort();
+  return pairs.toString();
+}
+
 /** Ask a query and keep it in the address, so that Back leads here. */
 function ask(query, settings) {
-  if (query === new URLSearchParams(location.search).toString()) return;
+  if (sorted(query) === sorted(location.search)) return;
   history.pushState(null, "", query ? `/?${query}` : "/");
   show(query, settings);
 }
