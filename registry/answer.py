@@ -154,7 +154,8 @@ class Answer:
             self.question.matching_designs & (table.design_place == one.number)
         )
         rows = best[designs]
-        errors = np.where(rows >= 0, self.question.shown_deg[rows], np.inf)
+        errors = np.full(len(rows), np.inf)
+        errors[rows >= 0] = self.question.shown_deg[rows[rows >= 0]]
         users = table.used[designs].sum(axis=1)
         by = (~table.is_specified[designs], -users, ~table.is_advised[designs], errors)
         order = np.lexsort((errors, -users) if self.sort == "studies" else by)

@@ -17,7 +17,7 @@ from registry.designs import Design, Place, gather
 from registry.draws import at_confidence
 from registry.measured_pipelines import MeasuredPipeline, Measurements, Score
 from registry.reports import Report, reports
-from registry.requirements import CLASSES_DEG, NEEDS
+from registry.requirements import CLASSES_DEG, NEEDS, UNITS
 from registry.studies import Facts
 
 Flags = NDArray[np.bool_]
@@ -146,13 +146,13 @@ class DesignTable:
     @cached_property
     def unit_ratios(self) -> Numbers:
         """Errors of ten units over their geometric mean, shape (pipelines, 10)."""
-        return np.array([row.unit_ratios for row in self.rows], float).reshape(len(self.rows), -1)
+        return np.array([row.unit_ratios for row in self.rows], float).reshape(-1, UNITS)
 
     @cached_property
     def log_error(self) -> Numbers:
-        """Standard error of the log of each own error over units."""
-        logs = np.log(self.unit_ratios)
-        return np.asarray(logs.std(axis=1, ddof=1) / math.sqrt(max(logs.shape[1], 1)))
+        """Standard error of the log of each own error, the mean over the units measured."""
+        measured = np.sqrt([max(len(row.unit_own_deg), 1) for row in self.rows])
+        return np.asarray(np.log(self.unit_ratios).std(axis=1, ddof=1) / measured)
 
     @cached_property
     def edges(self) -> Numbers:

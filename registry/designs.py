@@ -15,7 +15,7 @@ from registry.mapping.advice import Advice
 from registry.measured_pipelines import MeasuredPipeline, Measurements
 from registry.studies import Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture, Taxonomy
-from survey_data.hardware import Product, products
+from survey_data.products import Product, products
 
 COMPENSATIONS = "Physics-Informed"
 """The category of models that compensate: beside them a study may state no other."""

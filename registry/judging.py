@@ -112,9 +112,11 @@ class Question:
         if asked.max_error_deg is not None:
             found["max_error_deg"] = _states(self.judged_deg <= asked.max_error_deg, answered)
             found["max_error_deg"][~answered & errors.covers] = MISSES
-        if classes := self._classes():
-            inside = self._in_classes(classes)
-            found["accuracy"] = _states(inside, answered)
+        if "accuracy" in asked.include:
+            found["accuracy"] = _states(self._in_classes(asked.include["accuracy"]), answered)
+        if "accuracy" in asked.exclude:
+            left = CLASSES_DEG.keys() - {*asked.exclude["accuracy"]}
+            found[EXCLUDE + "accuracy"] = _states(self._in_classes(left), answered)
         if asked.min_fov_deg is not None:
             found["min_fov_deg"] = _states(np.isfinite(errors.nominal_deg))
         for name in ("survive", "sun_distance_au"):
@@ -143,10 +145,13 @@ class Question:
             for name in (one for one in OF_STUDIES if one in side):
                 meets = self._studies_alone(prefix + name)
                 found[prefix + name] = _states(meets[study], is_study)
-        if classes := self._classes():
-            named = [table.report_classes[name] for name in CLASSES_DEG if name in classes]
-            every = np.logical_or.reduce(list(table.report_classes.values()))
-            found["accuracy"] = _states(np.logical_or.reduce(named), every)
+        classes = table.report_classes
+        if "accuracy" in asked.include:
+            named = np.logical_or.reduce([classes[name] for name in asked.include["accuracy"]])
+            found["accuracy"] = _states(named, np.logical_or.reduce([*classes.values()]))
+        if "accuracy" in asked.exclude:
+            named = np.logical_or.reduce([classes[name] for name in asked.exclude["accuracy"]])
+            found[EXCLUDE + "accuracy"] = _states(~named)
         if names := self.of_parts:
             design, user = np.nonzero(table.used)
             kept = self.designs[design]
@@ -273,15 +278,6 @@ class Question:
         """Names of the requirements on model, extractor and its properties."""
         names = ("model", "extractor", "exclude_model", "exclude_extractor", "properties")
         return tuple(name for name in names if self.requirements.value_of(name) is not None)
-
-    def _classes(self) -> set[str]:
-        """Return the accuracy classes that are allowed; empty where none is asked for."""
-        asked = self.requirements
-        if "accuracy" not in {*asked.include, *asked.exclude}:
-            return set()
-        return set(asked.include.get("accuracy", CLASSES_DEG)) - {
-            *asked.exclude.get("accuracy", ())
-        }
 
     def _in_classes(self, classes: Iterable[str]) -> Flags:
         """Say of each pipeline whether it and the best one of its sensor are of a class."""

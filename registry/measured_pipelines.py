@@ -6,74 +6,10 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Generic, TypeVar
 
 from registry.requirements import UNITS
 
-_NUMBERS = (
-    *("rms_deg", "bound_deg", "over_bound", "repeatability_deg"),
-    *("availability", "false_sun"),
-)
-
-
-#: A pipeline below the availability limit is shown beside a ranked one if the ranked one's error is
-#: more than `FINER` times as large, and if it answers at least this share of the samples.
-FINER = 3.0
-LEAST_ANSWERED = 0.5
-
-Of = TypeVar("Of")
-
-
-@dataclass(frozen=True)
-class PartialAnswer(Generic[Of]):
-    """Error of a pipeline below the availability limit, over the samples it answers.
-
-    Attributes
-    ----------
-    error_deg
-        RMS error over the answered samples.
-    availability
-        Share of the samples that are answered.
-    subject
-        The pipeline, or its row in a table.
-    """
-
-    error_deg: float
-    availability: float
-    subject: Of
-
-    @property
-    def coarse_deg(self) -> float:
-        """Threshold: pipelines with a larger error name this one as finer; infinite for none."""
-        return FINER * self.error_deg if self.availability >= LEAST_ANSWERED else math.inf
-
-    def is_finer(self, error_deg: float) -> bool:
-        """Return whether it is far more accurate than a given error, of at least half the samples.
-
-        Parameters
-        ----------
-        error_deg : infinite for none, than which nothing is more accurate
-        """
-        return self.coarse_deg < error_deg < math.inf
-
-
-def finer_for(error_deg: float, partly: Iterable[PartialAnswer[Of]]) -> PartialAnswer[Of] | None:
-    """Return the most accurate partial answer, if it is far more accurate than a given error.
-
-    Parameters
-    ----------
-    error_deg
-        Error of the ranked pipeline; infinite for none, in which case None is returned.
-    partly
-        Candidates. Those that answer less than `LEAST_ANSWERED` of the samples are ignored.
-
-    Returns
-    -------
-    PartialAnswer or None
-        The first of equals; None unless `error_deg` is more than `FINER` times its error.
-    """
-    finer = (one for one in partly if one.is_finer(error_deg))
-    return min(finer, key=lambda one: one.error_deg, default=None)
+_NUMBERS = ("rms_deg", "bound_deg", "repeatability_deg", "availability")
 
 
 @dataclass(frozen=True)
@@ -84,8 +20,8 @@ class Score:
 
     Attributes
     ----------
-    availability, false_sun
-        Answered share of the samples whose direction is observable, and of the other samples.
+    availability
+        Answered share of the samples whose direction is observable.
     is_available
         Whether the availability over the whole field is high enough to rank the pipeline.
     cones
@@ -96,10 +32,8 @@ class Score:
     condition: str
     rms_deg: float | None
     bound_deg: float | None = None
-    over_bound: float | None = None
     repeatability_deg: float | None = None
     availability: float | None = None
-    false_sun: float | None = None
     is_available: bool = True
     cones: tuple[tuple[float, float | None], ...] = ()
 

@@ -9,7 +9,7 @@ from typing import Literal
 from registry.designs import Place
 from registry.requirements import CLASSES_DEG
 from registry.studies import Study
-from survey_data.hardware import Hardware, Product, hardware
+from survey_data.products import BuiltSensor, Product, built_sensors
 from survey_data.reported import ReportedAccuracy, reported_accuracies
 
 
@@ -76,11 +76,11 @@ def reports(place: Place) -> Iterator[Report]:
                 yield _of_product(row, product)
 
 
-def _rows(product: Product) -> list[Hardware]:
-    return [hardware()[one] for one in product.ids]
+def _rows(product: Product) -> list[BuiltSensor]:
+    return [built_sensors()[one] for one in product.ids]
 
 
-def _of_study(study: Study, rows: Sequence[Hardware], product: Product | None) -> Report:
+def _of_study(study: Study, rows: Sequence[BuiltSensor], product: Product | None) -> Report:
     accuracy, fov_deg = study.report("accuracy"), study.number("fov_deg")
     if accuracy is None:
         accuracy = next((found for row in rows if (found := _accuracy(row))), None)
@@ -102,7 +102,7 @@ def _of_study(study: Study, rows: Sequence[Hardware], product: Product | None) -
     )
 
 
-def _of_product(row: Hardware, product: Product) -> Report:
+def _of_product(row: BuiltSensor, product: Product) -> Report:
     accuracy = _accuracy(row)
     return Report(
         row.id,
@@ -120,7 +120,7 @@ def _of_product(row: Hardware, product: Product) -> Report:
     )
 
 
-def _accuracy(row: Hardware) -> ReportedAccuracy | None:
+def _accuracy(row: BuiltSensor) -> ReportedAccuracy | None:
     if row.accuracy_deg is None:
         return None
     return reported_accuracies("accuracy", row.accuracy_deg, row.accuracy_kind or None)

@@ -30,9 +30,9 @@ def best_pipelines() -> str:
                 digits(own[name, row["extractor"], row["model"]]["own_deg"]),
                 digits(row["rms_deg"]),
                 digits(bound),
-                f"{row['rms_deg'] / bound:.3g}",
+                digits(row["rms_deg"] / bound),
                 "–" if judged.is_near_bound else PARTS[judged.leading_part],
-                digits(pin.bench_deg if pin else None),
+                digits(pin.bench_deg if pin else None, nothing="–"),
                 _sensors(built.get(name)),
             )
         )

@@ -156,13 +156,14 @@ async def architecture(
     request: Request,
 ) -> View:
     """One architecture: advice, studies, data sets, and every calibration of it."""
-    asked = RequirementsQuery(
-        detector=[detector],
-        mask=[mask],
-        calibrations=SHOWN,
-        include=["calibrations"],
-        edition=query.edition,
-    )
+    given = {
+        "detector": [detector],
+        "mask": [mask],
+        "calibrations": SHOWN,
+        "include": ["calibrations"],
+        "edition": query.edition,
+    }
+    asked = RequirementsQuery.model_validate(given)
     answer = service.recommendations(known, asked)
     found = answer.document["architectures"]
     every = known.of(query.edition).facts.studies.values()

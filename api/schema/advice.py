@@ -7,47 +7,25 @@ from typing import Literal
 from pydantic import ConfigDict, Field
 
 from api.schema.base import Listing, Shape, SortedQuestion
-from api.schema.parameters import (
-    Several,
-    several,
-)
+from api.schema.parameters import Several, several
 from api.schema.words import Detector, Mask
 
 Requirement = Literal["task", "accuracy", "error"]
 
 
-class AdvisedFor(Shape):
-    """What a piece of advice is for."""
+class Advice(Shape):
+    """A piece of advice in the survey's text; empty members are open."""
 
     id: str
     requirement: Requirement = Field(description="Kind: task, accuracy class or error.")
     value: str = Field(description="Value.")
-
-
-class AdvisedSensor(Shape):
-    """The sensor that a piece of advice names."""
-
     detector: str
     mask: str
-
-
-class AdvisedCalibration(Shape):
-    """The calibration that a piece of advice names, and where."""
-
     model_category: str = Field(description="Model category named by the advice; empty if open.")
     extractor: str = Field(description="An extractor or a family of them.")
     section: str = Field(description="Label in the survey's source.")
     section_name: str = Field(description="Name of the section, with printed number.")
     note: str
-
-
-# Members of a class stand behind those of the classes named after it.
-class Advice(AdvisedCalibration, AdvisedSensor, AdvisedFor):
-    """A piece of advice in the survey's text; empty members are open."""
-
-
-class ArchitectureAdvice(AdvisedCalibration, AdvisedFor):
-    """A piece of the survey's advice for an architecture."""
 
 
 class Advices(Listing):
@@ -59,15 +37,11 @@ class Advices(Listing):
 class Statement(Shape):
     """A sentence of a protocol."""
 
-    about: Literal["survey", "scores"] = Field(
-        description="Part of the method that the statement is about."
-    )
+    about: Literal["survey", "scores"] = Field(description="Part of the method it is about.")
     kind: str
     id: str
     text: str
-    section: str = Field(
-        description="Label in the survey's source; empty for what is measured here."
-    )
+    section: str = Field(description="Label in the survey's source; empty for scores.")
     section_name: str = Field(description="Name of the section, with printed number.")
 
 
@@ -85,8 +59,6 @@ class AdviceQuery(SortedQuestion, rows=Advice):
         json_schema_extra={"examples": [{"requirement": ["task"], "mask": ["Slit"], "limit": 1}]}
     )
 
-    requirement: Several[Requirement] = several(
-        "Only advice for tasks, accuracy classes or errors."
-    )
+    requirement: Several[Requirement] = several("Only advice for this kind.")
     detector: Several[Detector] = several("Only advice that names this detector.")
     mask: Several[Mask] = several("Only advice that names this mask.")

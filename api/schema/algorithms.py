@@ -44,6 +44,4 @@ class AlgorithmsQuery(SortedQuestion, rows=Algorithm):
 
     model_config = ConfigDict(json_schema_extra={"examples": [{"role": "extractor", "limit": 1}]})
 
-    role: Annotated[Role | None, GIVEN] = Field(
-        None, description="Only implementations with this role."
-    )
+    role: Annotated[Role | None, GIVEN] = Field(None, description="Only this role.")

@@ -35,20 +35,12 @@ class Sweep(OpenShape):
     bound: float | None = Field(description="Cramer-Rao bound of one coordinate.")
     over_bound: float | None = Field(description="Unit 0 RMS divided by the bound.")
     status: Literal["ok", "refused", "failed"]
-    value: float | None = Field(
-        description="Position on the axis of the sweep; null if it is a word."
-    )
+    value: float | None = Field(description="Position on the axis; null if it is a word.")
     n: int = Field(description="Samples.")
     unit: str
     found_fraction: float | None = Field(description="Share of samples with a feature found.")
-    kept_fraction: float | None = Field(
-        description="Share of samples found within 3 px of the truth."
-    )
-    wrong_fraction: float | None = Field(
-        description=(
-            "Share of samples answered more than 1 px from the truth, or without a feature."
-        )
-    )
+    kept_fraction: float | None = Field(description="Share found within 3 px of the truth.")
+    wrong_fraction: float | None = Field(description="Share more than 1 px off, or not found.")
     bias: float | None = Field(description="RMS over the coordinates of the mean error.")
     reason: str
     extractor_taxonomy: str

@@ -63,8 +63,7 @@ class OfEdition(Question):
     """Of which edition of the studies."""
 
     edition: Choice = Field(
-        "survey",
-        description="Studies of the survey, or all, including added ones.",
+        "survey", description="Studies of the survey, or all, including added ones."
     )
 
 
@@ -79,8 +78,7 @@ class TableQuestion(Question):
         ),
     )
     safe: bool = Field(
-        default=False,
-        description="Escape CSV cells that a spreadsheet would run as formulas.",
+        default=False, description="Escape CSV cells that a spreadsheet would run as formulas."
     )
 
 

@@ -14,7 +14,7 @@ from api.schema.parameters import (
 )
 from api.schema.words import Detector, Mask
 from benchmark.leaderboard.overview import ROLES
-from registry.measured_pipelines import FINER
+from benchmark.leaderboard.partial_answers import FINER
 
 RoleName = Annotated[str, OneOf(lambda: ROLES)]
 
@@ -48,62 +48,32 @@ class BestOfArchitecture(Shape):
     studies: list[str] = Field(description="Studies that used this pipeline on the architecture.")
     own_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
     own_se: float | None = Field(description="Relative standard error of the own error.")
-    quoted_deg: float | None = Field(
-        description="Error on odd units of the pipeline that is best on even units."
-    )
-    on_bench_deg: float | None = Field(
-        description="Error expected with the standard calibration bench."
-    )
-    on_bench_basis: Literal["measured", "estimated"] | None = Field(
-        description="measured on random benches, or estimated."
-    )
+    quoted_deg: float | None = Field(description="Error on odd units of the best on even units.")
+    on_bench_deg: float | None = Field(description="Error expected on the standard bench.")
+    on_bench_basis: Literal["measured", "estimated"] | None = Field(description="How it is known.")
     rms_deg: float | None = Field(description="Unit 0 RMS, over answers to observable samples.")
     bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
-    over_bound: float | None = Field(
-        description="Unit 0: RMS over all answers divided by the bound of the same samples."
-    )
+    over_bound: float | None = Field(description="Unit 0 RMS of all answers over its bound.")
     over_bound_se: float | None = Field(description="Standard error of that ratio.")
     bound_unit_deg: float | None
-    over_bound_unit: float | None = Field(
-        description="Unit 0: RMS over all answers divided by bound_unit_deg."
-    )
-    availability: float | None = Field(
-        description="Availability: share of observable samples with an answer."
-    )
-    unit_rms_deg: list[float | None] | None = Field(
-        description="RMS error of all answers on each unit, standard unit first."
-    )
-    others_low_deg: float | None = Field(
-        description="Smallest error on a unit other than the standard one."
-    )
-    others_high_deg: float | None = Field(
-        description="Largest error on a unit other than the standard one."
-    )
-    runner_up_extractor: str | None = Field(
-        description="Extractor of the pipeline that ranks next."
-    )
+    over_bound_unit: float | None = Field(description="Unit 0 RMS of all answers over that bound.")
+    availability: float | None = Field(description="Share of observable samples answered.")
+    unit_rms_deg: list[float | None] | None = Field(description="RMS of all answers by unit.")
+    others_low_deg: float | None = Field(description="Smallest error of the other units.")
+    others_high_deg: float | None = Field(description="Largest error of the other units.")
+    runner_up_extractor: str | None = Field(description="Extractor of the one that ranks next.")
     runner_up_model: str | None = Field(description="Model of the pipeline that ranks next.")
-    runner_up_own_deg: float | None = Field(
-        description="Own error of the pipeline that ranks next, degrees."
-    )
-    runner_up_unit_rms_deg: list[float | None] | None = Field(
-        description="Errors of the pipeline that ranks next on each unit, degrees."
-    )
-    first_group: int = Field(
-        description="Number of pipelines that a paired test cannot separate from the best."
-    )
+    runner_up_own_deg: float | None = Field(description="Own error of the one that ranks next.")
+    runner_up_unit_rms_deg: list[float | None] | None = Field(description="Its errors by unit.")
+    first_group: int = Field(description="Pipelines that a paired test cannot separate.")
     tie: bool = Field(description="Whether the runner-up is tied with the best.")
-    units_ahead: int | None = Field(
-        description="Units on which the best pipeline has the lower error."
-    )
+    units_ahead: int | None = Field(description="Units on which the best has the lower error.")
     units_compared: int = Field(description="Units on which both were scored.")
     finer_dataset: str | None = Field(
         description="Data set of the pipeline with the lowest error at 50 to 95 % availability; "
         f"null unless the best has more than {FINER:g} times its error."
     )
-    finer_extractor: str | None = Field(
-        description="Extractor of a pipeline with lower error at lower availability."
-    )
+    finer_extractor: str | None = Field(description="Extractor of that pipeline.")
     finer_model: str | None = Field(description="Model of that pipeline.")
     finer_own_deg: float | None = Field(description="Its own error, degrees.")
     finer_over_bound: float | None = Field(description="Unit 0: its RMS divided by the bound.")
@@ -124,23 +94,15 @@ class PartOverview(Shape):
     taxonomy: str
     boards: int = Field(description="Number of data sets with a bound on which it ran.")
     answered: int = Field(description="Of these, data sets with a pipeline at 95 % availability.")
-    within_1_5: int = Field(
-        description="Of these, data sets with a pipeline within 1.5 times the bound."
-    )
+    within_1_5: int = Field(description="Of these, data sets within 1.5 times the bound.")
     within_3: int = Field(description="Boards on which the error is at most 3 times the bound.")
     within_10: int = Field(description="Boards on which the error is at most 10 times the bound.")
     share_1_5: float = Field(description="`within_1_5` over `boards`.")
-    share_3: float = Field(
-        description="Share of the boards on which the error is at most 3 times the bound."
-    )
-    share_10: float = Field(
-        description="Share of the boards on which the error is at most 10 times the bound."
-    )
+    share_3: float = Field(description="Share of data sets within 3 times the bound.")
+    share_10: float = Field(description="Share of data sets within 10 times the bound.")
     median_over_bound: float | None = Field(description="Median of error divided by bound.")
     leads: int = Field(description="Number of data sets on which it is part of the best pipeline.")
-    reachable_10: int = Field(
-        description="Of `boards`, those on which any pipeline is within 10 times the bound."
-    )
+    reachable_10: int = Field(description="Data sets with any pipeline within 10 times.")
 
 
 class Overview(Shape):
@@ -149,9 +111,7 @@ class Overview(Shape):
     says: str = Field(description="Description of the aggregation.")
     within: list[float] = Field(description="Limits, as multiples of the bound.")
     boards: int = Field(description="Number of data sets counted, nominal condition.")
-    parts: list[PartOverview] = Field(
-        description="Extractors, compensations and models, one entry each."
-    )
+    parts: list[PartOverview] = Field(description="Extractors, compensations and models.")
 
 
 class ArchitecturesQuery(SortedQuestion, rows=BestOfArchitecture):

@@ -33,9 +33,7 @@ class ClaimRule(Shape):
     low: float | None = Field(description="Lower end of the 95 % interval of the mean.")
     high: float | None = Field(description="Upper end of the 95 % interval of the mean.")
     trials: int = Field(description="Number of trials with a result.")
-    timed: bool = Field(
-        description="Whether it is a ratio of run times, which varies between runs."
-    )
+    timed: bool = Field(description="Whether it is a ratio of run times.")
 
 
 class CheckedRule(ClaimRule):
@@ -67,14 +65,10 @@ class Claim(ClaimRow):
     """A statement of the survey with its verdict."""
 
     measured_on: str = Field(description="Data, sensors and methods.")
-    replicate: Literal["unit", "seed"] = Field(
-        description="Difference between trials: sensor unit or random seed."
-    )
+    replicate: Literal["unit", "seed"] = Field(description="What differs between trials.")
     rules: list[ClaimRule] = Field(description="Criteria that decide the claim.")
     second_method: str = Field(description="Second method of the check; empty if none.")
-    second_agrees: bool | None = Field(
-        description="Whether the second method gives the same verdict for every criterion."
-    )
+    second_agrees: bool | None = Field(description="Whether all its verdicts are the same.")
     second: list[ClaimRule] = Field(description="Results of the criteria by the second method.")
 
 
@@ -98,12 +92,8 @@ class ClaimDetail(Claim):
     """A claim with the results of all trials."""
 
     how_to_test: str = Field(description="Test method, stated before measuring.")
-    values: dict[str, list[float | None]] = Field(
-        description="Statistic of each trial, by criterion."
-    )
-    second_values: dict[str, list[float | None]] = Field(
-        description="Statistic of each trial by the second method."
-    )
+    values: dict[str, list[float | None]] = Field(description="Statistic by trial and criterion.")
+    second_values: dict[str, list[float | None]] = Field(description="The same, second method.")
     across: str = Field(description="Quantity on the horizontal axis.")
     up: str = Field(description="Quantity on the vertical axis.")
     lines: dict[str, ClaimLine] = Field(description="Lines of the plot, by name.")

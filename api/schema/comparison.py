@@ -9,7 +9,7 @@ from pydantic import AfterValidator, ConfigDict, Field
 from api.schema.base import OfEdition, Shape, TableQuestion
 from api.schema.parameters import GIVEN, OneOf
 from api.schema.words import Condition, DatasetName
-from registry.measured_pipelines import FINER
+from benchmark.leaderboard.partial_answers import FINER
 from registry.studies import facts
 
 FEWEST, MOST = 2, 4
@@ -54,12 +54,9 @@ class CompareQuery(OfEdition, TableQuestion):
         None, description="Data set of the pipelines."
     )
     pipeline: InOrder[Pipeline] = Field(
-        default_factory=list,
-        description=f"Pipelines as EXTRACTOR:MODEL, {FEWEST} to {MOST}.",
+        default_factory=list, description=f"Pipelines as EXTRACTOR:MODEL, {FEWEST} to {MOST}."
     )
-    condition: Annotated[Condition | None, GIVEN] = Field(
-        None, description="Condition of the data set; by default the first."
-    )
+    condition: Annotated[Condition | None, GIVEN] = Field(None, description="By default the first.")
 
 
 class PartialPipeline(Shape):
@@ -116,42 +113,23 @@ class ComparedRow(Shape):
         description="Own error: geometric mean over the measured sensor units; unit 0 alone under "
         "conditions other than the first."
     )
-    over_least: float | None = Field(
-        description="Own error divided by the lowest of those compared."
-    )
+    over_least: float | None = Field(description="Own error over the lowest compared.")
     bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
-    over_bound: float | None = Field(
-        description="Unit 0: RMS over all answers divided by the bound of the same samples."
-    )
+    over_bound: float | None = Field(description="Unit 0 RMS of all answers over its bound.")
     over_bound_se: float | None = Field(description="Standard error of that ratio.")
-    on_bench_deg: float | None = Field(
-        description="Error expected with the standard calibration bench."
-    )
+    on_bench_deg: float | None = Field(description="Error expected on the standard bench.")
     low_deg: float | None = Field(description="Smallest error over units.")
     high_deg: float | None = Field(description="Largest error over units.")
     availability: float | None
-    false_sun: float | None = Field(
-        description="False detections: share of unobservable test samples with an answer."
-    )
+    false_sun: float | None = Field(description="Share of unobservable samples answered.")
     latency_us: float | None = Field(
         description="Time per sample on this machine, microseconds; null if not timed."
     )
     time_ratio: float | None = Field(description="Time divided by that of a reference method.")
-    needed_poses: int | None = Field(
-        description=(
-            "Calibration poses needed to be within 10 % of the error floor; null without "
-            "a learning curve, or if more than all poses are needed."
-        )
-    )
+    needed_poses: int | None = Field(description="Poses to be within 10 % of the error floor.")
     needed_low: int | None = Field(description="Poses needed in the best random draw.")
-    needed_high: int | None = Field(
-        description=(
-            "Poses needed in the worst random draw; empty if more than all poses are needed."
-        )
-    )
-    poses: int | None = Field(
-        description="Calibration poses in the data set; null without a learning curve."
-    )
+    needed_high: int | None = Field(description="Poses needed in the worst random draw.")
+    poses: int | None = Field(description="Poses in the data set; null without a curve.")
     floor_error_deg: float | None = Field(description="Error floor of the learning curve.")
     half_fov_deg: float | None
     rank: int | None = Field(description="Rank on the leaderboard of the data set and condition.")

@@ -17,9 +17,7 @@ from api.schema.words import DatasetName, ExtractorName, ModelName
 class CurvePoint(Shape):
     """Errors with a number of poses, over draws and units; null if every draw was refused."""
 
-    poses: int = Field(
-        description="Number of calibration poses; for a whole curve those of the data set."
-    )
+    poses: int = Field(description="Number of calibration poses.")
     middle_deg: float | None = Field(description="Median RMS error over the draws.")
     least_deg: float | None = Field(description="Smallest RMS error over the draws.")
     largest_deg: float | None = Field(description="Largest RMS error over the draws.")
@@ -42,9 +40,7 @@ class CurveRow(Shape):
     needed_low: int | None = Field(description="Poses needed in the best random draw.")
     needed_high: int | None = Field(description="Poses needed in the worst random draw.")
     error_poses: int | None = Field(description="Poses needed by the error criterion alone.")
-    answers_poses: int | None = Field(
-        description="Poses needed by the availability criterion alone."
-    )
+    answers_poses: int | None = Field(description="Poses needed by availability alone.")
     poses: int = Field(description="Poses of the calibration split.")
     floor: Literal["fitted", "all", "none"] = Field(
         description=(
@@ -59,15 +55,11 @@ class CurveRow(Shape):
 class Curve(CurveRow):
     """Learning curve of a pipeline. Poses are null if more than all poses are needed."""
 
-    place: int = Field(
-        description="Rank among the data set's leading pipelines, each with another model."
-    )
+    place: int = Field(description="Rank among the data set's leading pipelines.")
     condition: str
     in_order: bool = Field(description="Whether the poses are a time series, used in order.")
     floor_low_deg: float | None = Field(description="Lower end of the 90 % range of fitted floors.")
-    floor_high_deg: float | None = Field(
-        description="Upper end of the 90 % range of fitted floors."
-    )
+    floor_high_deg: float | None = Field(description="Upper end of the 90 % range of floors.")
     exponent: float | None = Field(description="Exponent b of the fitted law.")
     misfit: float | None = Field(description="Relative residual of the fitted law.")
     bound_deg: float = Field(
@@ -76,18 +68,14 @@ class Curve(CurveRow):
             "dark and flat frames."
         )
     )
-    bench_deg: float | None = Field(
-        description="Error of the standard calibration bench; not included in the curve."
-    )
+    bench_deg: float | None = Field(description="Error of the standard bench; not in the curve.")
     all_deg: list[float | None] = Field(description="Own error with all poses, by sensor unit.")
     draws: int = Field(description="Random draws of poses, over all units.")
     reached: int = Field(description="Draws within 10 % of the error floor.")
     needed: list[int | None] = Field(description="Poses needed by each draw, unit after unit.")
-    error_from: list[int | None] = Field(
-        description="Poses needed by each draw, error criterion alone."
-    )
+    error_from: list[int | None] = Field(description="Poses needed by each draw, by error.")
     answers_from: list[int | None] = Field(
-        description="Poses needed by each draw, availability criterion alone."
+        description="Poses needed by each draw, by availability."
     )
     refusal: str = Field(description="Reason of the first refused draw; empty if none.")
     points: list[CurvePoint] = Field(description="Points of the curve, by number of poses.")

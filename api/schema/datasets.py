@@ -32,9 +32,7 @@ class Splits(OpenShape):
 class StandsFor(OpenShape):
     """Built sensors that a data set models, or the reason for an idealisation."""
 
-    idealisation: str | None = Field(
-        description="Reason for an idealised sensor; null if built sensors exist."
-    )
+    idealisation: str | None = Field(description="Reason for an idealised sensor, if any.")
     sensors: Annotated[list[dict[str, Any]], AS_TEXT]
 
 
@@ -50,12 +48,8 @@ class Dataset(OpenShape):
     units: str
     bounds: dict[str, float] = Field(description="Cramer-Rao bound by condition, rms, degrees.")
     description: str
-    follows: list[str] = Field(
-        description="Studies that the sensor is based on, separated by semicolons."
-    )
-    stands_for: StandsFor = Field(
-        description="Built `sensors` for comparison, or the reason for an `idealisation`."
-    )
+    follows: list[str] = Field(description="Studies that the sensor is based on.")
+    stands_for: StandsFor = Field(description="Built sensors, or reason for an idealisation.")
     splits: Splits = Field(description="Samples of each split.")
     preview: str = Field(description="Address of its picture.")
     setups: dict[str, dict[str, Any]] = Field(description="Descriptions of the conditions.")
@@ -75,14 +69,10 @@ class BestOnDataset(Shape):
     """The best pipeline on a data set under nominal conditions."""
 
     dataset: str
-    extractor: str | None = Field(
-        description="Extractor of the best pipeline under nominal conditions."
-    )
+    extractor: str | None = Field(description="Extractor of the best nominal pipeline.")
     model: str | None
     half_fov_deg: float | None
-    rms_deg: float | None = Field(
-        description="Unit 0 RMS, over answers to observable samples, of that pipeline."
-    )
+    rms_deg: float | None = Field(description="Unit 0 RMS of that pipeline.")
     bound_deg: float | None = Field(description="Cramer-Rao bound over the field of the data set.")
     repeatability_deg: float | None
 
@@ -95,14 +85,10 @@ class PublishedFigures(Shape):
     fov_full_deg: float | None = Field(description="Full field of view.")
     accuracy_deg: float | None = Field(description="As claimed.")
     accuracy_kind: str | None
-    accuracy_rms_deg: float | None = Field(
-        description="Accuracy converted to RMS: 3-sigma and maximum errors divided by three."
-    )
+    accuracy_rms_deg: float | None = Field(description="Accuracy converted to RMS by its kind.")
     precision_deg: float | None
     basis: str = Field(description="page: seen on a public page; recalled: not checked.")
-    our_rms_deg: float | None = Field(
-        description="Our unit 0 RMS on the standard bench, over its field of view if narrower."
-    )
+    our_rms_deg: float | None = Field(description="Our unit 0 RMS on the standard bench.")
     accuracy_ratio: float | None = Field(description="`our_rms_deg` divided by its accuracy.")
     precision_ratio: float | None = Field(description="Our repeatability divided by its precision.")
 
@@ -117,12 +103,8 @@ class Source(Shape):
 class Explanation(Shape):
     """Whether a difference is explained, and how."""
 
-    explanation: str | None = Field(
-        description="Explanation of a difference, or reason for an idealised sensor."
-    )
-    unexplained: bool = Field(
-        description="Whether a difference of more than a factor of two is unexplained."
-    )
+    explanation: str | None = Field(description="Why it differs, or is an idealisation.")
+    unexplained: bool = Field(description="Whether more than a factor of 2 is unexplained.")
 
 
 # Members of a class stand behind those of the classes named after it.
@@ -137,19 +119,11 @@ class BuiltSensorRow(Source, Explanation, PublishedFigures, BestOnDataset):
 class RealismRow(BestOnDataset):
     """A data set compared with built sensors."""
 
-    idealisation: str | None = Field(
-        description="Reason for an idealised sensor; null if built sensors exist."
-    )
-    accuracy_ratio: float | None = Field(
-        description="1 within the range of the sensors' figures, else the ratio to the nearest."
-    )
-    precision_ratio: float | None = Field(
-        description="Repeatability measured here divided by the published precision."
-    )
+    idealisation: str | None = Field(description="Reason for an idealised sensor, if any.")
+    accuracy_ratio: float | None = Field(description="Ratio to the nearest published figure.")
+    precision_ratio: float | None = Field(description="Repeatability over published precision.")
     sentence: str | None = Field(description="Explanation of a difference.")
-    unexplained: bool = Field(
-        description="Whether a difference of more than a factor of two is unexplained."
-    )
+    unexplained: bool = Field(description="Whether more than a factor of 2 is unexplained.")
     sensors: list[BuiltSensor]
 
 
@@ -173,9 +147,7 @@ class DatasetDetail(Dataset):
     """Description of a data set with all simulation parameters."""
 
     geometry: dict[str, Any] = Field(description="Dimensions and positions of the sensor's parts.")
-    regime: dict[str, Any] = Field(
-        description="Which effect dominates the image of the aperture: geometry or diffraction."
-    )
+    regime: dict[str, Any] = Field(description="geometry or diffraction, whichever dominates.")
     seeds: dict[str, Any] = Field(description="Seeds of the random numbers, by purpose.")
     data: list[Data] = Field(description="Splits of the data set under each condition.")
 

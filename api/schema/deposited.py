@@ -34,18 +34,10 @@ class Pin(Place):
     bound_deg: float | None
     head_bound_deg: float | None = Field(description="Bound of the first samples.")
     bound_unit_deg: float | None
-    bench_deg: float | None = Field(
-        description="Error of the standard calibration bench over the field."
-    )
-    bench_aligned_deg: float | None = Field(
-        description="RMS bench error after boresight alignment, over random benches."
-    )
-    boresight_deg: float | None = Field(
-        description="Control: error if the answer is always the boresight."
-    )
-    oracle_deg: float | None = Field(
-        description="Control: error of the truth with the noise of the bound."
-    )
+    bench_deg: float | None = Field(description="Error of the standard bench over the field.")
+    bench_aligned_deg: float | None = Field(description="The same after boresight alignment.")
+    boresight_deg: float | None = Field(description="Error if the answer is the boresight.")
+    oracle_deg: float | None = Field(description="Error of the truth with the bound's noise.")
 
 
 class DepositedSweep(Sweep):
@@ -70,9 +62,7 @@ class Resolution(Place):
     state: State
     detector: str
     mask: str
-    detector_basis: Basis = Field(
-        description="Basis of the detector: stated, inferred, implied, recalled or defaulted."
-    )
+    detector_basis: Basis = Field(description="stated, inferred, implied, recalled, defaulted.")
     mask_basis: Basis = Field(description="Basis of the mask.")
     extractor_basis: Basis = Field(description="Basis of the extractor.")
     model_basis: Basis = Field(description="Basis of the model.")
@@ -109,9 +99,7 @@ class ClauseVerdict(Shape):
 
     finding: str = Field(description="Identifier of the finding.")
     clause: int = Field(description="Number of the clause within the finding.")
-    finding_verdict: str = Field(
-        description="Verdict over all clauses: partly if some are reproduced."
-    )
+    finding_verdict: str = Field(description="Verdict over all clauses.")
     verdict: str = Field(description="reproduced, tied, contradicted or undecidable.")
     matching: int = Field(description="Number of studies that match the clause.")
     counted: int = Field(description="Of these, studies with a known value.")
@@ -136,9 +124,7 @@ class ClaimVerdict(Shape):
     measured_on: str = Field(description="Data, sensors and methods of the trials.")
     replicate: str = Field(description="Difference between trials: sensor unit or seed.")
     second_method: str = Field(description="Second method of the check.")
-    second_agrees: bool | None = Field(
-        description="Whether the second method gives the same verdict for every criterion."
-    )
+    second_agrees: bool | None = Field(description="Whether all its verdicts are the same.")
     explanation: str = Field(description="Explanation of the verdict.")
 
 

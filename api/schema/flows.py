@@ -26,9 +26,7 @@ class FlowsQuery(StudyFilters):
             "equals outflow."
         ),
     )
-    grouped: Flag = Field(
-        False, description="Show categories of models and families of extractors."
-    )
+    grouped: Flag = Field(False, description="Show categories and families.")
 
 
 class Node(Shape):
@@ -65,7 +63,7 @@ class Flows(Shape):
     chart: str = Field(description="Name of the chart.")
     levels: list[str] = Field(description="Attributes of the chart, from left to right.")
     counting: Literal["studies", "fractional"] = Field(
-        description="studies or fractional: how a study with several values is counted."
+        description="How a study with several values counts."
     )
     studies: int = Field(description="Number of studies that match the filters.")
     nodes: list[Node]

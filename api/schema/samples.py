@@ -31,9 +31,7 @@ class SampleErrorsQuery(TableQuestion):
 
     extractor: Several[ExtractorName] = several("Only this extractor.")
     model: Several[ModelName] = several("Only this model.")
-    unit: Annotated[int | None, WHOLE] = Field(
-        None, ge=0, le=127, description="Only this sensor unit; 0 is the standard unit."
-    )
+    unit: Annotated[int | None, WHOLE] = Field(None, ge=0, le=127, description="Only this unit.")
     fields: Several[Annotated[str, OneOf(lambda: list(columns_of(SampleError)))]] = FIELDS
     limit: Limit = DEFAULT_PAGE
     cursor: Cursor = None
@@ -48,16 +46,10 @@ class SampleError(Shape):
     sample: int = Field(description="Number of the sample in the test split, from 0.")
     sun_x: float = Field(description="True direction of the Sun in the sensor's frame, x.")
     sun_y: float = Field(description="True direction of the Sun in the sensor's frame, y.")
-    sun_z: float = Field(
-        description="True direction of the Sun in the sensor's frame, z (boresight)."
-    )
+    sun_z: float = Field(description="True direction in the sensor's frame, z.")
     observable: bool = Field(description="Whether the readings contain the direction.")
-    bound_deg: float | None = Field(
-        description="Cramer-Rao bound of this sample for unit 0; null if none."
-    )
-    error_deg: float | None = Field(
-        description="Separation angle, stored to one part in 2,000; null without an answer."
-    )
+    bound_deg: float | None = Field(description="Cramer-Rao bound of this sample, unit 0.")
+    error_deg: float | None = Field(description="Separation angle; null without an answer.")
     outcome: int = Field(
         description="; ".join(f"{code}: {meaning}" for code, meaning in OUTCOMES.items()) + "."
     )

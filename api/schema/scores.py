@@ -29,9 +29,7 @@ class WholeLeaderboardQuery(TableQuestion):
 
     model_config = ConfigDict(json_schema_extra={"examples": [{"limit": 1}]})
 
-    whole: Flag = Field(
-        default=False, description="Return all rows at once (more than 10 MB of JSON)."
-    )
+    whole: Flag = Field(default=False, description="Return all rows at once (over 10 MB).")
     limit: Limit = DEFAULT_PAGE
     cursor: Cursor = None
 
@@ -45,16 +43,14 @@ class Place(OpenShape):
     model: str
 
 
-class Outcome(OpenShape):
-    """Whether there is a score."""
+class Score(Place):
+    """What a pipeline achieves on a data set in a condition. Numbers are null where undefined.
+
+    Errors, the bound and their ratio are over the same samples: observable and answered.
+    """
 
     status: Literal["ok", "refused", "failed"]
     reason: str = Field(description="Reason for a missing score; empty otherwise.")
-
-
-class Accuracy(OpenShape):
-    """Errors over the observable samples with an answer, and the bounds over the same."""
-
     rms_deg: float | None = Field(
         description=(
             "RMS of this unit over the observable samples with an answer, calibrated with true "
@@ -75,25 +71,8 @@ class Accuracy(OpenShape):
             "null if elements do not differ individually."
         )
     )
-
-
-class AnswerRates(OpenShape):
-    """How often there is an answer."""
-
-    availability: float | None = Field(
-        description="Availability: share of observable samples with an answer."
-    )
-    false_sun: float | None = Field(
-        description=(
-            "False detections: share of unobservable samples with an answer; null without "
-            "such samples."
-        )
-    )
-
-
-class Subject(OpenShape):
-    """Versions of what was measured, and its values of the taxonomy."""
-
+    availability: float | None = Field(description="Share of observable samples answered.")
+    false_sun: float | None = Field(description="Share of unobservable samples answered.")
     dataset_version: int = Field(description="Version of the data set.")
     unit: int = Field(description="Sensor unit; 0 is the standard unit.")
     detector: str
@@ -103,39 +82,21 @@ class Subject(OpenShape):
     extractor_version: int
     model_taxonomy: str
     model_version: int = Field(description="Version of the model.")
-
-
-class Statistics(OpenShape):
-    """Numbers of samples, and further statistics of the error."""
-
     n_calibration: int | None = Field(description="Number of samples in the calibration split.")
     n_test: int | None = Field(description="Number of samples in the test split.")
     n_observable: int | None = Field(description="Number of observable test samples.")
     median_deg: float | None = Field(description="Median separation angle, degrees.")
     p95_deg: float | None = Field(description="95th percentile of the separation angle, degrees.")
-    p997_deg: float | None = Field(
-        description="99.7th percentile of the separation angle, degrees."
-    )
+    p997_deg: float | None = Field(description="99.7th percentile of the separation angle.")
     max_deg: float | None = Field(description="Largest separation angle, degrees.")
     bias_alpha_deg: float | None = Field(description="Mean error of alpha, degrees.")
     bias_beta_deg: float | None = Field(description="Mean error of beta, degrees.")
     rms_alpha_deg: float | None = Field(description="Root mean square error of alpha, degrees.")
     rms_beta_deg: float | None = Field(description="Root mean square error of beta, degrees.")
-    repeatability_deg: float | None = Field(
-        description=(
-            "Repeatability: standard deviation of answers at a fixed pose, over both axes."
-        )
-    )
-    over_bound: float | None = Field(
-        description="RMS over all answers divided by the bound of the same samples and unit."
-    )
+    repeatability_deg: float | None = Field(description="Spread of answers at a fixed pose.")
+    over_bound: float | None = Field(description="RMS of all answers over the bound.")
     over_bound_se: float | None = Field(description="Standard error of that ratio.")
     over_bound_unit: float | None = Field(description="The same RMS divided by that bound.")
-
-
-class RingErrors(OpenShape):
-    """Errors by off-axis angle (`benchmark.metrics.rings`)."""
-
     rms_0_10_deg: float | None = None
     rms_10_20_deg: float | None = None
     rms_20_30_deg: float | None = None
@@ -145,20 +106,7 @@ class RingErrors(OpenShape):
     rms_60_70_deg: float | None = None
     rms_70_90_deg: float | None = None
     rms_90_180_deg: float | None = None
-
-
-class MetricVersion(OpenShape):
-    """Version of the metrics."""
-
     metric_version: int | None = Field(None, description="Version of the metrics.")
-
-
-# Members of a class stand behind those of the classes named after it.
-class Score(MetricVersion, RingErrors, Statistics, Subject, AnswerRates, Accuracy, Outcome, Place):
-    """What a pipeline achieves on a data set in a condition. Numbers are null where undefined.
-
-    Errors, the bound and their ratio are over the same samples: observable and answered.
-    """
 
 
 class Scores(Listing):
@@ -187,18 +135,13 @@ class Rank(OpenShape):
     tied: bool = Field(description="Whether the rank is shared.")
 
 
-class OwnAccuracy(OpenShape):
-    """Own error over the sensor units, and what a calibration bench makes of it."""
+# Members of a class stand behind those of the classes named after it.
+class LeaderboardRow(Score, Rank):
+    """A score with its rank."""
 
-    own_deg: float | None = Field(
-        None, description="Own error: geometric mean of `charged_deg` over units."
-    )
-    own_se: float | None = Field(
-        None, description="Relative standard error of the own error over units."
-    )
-    on_bench_deg: float | None = Field(
-        None, description="Error expected with the standard calibration bench."
-    )
+    own_deg: float | None = Field(None, description="Geometric mean of `charged_deg` over units.")
+    own_se: float | None = Field(None, description="Relative standard error of the own error.")
+    on_bench_deg: float | None = Field(None, description="Error expected on the standard bench.")
     on_bench_basis: Literal["measured", "estimated"] | None = Field(
         None,
         description=(
@@ -206,72 +149,18 @@ class OwnAccuracy(OpenShape):
             "of own error and bench error."
         ),
     )
-
-
-class Spread(OpenShape):
-    """Spread over the sensor units, and whether a row is hidden."""
-
     low_deg: float | None = Field(description="Smallest error over units; null with one unit.")
     high_deg: float | None = Field(description="Largest error over units.")
-    twin_of: str | None = Field(
-        None, description="Pipeline of the same extractor with identical results."
-    )
-    folded: bool = Field(
-        default=False, description="Whether it is hidden by default, as much less accurate."
-    )
-
-
-class OfExtractor(OpenShape):
-    """Whether it is the best of its extractor, and who used it."""
-
-    best_of_extractor: bool = Field(
-        description="Whether it is the best pipeline of its extractor. These are listed first."
-    )
-    studies: list[str] = Field(
-        description="Studies that used this pipeline, or the nearest method, on such a sensor."
-    )
-
-
-class Units(OpenShape):
-    """Errors of the sensor units, and times."""
-
-    unit_rms_deg: list[float | None] | None = Field(
-        description="RMS error of all answers on each sensor unit, standard unit first."
-    )
-    latency_us: float | None = Field(
-        description=(
-            "Time of extraction and prediction per sample on this machine, microseconds; "
-            "null if not timed."
-        )
-    )
+    twin_of: str | None = Field(None, description="Pipeline of the extractor that is identical.")
+    folded: bool = Field(default=False, description="Whether it is hidden by default.")
+    best_of_extractor: bool = Field(description="Whether it is the best of its extractor.")
+    studies: list[str] = Field(description="Studies that used it, or the nearest method.")
+    unit_rms_deg: list[float | None] | None = Field(description="RMS of all answers by unit.")
+    latency_us: float | None = Field(description="Time per sample, microseconds.")
     time_ratio: float | None = Field(description="Time divided by that of a reference method.")
-    field_deg: float | None = Field(
-        None, description="Off-axis angle that the rank is for; null if not asked for."
-    )
-    field_rms_deg: float | None = Field(
-        None, description="Unit 0 RMS within that angle; null if not asked for."
-    )
-    widest_field_deg: float | None = Field(
-        None, description="Widest field within the maximum error; null if not asked for."
-    )
-
-
-class LeaderboardRow(
-    Units,
-    MetricVersion,
-    RingErrors,
-    Statistics,
-    Outcome,
-    Subject,
-    OfExtractor,
-    AnswerRates,
-    Spread,
-    Accuracy,
-    OwnAccuracy,
-    Place,
-    Rank,
-):
-    """A score with its rank."""
+    field_deg: float | None = Field(None, description="Off-axis angle of the rank, if asked for.")
+    field_rms_deg: float | None = Field(None, description="Unit 0 RMS within that angle.")
+    widest_field_deg: float | None = Field(None, description="Widest field within the limit.")
 
 
 class LeaderboardDataset(OpenShape):
@@ -281,30 +170,15 @@ class LeaderboardDataset(OpenShape):
     version: int
     detector: str
     mask: str
-    idealisation: str | None = Field(
-        None, description="Reason for an idealised sensor; null if built sensors exist."
-    )
+    idealisation: str | None = Field(None, description="Reason for an idealised sensor, if any.")
     conditions: list[str]
-    smallest_ratio: float | None = Field(
-        None,
-        description="Smallest error ratio to the leader that is resolved in nine of ten cases.",
-    )
-    quoted_deg: float | None = Field(
-        None, description="Error on odd units of the pipeline that leads on even units."
-    )
+    smallest_ratio: float | None = Field(None, description="Smallest resolved ratio to the leader.")
+    quoted_deg: float | None = Field(None, description="Error on odd units of the leader on even.")
     references: str | None = Field(None, description="Reference readings used for corrections.")
-    bench_deg: float | None = Field(
-        None, description="RMS error of the standard calibration bench."
-    )
-    bench_aligned_deg: float | None = Field(
-        None, description="RMS bench error after boresight alignment."
-    )
-    bound_unit_deg: float | None = Field(
-        None, description="RMS bound for a unit known only through its reference readings."
-    )
-    controls: list[Control] = Field(
-        default_factory=list, description="Two controls for comparison."
-    )
+    bench_deg: float | None = Field(None, description="RMS error of the standard bench.")
+    bench_aligned_deg: float | None = Field(None, description="The same after alignment.")
+    bound_unit_deg: float | None = Field(None, description="RMS bound by reference readings.")
+    controls: list[Control] = Field(default_factory=list, description="Two controls.")
     folded: int = Field(0, description="Number of hidden, much less accurate pipelines.")
     rows: list[LeaderboardRow]
 
@@ -323,12 +197,7 @@ class RecordNamed(Shape):
     """Published results that a leaderboard shows."""
 
     version: str = Field(description="Version of the Atlas; the git tag is `v` plus this.")
-    sha256: str | None = Field(
-        description=(
-            "SHA-256 of manifest.json, which lists every file of the published results; "
-            "null if none."
-        )
-    )
+    sha256: str | None = Field(description="SHA-256 of manifest.json; null if none.")
 
 
 class Leaderboard(OpenShape):
@@ -337,7 +206,7 @@ class Leaderboard(OpenShape):
     model_config = ConfigDict(extra="allow", serialize_by_alias=True)
 
     schema_version: int | str | None = Field(
-        alias="schema", description="Version of the document's structure."
+        alias="schema", description="Version of the structure."
     )
     datasets: list[LeaderboardDataset]
     record: RecordNamed = Field(description="Version and digest of the published measurements.")
@@ -371,12 +240,10 @@ class LeaderboardQuery(SortedQuestion, rows=LeaderboardRow):
     extractor: Several[ExtractorName] = several("Only this extractor.")
     model: Several[ModelName] = several("Only this model.")
     best_of_extractor: Flag = Field(
-        default=False,
-        description="Only the best pipeline of each extractor.",
+        default=False, description="Only the best pipeline of each extractor."
     )
     studied: Flag = Field(
-        default=False,
-        description="Only pipelines that studies used on such a sensor.",
+        default=False, description="Only pipelines that studies used on such a sensor."
     )
     field_deg: Annotated[str | None, OneOf(lambda: FIELD_EDGES), GIVEN] = Field(
         None,

@@ -39,9 +39,7 @@ class Found(Shape):
     id: str = Field(description="Name or key.")
     title: str
     excerpt: str = Field(description="Excerpt with a search word.")
-    score: float = Field(
-        description="BM25F score; exact names rank first, then results with all words."
-    )
+    score: float = Field(description="BM25F score; exact names rank first.")
     address: str | None = Field(description="Address in the API.")
 
 

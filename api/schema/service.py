@@ -18,9 +18,7 @@ class Health(Shape):
     datasets: int
     scores: int
     facts_sha256: str | None = Field(description="Digest of the survey's tables; null if unknown.")
-    record_sha256: str | None = Field(
-        description="Digest of the published results; null if unknown."
-    )
+    record_sha256: str | None = Field(description="Digest of the published results.")
 
 
 class Violation(Shape):

@@ -85,9 +85,7 @@ class PublishedScore(Shape):
     )
     rms_deg: float | None = Field(description="Unit 0 RMS, over answers to observable samples.")
     bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
-    over_bound: float | None = Field(
-        description="Unit 0: RMS over all answers divided by the bound of the same samples."
-    )
+    over_bound: float | None = Field(description="Unit 0 RMS of all answers over its bound.")
     availability: float | None
 
 
@@ -119,9 +117,7 @@ class StudyRow(Shape):
     authors: str
     year: int | None
     venue: str
-    type: str = Field(
-        description="Kind of publication: journal, conference, preprint, thesis, ... or unknown."
-    )
+    type: str = Field(description="Kind of publication, or unknown.")
     doi: str
     url: str = Field(description="Address; empty if unknown.")
     identity: str = Field(description="Whether a public page confirms author, year and topic.")
@@ -132,12 +128,8 @@ class StudyRow(Shape):
     values: Annotated[dict[str, list[str]], ColumnEach((*ATTRIBUTES, *REPORTED))] = Field(
         description="Values by attribute of the taxonomy."
     )
-    edition: Literal["survey", "extension"] = Field(
-        description="survey, or extension (added after the survey)."
-    )
-    verified: Annotated[list[Verification], AS_TEXT] = Field(
-        description="When and how the entry was checked against the publication; null if not."
-    )
+    edition: Literal["survey", "extension"] = Field(description="survey or extension.")
+    verified: Annotated[list[Verification], AS_TEXT] = Field(description="Checks, with dates.")
 
 
 class Study(StudyRow):
@@ -145,9 +137,7 @@ class Study(StudyRow):
 
     sentence: str = Field(description="Implementation and its differences, one sentence.")
     runs: Runs = Field(description="Implementation in the Atlas.")
-    headline: Headline | None = Field(
-        description="Lowest own error of the best-supported pipelines; null if not measured."
-    )
+    headline: Headline | None = Field(description="Lowest own error of its best pipelines.")
 
 
 class AttributeValue(Shape):
@@ -160,7 +150,7 @@ class AttributeValue(Shape):
     source_name: str = Field(description="Publisher, document or part of the survey.")
     note: str
     role: Literal["proposed", "compared", "unknown", ""] = Field(
-        description="Whether the study proposed the method or only compared it."
+        description="proposed or compared."
     )
     name_in_study: str = Field(description="Name used in the study, if different.")
     nearest: bool = Field(description="Whether the value is the nearest one in the taxonomy.")
@@ -198,9 +188,7 @@ class StudyPipeline(Shape):
     )
     assumed: dict[str, str] = Field(description="Reason or rule for each part that is not stated.")
     datasets: list[str] = Field(description="Data sets on which it can be scored.")
-    settings: list[Setting] = Field(
-        description="Data sets and conditions used for the study, most relevant first."
-    )
+    settings: list[Setting] = Field(description="Data sets and conditions, best first.")
     scores: list[SettingScore] = Field(description="Published score of each setting.")
 
 
@@ -233,7 +221,7 @@ class Rung(Shape):
 
     extractor: str
     model: str
-    own_deg: float
+    own_deg: float = Field(description="Own error, or RMS of unit 0: see `nominal`.")
     availability: float | None
 
 
@@ -242,16 +230,11 @@ class Ladder(Shape):
 
     dataset: str
     condition: str
-    nominal: bool = Field(
-        description="Whether it is the first condition; under others `own_deg` is of unit 0 alone."
-    )
+    nominal: bool = Field(description="Whether it is the first condition.")
     own: Rung = Field(description="The study's own method, as in `headline`.")
     best: Rung = Field(description="First pipeline of the leaderboard.")
     bound_deg: float | None = Field(description="Cramer-Rao bound with the sensor unit known.")
-    bound_unit_deg: float | None = Field(
-        description="Cramer-Rao bound with the unit known by its darks and flats; null if not "
-        "computed."
-    )
+    bound_unit_deg: float | None = Field(description="Bound with the unit known by references.")
 
 
 class StudyDetail(Study):
@@ -270,13 +253,9 @@ class StudyDetail(Study):
             "Precision (scatter of repeated readings) that the study reports; not an accuracy."
         )
     )
-    ladder: Ladder | None = Field(
-        description="Rungs below the reported accuracy; null if the study's method has no error."
-    )
+    ladder: Ladder | None = Field(description="Rungs below the reported accuracy.")
     departures: list[Departure] = Field(description="Differences from the study.")
-    purposes: dict[Purpose, str] = Field(
-        description="Test purposes of the study, with their rules."
-    )
+    purposes: dict[Purpose, str] = Field(description="What it is run for, with the rules.")
     pipelines: list[StudyPipeline]
     gaps: list[Gap] = Field(description="Attributes of the study without a known value.")
 
@@ -314,11 +293,9 @@ class StudiesQuery(CitedQuestion, StudyFilters, SortedQuestion, rows=StudyRow):
 
     key: Several[words.StudyKey] = several("Only studies with one of these keys.")
     year_min: Annotated[int | None, WHOLE] = Field(
-        None, ge=0, le=9999, description="Only studies of this year or later."
+        None, ge=0, le=9999, description="From this year."
     )
-    year_max: Annotated[int | None, WHOLE] = Field(
-        None, ge=0, le=9999, description="Only studies of this year or earlier."
-    )
+    year_max: Annotated[int | None, WHOLE] = Field(None, ge=0, le=9999, description="To this year.")
     grade: Several[Grade] = several(
         "Only studies with this grade: faithful (every part is the study's own, "
         "stated or inferred with a reason), close (one part differs), stand-in (more "

@@ -11,7 +11,7 @@ from api.service.documents import Document
 from api.service.knowledge import Knowledge
 from api.service.problems import Problem, Violation
 from benchmark.leaderboard.architectures import architectures as best_of_each
-from registry.measured_pipelines import PartialAnswer, finer_for
+from benchmark.leaderboard.partial_answers import PartialAnswer, finer_for
 from registry.taxonomy import InvalidValueError
 from survey_data.nearest import nearest_name
 
@@ -119,7 +119,7 @@ def compare_architectures(known: Knowledge, architectures: Sequence[str]) -> dic
         data set, the one with the smallest error if an architecture has several. Fields of view
         differ (``half_fov_deg``); ``rings`` compare at equal angles. ``finer`` is a pipeline below
         the availability limit that is far more accurate on the samples it answers, or None
-        (`registry.measured_pipelines.finer_for`); each condition has its own.
+        (`benchmark.leaderboard.partial_answers.finer_for`); each condition has its own.
 
     Raises
     ------

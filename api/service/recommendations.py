@@ -71,28 +71,32 @@ def ask(asked: Requirements, measured: Measurements, facts: Facts) -> Answer:
         raise Problem(422, "invalid-value", errors=[wrong]) from error
 
 
-def recommendations(known: Knowledge, asked: Requirements) -> Document:
+def recommendations(known: Knowledge, query: Requirements) -> Document:
     """Return a page of the answer to requirements; its table has every calibration."""
-    answer = ask(asked, known.measured_pipelines, known.of(asked.edition).facts)
-    shown = page(answer.architectures, PATH, asked)
+    answer = _ask(known, query)
+    shown = page(answer.architectures, PATH, query)
     return Document(
-        document(answer, asked, shown.items, shown.next).model_dump(),
+        document(answer, query, shown.items, shown.next).model_dump(),
         columns_of(RecommendationRow),
         lambda: [row.model_dump() for row in rows(answer)],
     )
 
 
-def flow_of_answer(known: Knowledge, asked: Requirements) -> Document:
+def flow_of_answer(known: Knowledge, query: Requirements) -> Document:
     """Return the decision flow behind the answer to requirements; its table has the paths."""
-    found = flow(ask(asked, known.measured_pipelines, known.of(asked.edition).facts)).model_dump()
+    found = flow(_ask(known, query)).model_dump()
     return Document(found, columns_of(Path), lambda: found["paths"])
 
 
-def designs(known: Knowledge, asked: Requirements) -> Document:
+def designs(known: Knowledge, query: Requirements) -> Document:
     """Return a page of all calibrations of the answer to requirements."""
-    shown = _design_page(ask(asked, known.measured_pipelines, known.of(asked.edition).facts), asked)
+    shown = _design_page(_ask(known, query), query)
     items = [row.model_dump() for row in shown.items]
     return list_document(shown, items, columns_of(RecommendationRow))
+
+
+def _ask(known: Knowledge, query: Requirements) -> Answer:
+    return ask(query, known.measured_pipelines, known.of(query.edition).facts)
 
 
 def document(
@@ -125,8 +129,8 @@ def document(
         next=next_page,
         contradictions=[
             Contradiction(
-                **{**vars(one), "first_own_deg": _digits(one.first_own_deg)}
-                | {"other_own_deg": _digits(one.other_own_deg)},
+                **{**vars(one), "first_own_deg": _digits(one.first_own_deg, 5)}
+                | {"other_own_deg": _digits(one.other_own_deg, 5)},
                 ratio=_digits(one.ratio, 3),
                 sentence=one.sentence,
             )
@@ -385,7 +389,7 @@ def _measured(answer: Answer, one: found_by.Calibration) -> Measured | None:
         model=pipeline.model,
         condition=own.condition,
         field_deg=own.field_deg,
-        own_deg=None if low is None else _digits(own.error_deg),
+        own_deg=None if low is None else _digits(own.error_deg, 5),
         own_low_deg=_digits(low),
         own_high_deg=_digits(high),
         on_bench_deg=None if asked.bench_deg is None else _digits(one.judged_deg),

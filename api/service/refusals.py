@@ -21,12 +21,12 @@ Schema = Mapping[str, Any]
 
 
 def refusal(errors: Sequence[Mapping[str, Any]], endpoint: Callable[..., Any]) -> Problem:
-    """Return the problem of a request that does not fit a path function.
+    """Return the problem of a request that does not fit a function.
 
     Parameters
     ----------
     errors : as FastAPI lists Pydantic's; their `loc` begins with "path", "query" or "body"
-    endpoint : the path function
+    endpoint : a path function, or one of the service
 
     Returns
     -------
@@ -58,7 +58,7 @@ def refusal(errors: Sequence[Mapping[str, Any]], endpoint: Callable[..., Any]) -
 
 @cache
 def schemas(endpoint: Callable[..., Any]) -> Mapping[str, Mapping[str, Schema]]:
-    """Return the JSON Schema of every parameter of a path function, by place and name.
+    """Return the JSON Schema of every parameter of a function, by place and name.
 
     Arguments whose type is a model are called after the place they come from.
     """
@@ -72,7 +72,7 @@ def schemas(endpoint: Callable[..., Any]) -> Mapping[str, Mapping[str, Schema]]:
 
 
 def asked_models(endpoint: Callable[..., Any]) -> Mapping[str, type[BaseModel]]:
-    """Return the models that a path function is asked by, by the name of the argument."""
+    """Return the models that a function is asked by, by the name of the argument."""
     hints = get_type_hints(endpoint, include_extras=True)
     kinds = {name: _kind(hint) for name, hint in hints.items()}
     return {n: k for n, k in kinds.items() if isinstance(k, type) and issubclass(k, BaseModel)}

@@ -30,5 +30,3 @@ Known = Annotated[Knowledge, Depends(knowledge)]
 JSON_ONLY = Depends(json_accepted)
 NO_PARAMETERS = Depends(no_parameters)
 TableOnly = Annotated[OnlyFormat, Query()]
-AS_ACCEPTED = OnlyFormat.model_construct()
-"""The query where none is given, as when a path function is called by another."""

@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from benchmark.leaderboard.partial_answers import PartialAnswer, finer_for
 from benchmark.metrics.ranking import UnitErrors
 from benchmark.metrics.score import is_available
-from registry.measured_pipelines import PartialAnswer, finer_for
 
 Board = Mapping[str, Any]
 Row = Mapping[str, Any]
@@ -51,7 +51,7 @@ def architectures(board: Board) -> list[dict[str, Any]]:
         ``first_group`` (how many it does not); on how many of ``units_compared`` units the best
         errs less, ``units_ahead``; and as ``finer_...`` the pipeline that errs least of those that
         answer half of the samples or more but too seldom to rank first, where the best errs far
-        more (`registry.measured_pipelines.finer_for`).
+        more (`benchmark.leaderboard.partial_answers.finer_for`).
     """
     by: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
     for dataset in board["datasets"]:

@@ -78,7 +78,9 @@ def pipelines(
                 extractor_taxonomy=first["extractor_taxonomy"],
                 model=model,
                 stages=known[model],
-                nominal=dataclasses.replace(_score(first, share), rms_deg=UnitErrors(units).own_deg),
+                nominal=dataclasses.replace(
+                    _score(first, share), rms_deg=UnitErrors(units).own_deg
+                ),
                 hazards={
                     hazard: tuple(_score(scores[name, 0], share) for name in names)
                     for hazard, names in hazards(conditions[dataset]).items()

@@ -6,15 +6,13 @@ import asyncio
 import csv
 import io
 from collections.abc import Callable, Iterator
-from functools import cache
 from typing import Any
 
 import httpx
 import pytest
 from fastapi import FastAPI
 
-from api.cli import asking, prepared_measurements
-from api.cli.commands import recommend
+from api.cli import asking
 from api.docs import knowledge as of_docs
 from api.server import app as service
 from api.server.app import create_app
@@ -83,10 +81,6 @@ def _own_working_store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Non
 def knowledge(_own_working_store: None) -> Iterator[Knowledge]:
     """What is published, read once for the service, the command line and the docs: 5 s each."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(recommend, "measure", cache(recommend.measure))
-        patch.setattr(
-            prepared_measurements, "_made", lambda _: asking.knowledge().measurements.pipelines
-        )
         patch.setattr(service, "Knowledge", asking.knowledge)
         patch.setattr(of_docs, "Knowledge", asking.knowledge)
         yield asking.knowledge()

@@ -16,7 +16,7 @@ from api.cli.command_line import COMMANDS, app
 from api.http.reference import target
 from api.server import handlers
 from api.web.answers import Answer, AnswerRoute
-from api.web.dependencies import AS_ACCEPTED, TableOnly
+from api.web.dependencies import TableOnly
 from api.web.representations import RepresentationCache
 from benchmark.leaderboard import pages
 from files.csv_writing import escape_formulas, unescape_formulas
@@ -112,7 +112,7 @@ def small() -> Iterator[Client]:
     router = APIRouter(route_class=AnswerRoute, default_response_class=Answer)
 
     @router.get("/v1/made")
-    async def made(query: TableOnly = AS_ACCEPTED) -> Answer:
+    async def made(query: TableOnly) -> Answer:
         return Answer({"rows": ROWS}, ("name", "value"), lambda: ROWS)
 
     service = FastAPI()

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 import shutil
 from pathlib import Path
-from statistics import median
 
 import pytest
 
 import survey_data
 from survey_data.descriptor import DATA_DIRECTORY
-from survey_data.hardware import Product, hardware, products
+from survey_data.hardware import hardware
 from survey_data.problems import SurveyDataError
 from survey_data.reported import statistics
 
@@ -20,12 +19,10 @@ def test_it_is_the_table_that_pandas_reads() -> None:
     frame = survey_data.load().hardware
     found = hardware()
     assert list(found) == frame["id"].tolist()
-    for column in ("fov_full_deg", "accuracy_deg", "precision_deg", "update_hz", "power_mw"):
+    for column in ("fov_full_deg", "accuracy_deg", "precision_deg"):
         ours = [getattr(item, column) for item in found.values()]
         theirs = [None if math.isnan(value) else value for value in frame[column].tolist()]
         assert ours == theirs
-    for column in ("group", "study", "family", "supply"):
-        assert [getattr(item, column) for item in found.values()] == list(frame[column].fillna(""))
     assert {item.basis for item in found.values()} == {"page", "recalled"}
 
 
@@ -38,68 +35,3 @@ def test_a_broken_table_is_named(tmp_path: Path) -> None:
         hardware(tmp_path)
     shutil.copy(DATA_DIRECTORY / "hardware.csv", tmp_path)
     assert list(hardware(tmp_path)) == list(hardware())
-
-
-def test_an_accuracy_is_compared_as_an_rms() -> None:
-    found = {key: hardware()[key].accuracy_rms_deg for key in ("C07", "C12", "C37", "C40", "C06")}
-    assert found == pytest.approx(
-        {"C07": 0.1, "C12": 0.2 / 3, "C37": 0.025 / 3, "C40": 10, "C06": None}
-    )
-
-
-def by_family() -> dict[str, Product]:
-    return {product.family: product for product in products()}
-
-
-def test_families_partition_the_rows_and_a_product_is_of_one_architecture() -> None:
-    known = {key for key, one in hardware().items() if one.detector and one.mask}
-    counted = [key for product in products() for key in product.ids]
-    assert set(counted) == known
-    assert len(counted) == len(known)
-    assert list(by_family()) == sorted({hardware()[key].family for key in known})
-    for product in products():
-        rows = [hardware()[key] for key in product.ids]
-        assert {(one.family, one.detector, one.mask) for one in rows} == {
-            (product.family, product.detector, product.mask)
-        }
-
-
-def test_a_unit_that_stands_twice_counts_once() -> None:
-    masses = {
-        product.family: product.mass_g
-        for product in products()
-        if (product.detector, product.mask) == ("PD", "Maskless") and product.mass_g is not None
-    }
-    # The coarse sun sensor of Bradford is in the table twice: by row the median is 130 g.
-    assert masses == {
-        "adcole-cosine-cell": 10,
-        "adcole-css-pyramid": 130,
-        "bradford-coss": 10,
-        "bradford-css": 215,
-    }
-    assert median(masses.values()) == 70
-    mini = by_family()["bradford-mini-fss"]
-    assert (mini.ids, mini.mass_g, mini.fov_full_deg) == (("C12", "C13"), 50, 128)
-    assert mini.accuracy_rms_deg == pytest.approx(0.2 / 3)  # that of the row with a look-up table
-
-
-def test_variants_of_a_model_and_rows_of_a_maker_and_a_paper_are_one_product() -> None:
-    found = by_family()
-    nano = found["solar-mems-nanossoc"]
-    assert nano.names == ("Solar MEMS nanoSSOC-D60", "Solar MEMS nanoSSOC-A60")
-    assert nano.power_mw == pytest.approx((76 + 10) / 2)
-    assert nano.mass_g == pytest.approx((6.2 + 4) / 2)
-    assert nano.update_hz == 5  # only one of the two rows states it
-    rax = found["rax-photodiodes"]
-    assert {hardware()[key].group for key in rax.ids} == {"commercial", "paper"}
-    assert rax.studies == ("Springmann2014",)
-    assert {"foresail-1-psd", "foresail-1p-dss"} <= set(found)
-
-
-def test_a_sensor_on_its_own_solar_cells_is_no_passive_one() -> None:
-    fed = {one.id for one in hardware().values() if one.supply == "self-powered"}
-    assert fed == {"C42", "P09"}
-    wireless = by_family()["tsinghua-wireless-profile"]
-    assert (wireless.power_mw, wireless.supply) == (None, "self-powered")
-    for product in products():
-        assert (product.power_mw == 0) == (product.supply == "passive")

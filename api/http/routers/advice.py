@@ -10,7 +10,7 @@ from api.schema.advice import AdviceQuery, Advices, Protocol
 from api.schema.base import Selected
 from api.service import advice as service
 from api.web.answers import Answer, AnswerRoute
-from api.web.dependencies import AS_ACCEPTED, Known, TableOnly
+from api.web.dependencies import Known, TableOnly
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -27,7 +27,7 @@ async def advice(known: Known, query: Annotated[AdviceQuery, Query()]) -> Answer
 @router.get("/protocol", summary="Rules for studies and scores", response_model=Protocol)
 async def protocol(
     known: Known,  # noqa: ARG001 - as every path function has it
-    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+    query: TableOnly,  # noqa: ARG001 - the route has read it
 ) -> Answer:
     """Describe how the survey selected studies, and the rules of the scores.
 

@@ -11,7 +11,7 @@ from api.schema.claims import ClaimDetail, Claims, ClaimsQuery
 from api.schema.words import ClaimId
 from api.service import claims as service
 from api.web.answers import Answer, AnswerRoute
-from api.web.dependencies import AS_ACCEPTED, Known, TableOnly
+from api.web.dependencies import Known, TableOnly
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -34,7 +34,7 @@ async def claims(known: Known, query: Annotated[ClaimsQuery, Query()]) -> Answer
 async def claim(
     known: Known,
     id: Annotated[ClaimId, Path(description="Claim, such as C29.", examples=["C04"])],  # noqa: A002 - the parameter's name
-    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+    query: TableOnly,  # noqa: ARG001 - the route has read it
 ) -> Answer:
     """Return a claim with its criteria, the results of all trials and its plot.
 

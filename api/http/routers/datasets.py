@@ -12,7 +12,7 @@ from api.schema.samples import SampleErrors, SampleErrorsQuery
 from api.schema.words import DatasetName
 from api.service import datasets as service
 from api.web.answers import Answer, AnswerRoute, Columns, Picture
-from api.web.dependencies import AS_ACCEPTED, NO_PARAMETERS, Known, TableOnly
+from api.web.dependencies import NO_PARAMETERS, Known, TableOnly
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -35,7 +35,7 @@ async def datasets(known: Known, query: Annotated[DatasetsQuery, Query()]) -> An
 async def dataset(
     known: Known,
     name: Name,
-    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+    query: TableOnly,  # noqa: ARG001 - the route has read it
 ) -> Answer:
     """Return the description of a data set and its published hashes and bounds.
 

@@ -10,7 +10,7 @@ from api.figures.catalogue import FigureName
 from api.schema.figures import Figure, FigureQuery, Figures, MatrixQuery
 from api.service import figures as service
 from api.web.answers import Answer, AnswerRoute
-from api.web.dependencies import AS_ACCEPTED, Known, TableOnly
+from api.web.dependencies import Known, TableOnly
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -18,7 +18,7 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 @router.get("/figures", summary="The survey's figures", response_model=Figures)
 async def figures(
     known: Known,
-    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+    query: TableOnly,  # noqa: ARG001 - the route has read it
 ) -> Answer:
     """List the figures and the attributes they show. The evidence map is `matrix`."""
     return Answer.of(service.figures(known))

@@ -10,7 +10,7 @@ from api.schema.recommendations import AnswerFlow, Designs, Recommendations
 from api.schema.requirements import RequirementsBody, RequirementsQuery
 from api.service import recommendations as service
 from api.web.answers import Answer, AnswerRoute
-from api.web.dependencies import AS_ACCEPTED, Known, TableOnly
+from api.web.dependencies import Known, TableOnly
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -43,7 +43,7 @@ async def recommendations(known: Known, query: Annotated[RequirementsQuery, Quer
 async def recommend(
     known: Known,
     body: Annotated[RequirementsBody, Body()],
-    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+    query: TableOnly,  # noqa: ARG001 - the route has read it
 ) -> Answer:
     """Recommend for requirements in a body."""
     return Answer.of(service.recommendations(known, body))

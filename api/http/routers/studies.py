@@ -17,14 +17,9 @@ from api.schema.studies import (
 from api.schema.words import StudyKey
 from api.service import studies as service
 from api.web.answers import Answer, AnswerRoute, CitedAnswer
-from api.web.dependencies import AS_ACCEPTED as TABLE_AS_ACCEPTED
 from api.web.dependencies import Known, TableOnly
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
-
-
-AS_ACCEPTED = StudyQuery.model_construct()
-"""The query where none is given, as when another path function calls."""
 
 
 @router.get(
@@ -46,7 +41,7 @@ async def studies(known: Known, query: Annotated[StudiesQuery, Query()]) -> Answ
 @router.get("/editions", summary="Editions of the studies", response_model=Editions)
 async def editions(
     known: Known,
-    query: TableOnly = TABLE_AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+    query: TableOnly,  # noqa: ARG001 - the route has read it
 ) -> Answer:
     """List the editions of the studies, for citation.
 
@@ -65,7 +60,7 @@ async def editions(
 async def study(
     known: Known,
     key: Annotated[StudyKey, Path(description="Key of the study.", examples=["Chang2008"])],
-    query: Annotated[StudyQuery, Query()] = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+    query: Annotated[StudyQuery, Query()],  # noqa: ARG001 - the route has read it
 ) -> Answer:
     """Return a study: values with basis, implementation and scores.
 

@@ -7,7 +7,7 @@ from fastapi import APIRouter
 from api.schema.taxonomy import Taxonomy
 from api.service import taxonomy as service
 from api.web.answers import Answer, AnswerRoute
-from api.web.dependencies import AS_ACCEPTED, Known, TableOnly
+from api.web.dependencies import Known, TableOnly
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
 
@@ -19,7 +19,7 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 )
 async def taxonomy(
     known: Known,
-    query: TableOnly = AS_ACCEPTED,  # noqa: ARG001 - the route has read it
+    query: TableOnly,  # noqa: ARG001 - the route has read it
 ) -> Answer:
     """List all values of all attributes of studies.
 

@@ -142,7 +142,7 @@ def board(monkeypatch: pytest.MonkeyPatch) -> list[Mapping[str, Any]]:
 def row(model: str, rms_deg: float | None, **members: Any) -> Mapping[str, Any]:
     known = {"dataset": "one", "extractor": "e", "availability": 1.0, "rank": 1}
     over = None if rms_deg is None else 10 * rms_deg
-    return {**known, "model": model, "rms_deg": rms_deg, "over_bound": over, **members}
+    return {**known, "model": model, "own_deg": rms_deg, "over_bound": over, **members}
 
 
 def test_a_category_of_which_nothing_is_measured_says_so(board: list[Mapping[str, Any]]) -> None:
@@ -167,7 +167,7 @@ def test_a_category_shows_the_pipeline_nearest_its_bound(
     monkeypatch.setattr(field_plots, "rms_deg", rms_deg)
     alone, both = model_pages.picture("Splines"), model_pages.picture("Splines")
     assert shown == [PlottedPipeline("one", "e", "optical + a")] * 2
-    assert alone.endswith("`e + optical + a` on `one`: 0.1 deg as published.")
+    assert alone.endswith("`e + optical + a` on `one`, RMS of unit 0: 0.1 deg as published.")
     assert "0.03 deg with calibration, unit and readings perfect" in both
 
 
@@ -217,7 +217,7 @@ def test_a_pipeline_without_a_pinned_bench_error_has_a_dash(
     monkeypatch.setattr(limits, "_build", dict)
     rows = [line.split(" | ") for line in limits.best_pipelines().splitlines()[2:]]
     assert rows
-    assert {cells[6] for cells in rows} == {"–"}
+    assert {cells[7] for cells in rows} == {"–"}
 
 
 def test_leaders_that_all_come_near_their_floor_are_said_to(

@@ -88,7 +88,7 @@ def test_the_limits_name_the_error_source_of_every_pipeline_that_is_not_near_its
     sentences = limits.sentences()
     assert len(best_pipelines) == len(ERROR_BUDGET.read())
     for row in best_pipelines:
-        name, far = row[0].split("[")[1].split("]")[0], float(row[4]) > limits.NEAR
+        name, far = row[0].split("[")[1].split("]")[0], float(row[5]) > limits.NEAR
         assert (f"- `{name}`: " in sentences) == far, name
 
 

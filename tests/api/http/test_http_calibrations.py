@@ -68,6 +68,17 @@ def test_the_page_takes_a_form_without_a_script(atlas):
     assert refused.headers["content-type"].startswith("text/html")
 
 
+def test_a_model_is_filled_in_by_the_address_and_is_the_only_one_tried(atlas):
+    assert 'name="model" value="homography"' in atlas.get("/calibrate?model=homography").text
+    files = {"file": ("b.csv", turntable())}
+    made = atlas.post(ADDRESS, files=files, data={"model": "homography"})
+    assert made.status_code == 200
+    assert made.json()["model"]["name"] == "homography"
+    refused = atlas.post(ADDRESS, files=files, data={"model": "no-such"})
+    assert refused.status_code == 422
+    assert "no model no-such" in refused.json()["detail"]
+
+
 def test_nothing_is_kept(atlas, tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     answer = atlas.post(ADDRESS, files={"file": ("b.csv", BAD)})

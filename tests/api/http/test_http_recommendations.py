@@ -1,14 +1,18 @@
-"""Recommendations as served: the survey's leading paths, their studies, and what blocks."""
+"""Recommendations as served: evidence, studies behind them, what blocks, sizes and pages."""
 
 import csv
 from collections import defaultdict
+from itertools import pairwise
 from pathlib import Path
+
+import pytest
 
 import survey_data
 from registry.taxonomy import taxonomy_rows
 
 TABLES = Path(survey_data.__file__).parent
 LEVELS = ("task", "detector", "mask", "model", "extractor")
+PATH = "/v1/recommendations"
 
 
 def values():
@@ -24,97 +28,110 @@ def values():
     return found
 
 
-def test_the_survey_s_advice_is_marked_and_weighs_at_most_a_factor_of_two(atlas):
-    answer = atlas.get("/v1/recommendations?task=Accuracy").json()
-    assert answer["nodes"]
-    assert answer["links"]
-    assert answer["blocked"] is None
-    advised = {(a["detector"], a["mask"]) for a in answer["architectures"] if a["advised"]}
+def test_the_survey_s_advice_is_named_with_its_section(atlas):
+    found = atlas.get(f"{PATH}?task=Accuracy&limit=500").json()["architectures"]
+    advised = {(a["detector"], a["mask"]) for a in found if a["advised"]}
     assert advised == {("CMOS", "Multi-Ap."), ("CMOS", "Encoded")}
-    errors = [a["best"]["measured"]["error_deg"] for a in answer["architectures"][:10]]
-    for at, error in enumerate(errors):
-        assert error <= 2 * min(errors[at:]), "evidence makes up for at most that much"
-    assert errors != sorted(errors), "evidence decides nothing"
-    for architecture in answer["architectures"]:
-        assert architecture["advised"] == bool(architecture["advice"])
-        assert all(a["section"] and a["value"] == "Accuracy" for a in architecture["advice"])
+    for architecture in found:
+        for one in architecture["advised"]:
+            assert one["value"] == "Accuracy"
+            assert one["section_name"].startswith("Section 4")
+        states = {one["requirement"]: one["advised"] for one in architecture["evidence"]}
+        assert (states["task"] == "meets") == bool(architecture["advised"])
 
 
 def test_a_path_names_exactly_the_studies_that_have_its_values(atlas):
     of = values()
-    answer = atlas.get("/v1/recommendations?limit=500").json()
-    assert len(answer["paths"]) > 100
-    for path in answer["paths"]:
+    paths = atlas.get(f"{PATH}/flow").json()["paths"]
+    assert len(paths) > 100
+    for path in paths:
         taken = {key for key, v in of.items() if all(path[level] in v[level] for level in LEVELS)}
         assert set(path["studies"]) == taken
+    assert atlas.get(f"{PATH}?include=paths").json()["paths"] == paths
 
 
-def test_ranks_count_up_and_support_goes_down_if_asked_for(atlas):
-    query = "sort=support&limit=500&calibrations=500"
-    found = atlas.get(f"/v1/recommendations?{query}").json()["architectures"]
-    assert [a["rank"] for a in found] == list(range(1, len(found) + 1))
-    sizes = [len(a["studies"]) for a in found]
-    assert sizes == sorted(sizes, reverse=True)
-    for a in found:
-        ranks = [one["rank"] for one in a["calibrations"]]
-        assert ranks == list(range(1, a["count"] + 1))
-        named = [one for one in a["calibrations"] if "None" not in (one["extractor"], one["model"])]
-        support = [one["support"] for one in named]
-        assert support == sorted(support, reverse=True)
+def test_nodes_and_links_of_a_flow_have_the_studies_of_their_paths(atlas):
+    flow = atlas.get(f"{PATH}/flow?task=FOV&exclude_detector=CMOS").json()
+    on = defaultdict(set)
+    for path in flow["paths"]:
+        names = [f"{level}:{path[level]}" for level in LEVELS]
+        for name in names:
+            on[name] |= set(path["studies"])
+        for pair in pairwise(names):
+            on[pair] |= set(path["studies"])
+    assert {n["id"]: set(n["studies"]) for n in flow["nodes"]} | {
+        (k["source"], k["target"]): set(k["studies"]) for k in flow["links"]
+    } == on
+    assert "detector:CMOS" not in on
+    assert {n["value"] for n in flow["nodes"] if n["level"] == "task"} == {"FOV"}
 
 
-def test_what_is_measured_comes_first_if_asked_for(atlas):
-    found = atlas.get("/v1/recommendations?sort=measured&limit=500&calibrations=1").json()
+def test_architectures_come_by_studies_or_by_error_if_asked_for(atlas):
+    every = atlas.get(f"{PATH}?sort=error&min_availability=0.95&limit=500").json()["architectures"]
+    assert [a["built"] for a in every] == sorted((a["built"] for a in every), reverse=True)
     errors = [
-        (a["best"]["measured"] or {}).get("error_deg") or float("inf")
-        for a in found["architectures"]
+        a["best"]["measured"]["own_deg"] for a in every if a["built"] and "measured" in a["meets"]
     ]
-    assert errors == sorted(errors)
-    assert found["regret"]["ratio"] == 1.0
-    best = found["architectures"][0]
-    assert best["calibrations"][0] == best["best"]
+    assert len(errors) > 10
+    alike = [one <= 1.6 * following for one, following in pairwise(errors)]
+    assert all(alike), "only ties stand out of order"
+    by = atlas.get(f"{PATH}?sort=studies&min_availability=0.95&limit=500").json()["architectures"]
+    assert by[0]["studies"] == max(a["studies"] for a in by)
 
 
-def test_an_encoded_mask_shows_the_error_of_its_own_correlation(atlas):
-    (first, *_) = atlas.get("/v1/recommendations?mask=Encoded").json()["architectures"]
-    assert (first["detector"], first["best"]["model"]) == ("CMOS", "Coded")
-    assert first["best"]["measured"]["error_deg"] < 0.01
-    assert first["best"]["measured"]["nominal"]["bound_deg"] > 0
+def test_pages_of_an_answer_follow_each_other_and_change_nothing_else(atlas):
+    whole = atlas.get(f"{PATH}?task=Cost&limit=500").json()
+    found, cursor = [], ""
+    while cursor is not None:
+        page = atlas.get(f"{PATH}?task=Cost&limit=3{cursor and f'&cursor={cursor}'}").json()
+        found += page["architectures"]
+        cursor = page["next"]
+    assert found == whole["architectures"]
+    assert page == {**whole, "architectures": page["architectures"]}
 
 
-def test_limits_shorten_architectures_and_calibrations_and_nothing_else(atlas):
-    whole = atlas.get("/v1/recommendations?task=Cost&limit=500&calibrations=500").json()
-    short = atlas.get("/v1/recommendations?task=Cost&limit=3&calibrations=2").json()
-    cut = [{**a, "calibrations": a["calibrations"][:2]} for a in whole["architectures"][:3]]
-    assert short == {**whole, "architectures": cut}
-    usual = atlas.get("/v1/recommendations").json()["architectures"]
-    assert len(usual) == 20
-    assert max(len(a["calibrations"]) for a in usual) == 5
+def test_the_usual_answer_is_short_and_the_rest_is_included_on_request(atlas):
+    usual = atlas.get(PATH)
+    assert len(usual.content) <= 30_000
+    assert all(a["calibrations"] is None for a in usual.json()["architectures"])
+    more = atlas.get(f"{PATH}?include=calibrations,designs&calibrations=2&limit=4").json()
+    for architecture in more["architectures"]:
+        listed = architecture["calibrations"]
+        assert len(listed) == min(2, architecture["count"])
+        assert listed[0]["measured"]["own_deg"] == architecture["best"]["measured"]["own_deg"]
+    assert len(more["rows"]["items"]) == 200 < more["rows"]["total"]
+    following = atlas.get(more["rows"]["next"]).json()
+    assert following["items"][0] not in more["rows"]["items"]
+    assert following["total"] == more["rows"]["total"]
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        "accuracy=UFSS",
+        "task=Accuracy",
+        "bench_deg=0.02",
+        "mission=leo-cubesat",
+        "survive=albedo&max_error_deg=1",
+    ],
+)
+def test_answers_of_drawn_kinds_are_short(atlas, asked):
+    assert len(atlas.get(f"{PATH}?{asked}").content) <= 30_000
 
 
 def test_what_is_excluded_is_gone(atlas):
     query = "task=Accuracy&exclude_detector=CMOS&exclude_mask=Slit&exclude_model=LUT"
-    answer = atlas.get(f"/v1/recommendations?{query}&limit=500&calibrations=500").json()
-    assert answer["count"] > 0
-    found = answer["architectures"]
-    assert all(a["detector"] != "CMOS" and a["mask"] != "Slit" for a in found)
-    assert all(c["model"] != "LUT" for a in found for c in a["calibrations"])
+    rows = atlas.table(f"{PATH}?{query}")
+    assert rows
+    assert all(row["detector"] != "CMOS" and row["mask"] != "Slit" for row in rows)
+    assert all(row["model"] != "LUT" for row in rows)
     gone = {"detector:CMOS", "mask:Slit", "model:LUT"}
-    assert not gone & {node["id"] for node in answer["nodes"]}
-
-
-def test_what_no_data_set_tries_is_told(atlas):
-    answer = atlas.get("/v1/recommendations?survive=missing-apertures&limit=500").json()
-    untried = {(p["detector"], p["mask"]) for p in answer["untried"]["missing-apertures"]}
-    kept = {(a["detector"], a["mask"]) for a in answer["architectures"]}
-    assert untried
-    assert not untried & kept
-    assert all(a["best"]["basis"]["survive"] == "measured" for a in answer["architectures"])
+    assert not gone & {node["id"] for node in atlas.get(f"{PATH}/flow?{query}").json()["nodes"]}
 
 
 def test_an_impossible_requirement_is_named_with_what_would_help(atlas):
-    answer = atlas.get("/v1/recommendations?detector=Event&max_error_deg=0.0000001").json()
-    assert (answer["count"], answer["architectures"], answer["paths"]) == (0, [], [])
+    answer = atlas.get(f"{PATH}?detector=Event&max_error_deg=0.0000001").json()
+    assert (answer["count"], answer["architectures"]) == (0, [])
     assert answer["blocked"]["constraint"] == "max_error_deg"
     for relaxation in answer["blocked"]["relaxations"]:
         assert relaxation["architectures"] > 0
@@ -123,50 +140,84 @@ def test_an_impossible_requirement_is_named_with_what_would_help(atlas):
 
 def test_relaxations_give_as_many_architectures_as_they_promise(atlas):
     body = {"task": ["Accuracy"], "detector": ["LTF"], "mask": ["Encoded"]}
-    blocked = atlas.post("/v1/recommendations", json=body).json()["blocked"]
+    blocked = atlas.post(PATH, json=body).json()["blocked"]
     assert blocked["relaxations"]
     for relaxation in blocked["relaxations"]:
-        relaxed = {k: v for k, v in body.items() if k not in relaxation.get("drop", {})}
-        relaxed |= relaxation.get("change", {})
-        found = atlas.post("/v1/recommendations", json=relaxed).json()
+        relaxed = {k: v for k, v in body.items() if k not in relaxation["drop"]}
+        found = atlas.post(PATH, json=relaxed | relaxation["change"]).json()
         assert found["count"] == relaxation["architectures"] > 0
 
 
 def test_the_requirements_are_repeated_as_understood(atlas):
     body = {"task": ["FOV", "Accuracy"], "exclude_mask": ["Lens"], "max_error_deg": 1}
-    answer = atlas.post("/v1/recommendations", json=body).json()
+    answer = atlas.post(PATH, json=body).json()
     assert answer["requirements"] == {
         "task": ["Accuracy", "FOV"],
         "exclude_mask": ["Lens"],
         "max_error_deg": 1.0,
     }
+    mission = atlas.get(f"{PATH}?mission=leo-cubesat&max_mass_g=20").json()["requirements"]
+    assert mission["max_mass_g"] == 20.0
+    assert mission["survive"] == ["albedo"]
 
 
-def test_csv_rows_are_the_calibrations_of_the_architectures(atlas):
-    found = atlas.get("/v1/recommendations?task=FOV").json()["architectures"]
-    rows = atlas.table("/v1/recommendations?task=FOV")
-    names = ("rank", "detector", "mask", "advised", "calibration", "extractor", "model")
-    assert [{name: row[name] for name in names} for row in rows] == [
-        {
-            "rank": str(a["rank"]),
-            "detector": a["detector"],
-            "mask": a["mask"],
-            "advised": "true" if a["advised"] else "false",
-            "calibration": str(one["rank"]),
-            "extractor": taxonomy_rows("extractor", one["extractor"]),
-            "model": taxonomy_rows("model", one["model"]),
-        }
-        for a in found
-        for one in a["calibrations"]
-    ]
-    assert [row["calibration_studies"] for row in rows] == [
-        "; ".join(one["studies"]) for a in found for one in a["calibrations"]
-    ]
+def test_the_table_has_every_calibration_of_every_architecture(atlas):
+    asked = "task=FOV&include=calibrations&calibrations=500&limit=500"
+    found = atlas.get(f"{PATH}?{asked}").json()
+    rows = atlas.table(f"{PATH}?task=FOV")
+    assert len(rows) == sum(max(1, a["count"]) for a in found["architectures"])
+    listed = [
+        (str(a["rank"]), a["detector"], a["mask"], str(rank), one["name"],
+         taxonomy_rows("model", one["model"]))
+        for a in found["architectures"]
+        for rank, one in enumerate(a["calibrations"], start=1)
+    ]  # fmt: skip
+    names = ("rank", "detector", "mask", "calibration", "name", "model")
+    assert [tuple(row[name] for name in names) for row in rows if row["calibration"]] == listed
+
+
+def test_reports_carry_title_doi_and_kind_of_figure(atlas):
+    asked = "detector=CMOS&mask=Encoded&max_error_deg=0.01"
+    (found,) = atlas.get(f"{PATH}?{asked}").json()["architectures"]
+    studies = {one["key"]: one for one in found["reports"]}
+    assert studies["Zhang2022a"]["accuracy_deg"] == 0.0023
+    assert "3-sigma" in studies["Zhang2022a"]["accuracy_kind"]
+    known = {row["key"]: row for row in atlas.get("/v1/studies?limit=500").json()["items"]}
+    for key, one in studies.items():
+        if one["kind"] == "study":
+            assert (one["name"], one["doi"]) == (known[key]["title"], known[key]["doi"])
 
 
 def test_a_number_below_its_smallest_is_refused_in_words(atlas):
     """Some limits take their least value, a bench of 0 deg among them; others do not."""
     for name, expected in (("bench_deg", "of at least 0"), ("max_error_deg", "above 0")):
-        answer = atlas.get("/v1/recommendations", params={name: -1})
+        answer = atlas.get(PATH, params={name: -1})
         assert answer.status_code == 422
         assert expected in answer.json()["errors"][0]["expected"]
+
+
+@pytest.mark.parametrize(
+    ("query", "status"),
+    [
+        ("limit=3&limit=3", 422),
+        ("task=Accuracy&task=Cost&task=Accuracy", 200),
+        ("task=", 422),
+        ("limit=", 422),
+        ("max_error_deg=1e-1&sort=error", 200),
+        ("max_error_deg=%2B1", 422),
+        ("include=paths,designs,all", 422),
+        ("task=Accuracy&tasks=Cost", 400),
+        ("task=%ff", 400),
+        ("%74ask=Accuracy", 200),
+        ("format=json&format=csv", 422),
+    ],
+)
+def test_a_query_is_read_as_a_body_of_the_same_requirements(atlas, query, status):
+    answer = atlas.get(f"{PATH}?{query}")
+    assert answer.status_code == status
+    if status == 200:
+        body = answer.json()["requirements"]
+        posted = atlas.post(PATH, json={**body, "sort": answer.json()["sort"]})
+        assert posted.content == answer.content
+    else:
+        assert answer.json()["errors"]

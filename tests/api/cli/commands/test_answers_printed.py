@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-import copy
 import json
-import re
 from collections.abc import Awaitable, Callable, Mapping, MutableMapping
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,7 +15,6 @@ from typer.testing import CliRunner
 import survey_data
 from api.calibrate import calibration, documents, products, recalibration
 from api.calibrate.certificate import certificate
-from api.cli import architectures
 from api.cli.boards import overview_text
 from api.cli.command_line import app
 from api.cli.commands.get import fetch_answer
@@ -38,55 +35,6 @@ def sunatlas(*arguments: object) -> Any:
 
 def words(text: str) -> str:
     return " ".join(text.split())
-
-
-# ---- recommend
-
-
-@pytest.fixture(scope="module")
-def answer(atlas: Client) -> dict[str, Any]:
-    """The first architecture, whose best calibration is measured, with a ratio to the bound."""
-    found: dict[str, Any] = atlas.get("/v1/recommendations?sort=measured&limit=1").json()
-    measured = found["architectures"][0]["best"]["measured"]
-    assert measured["availability"] is not None
-    assert measured["nominal"]["over_bound"] is not None
-    return found
-
-
-def measured_line(answer: dict[str, Any], **changes: Any) -> str:
-    """Return what is said of the best calibration after changes of its measurement."""
-    changed = copy.deepcopy(answer)
-    best = changed["architectures"][0]["best"]
-    best["measured"] = {**best["measured"], **changes} if changes.pop("there", True) else None
-    _, _, block = architectures.text(changed, 100).partition("\n    measured  ")
-    return words(re.split(r"\n    (?=\S)|\n +calibration ", block)[0])
-
-
-def test_the_bound_and_the_availability_are_said_where_they_are_known(
-    answer: dict[str, Any],
-) -> None:
-    nominal = answer["architectures"][0]["best"]["measured"]["nominal"]
-    assert f"times the bound {nominal['bound_deg']:.3g} deg" in measured_line(answer)
-    assert "availability 97.5 %" in measured_line(answer, availability=0.975)
-    assert "availability" not in measured_line(answer, availability=None)
-    unbound = {**nominal, "over_bound": None, "bound_deg": None}
-    assert "times the bound" not in measured_line(answer, nominal=unbound)
-    far = {**nominal, "over_bound": 61434.4}
-    assert "61434 times the bound" in measured_line(answer, nominal=far)
-
-
-def test_an_architecture_that_nothing_was_measured_on_says_no(answer: dict[str, Any]) -> None:
-    assert measured_line(answer, there=False) == "no"
-
-
-def test_units_within_a_limit_are_counted_beside_the_own_error(answer: dict[str, Any]) -> None:
-    units = {"count": 10, "of": 10, "within_limit": 7, "least_deg": 0.01, "largest_deg": 0.25}
-    line = measured_line(answer, units=units, own_deg=0.0625)
-    assert "7 of 10 units meet it; own error 0.0625 deg" in line
-    assert "10 units 0.01 to 0.25 deg" in line
-    line = measured_line(answer, units={**units, "within_limit": None, "count": 1})
-    assert "units" not in line
-    assert "own error" not in line
 
 
 # ---- leaderboard --overview
