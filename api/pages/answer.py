@@ -1,241 +1,176 @@
-"""/: ranked sensors and calibrations; and /scatter, the plot alone."""
+"""/: a question as a sentence with blanks, and architectures that answer it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+import shlex
+from collections.abc import Sequence
 from typing import Any
+from urllib.parse import urlencode
 
 from fastapi import Request
+from markupsafe import Markup
 from pydantic import ValidationError
 
 from api.addresses import architecture_page
-from api.http.routers import recommendations as service
+from api.http.routers import recommendations as http
 from api.metadata import schema_org
 from api.metadata.identity import identity
 from api.metadata.signposting import landing_of_atlas
 from api.pages.editions import edition_shown
+from api.pages.numbers import degrees, own_error
 from api.pages.plots.scatter import Point, Scatter
+from api.pages.question import clauses, form
 from api.pages.serving import PageRouter, View
-from api.pages.study import NAMES
-from api.schema.recommendations import RecommendationRow
+from api.schema.recommendations import Architecture, Measured, RecommendationRow, Recommendations
 from api.schema.requirements import RequirementsQuery
 from api.schema.table import columns_of
+from api.service import recommendations as service
+from api.service.documents import Document
 from api.service.knowledge import Knowledge
+from api.service.pagination import page
 from api.service.problems import Problem
 from api.service.refusals import refusal
-from api.web.answers import Answer
 from api.web.dependencies import Known
-from registry.requirements import HAZARDS, LIMITS, SETTINGS
-from registry.taxonomy import ATTRIBUTES
+from registry.answer import Answer
+from registry.requirements import LIMITS, SETTINGS
 
 router = PageRouter()
 
-#: Names in the address that say how the answer is shown, for the page's script.
-SHOWN = (
-    *("chart", "counting", "detail", "view", "dataset", "board_condition", "board_field"),
-    *("board_sort", "board_order", "across", "rows"),
-)
 #: Names that the service takes and the page settles itself.
-PAGED = ("limit", "calibrations", "format", "fields")
+PAGED = ("limit", "calibrations", "include", "format", "fields", "safe")
+SINGLE = {*LIMITS, *SETTINGS, "mission", "sort", "edition", "cursor"}
 #: What errors are drawn against, and whether more of it is better.
-ACROSS = {"field": ("field of view, °", True), "poses": ("calibration poses needed", False)}
-FIRST, MOST = 10, 500
-BOARD_ROWS = 8
-SORTS = (("advice", "Advice"), ("support", "Studies"), ("measured", "Measurement"))
-KINDS = (
-    ("advised", "Advised by the survey"),
-    ("proposed", "Used in studies"),
-    ("measured", "Measured here"),
-)
-LIMIT_WORDS = {
-    "max_error_deg": ("error at most", "°"),
-    "min_fov_deg": ("field of view at least", "°"),
-    "min_availability": ("availability at least", ""),
-    "max_latency_us": ("latency at most", " µs"),
-    "bench_deg": ("calibration bench error", "°"),
-    "confidence": ("confidence over units and benches", ""),
-}
-LIST_WORDS = {
-    "survive": "must tolerate",
-    "properties": "extractor property",
-    "exclude_needs": "without",
-}
+ACROSS = {"field": ("full field of view, °", True), "poses": ("calibration poses needed", False)}
 
 
 @router.page("/", twin="/answer")
 async def answer(known: Known, request: Request) -> View:
     """Render the answer to the requirements in the address, readable without JavaScript."""
     fields = request.query_params.multi_items()
-    shown = {name: value for name, value in fields if name in SHOWN}
+    across = dict(fields).get("across", "field")
+    asked = None
     try:
         asked = _ask(fields)
+        found = service.ask(asked, known.measured_pipelines, known.of(asked.edition).facts)
+        shown = page(found.architectures, service.PATH, asked)
     except Problem as problem:
-        view = View("answer.html", _nothing(), problem=problem.document("/"), **_parts(known))
+        if request.scope["path"] != "/":
+            raise
+        parts: dict[str, Any] = {"asked": asked, "across": across, "document": None}
+        parts["form"] = form(known, fields, {})
+        view = View("answer.html", Document({}), problem=problem.document("/"), **parts)
         view.status_code = problem.status_code
         return view
-    parts = _parts(known.of(asked.edition))
-    answer = await service.recommendations(known, asked)
-    document = answer.document
-    best = _best_measured(document)
-    landing = landing_of_atlas(identity())
+    document = service.document(found, asked, shown.items, shown.next)
     return View(
         "answer.html",
-        answer,
-        landing=landing,
+        _as_table(document, found),
+        document=document,
+        landing=landing_of_atlas(identity()),
         entity=schema_org.atlas(identity(), known.measurements.presets),
         problem=None,
         asked=asked,
         editions=edition_shown(known, asked.edition, request),
-        clauses=_clauses(asked),
-        first=MOST if shown.get("rows") == "all" else FIRST,
-        scatter=_scatter(known, document, shown.get("across", "field")),
-        across=shown.get("across", "field"),
-        backing=len({key for a in document["architectures"] for key in a["studies"]}),
-        measured=sum(1 for a in document["architectures"] if a["best"]["measured"]),
-        best=best,
-        board=_board(known, best),
-        blocked_by=_in_words(document["blocked"]["constraint"]) if document["blocked"] else "",
-        **parts,
-    )
-
-
-@router.page("/scatter")
-async def scatter(known: Known, request: Request) -> View:
-    """Render the scatter plot alone, for the page's script."""
-    fields = request.query_params.multi_items()
-    across = dict(fields).get("across", "field")
-    answer = await service.recommendations(known, _ask(fields))
-    drawn = _scatter(known, answer.document, across)
-    return View(
-        "scatter_alone.html",
-        answer,
-        scatter=drawn,
+        clauses=dict(clauses(document.requirements)),
+        scatter=_scatter(known, found, across),
         across=across,
-        best=_best_measured(answer.document),
-        sorts=SORTS,
+        own=lambda measured: _own(known, measured),
+        applied=lambda change: "/?" + urlencode(_applied(document, asked, change), doseq=True),
+        going_on=lambda **more: "/?" + urlencode({**_stated(asked), **more}, doseq=True),
+        command=_command(asked),
+        form=form(known.of(asked.edition), fields, document.requirements),
     )
 
 
 def _ask(fields: Sequence[tuple[str, str]]) -> RequirementsQuery:
     """Return the requirements among the fields of a query; Problem where they are none."""
-    given: dict[str, Any] = {}
+    given: dict[str, Any] = {"include": ["calibrations"]}
     for name, value in fields:
-        if name in SHOWN:
+        if name == "across":
             continue
         if name in PAGED:
             raise Problem(400, "unknown-parameter", f"{name} cannot be asked for here")
-        if name in LIMITS or name in SETTINGS or name in ("sort", "edition"):
+        if name in SINGLE:
             given[name] = value
         else:
             given.setdefault(name, []).append(value)
     try:
-        return RequirementsQuery.model_validate({**given, "limit": MOST})
+        return RequirementsQuery.model_validate(given)
     except ValidationError as error:
         errors = [{**found, "loc": ("query", *found["loc"])} for found in error.errors()]
-        raise refusal(errors, service.recommendations) from error
+        raise refusal(errors, http.recommendations) from error
 
 
-def _nothing() -> Answer:
-    return Answer({"architectures": [], "count": 0}, columns_of(RecommendationRow), list)
-
-
-def _parts(known: Knowledge) -> dict[str, Any]:
-    """Return the parts of the page that do not depend on the requirements."""
-    taxonomy = known.taxonomy.to_dict()
-    return {
-        "mapped": len(known.facts.studies),
-        "taxonomy": {name: taxonomy[name] for name in ATTRIBUTES},
-        "names": NAMES,
-        "hazards": HAZARDS,
-        "properties": known.facts.properties,
-        "limits": LIMIT_WORDS,
-        "sorts": SORTS,
-        "kinds": KINDS,
-    }
-
-
-def _clauses(asked: RequirementsQuery) -> list[str]:
-    """Return the requirements in words."""
-    given = asked.model_dump(exclude_defaults=True)
-    clauses = []
-    for name in ATTRIBUTES:
-        subject = NAMES[name].lower()
-        if given.get(name):
-            clauses.append(f"{subject} {' or '.join(given[name])}")
-        if given.get(f"exclude_{name}"):
-            clauses.append(f"{subject} not {' nor '.join(given[f'exclude_{name}'])}")
-    for name, (words, unit) in LIMIT_WORDS.items():
-        if name in given:
-            clauses.append(f"{words} {given[name]:g}{unit}")
-    for name, words in LIST_WORDS.items():
-        if given.get(name):
-            clauses.append(f"{words} {' and '.join(given[name])}")
-    return clauses
-
-
-def _in_words(constraint: str) -> str:
-    """Return parameters joined by " + " as the form names them."""
-    return " + ".join(
-        f"not that {NAMES[name.removeprefix('exclude_')].lower()}"
-        if name.startswith("exclude_")
-        else LIMIT_WORDS.get(name, (LIST_WORDS.get(name) or NAMES.get(name, name).lower(), ""))[0]
-        for name in constraint.split(" + ")
+def _as_table(document: Recommendations, found: Answer) -> Document:
+    return Document(
+        document.model_dump(),
+        columns_of(RecommendationRow),
+        lambda: [row.model_dump() for row in service.rows(found)],
     )
 
 
-def _best_measured(document: Mapping[str, Any]) -> Mapping[str, Any] | None:
-    """Return the architecture with the lowest measured error."""
-    judged = [
-        a
-        for a in document["architectures"]
-        if a["best"]["measured"] and a["best"]["measured"]["error_deg"] is not None
-    ]
-    return min(judged, key=lambda a: a["best"]["measured"]["error_deg"], default=None)
+def _stated(asked: RequirementsQuery) -> dict[str, Any]:
+    """Return what the address states, without what leads to another page of the answer."""
+    return asked.model_dump(exclude_defaults=True, exclude={"include", "cursor"})
 
 
-def _scatter(known: Knowledge, document: Mapping[str, Any], across: str) -> Scatter:
+def _applied(document: Recommendations, asked: RequirementsQuery, change: Any) -> dict[str, Any]:
+    """Return the question after a change; a mission is taken apart, as it would say the same."""
+    kept = {name: value for name, value in document.requirements.items() if name not in change.drop}
+    kept |= change.change
+    kept.pop("mission", None)
+    return kept | asked.model_dump(exclude_defaults=True, include={"sort", "edition"})
+
+
+def _command(asked: RequirementsQuery) -> str:
+    """Return the command that answers the same question."""
+    words = ["sunatlas", "recommend"]
+    for name, value in _stated(asked).items():
+        for one in value if isinstance(value, list) else [value]:
+            words += [f"--{name.replace('_', '-')}", str(one)]
+    return shlex.join(words)
+
+
+def _own(known: Knowledge, measured: Measured) -> Markup:
+    """Return an own error; what is the record's, nominal and over the whole field, is marked."""
+    row = known.measurements.nominal.get((measured.dataset, measured.extractor, measured.model))
+    if (
+        row is not None
+        and None not in {measured.own_deg, row["own_deg"]}
+        and measured.condition == row["condition"]
+        and math.isclose(measured.own_deg, row["own_deg"], rel_tol=1e-3)
+    ):
+        return own_error(row)
+    return Markup("<span>{}</span>").format(degrees(measured.own_deg))
+
+
+def _scatter(known: Knowledge, found: Answer, across: str) -> Scatter:
+    """Return own errors of the best calibrations of all architectures of an answer."""
     words, more = ACROSS.get(across, ACROSS["field"])
     points: list[Point] = []
     left_out: list[str] = []
-    for a in document["architectures"]:
-        measured = a["best"]["measured"]
-        if not measured or not measured["error_deg"]:
+    for one in (service.architecture(found, one) for one in found.architectures):
+        measured = None if one.best is None else one.best.measured
+        if measured is None or not measured.own_deg:
             continue
-        place = tuple(measured[name] for name in ("dataset", "extractor", "model"))
-        if more:
-            value = measured["field_deg"] or measured["fov_deg"]
-        else:
+        value = measured.field_deg
+        if not more:
+            place = (measured.dataset, measured.extractor, measured.model)
             value = known.measurements.curve_of.get(place, {}).get("needed_poses")
-        name = f"{a['detector']} + {a['mask']}"
-        if not value:
-            left_out.append(name)
-            continue
-        points.append(
-            Point(
-                name,
-                architecture_page(a["detector"], a["mask"]),
-                value,
-                measured["error_deg"],
-                measured["nominal"]["bound_deg"],
-                measured["finer"],
-            )
-        )
+        if value:
+            points.append(_point(one, measured, value))
+        else:
+            left_out.append(f"{one.detector} + {one.mask}")
     return Scatter(points, words, more, "°" if more else "poses", left_out)
 
 
-def _board(known: Knowledge, best: Mapping[str, Any] | None) -> dict[str, Any] | None:
-    """Return the first rows of the board that the best measured calibration stands on."""
-    if best is None:
-        return None
-    measured = best["best"]["measured"]
-    rows = [
-        row
-        for row in known.measurements.board_rows(measured["dataset"])
-        if row["condition"] == measured["condition"]
-    ]
-    return {
-        "dataset": measured["dataset"],
-        "condition": measured["condition"],
-        "rows": rows[:BOARD_ROWS],
-        "total": len(rows),
-    }
+def _point(one: Architecture, measured: Measured, across: float) -> Point:
+    return Point(
+        f"{one.detector} + {one.mask}",
+        architecture_page(one.detector, one.mask),
+        across,
+        measured.own_deg or 0.0,
+        measured.bound_deg,
+        is_built=one.built,
+    )

@@ -31,9 +31,6 @@ export function svg(tag, attributes = {}, ...children) {
 
 export const byId = (id) => document.getElementById(id);
 
-/** A text's parts, what stands between backquotes as code. */
-export const coded = (text) => text.split(/``?([^`]+)``?/).map((part, i) => (i % 2 ? h("code", {}, part) : part));
-
 /** A row of radio buttons drawn as one control. options: [[value, label], ...] */
 export function segmented(legend, name, options, current, choose) {
   return h("fieldset", { class: "segmented" },

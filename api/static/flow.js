@@ -3,57 +3,66 @@
 import { byId, choice, h, problemNotice, segmented } from "./dom.js";
 import { attributeOf, fractional, grouped, rings, withAmounts } from "./flow_data.js";
 import { drawSankey, drawSunburst, labelRoom } from "./flow_diagram.js";
-import { address, getJson } from "./service.js";
-import { ATTRIBUTES, LIMITS, LISTS, set, show, sideOf, state } from "./state.js";
-import { amount, ATTRIBUTE_NAMES, plural, worded } from "./wording.js";
+import { address, getJson, getOnce } from "./service.js";
+import { amount, ATTRIBUTE_NAMES, plural, Vocabulary, worded } from "./wording.js";
 
-export const CROSS = ["task", "detector", "mask", "model", "extractor"];
+const ATTRIBUTES = ["task", "accuracy", "error", "detector", "mask", "model", "extractor"];
+const OF_PAGE = ["cursor", "across"]; // which the page reads and the flow does not
 const CHARTS = [
   ["cross-analysis", "Cross-analysis"], ["error", "Errors"], ["performance", "Performance"],
   ["task", "Tasks"], ["model-sunburst", "Models (sunburst)"],
 ];
+const shown = { chart: "cross-analysis", counting: "studies", detail: "grouped", view: "diagram" };
 
-let drawing = 0; // the last call of showFlow: what an earlier one brings is out of date
+let asked = new URLSearchParams(); // the question that is drawn
+let choose = () => {}; // called with an attribute and values that were pressed
+let drawing = 0; // the last call: what an earlier one brings is out of date
 
-export function showFlowControls() {
+/** Make the controls anew; the keyboard stays where it was. */
+function showControls() {
+  const { name, id } = document.activeElement ?? {};
+  const set = (setting) => (value) => {
+    shown[setting] = value;
+    showControls();
+    redrawFlow();
+  };
   byId("flow-controls").replaceChildren(
-    choice("Chart", "chart", CHARTS, state.chart, (chart) => show({ chart })),
-    state.chart === "cross-analysis"
-      ? segmented("Detail of models and extractors", "detail", [["grouped", "Families"], ["all", "All values"]], state.detail, (detail) => show({ detail }))
+    choice("Chart", "chart", CHARTS, shown.chart, set("chart")),
+    shown.chart === "cross-analysis"
+      ? segmented("Detail of models and extractors", "detail", [["grouped", "Families"], ["all", "All values"]], shown.detail, set("detail"))
       : "",
-    segmented("Counting", "counting", [["studies", "Studies"], ["fractional", "Fractional"]], state.counting, (counting) => show({ counting })),
-    segmented("Form", "view", [["diagram", "Diagram"], ["table", "Table"]], state.view, (view) => show({ view })));
+    segmented("Counting", "counting", [["studies", "Studies"], ["fractional", "Fractional"]], shown.counting, set("counting")),
+    segmented("Form", "view", [["diagram", "Diagram"], ["table", "Table"]], shown.view, set("view")));
+  const again = name ? document.querySelector(`#flow-controls [name="${name}"]:checked`) : id === "chart" && byId("chart");
+  again?.focus?.();
 }
 
 /** The flow to show: of the answer's paths, or one of the survey's charts filtered by study. */
-async function flowOf(answer, vocabulary, signal) {
-  if (state.chart === "cross-analysis") {
-    const all = { chart: state.chart, levels: CROSS, counting: state.counting, nodes: answer.nodes, links: answer.links };
-    const flow = state.detail === "grouped" ? grouped(all, vocabulary) : all;
-    return state.counting === "fractional" ? fractional(flow, answer.paths, vocabulary) : withAmounts(flow);
+async function flowOf(vocabulary, signal) {
+  if (shown.chart === "cross-analysis") {
+    const found = await getJson(`/v1/recommendations/flow?${asked}`, signal);
+    const flow = shown.detail === "grouped" ? grouped(found, vocabulary) : found;
+    return shown.counting === "fractional" ? fractional(flow, found.paths, vocabulary) : withAmounts(flow);
   }
-  const filters = Object.fromEntries(ATTRIBUTES.map((a) => [a, state.include[a]]));
-  const flow = await getJson(address(`/v1/flows/${state.chart}`, { counting: state.counting, ...filters }), signal);
-  return withAmounts(flow);
+  const filters = Object.fromEntries([...ATTRIBUTES, "edition"].map((name) => [name, asked.getAll(name)]));
+  return withAmounts(await getJson(address(`/v1/flows/${shown.chart}`, { counting: shown.counting, ...filters }), signal));
 }
 
 const wanting = (left) => left.map((l) => `${plural(l.count, "study", "studies")} without ${nameOf(l.level).toLowerCase()}`).join(", ");
 
-function noteOf(flow, answer, studies) {
+function noteOf(flow) {
   const parts = [];
-  if (state.chart === "cross-analysis") {
+  if (shown.chart === "cross-analysis") {
     parts.push("Studies of the architectures above, from task to feature extractor. Select a value to add it as a requirement.");
-    if (answer.left_out?.length) {
-      parts.push(`Not shown, attribute unknown: ${wanting(answer.left_out)}.`);
-    }
   } else {
     parts.push("Studies that have the required values.");
-    const unheeded = ATTRIBUTES.some((a) => state.exclude[a].length) || LIMITS.some((l) => state.limits[l] !== "")
-      || LISTS.some((l) => state.lists[l].length);
-    if (unheeded) parts.push("Excluded values, limits and conditions to tolerate apply to the cross-analysis only.");
-    if (flow.left_out?.length) parts.push(`Not shown, attribute unknown: ${wanting(flow.left_out)}.`);
+    if ([...asked.keys()].some((name) => ![...ATTRIBUTES, "edition", "sort"].includes(name))) {
+      parts.push("Excluded values, limits and conditions to tolerate apply to the cross-analysis only.");
+    }
   }
-  parts.push(state.counting === "fractional"
+  if (flow.left_out?.length) parts.push(`Not shown, attribute unknown: ${wanting(flow.left_out)}.`);
+  const studies = new Set(flow.nodes.flatMap((node) => node.studies)).size;
+  parts.push(shown.counting === "fractional"
     ? "Fractional: a study with several values is divided among them, so that inflow equals outflow."
     : `Each study counts once per value; a study with several values is on several links (${studies} studies).`);
   return parts.join(" ");
@@ -70,12 +79,12 @@ function valuesOf(node, vocabulary) {
 function toggle(node, vocabulary) {
   const target = valuesOf(node, vocabulary);
   if (!target) return;
-  set(target.attribute, target.values, isRequired(node, vocabulary) ? null : "include");
+  choose(target.attribute, target.values);
 }
 
 function isRequired(node, vocabulary) {
   const target = valuesOf(node, vocabulary);
-  return Boolean(target) && target.values.every((v) => sideOf(target.attribute, v) === "include");
+  return Boolean(target) && target.values.every((v) => asked.getAll(target.attribute).includes(v));
 }
 
 /** Values by level, longest first: buttons that require a value. */
@@ -88,7 +97,7 @@ function levelLists(flow, vocabulary) {
       return h("li", {}, h("button", {
         type: "button", class: required ? "level-value required" : "level-value", title: node.name,
         disabled: !valuesOf(node, vocabulary), "aria-pressed": required, "data-node": node.id,
-        "aria-label": `${node.name}: ${amount(node.amount)} ${state.counting === "fractional" ? "study shares" : "studies"}, require`,
+        "aria-label": `${node.name}: ${amount(node.amount)} ${shown.counting === "fractional" ? "study shares" : "studies"}, require`,
         onclick: () => toggle(node, vocabulary),
       }, h("span", { class: "bar", css: { "--share": node.amount / most } }),
       h("span", {}, worded(node.level, node.value)), h("span", { class: "count" }, amount(node.amount))));
@@ -110,21 +119,22 @@ function linkTable(flow) {
           h("td", { class: "note" }, l.studies.map((key, i) => [i > 0 && ", ", h("a", { href: `/studies/${encodeURIComponent(key)}` }, key)]))))))));
 }
 
-/** Draw the flow of an answer; a later call overtakes an earlier one. */
-export async function showFlow(answer, vocabulary, studies, signal) {
+/** Draw the flow again, as what is shown or the width has changed. */
+export async function redrawFlow(signal) {
   const turn = ++drawing;
   const body = byId("flow-body");
   body.setAttribute("aria-busy", "true");
   body.classList.add("stale");
   try {
-    const flow = await flowOf(answer, vocabulary, signal);
+    const vocabulary = new Vocabulary((await getOnce("/v1/taxonomy")).attributes);
+    const flow = await flowOf(vocabulary, signal);
     if (turn !== drawing) return;
-    byId("flow-note").textContent = noteOf(flow, answer, studies);
+    byId("flow-note").textContent = noteOf(flow);
     if (flow.links.length === 0) {
       clear(body, h("p", { class: "notice" }, "No study has all required values."));
       return;
     }
-    if (state.view === "table") {
+    if (shown.view === "table") {
       const focused = document.activeElement?.dataset?.node;
       clear(body, levelLists(flow, vocabulary), linkTable(flow));
       // The lists are new elements; the keyboard stays on the value it was on.
@@ -134,9 +144,14 @@ export async function showFlow(answer, vocabulary, studies, signal) {
     diagram(body, flow, vocabulary);
   } catch (problem) {
     if (problem.name === "AbortError" || turn !== drawing) return;
+    if (problem.status === 400 || problem.status === 422) { // the answer says what is wrong
+      byId("flow-note").textContent = "";
+      clear(body, h("p", { class: "muted" }, "Nothing to show: the question was refused."));
+      return;
+    }
     if (!problem.title) problem.title = "The diagram could not be drawn";
     clear(body, problemNotice({ title: problem.title, status: problem.status, detail: problem.detail ?? problem.message, errors: problem.errors },
-      () => showFlow(answer, vocabulary, studies, signal)));
+      () => redrawFlow()));
   } finally {
     if (turn === drawing) {
       body.removeAttribute("aria-busy");
@@ -145,13 +160,24 @@ export async function showFlow(answer, vocabulary, studies, signal) {
   }
 }
 
+/**
+ * Draw the flow of the answer to a query; a later call overtakes an earlier one.
+ * pressed(attribute, values) is called for a value that is pressed.
+ */
+export function drawFlow(query, signal, pressed = choose) {
+  choose = pressed;
+  asked = new URLSearchParams([...new URLSearchParams(query)].filter(([name, value]) => value !== "" && !OF_PAGE.includes(name)));
+  showControls();
+  return redrawFlow(signal);
+}
+
 function clear(body, ...content) {
   body.replaceChildren(...content);
 }
 
 function diagram(body, flow, vocabulary) {
-  const round = state.chart === "model-sunburst";
-  const description = `${CHARTS.find(([c]) => c === state.chart)[1]}: ${flow.levels.map(nameOf).join(", ")}. The table view has the same values.`;
+  const round = shown.chart === "model-sunburst";
+  const description = `${CHARTS.find(([c]) => c === shown.chart)[1]}: ${flow.levels.map(nameOf).join(", ")}. The table view has the same values.`;
   let picture = body.querySelector(round ? ".diagram.round" : ".diagram:not(.round)");
   if (!picture) {
     picture = h("div", { class: round ? "diagram round" : "diagram", role: "img" });
@@ -167,6 +193,6 @@ function diagram(body, flow, vocabulary) {
   heads.style.setProperty("--labels", `${labelRoom(flow)}px`);
   if (round) drawSunburst(picture, rings(flow, vocabulary));
   else drawSankey(picture, flow, (n) => isRequired(n, vocabulary), (n) => toggle(n, vocabulary));
-  picture.dataset.chart = state.chart;
+  picture.dataset.chart = shown.chart;
   picture.dataset.nodes = flow.nodes.map((n) => n.id).join("|");
 }

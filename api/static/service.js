@@ -19,10 +19,10 @@ export function address(path, query = {}) {
   return text ? `${path}?${text}` : path;
 }
 
-async function answer(url, accept, signal) {
+export async function getJson(url, signal) {
   let response;
   try {
-    response = await fetch(url, { headers: { Accept: accept }, signal });
+    response = await fetch(url, { headers: { Accept: "application/json" }, signal });
   } catch (cause) {
     if (cause.name === "AbortError") throw cause;
     throw new Problem({
@@ -30,7 +30,7 @@ async function answer(url, accept, signal) {
       detail: `No answer from ${url}. Is "sunatlas serve" still running?`,
     });
   }
-  if (response.ok) return response;
+  if (response.ok) return response.json();
   const type = response.headers.get("Content-Type") ?? "";
   const body = type.includes("json") ? await response.json() : {};
   throw new Problem({
@@ -39,32 +39,6 @@ async function answer(url, accept, signal) {
     detail: typeof body.detail === "string" ? body.detail : `${url} was refused.`,
     errors: body.errors,
   });
-}
-
-export async function getJson(url, signal) {
-  return (await answer(url, "application/json", signal)).json();
-}
-
-/** All items of a paged list. */
-export async function getAll(path, query, signal) {
-  const items = [];
-  let cursor = null;
-  do {
-    const page = await getJson(address(path, { ...query, cursor }), signal);
-    items.push(...page.items);
-    cursor = page.next;
-  } while (cursor);
-  return items;
-}
-
-/** The CSV form of an address, saved under a name. */
-export async function saveCsv(url, filename) {
-  const blob = await (await answer(url, "text/csv")).blob();
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(blob);
-  link.download = filename;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
 const remembered = new Map();

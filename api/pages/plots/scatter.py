@@ -1,10 +1,9 @@
-"""Architectures as points: measured error over field or effort, bounds and the Pareto front."""
+"""Architectures as points: own error over field or effort, bounds and the Pareto front."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from markupsafe import Markup
 
@@ -34,7 +33,7 @@ class Point:
     address : where a press leads
     across, error_deg : its place
     bound_deg : the limit of its error; None where it has none
-    finer : a pipeline with lower error at lower availability, as in `/v1/recommendations`
+    is_built : whether a study or product realises it
     """
 
     name: str
@@ -42,7 +41,7 @@ class Point:
     across: float
     error_deg: float
     bound_deg: float | None
-    finer: Mapping[str, Any] | None = None
+    is_built: bool = True
 
 
 @dataclass(frozen=True)
@@ -83,7 +82,7 @@ class Scatter:
             (p.across for p in self.points), LEFT, WIDTH - RIGHT, logarithmic=log, from_zero=False
         )
         front = self.front
-        parts = [frame(across, up, self.across, "measured error, °"), self._line(front, across, up)]
+        parts = [frame(across, up, self.across, "own error, °"), self._line(front, across, up)]
         places = {p.name: (across.at(p.across), up.at(p.error_deg)) for p in self.points}
         parts += [
             self._point(point, places[point.name], up, front=point in front)
@@ -91,8 +90,8 @@ class Scatter:
         ]
         parts += _labels(front, [p for p in self.points if p not in front], places)
         label = (
-            f"Measured error of {len(self.points)} architectures against {self.across}; the "
-            "same stands in the table below"
+            f"Own error of {len(self.points)} architectures against {self.across}; the list has "
+            "the same numbers"
         )
         return str(svg(Markup("").join(parts), label, "plot scatter", role="group"))
 
@@ -110,8 +109,9 @@ class Scatter:
             stem = _STEM.format(x=x, y=y, low=up.at(point.bound_deg), a=x - 3, b=x + 3)
         bound = f", bound {degrees(point.bound_deg)}" if point.bound_deg else ""
         value = wide(point.across) if self.unit == "°" else f"{point.across:g} {self.unit}"
-        said = f"{point.name}: {degrees(point.error_deg)}{bound}, {value}"
-        kind = "pareto" if front else "other"
+        unbuilt = "" if point.is_built else ", never built"
+        said = f"{point.name}: own error {degrees(point.error_deg)}{bound}, {value}{unbuilt}"
+        kind = f"{'pareto' if front else 'other'}{'' if point.is_built else ' unbuilt'}"
         return _POINT.format(at=point.address, said=said, stem=stem, kind=kind, x=x, y=y)
 
 

@@ -1,65 +1,34 @@
-"""Ten ways through the atlas, each as someone who comes with a question walks it."""
+"""Ways through the atlas, each as someone who comes with a question walks it."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from api.pages.dataset import FIRST
-from tests.api.browser.visiting import PATIENCE_MS, WIDE, Visit, follow, get_json, tab_to
+from tests.api.browser.visiting import PATIENCE_MS, WIDE, Visit, follow, get_json
 
 pytestmark = pytest.mark.slow
 
 
-def answer(visit: Visit, asked: str) -> Any:
-    return get_json(f"{visit.address}/v1/recommendations?{asked}&limit=500")
-
-
-def test_choose_for_accuracy_and_step_back(wide: Visit) -> None:
+def test_from_home_to_a_chosen_calibration_in_four_clicks(wide: Visit) -> None:
     page = wide.go()
-    everything = wide.architectures()
-    page.locator('.facet-include[data-attribute="task"][data-value="Accuracy"]').click()
+    blank = page.locator('[name="max_error_deg"]')
+    blank.click()
+    blank.type("0.02")
+    page.locator(".submit button").click()
+    page.wait_for_url("**/?max_error_deg=0.02")
     wide.settle()
-    page.locator("#max_error_deg").fill("0.05")
-    page.locator("#max_error_deg").press("Enter")
-    wide.settle()
-    found = answer(wide, "task=Accuracy&max_error_deg=0.05")
-    assert wide.architectures() == found["count"] < everything
-    first = found["architectures"][0]
-    name = f"{first['detector']} + {first['mask']}"
-    expect(page.locator("#best .best-one strong").first).to_have_text(name)
-    # The board follows what is asked, and says how it stands to the limit.
-    measured = first["best"]["measured"]
-    expect(page.locator("#dataset")).to_have_value(measured["dataset"])
-    expect(page.locator("#board-judged")).to_contain_text("Error at most 0.05°")
-    page.locator('[name="sort"][value="measured"]').check()
-    wide.settle()
-    assert wide.query()["sort"] == ["measured"]
-    for left in ({"task", "max_error_deg"}, {"task"}, set()):
-        page.go_back()
-        wide.settle()
-        assert set(wide.query()) == left
-    assert wide.architectures() == everything
-
-
-def test_coarse_with_albedo(wide: Visit) -> None:
-    page = wide.go("/?accuracy=CSS&survive=albedo")
-    found = answer(wide, "accuracy=CSS&survive=albedo")
-    assert wide.architectures() == found["count"] > 0
-    expect(page.locator("#question")).to_contain_text("albedo")
-    page.locator("#board-condition").select_option("nominal")
-    wide.settle()
-    expect(page.locator("#board-judged")).to_contain_text("not tested by this condition")
-    page.locator("#max_latency_us").fill("100")
-    page.locator("#max_latency_us").press("Enter")
-    wide.settle()
-    expect(page.locator("#board-judged")).to_contain_text("no times on this machine")
-    page.locator('[name="across"][value="poses"]').check()
-    page.wait_for_url("**across=poses**")
+    page.locator(".calibrated > summary").first.click()
+    chosen = page.locator(".calibration .method a").last
+    name = chosen.inner_text()
+    follow(page.locator(".calibration .method a", has_text=name).first)
+    expect(page.locator("h1")).to_contain_text(name)
+    expect(page.locator("#ranks")).to_be_visible()
+    assert wide.complaints == []
 
 
 def test_find_a_study_see_how_it_runs_and_its_board(wide: Visit) -> None:
@@ -137,35 +106,15 @@ def test_glossary(narrow: Visit) -> None:
     expect(page.locator(":target")).to_contain_text("root of the mean", ignore_case=True)
 
 
-def test_on_a_phone_the_answer_comes_before_the_controls(narrow: Visit) -> None:
+def test_on_a_phone_a_question_is_asked_and_the_answer_stands_below_it(narrow: Visit) -> None:
     page = narrow.go("/")
-    tops = page.evaluate(
-        "() => ['#summary', '#best', '#requirements', '#architectures-body'].map("
-        "s => document.querySelector(s).getBoundingClientRect().top)"
-    )
-    assert tops == sorted(tops)
-    assert page.locator("#requirements-form").is_hidden()
-    page.locator("#requirements-toggle").click()
-    page.locator('details[data-group="task"] > summary').click()
-    page.locator('.facet-include[data-attribute="task"][data-value="Cost"]').click()
+    page.locator('select[name="detector"]').select_option("CMOS")
+    page.wait_for_url("**/?detector=CMOS")
     narrow.settle()
-    assert narrow.architectures() == answer(narrow, "task=Cost")["count"]
-    assert page.evaluate("document.documentElement.scrollWidth") <= 390
-
-
-def test_the_keyboard_alone_walks_from_the_answer_to_a_calibration(wide: Visit) -> None:
-    page = wide.go("/")
-    tab_to(page, ".best-one")
-    page.keyboard.press("Enter")
-    page.wait_for_url("**/architectures/**")
-    page.keyboard.press("Tab")
-    assert page.evaluate("document.activeElement.className") == "skip"
-    page.keyboard.press("Enter")
-    assert page.evaluate("document.activeElement.id") == "content"
-    tab_to(page, ".calibration a[href^='/algorithms/']")
-    page.keyboard.press("Enter")
-    page.wait_for_url("**/algorithms/**")
-    expect(page.locator("#ranks")).to_be_visible()
+    assert all(name.startswith("CMOS + ") for name in narrow.names())
+    top = page.locator(".architecture").first.bounding_box()
+    assert top is not None
+    assert top["y"] < 844  # the first of the list is on the first screen
 
 
 @pytest.fixture
@@ -183,18 +132,15 @@ def plain(browser: Browser, address: str) -> Iterator[Page]:
 def test_without_a_script_tables_are_read_and_questions_asked(plain: Page, address: str) -> None:
     plain.goto(address)
     assert plain.locator(".architecture").count() == 10
-    assert plain.get_by_text("Loading").is_hidden()
-    plain.locator('select[name="task"]').select_option("Cost")
+    plain.locator('[name="max_error_deg"]').fill("0.02")
     follow(plain.get_by_role("button", name="Show the answer"))
-    found = get_json(f"{address}/v1/recommendations?task=Cost&limit=500")
-    count = f"{found['count']} architectures"
-    assert count in plain.locator("#summary").inner_text()
-    first = found["architectures"][0]
-    assert plain.locator(".architecture strong").first.inner_text() == (
-        f"{first['detector']} + {first['mask']}"
-    )
-    follow(plain.locator("table a", has_text="calibrations").first)
-    assert plain.locator(".calibration").count() > 3
+    found = get_json(f"{address}/v1/recommendations?max_error_deg=0.02")
+    assert f"{found['count']} architectures" in plain.locator("#summary").inner_text()
+    assert plain.locator(".architecture h3").all_inner_texts() == [
+        f"{a['detector']} + {a['mask']}" for a in found["architectures"]
+    ]
+    plain.locator(".calibrated > summary").first.click()
+    assert plain.locator(".calibration").first.is_visible()
     follow(plain.locator("nav a", has_text="Data sets"))
     follow(plain.locator("tbody a").first)
     assert plain.locator("#board ~ table tbody tr").count() > 5
@@ -204,10 +150,10 @@ def test_printed_pages_hold_the_answer_in_black_on_white(dark: Visit) -> None:
     page = dark.go("/?task=Accuracy")
     page.emulate_media(media="print", color_scheme="dark")
     assert page.locator(".masthead nav").is_hidden()
-    assert page.locator("#requirements").is_hidden()
+    assert page.locator("#question").is_hidden()
     assert page.locator(".architecture").first.is_visible()
     ink, ground = page.evaluate(
-        "() => [getComputedStyle(document.querySelector('.architecture strong')).color,"
+        "() => [getComputedStyle(document.querySelector('.architecture h3 a')).color,"
         " getComputedStyle(document.body).backgroundColor]"
     )
     assert (ink, ground) == ("rgb(0, 0, 0)", "rgb(255, 255, 255)")

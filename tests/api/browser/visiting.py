@@ -38,8 +38,6 @@ class Visit:
         """Wait until nothing is being loaded or drawn."""
         self.page.wait_for_function(
             """() => document.documentElement.dataset.live
-                     && (document.querySelector('#summary').textContent
-                         || document.querySelector('#blocked .notice'))
                      && !document.querySelector('[aria-busy="true"]')""",
             timeout=PATIENCE_MS,
         )
@@ -56,6 +54,10 @@ class Visit:
         drawn = self.page.locator(".diagram").get_attribute("data-nodes")
         assert drawn is not None
         return set(drawn.split("|"))
+
+    def names(self) -> list[str]:
+        """Architectures in the order of the page."""
+        return self.page.locator(".architecture h3").all_inner_texts()
 
     def architectures(self) -> int:
         """Number of architectures that the summary states."""
