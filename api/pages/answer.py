@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import shlex
 from collections.abc import Sequence
 from typing import Any
@@ -135,12 +134,8 @@ def _command(asked: RequirementsQuery) -> str:
 def _own(known: Knowledge, measured: Measured) -> Markup:
     """Return an own error; what is the record's, nominal and over the whole field, is marked."""
     row = known.measurements.nominal.get((measured.dataset, measured.extractor, measured.model))
-    if (
-        row is not None
-        and None not in {measured.own_deg, row["own_deg"]}
-        and measured.condition == row["condition"]
-        and math.isclose(measured.own_deg, row["own_deg"], rel_tol=1e-3)
-    ):
+    is_nominal = row is not None and measured.condition == row["condition"]
+    if row is not None and is_nominal and measured.own_deg == row["own_deg"]:
         return own_error(row)
     return Markup("<span>{}</span>").format(degrees(measured.own_deg))
 

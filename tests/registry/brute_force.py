@@ -11,8 +11,8 @@ from registry.draws import BENCHES
 from registry.measured_pipelines import MeasuredPipeline, Measurements
 from registry.requirements import CLASSES_DEG, MISSIONS, PARAMETERS
 from registry.studies import Facts, Study
-from survey_data.hardware import Hardware, Product, hardware, products
 from survey_data.processors import factor
+from survey_data.products import BuiltSensor, Product, built_sensors, products
 
 Ask = Mapping[str, Any]
 Pair = tuple[str, str]
@@ -79,14 +79,14 @@ class BruteForce:
         }
 
     def _reports(self, pair: Pair) -> Iterator[Report]:
-        rows = [row for row in hardware().values() if (row.detector, row.mask) == pair]
+        rows = [row for row in built_sensors().values() if (row.detector, row.mask) == pair]
         mapped = {study.key for study in self.studies[pair]}
         for study in self.studies[pair]:
             yield self._report(study, [row for row in rows if row.study == study.key])
         others = [p.ids for p in self.products[pair] if not mapped & {*p.studies}]
-        yield from (self._report(None, [hardware()[one]]) for ids in others for one in ids)
+        yield from (self._report(None, [built_sensors()[one]]) for ids in others for one in ids)
 
-    def _report(self, study: Study | None, rows: list[Hardware]) -> Report:
+    def _report(self, study: Study | None, rows: list[BuiltSensor]) -> Report:
         said = study and study.report("accuracy")
         figures = (row.accuracy_rms_deg for row in rows if row.accuracy_rms_deg is not None)
         rms = said.rms_deg if said else next(figures, None)

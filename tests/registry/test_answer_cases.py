@@ -149,7 +149,7 @@ def test_failed_runs_and_numbers_that_are_none_do_not_count() -> None:
     for order in (rows, rows[::-1]):
         found = Measurements(order).by_architecture["OI", "V-Slit"]  # type: ignore[arg-type]
         assert [one.dataset for one in found] == ["a", "c"]
-    assert Score("nominal", 1.0, over_bound=math.inf).over_bound is None
+    assert Score("nominal", 1.0, bound_deg=math.inf).bound_deg is None
 
 
 def test_equals_stand_in_the_order_of_the_taxonomy_and_share_a_rank(

@@ -12,7 +12,7 @@ from registry.designs import Place
 from registry.ranking import joint_order, task_measure
 from registry.recommendation import recommend
 from registry.studies import Facts
-from survey_data.hardware import Product, products
+from survey_data.products import Product, products
 
 ROW = pipeline(repeatability_deg=0.02, half_fov_deg=60.0, latency_us=4.0)
 
