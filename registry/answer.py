@@ -178,7 +178,9 @@ class Answer:
         among = question.candidates & np.isfinite(question.errors.own_deg)
         if not among.any():
             among = question.candidates
-        return _nearest(among, question.by_pipeline, question.shown_deg, table.row_place)
+        shown, own = question.shown_deg, question.errors.own_deg
+        values = np.where(np.isfinite(shown), shown, own)
+        return _nearest(among, question.by_pipeline, values, table.row_place)
 
     @cached_property
     def _nearest_report(self) -> Mapping[int, int]:
