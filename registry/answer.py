@@ -138,7 +138,7 @@ class Answer:
         if asked.bench_deg is None or asked.largest_deg is None:
             return None
         without = Question(question.table, replace(asked, bench_deg=None))
-        more = without.measured & ~_rows_of(question, _places_with(question, question.measured))
+        more = without.measured & ~question.measured_places[question.table.row_place]
         if not more.any():
             return None
         rows = np.flatnonzero(more).tolist()
@@ -396,13 +396,3 @@ def _name_of(states: Mapping[str, States], name: str, at: int) -> str | None:
     if name not in states:
         return None
     return "unknown" if at < 0 else STATE_NAMES[int(states[name][at])]
-
-
-def _places_with(question: Question, rows: Flags) -> Flags:
-    found = np.zeros(len(question.table.places), bool)
-    found[question.table.row_place[rows]] = True
-    return found
-
-
-def _rows_of(question: Question, places: Flags) -> Flags:
-    return places[question.table.row_place]

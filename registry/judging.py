@@ -183,11 +183,16 @@ class Question:
         return found
 
     @cached_property
+    def measured_places(self) -> Flags:
+        """Architectures with a measured pipeline that meets all requirements."""
+        found = np.zeros(len(self.table.places), bool)
+        found[self.table.row_place[self.measured]] = True
+        return found
+
+    @cached_property
     def matching_places(self) -> Flags:
         """Architectures that the evidence asked for brings into the answer."""
-        reported = self._any_report(self.reported)
-        measured = np.zeros(len(self.table.places), bool)
-        measured[self.table.row_place[self.measured]] = True
+        reported, measured = self._any_report(self.reported), self.measured_places
         wanted = self.requirements.evidence or "any"
         return {
             "any": reported | measured,
