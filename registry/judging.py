@@ -133,10 +133,10 @@ class Question:
             found |= dict.fromkeys(names, states)
         found |= {n: self._reports_within(n) for n in _REPORTED if asked.value_of(n) is not None}
         untold = ("min_availability", "max_latency_us", "survive", "exclude_needs")
-        names = [name for name in untold if asked.value_of(name) is not None]
+        silent = [name for name in untold if asked.value_of(name) is not None]
         if asked.light and asked.light.hazard:
-            names.append("sun_distance_au")
-        return found | {name: np.zeros(len(table.reports), np.int8) for name in names}
+            silent.append("sun_distance_au")
+        return found | {name: np.zeros(len(table.reports), np.int8) for name in silent}
 
     def _reports_within(self, name: str) -> States:
         """Return the state of each report for a limit; products tell of one without a number."""
