@@ -73,7 +73,8 @@ class Question:
     @cached_property
     def shown_deg(self) -> Numbers:
         """Error that pipelines are ordered by: on the stated bench, else the own error."""
-        return self.judged_deg if self.requirements.bench_deg else self.errors.own_deg
+        is_stated = self.requirements.bench_deg is not None
+        return self.judged_deg if is_stated else self.errors.own_deg
 
     @cached_property
     def by_pipeline(self) -> Mapping[str, States]:
