@@ -134,12 +134,14 @@ def _candidates(question: Question, name: str, asked: Value) -> list[Value]:
 
 def _nearest_limit(question: Question, name: str) -> float | None:
     """Return the strictest limit that is kept by what meets all else; None if there is none."""
-    if name == "min_fov_deg":
-        widest = [2.0 * half for half in question.table.edges[::-1].tolist()]
-        met = (w for w in widest if _count(question, question.requirements.with_value(name, w)))
-        return next(met, None)
     rest = type(question)(question.table, question.requirements.without(name))
     table = question.table
+    if name == "min_fov_deg":
+        reported = table.report_numbers["fov_deg"][rest.reported]
+        fields = {*(2.0 * table.edges).tolist(), *reported[~np.isnan(reported)].tolist()}
+        widest = sorted((one for one in fields if 0.0 < one <= 360.0), reverse=True)
+        met = (w for w in widest if _count(question, question.requirements.with_value(name, w)))
+        return next(met, None)
     by_report = {
         "max_error_deg": "rms_deg",
         "max_mass_g": "mass_g",
