@@ -139,7 +139,7 @@ class Answer:
             return None
         without = question.relaxed(replace(asked, bench_deg=None))
         place = question.table.row_place
-        more = without.measured & ~np.isin(place, place[question.measured])
+        more = without.measured & ~question.measured_places[place]
         found = _nearest(more, {}, without.shown_deg, place)
         benches = [without.bench_for(row) or 0.0 for row in found.values()]
         return (len(benches), max(benches)) if benches else None

@@ -48,6 +48,8 @@ def drawn_questions(number: int, seed: int, facts: Facts) -> Iterator[dict[str, 
         for name, (share, least, most) in _NUMBERS.items():
             if rng.random() < share:
                 ask[name] = float(f"{np.exp(rng.uniform(np.log(least), np.log(most))):.3g}")
+        if "bench_deg" in ask and rng.random() < 0.15:
+            ask["bench_deg"] = 0.0
         if rng.random() < 0.15:
             ask["evidence"] = str(rng.choice(EVIDENCE))
         if rng.random() < 0.05:

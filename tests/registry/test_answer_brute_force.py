@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 from statistics import median, stdev
 from typing import Any
 
@@ -51,6 +51,18 @@ def test_architectures_evidence_and_order_are_those_of_brute_force(
 def test_where_nothing_is_measured_reports_answer(survey: Facts) -> None:
     nothing = Measurements()
     assert _compare(40, 12, nothing, BruteForce(survey, nothing)) > 10
+
+
+def test_tasks_and_errors_are_of_one_study_or_each_of_them_advised(
+    survey: Facts, timed: Measurements, brute_force: BruteForce
+) -> None:
+    values = [survey.taxonomy.values(name) for name in ("task", "error")]
+    for task, error in product(*values):
+        question = recommend({"task": task, "error": error}, timed).question
+        places = zip(question.table.places, question.places, strict=True)
+        found = {place.architecture for place, is_in in places if is_in}
+        ask = {"task": [task], "error": [error]}
+        assert found == {pair for pair in brute_force.pairs if brute_force.in_scope(ask, pair)}
 
 
 def _compare(number: int, seed: int, measured: Measurements, brute_force: BruteForce) -> int:
@@ -163,9 +175,9 @@ def _value(
         names = {"Power": "max_power_mw", "Volume": "max_mass_g"}
         known = [] if tasks == ("Cost",) else [
             number
-            for product in one.place.products
-            if not (tasks == ("Power",) and product.supply == "self-powered")
-            and (number := of_product(product, names[tasks[0]])) is not None
+            for built in one.place.products
+            if not (tasks == ("Power",) and built.supply == "self-powered")
+            and (number := of_product(built, names[tasks[0]])) is not None
         ]  # fmt: skip
         if len(known) >= 3:
             return median(known)

@@ -71,6 +71,7 @@ def changes(blocked: Explanation) -> list[tuple[dict[str, object], int]]:
     [
         ({"max_error_deg": 0.1}, {}, [{"rms_deg": 0.3}, {"rms_deg": 0.2}], 0.2),
         ({"min_fov_deg": 200.0}, {}, [{"half_fov_deg": 45.0}, {"half_fov_deg": 30.0}], 90.0),
+        ({"min_fov_deg": 200.0}, {"fov_deg": "140"}, [{"half_fov_deg": 45.0}], 140.0),
         # rows that break another limit have nothing to offer
         ({"max_error_deg": 0.1, "min_fov_deg": 60.0}, {},
          [{"rms_deg": 0.3}, {"rms_deg": 0.2, "half_fov_deg": 20.0}], 0.3),
