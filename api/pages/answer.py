@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 import shlex
 from collections.abc import Sequence
-from typing import Any
+from typing import Annotated, Any
 from urllib.parse import urlencode
 
-from fastapi import Request
+from fastapi import Query, Request
 from markupsafe import Markup
 from pydantic import ValidationError
 
 from api.addresses import architecture_page
-from api.http.routers import recommendations as http
 from api.metadata import schema_org
 from api.metadata.identity import identity
 from api.metadata.signposting import landing_of_atlas
@@ -92,14 +91,19 @@ def _ask(fields: Sequence[tuple[str, str]]) -> RequirementsQuery:
         if name in PAGED:
             raise Problem(400, "unknown-parameter", f"{name} cannot be asked for here")
         if name in SINGLE:
-            given[name] = value
+            given[name] = f"0{value}" if value.startswith(".") else value  # as a browser sends it
         else:
             given.setdefault(name, []).append(value)
     try:
         return RequirementsQuery.model_validate(given)
     except ValidationError as error:
         errors = [{**found, "loc": ("query", *found["loc"])} for found in error.errors()]
-        raise refusal(errors, http.recommendations) from error
+        raise refusal(errors, _declared) from error
+
+
+def _declared(query: Annotated[RequirementsQuery, Query()]) -> RequirementsQuery:
+    """Declare the parameters that a refusal names."""
+    return query
 
 
 def _as_table(document: Recommendations, found: Answer) -> Document:
