@@ -138,15 +138,16 @@ def _command(asked: RequirementsQuery) -> str:
 
 def _own(known: Knowledge, measured: Measured) -> Markup:
     """Return an own error; what is the record's, nominal and over the whole field, is marked."""
-    row = known.measurements.nominal.get((measured.dataset, measured.extractor, measured.model))
+    place = (measured.dataset, measured.extractor, measured.model)
+    row, shown = known.measurements.nominal.get(place), measured.own_deg
     if (
         row is not None
-        and None not in {measured.own_deg, row["own_deg"]}
         and measured.condition == row["condition"]
-        and math.isclose(measured.own_deg, row["own_deg"], rel_tol=1e-3)
+        and None not in {shown, row["own_deg"]}
+        and math.isclose(shown or 0.0, row["own_deg"], rel_tol=1e-3)
     ):
         return own_error(row)
-    return Markup("<span>{}</span>").format(degrees(measured.own_deg))
+    return Markup("<span>{}</span>").format(degrees(shown))
 
 
 def _scatter(known: Knowledge, found: Answer, across: str) -> Scatter:
