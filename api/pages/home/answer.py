@@ -17,9 +17,9 @@ from api.metadata import schema_org
 from api.metadata.identity import identity
 from api.metadata.signposting import landing_of_atlas
 from api.pages.editions import edition_shown
+from api.pages.home.question import clauses, form
 from api.pages.numbers import degrees, own_error
 from api.pages.plots.scatter import Point, Scatter
-from api.pages.question import clauses, form
 from api.pages.serving import PageRouter, View
 from api.schema.recommendations import Architecture, Measured, RecommendationRow, Recommendations
 from api.schema.requirements import RequirementsQuery
@@ -58,12 +58,12 @@ async def answer(known: Known, request: Request) -> View:
             raise
         parts: dict[str, Any] = {"asked": asked, "across": across, "document": None}
         parts["form"] = form(known, fields, {})
-        view = View("answer.html", Document({}), problem=problem.document("/"), **parts)
+        view = View("home/answer.html", Document({}), problem=problem.document("/"), **parts)
         view.status_code = problem.status_code
         return view
     document = service.document(found, asked, shown.items, shown.next)
     return View(
-        "answer.html",
+        "home/answer.html",
         _as_table(document, found),
         document=document,
         landing=landing_of_atlas(identity()),
