@@ -138,14 +138,11 @@ class Answer:
         if asked.bench_deg is None or asked.largest_deg is None:
             return None
         without = question.relaxed(replace(asked, bench_deg=None))
-        more = without.measured & ~_rows_of(question, _places_with(question, question.measured))
-        if not more.any():
-            return None
-        rows = np.flatnonzero(more).tolist()
-        best: dict[int, float] = {}
-        for row in sorted(rows, key=lambda at: float(without.shown_deg[at])):
-            best.setdefault(int(question.table.row_place[row]), without.bench_for(row) or 0.0)
-        return len(best), max(best.values())
+        place = question.table.row_place
+        more = without.measured & ~question.measured_places[place]
+        found = _nearest(more, {}, without.shown_deg, place)
+        benches = [without.bench_for(row) or 0.0 for row in found.values()]
+        return (len(benches), max(benches)) if benches else None
 
     def calibrations(self, one: RankedArchitecture) -> Iterator[Calibration]:
         """Yield the calibrations of an architecture that meet the requirements, best first."""
@@ -181,7 +178,9 @@ class Answer:
         among = question.candidates & np.isfinite(question.errors.own_deg)
         if not among.any():
             among = question.candidates
-        return _nearest(among, question.by_pipeline, question.shown_deg, table.row_place)
+        shown, own = question.shown_deg, question.errors.own_deg
+        values = np.where(np.isfinite(shown), shown, own)
+        return _nearest(among, question.by_pipeline, values, table.row_place)
 
     @cached_property
     def _nearest_report(self) -> Mapping[int, int]:
@@ -396,13 +395,3 @@ def _name_of(states: Mapping[str, States], name: str, at: int) -> str | None:
     if name not in states:
         return None
     return "unknown" if at < 0 else STATE_NAMES[int(states[name][at])]
-
-
-def _places_with(question: Question, rows: Flags) -> Flags:
-    found = np.zeros(len(question.table.places), bool)
-    found[question.table.row_place[rows]] = True
-    return found
-
-
-def _rows_of(question: Question, places: Flags) -> Flags:
-    return places[question.table.row_place]

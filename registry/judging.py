@@ -101,7 +101,8 @@ class Question:
     @cached_property
     def shown_deg(self) -> Numbers:
         """Error that pipelines are ordered by: on the stated bench, else the own error."""
-        return self.judged_deg if self.requirements.bench_deg else self.errors.own_deg
+        is_stated = self.requirements.bench_deg is not None
+        return self.judged_deg if is_stated else self.errors.own_deg
 
     @cached_property
     def by_pipeline(self) -> Mapping[str, States]:
@@ -211,11 +212,16 @@ class Question:
         return found
 
     @cached_property
+    def measured_places(self) -> Flags:
+        """Architectures with a measured pipeline that meets all requirements."""
+        found = np.zeros(len(self.table.places), bool)
+        found[self.table.row_place[self.measured]] = True
+        return found
+
+    @cached_property
     def matching_places(self) -> Flags:
         """Architectures that the evidence asked for brings into the answer."""
-        reported = self._any_report(self.reported)
-        measured = np.zeros(len(self.table.places), bool)
-        measured[self.table.row_place[self.measured]] = True
+        reported, measured = self._any_report(self.reported), self.measured_places
         wanted = self.requirements.evidence or "any"
         return {
             "any": reported | measured,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from registry.requirements import EXCLUDE, LIMITS, LISTS, Requirements
+from survey_data.processors import factor
 
 if TYPE_CHECKING:
     from registry.judging import Question
@@ -134,12 +135,14 @@ def _candidates(question: Question, name: str, asked: Value) -> list[Value]:
 
 def _nearest_limit(question: Question, name: str) -> float | None:
     """Return the strictest limit that is kept by what meets all else; None if there is none."""
-    if name == "min_fov_deg":
-        widest = [2.0 * half for half in question.table.edges[::-1].tolist()]
-        met = (w for w in widest if _count(question, question.requirements.with_value(name, w)))
-        return next(met, None)
     rest = question.relaxed(question.requirements.without(name))
     table = question.table
+    if name == "min_fov_deg":
+        reported = table.report_numbers["fov_deg"][rest.reported]
+        fields = {*(2.0 * table.edges).tolist(), *reported[~np.isnan(reported)].tolist()}
+        widest = sorted((one for one in fields if 0.0 < one <= 360.0), reverse=True)
+        met = (w for w in widest if _count(question, question.requirements.with_value(name, w)))
+        return next(met, None)
     by_report = {
         "max_error_deg": "rms_deg",
         "max_mass_g": "mass_g",
@@ -149,7 +152,11 @@ def _nearest_limit(question: Question, name: str) -> float | None:
     values = []
     if name in by_report:
         values.append(table.report_numbers[by_report[name]][rest.reported])
-    by_row = {"max_error_deg": rest.judged_deg, "min_availability": rest.errors.availability}
+    by_row = {
+        "max_error_deg": rest.judged_deg,
+        "min_availability": rest.errors.availability,
+        "max_latency_us": table.latency_us * factor(rest.requirements.processor),
+    }
     if name in by_row:
         values.append(by_row[name][rest.measured])
     known = np.concatenate([np.zeros(0), *values])

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import inspect
-import io
 import json
 from collections.abc import Sequence
 from typing import Any
@@ -14,15 +12,16 @@ from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
 
 from api.http.asking import ask
+from api.http.openapi_sharing import share
 from api.schema.service import ProblemDocument
 from api.service.knowledge import Knowledge
 from api.service.problems import MEDIA_TYPE, Problem
 from api.service.refusals import asked_models, refusal, schemas
 from api.web.answers import Answer, AnswerRoute, CitedAnswer
 from api.web.negotiation import CITATIONS, CSL, CSV, JSON
-from files.csv_writing import csv_text
 
-LONGEST_TEXT = 160  # characters of a text in an example
+LARGEST_EXAMPLE = 800  # bytes; a larger answer has no example of its JSON
+LONGEST_TEXT = 80  # characters of a text in an example
 REFUSALS = {
     400: "Unknown parameter, contradictory parameters, or malformed request.",
     404: "Not found; the nearest name is given.",
@@ -31,6 +30,25 @@ REFUSALS = {
     413: "Request body too long.",
     415: "Content-Type is not JSON.",
     422: "Invalid value; the nearest valid value is given.",
+}
+#: Groups of operations: what each is about, and the first parts of its addresses.
+TAGS: dict[str, tuple[str, frozenset[str]]] = {
+    "Answer": (
+        "Sensors and calibrations for your requirements, and comparisons.",
+        frozenset({"recommendations", "advice", "compare", "calibrations", "processors"}),
+    ),
+    "Literature": (
+        "Studies of the survey, its vocabulary, figures and claims.",
+        frozenset({"studies", "taxonomy", "flows", "figures", "claims", "protocol"}),
+    ),
+    "Measurements": (
+        "Algorithms, data sets, scores, leaderboards and experiments.",
+        frozenset(
+            {"algorithms", "datasets", "leaderboard", "results", "realism"}
+            | {"curves", "sweeps", "assessment"}
+        ),
+    ),
+    "Service": ("Search, state and description of the service.", frozenset()),
 }
 ETAG = {"schema": {"type": "string"}, "description": "Strong validator of the bytes."}
 LINK = {"schema": {"type": "string"}, "description": "Link to the next page."}
@@ -43,7 +61,13 @@ def describe(app: FastAPI, routes: Sequence[APIRoute]) -> dict[str, Any]:
     The examples are what is answered and refused now.
     """
     document = get_openapi(
-        title=app.title, version=app.version, description=app.description, routes=app.routes
+        title=app.title,
+        version=app.version,
+        description=f"{app.description} Data: CC BY 4.0.",
+        routes=app.routes,
+        license_info={"name": "MIT", "identifier": "MIT"},
+        servers=[{"url": "/", "description": "This service."}],
+        tags=[{"name": name, "description": said} for name, (said, _) in TAGS.items()],
     )
     paths = document["paths"]
     document["paths"] = {r.path: paths[r.path] for r in routes if r.path in paths}
@@ -51,13 +75,19 @@ def describe(app: FastAPI, routes: Sequence[APIRoute]) -> dict[str, Any]:
     for replaced in ("HTTPValidationError", "ValidationError"):
         components.pop(replaced, None)
     own = ProblemDocument.model_json_schema(ref_template="#/components/schemas/{model}")
+    document["components"]["headers"] = {"ETag": ETAG, "Link": LINK}
     components |= {**own.pop("$defs"), "ProblemDocument": own}
     for route in routes:
         if isinstance(route, AnswerRoute) and route.include_in_schema:
             for method in route.methods or ():
                 operation = document["paths"][route.path][method.lower()]
                 _complete(operation, route, app.state.knowledge)
-    return document
+    for path, operations in document["paths"].items():
+        part = path.removeprefix("/v1/").partition("/")[0].strip("/")
+        tag = next((name for name, (_, parts) in TAGS.items() if part in parts), "Service")
+        for operation in operations.values():
+            operation["tags"] = [tag]
+    return share(document)
 
 
 def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> None:
@@ -65,19 +95,21 @@ def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> N
     declared = schemas(route.endpoint)
     example = _example(route)
     for parameter in operation.get("parameters", ()):
+        if parameter["name"] == "sort" and "fields" in declared["query"]:
+            parameter["schema"].pop("enum", None)  # twice the columns, which `fields` lists
         given = example if parameter["in"] == "path" else example.get("query", {})
         if parameter["name"] in given:
             parameter["example"] = given[parameter["name"]]
     statuses = {400, 405, 406, *([404] if declared["path"] else [])}
     success = operation["responses"]["200"]
-    success["headers"] = {"ETag": ETAG}
+    success["headers"] = {"ETag": {"$ref": "#/components/headers/ETag"}}
     if "body" in declared:
         operation["requestBody"]["content"][JSON]["example"] = example["body"]
         statuses |= {413, 415, 422}
     elif declared["query"]:
         statuses |= {422}
     if route.response_class in (Answer, CitedAnswer):
-        success["headers"]["Link"] = LINK
+        success["headers"]["Link"] = {"$ref": "#/components/headers/Link"}
         answer = _answered(route, known, example)
         if answer is None:  # what it compares has not been measured
             success["content"][CSV] = {"schema": {"type": "string"}}
@@ -99,12 +131,12 @@ def _give_example(content: dict[str, Any], answer: Answer) -> None:
     """Add what is answered, shortened, and the columns of the table."""
     # Through bytes and back: the example is what travels, NaN as null included.
     whole = json.loads(answer.representation(JSON).body)
-    content[JSON]["example"] = shorten(whole)
+    example = shorten(whole)
+    if len(json.dumps(example)) <= LARGEST_EXAMPLE:
+        content[JSON]["example"] = example
     table = answer.representation(CSV).body.decode()
-    table = _first_rows(table)
-    columns = ", ".join(table.partition("\n")[0].split(","))
-    described = {"type": "string", "description": f"Columns: {columns}."}
-    content[CSV] = {"schema": described, "example": table}
+    table = table.partition("\n")[0] + "\n"
+    content[CSV] = {"schema": {"type": "string"}, "example": table}
     if isinstance(answer, CitedAnswer):
         for kind in CITATIONS.values():
             text = answer.representation(kind).body.decode()
@@ -125,12 +157,6 @@ def shorten(value: Any) -> Any:
     if isinstance(value, str) and len(value) > LONGEST_TEXT:
         return value[: LONGEST_TEXT - 1] + "…"
     return value
-
-
-def _first_rows(table: str) -> str:
-    """Return the header and the first record of a table."""
-    header, *rows = csv.reader(io.StringIO(table, newline=""))
-    return csv_text(header, rows[:1])
 
 
 def _example(route: APIRoute) -> dict[str, Any]:

@@ -115,10 +115,7 @@ class PropertyDefinition(Shape):
     measure: str = Field(description="Quantity that decides the property.")
     limits: str = Field(description="Thresholds between the scores.")
     judged: Literal["always", "claimed", "failed", "never"] = Field(
-        description=(
-            "When the measurement can contradict the survey: score 1 or 2 (claimed), or "
-            "measured below 2 (failed)."
-        )
+        description="When it can contradict the survey."
     )
     why: str = Field(description="Why it cannot contradict in other cases.")
 

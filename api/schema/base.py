@@ -62,9 +62,7 @@ class NoParameters(Question):
 class OfEdition(Question):
     """Of which edition of the studies."""
 
-    edition: Choice = Field(
-        "survey", description="Studies of the survey, or all, including added ones."
-    )
+    edition: Choice = Field("survey", description="Studies of the survey, or all added ones too.")
 
 
 class TableQuestion(Question):
@@ -77,9 +75,7 @@ class TableQuestion(Question):
             "By default the Accept header selects it."
         ),
     )
-    safe: bool = Field(
-        default=False, description="Escape CSV cells that a spreadsheet would run as formulas."
-    )
+    safe: bool = Field(default=False, description="Escape cells that a spreadsheet would run.")
 
 
 class SortedQuestion(TableQuestion):

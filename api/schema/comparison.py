@@ -50,9 +50,7 @@ class CompareQuery(OfEdition, TableQuestion):
         description=f"Architectures as DETECTOR:MASK, {FEWEST} to {MOST}; each by its best "
         "pipeline.",
     )
-    dataset: Annotated[DatasetName | None, GIVEN] = Field(
-        None, description="Data set of the pipelines."
-    )
+    dataset: Annotated[DatasetName | None, GIVEN] = Field(None, description="Of pipelines.")
     pipeline: InOrder[Pipeline] = Field(
         default_factory=list, description=f"Pipelines as EXTRACTOR:MODEL, {FEWEST} to {MOST}."
     )
@@ -109,10 +107,7 @@ class ComparedRow(Shape):
     extractor: str | None
     model: str | None
     studies: list[str] = Field(description="Studies that used it on such a sensor.")
-    own_deg: float | None = Field(
-        description="Own error: geometric mean over the measured sensor units; unit 0 alone under "
-        "conditions other than the first."
-    )
+    own_deg: float | None = Field(description="Own error; of unit 0 under later conditions.")
     over_least: float | None = Field(description="Own error over the lowest compared.")
     bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
     over_bound: float | None = Field(description="Unit 0 RMS of all answers over its bound.")
@@ -122,9 +117,7 @@ class ComparedRow(Shape):
     high_deg: float | None = Field(description="Largest error over units.")
     availability: float | None
     false_sun: float | None = Field(description="Share of unobservable samples answered.")
-    latency_us: float | None = Field(
-        description="Time per sample on this machine, microseconds; null if not timed."
-    )
+    latency_us: float | None = Field(description="Time per sample, microseconds.")
     time_ratio: float | None = Field(description="Time divided by that of a reference method.")
     needed_poses: int | None = Field(description="Poses to be within 10 % of the error floor.")
     needed_low: int | None = Field(description="Poses needed in the best random draw.")

@@ -31,12 +31,7 @@ class CurveRow(Shape):
     dataset: str
     extractor: str
     model: str
-    needed_poses: int | None = Field(
-        description=(
-            "Poses with which half of the random draws are within 10 % of the error floor "
-            "and have 95 % availability."
-        )
-    )
+    needed_poses: int | None = Field(description="Poses needed by half of the random draws.")
     needed_low: int | None = Field(description="Poses needed in the best random draw.")
     needed_high: int | None = Field(description="Poses needed in the worst random draw.")
     error_poses: int | None = Field(description="Poses needed by the error criterion alone.")
@@ -62,21 +57,14 @@ class Curve(CurveRow):
     floor_high_deg: float | None = Field(description="Upper end of the 90 % range of floors.")
     exponent: float | None = Field(description="Exponent b of the fitted law.")
     misfit: float | None = Field(description="Relative residual of the fitted law.")
-    bound_deg: float = Field(
-        description=(
-            "Cramer-Rao bound of the published score, for a unit known only through its "
-            "dark and flat frames."
-        )
-    )
+    bound_deg: float = Field(description="Bound for a unit known by darks and flats.")
     bench_deg: float | None = Field(description="Error of the standard bench; not in the curve.")
     all_deg: list[float | None] = Field(description="Own error with all poses, by sensor unit.")
     draws: int = Field(description="Random draws of poses, over all units.")
     reached: int = Field(description="Draws within 10 % of the error floor.")
     needed: list[int | None] = Field(description="Poses needed by each draw, unit after unit.")
     error_from: list[int | None] = Field(description="Poses needed by each draw, by error.")
-    answers_from: list[int | None] = Field(
-        description="Poses needed by each draw, by availability."
-    )
+    answers_from: list[int | None] = Field(description="Poses needed, by availability.")
     refusal: str = Field(description="Reason of the first refused draw; empty if none.")
     points: list[CurvePoint] = Field(description="Points of the curve, by number of poses.")
 

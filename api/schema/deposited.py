@@ -88,10 +88,7 @@ class DepositedEdition(Shape):
     edition: str
     edition_title: str = Field(description="Name of the edition.")
     edition_studies: int = Field(description="Number of its studies.")
-    edition_version: str = Field(
-        description="Version of the data package, number of studies, first digits of the tables' "
-        "SHA-256."
-    )
+    edition_version: str = Field(description="Version, studies, digits of the SHA-256.")
 
 
 class ClauseVerdict(Shape):

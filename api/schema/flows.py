@@ -62,9 +62,7 @@ class Flows(Shape):
 
     chart: str = Field(description="Name of the chart.")
     levels: list[str] = Field(description="Attributes of the chart, from left to right.")
-    counting: Literal["studies", "fractional"] = Field(
-        description="How a study with several values counts."
-    )
+    counting: Literal["studies", "fractional"] = Field(description="studies or fractional.")
     studies: int = Field(description="Number of studies that match the filters.")
     nodes: list[Node]
     links: list[Link]

@@ -39,27 +39,15 @@ class Measured(Shape):
     model: str
     condition: str = Field(description="Condition with the largest error.")
     field_deg: float | None = Field(description="Full field of view of the error.")
-    own_deg: float | None = Field(
-        description="Own error: calibrated with true directions, geometric mean over sensor units."
-    )
+    own_deg: float | None = Field(description="Own error: geometric mean over sensor units.")
     own_low_deg: float | None = Field(description="Own error less two standard errors.")
     own_high_deg: float | None = Field(description="Own error plus two standard errors.")
-    on_bench_deg: float | None = Field(
-        description="On your bench: error that the required share of units and benches meets; null "
-        "without a bench."
-    )
-    needs_bench_deg: float | None = Field(
-        description="Calibration bench that the maximum error takes; null without a limit, 0 if "
-        "none is good enough."
-    )
+    on_bench_deg: float | None = Field(description="Error on your bench, at the confidence.")
+    needs_bench_deg: float | None = Field(description="Bench that the limit takes; 0 if none.")
     units_within: int | None = Field(description="Of ten units, how many meet the maximum error.")
-    bound_deg: float | None = Field(
-        description="Cramer-Rao bound for a known sensor unit; null over a part of the field."
-    )
+    bound_deg: float | None = Field(description="Cramer-Rao bound for a known unit.")
     availability: float | None
-    latency_us: float | None = Field(
-        description="Time per sample on your processor, microseconds; null if not timed."
-    )
+    latency_us: float | None = Field(description="Time per sample on your processor.")
     needs: list[str] = Field(description="Inputs that the calibration needs besides the sensor.")
 
 
@@ -72,9 +60,7 @@ class Calibration(Shape):
     model: str
     advised: bool = Field(description="Whether the survey advises it by name.")
     studies: list[str] = Field(description="Studies that used it.")
-    with_model: int = Field(
-        description="Number of studies that use this model and these compensations."
-    )
+    with_model: int = Field(description="Number of studies that use its stages.")
     measured: Measured | None
 
 
@@ -115,25 +101,17 @@ class Architecture(Shape):
     detector: str
     mask: str
     built: bool = Field(description="Whether a study or product realises it.")
-    meets: list[Literal["reported", "measured"]] = Field(
-        description="Kinds of evidence that meet all requirements."
-    )
+    meets: list[Literal["reported", "measured"]] = Field(description="Evidence that meets all.")
     reason: str = Field(description="Why it is in the answer, one sentence.")
     evidence: list[EvidenceState] = Field(description="Evidence for each requirement.")
     studies: int = Field(description="Number of its studies.")
     products: int = Field(description="Number of distinct built sensors.")
-    reports: list[Reported] = Field(
-        description="The most accurate reports that meet all requirements, or the nearest one."
-    )
+    reports: list[Reported] = Field(description="Best reports that meet all, or the nearest.")
     advised: list[Advised] = Field(description="Advice of the survey for these requirements.")
-    best: Calibration | None = Field(
-        description="The most accurate calibration that meets all requirements, or the nearest one."
-    )
+    best: Calibration | None = Field(description="Best calibration, or the nearest.")
     measures: list[TaskMeasure] = Field(description="Measures of the requested tasks.")
     count: int = Field(description="Number of its calibrations that meet the requirements.")
-    calibrations: list[Calibration] | None = Field(
-        None, description="First calibrations; with include=calibrations."
-    )
+    calibrations: list[Calibration] | None = Field(None, description="If included.")
     links: dict[str, str] = Field(description="Its page, studies and leaderboard.")
 
 
@@ -230,9 +208,7 @@ class AnswerFlow(Shape):
     paths: list[Path] = Field(description="Combinations of values with their studies.")
     nodes: list[Node]
     links: list[Link]
-    left_out: list[LeftOut] = Field(
-        description="Studies not shown because an attribute is unknown."
-    )
+    left_out: list[LeftOut] = Field(description="Studies with an unknown attribute.")
 
 
 class Recommendations(Shape):
@@ -243,18 +219,12 @@ class Recommendations(Shape):
     order: str = Field(description="The order in one sentence.")
     count: int = Field(description="Number of architectures that meet the requirements.")
     designs: int = Field(description="Number of their calibrations.")
-    notes: list[str] = Field(
-        description="How the question was read, ties, and which bench stands in the way."
-    )
+    notes: list[str] = Field(description="How it was read; ties; benches in the way.")
     cards: list[Card] = Field(description="Three ways to begin; empty if anything is asked.")
     architectures: list[Architecture]
     next: str | None = Field(description="Cursor of the next page; null on the last page.")
-    contradictions: list[Contradiction] = Field(
-        description="At most two calibrations of the literature that err more than others there."
-    )
-    blocked: Blocked | None = Field(
-        description="Why no architecture meets the requirements; null otherwise."
-    )
+    contradictions: list[Contradiction] = Field(description="On the same data; at most two.")
+    blocked: Blocked | None = Field(description="Why the answer is empty; else null.")
     paths: list[Path] | None = Field(None, description="With include=paths.")
     rows: Designs | None = Field(None, description="All calibrations; with include=designs.")
     links: dict[str, str] = Field(description="The same as a table, and its decision flow.")

@@ -55,9 +55,7 @@ class Requirements(OfEdition):
     )
     task: Several[words.Task] = _wanted("task")
     error: Several[words.Error] = _wanted("error")
-    accuracy: Several[words.Accuracy] = several(
-        "Require a sensor of one of these classes: reported, or measured within its limits."
-    )
+    accuracy: Several[words.Accuracy] = several("Require one of these classes.")
     detector: Several[words.Detector] = _wanted("detector")
     mask: Several[words.Mask] = _wanted("mask")
     model: Several[words.Model] = _wanted("model")
@@ -79,33 +77,17 @@ class Requirements(OfEdition):
             "required field of view and conditions."
         ),
     )
-    min_fov_deg: Number = Field(
-        None, gt=0, le=360, description="Minimum full field of view, degrees."
-    )
+    min_fov_deg: Number = Field(None, gt=0, le=360, description="Minimum full field of view.")
     max_latency_us: Number = Field(
         None,
         gt=0,
         le=1e12,
         description="Maximum time of extraction and prediction per sample, microseconds.",
     )
-    min_availability: Number = Field(
-        None,
-        gt=0,
-        le=1,
-        description="Minimum availability, nominal and under all required conditions.",
-    )
-    max_mass_g: Number = Field(
-        None, gt=0, le=1e6, description="Maximum mass, grams, as published; unknown is shown."
-    )
-    max_power_mw: Number = Field(
-        None, gt=0, le=1e6, description="Maximum power, milliwatts, as published; unknown is shown."
-    )
-    min_rate_hz: Number = Field(
-        None,
-        gt=0,
-        le=1e9,
-        description="Minimum update rate, hertz, as published; unknown is shown.",
-    )
+    min_availability: Number = Field(None, gt=0, le=1, description="Minimum availability.")
+    max_mass_g: Number = Field(None, gt=0, le=1e6, description="Maximum mass, grams.")
+    max_power_mw: Number = Field(None, gt=0, le=1e6, description="Maximum power, mW.")
+    min_rate_hz: Number = Field(None, gt=0, le=1e9, description="Minimum rate, Hz.")
     survive: Several[words.Hazard] = several(
         "Conditions to tolerate: a data set must test each, with sufficient "
         "availability and within the maximum error."
@@ -116,12 +98,8 @@ class Requirements(OfEdition):
         le=100,
         description="Distance from the Sun, astronomical units; judged by the nearest condition.",
     )
-    properties: Several[words.Property] = several(
-        "Required extractor properties, at least partly provided in the survey's assessment."
-    )
-    exclude_needs: Several[words.Need] = several(
-        "Exclude calibrations that need one of these inputs."
-    )
+    properties: Several[words.Property] = several("Required extractor properties.")
+    exclude_needs: Several[words.Need] = several("Inputs that it must not need.")
     bench_deg: Number = Field(
         None,
         ge=0,
@@ -160,9 +138,7 @@ class Requirements(OfEdition):
         "More of the answer: calibrations of each architecture, paths of the studies, designs (all "
         "calibrations as flat rows)."
     )
-    limit: Annotated[int, WHOLE] = Field(
-        10, ge=1, le=LARGEST_PAGE, description="Maximum number of architectures per page."
-    )
+    limit: Annotated[int, WHOLE] = Field(10, ge=1, le=LARGEST_PAGE, description="Most per page.")
     cursor: Cursor = None
     calibrations: Annotated[int, WHOLE] = Field(
         5, ge=1, le=LARGEST_PAGE, description="Maximum number of calibrations per architecture."

@@ -51,26 +51,11 @@ class Score(Place):
 
     status: Literal["ok", "refused", "failed"]
     reason: str = Field(description="Reason for a missing score; empty otherwise.")
-    rms_deg: float | None = Field(
-        description=(
-            "RMS of this unit over the observable samples with an answer, calibrated with true "
-            "directions; under `on-bench` with directions of random benches."
-        )
-    )
-    charged_deg: float | None = Field(
-        description=(
-            "RMS of this unit over all answers, including those to unobservable samples; own "
-            "errors are its mean over units."
-        )
-    )
+    rms_deg: float | None = Field(description="RMS over answers to observable samples.")
+    charged_deg: float | None = Field(description="RMS over all answers; own errors' basis.")
     aligned_deg: float | None = Field(description="RMS error after boresight alignment.")
     bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
-    bound_unit_deg: float | None = Field(
-        description=(
-            "RMS Cramer-Rao bound for a unit known only through its dark and flat frames; "
-            "null if elements do not differ individually."
-        )
-    )
+    bound_unit_deg: float | None = Field(description="Bound for a unit known by references.")
     availability: float | None = Field(description="Share of observable samples answered.")
     false_sun: float | None = Field(description="Share of unobservable samples answered.")
     dataset_version: int = Field(description="Version of the data set.")
@@ -205,9 +190,7 @@ class Leaderboard(OpenShape):
 
     model_config = ConfigDict(extra="allow", serialize_by_alias=True)
 
-    schema_version: int | str | None = Field(
-        alias="schema", description="Version of the structure."
-    )
+    schema_version: int | str | None = Field(alias="schema", description="Its version.")
     datasets: list[LeaderboardDataset]
     record: RecordNamed = Field(description="Version and digest of the published measurements.")
     total: int = Field(description="Total number of rows.")
@@ -239,12 +222,8 @@ class LeaderboardQuery(SortedQuestion, rows=LeaderboardRow):
     condition: Several[Condition] = several("Only this condition.")
     extractor: Several[ExtractorName] = several("Only this extractor.")
     model: Several[ModelName] = several("Only this model.")
-    best_of_extractor: Flag = Field(
-        default=False, description="Only the best pipeline of each extractor."
-    )
-    studied: Flag = Field(
-        default=False, description="Only pipelines that studies used on such a sensor."
-    )
+    best_of_extractor: Flag = Field(default=False, description="Only the best of extractors.")
+    studied: Flag = Field(default=False, description="Only those that studies used.")
     field_deg: Annotated[str | None, OneOf(lambda: FIELD_EDGES), GIVEN] = Field(
         None,
         description=(

@@ -58,12 +58,7 @@ class Runs(Shape):
     pipelines: int
     cells: int = Field(description="Number of cells (pipeline, data set, condition) of the study.")
     scored: int = Field(description="Number of cells with a published score.")
-    basis: dict[str, Basis] = Field(
-        description=(
-            "Basis of detector, mask, extractor and model: stated, inferred, implied by "
-            "the survey's definitions, recalled, or defaulted by a rule."
-        )
-    )
+    basis: dict[str, Basis] = Field(description="Basis of each part: stated, inferred, ...")
     assumed: dict[str, str] = Field(description="Reason or rule for each part that is not stated.")
 
 
@@ -79,10 +74,7 @@ class Verification(Shape):
 class PublishedScore(Shape):
     """Published numbers of a pipeline on a data set under a condition."""
 
-    own_deg: float | None = Field(
-        description="Own error: geometric mean over the measured sensor units; unit 0 alone under "
-        "conditions other than the first."
-    )
+    own_deg: float | None = Field(description="Own error; of unit 0 under later conditions.")
     rms_deg: float | None = Field(description="Unit 0 RMS, over answers to observable samples.")
     bound_deg: float | None = Field(description="RMS Cramer-Rao bound for a known sensor unit.")
     over_bound: float | None = Field(description="Unit 0 RMS of all answers over its bound.")
@@ -149,9 +141,7 @@ class AttributeValue(Shape):
     source: str = Field(description="Address, document, study or label of the survey's source.")
     source_name: str = Field(description="Publisher, document or part of the survey.")
     note: str
-    role: Literal["proposed", "compared", "unknown", ""] = Field(
-        description="proposed or compared."
-    )
+    role: Literal["proposed", "compared", "unknown", ""] = Field(description="proposed, compared.")
     name_in_study: str = Field(description="Name used in the study, if different.")
     nearest: bool = Field(description="Whether the value is the nearest one in the taxonomy.")
 
@@ -180,12 +170,7 @@ class StudyPipeline(Shape):
     extractor_taxonomy: str
     model_taxonomy: str
     stages: list[str] = Field(description="Survey labels of the compensations, then of the model.")
-    basis: dict[str, Basis] = Field(
-        description=(
-            "Basis of detector, mask, extractor and model: stated, inferred, recalled, or "
-            "defaulted by a rule."
-        )
-    )
+    basis: dict[str, Basis] = Field(description="Basis of each part: stated, inferred, ...")
     assumed: dict[str, str] = Field(description="Reason or rule for each part that is not stated.")
     datasets: list[str] = Field(description="Data sets on which it can be scored.")
     settings: list[Setting] = Field(description="Data sets and conditions, best first.")
@@ -242,17 +227,8 @@ class StudyDetail(Study):
 
     note: str
     attributes: list[AttributeValue]
-    reported_accuracy: Reported | None = Field(
-        description=(
-            "Accuracy that the study reports for its own sensor; `scores` are measured "
-            "here on simulated sensors."
-        )
-    )
-    reported_precision: Reported | None = Field(
-        description=(
-            "Precision (scatter of repeated readings) that the study reports; not an accuracy."
-        )
-    )
+    reported_accuracy: Reported | None = Field(description="As reported for its own sensor.")
+    reported_precision: Reported | None = Field(description="Scatter of repeated readings.")
     ladder: Ladder | None = Field(description="Rungs below the reported accuracy.")
     departures: list[Departure] = Field(description="Differences from the study.")
     purposes: dict[Purpose, str] = Field(description="What it is run for, with the rules.")
@@ -266,10 +242,7 @@ class Edition(Shape):
     name: Literal["survey", "extension"]
     title: str
     studies: int
-    version: str = Field(
-        description="Version of the data package, number of studies, first digits of the SHA-256 "
-        "of the edition's tables."
-    )
+    version: str = Field(description="Version, studies, digits of the tables' SHA-256.")
 
 
 class Editions(Shape):
@@ -292,9 +265,7 @@ class StudiesQuery(CitedQuestion, StudyFilters, SortedQuestion, rows=StudyRow):
     )
 
     key: Several[words.StudyKey] = several("Only studies with one of these keys.")
-    year_min: Annotated[int | None, WHOLE] = Field(
-        None, ge=0, le=9999, description="From this year."
-    )
+    year_min: Annotated[int | None, WHOLE] = Field(None, ge=0, le=9999, description="First year.")
     year_max: Annotated[int | None, WHOLE] = Field(None, ge=0, le=9999, description="To this year.")
     grade: Several[Grade] = several(
         "Only studies with this grade: faithful (every part is the study's own, "

@@ -40,7 +40,7 @@ from registry.comparison import calibration_name, contradictions
 from registry.measured_pipelines import Measurements
 from registry.paths import PATH_LEVELS, answer_flow
 from registry.recommendation import recommend
-from registry.relaxation import Explanation
+from registry.relaxation import Explanation, in_words
 from registry.reports import Report
 from registry.requirements import PARAMETERS, SETTINGS
 from registry.studies import Facts
@@ -228,23 +228,33 @@ def reason(answer: Answer, one: RankedArchitecture) -> str:
         more = len({report.family for report in one.reports}) - 1
         said.append(one.reports[0].words + (f" ({more} more meet all)" if more else ""))
     elif one.reports:
-        said.append(one.reports[0].words + _lacks(one, 0))
+        said.append(one.reports[0].words + _lacks(answer, one, 0))
     if one.best is None or one.best.pipeline is None:
         said.append("not measured here")
     else:
         meets = "measured" in one.meets
-        said.append(_measured_words(answer, one.best, meets=meets) + _lacks(one, 1) * (not meets))
+        said.append(
+            _measured_words(answer, one.best, meets=meets) + _lacks(answer, one, 1) * (not meets)
+        )
     sentence = "; ".join(said)
     if not one.place.is_built:
         sentence = f"measured here, never built: {sentence}"
     return sentence[0].upper() + sentence[1:] + "."
 
 
-def _lacks(one: RankedArchitecture, kind: int) -> str:
+def _lacks(answer: Answer, one: RankedArchitecture, kind: int) -> str:
     """Return in brackets which requirements a kind of evidence misses or leaves unknown."""
-    found = [f"{name}: {states[kind]}" for name, states in one.evidence.items()]
-    named = [said for said in found if not said.endswith((": meets", ": None"))]
-    return f" ({', '.join(named)})" if named else ""
+    value_of = answer.question.requirements.value_of
+    found = {
+        state: [
+            in_words(name, value)
+            for name, states in one.evidence.items()
+            if states[kind] == state and (value := value_of(name)) is not None
+        ]
+        for state in ("misses", "unknown")
+    }
+    said = [f"{state}: {', '.join(names)}" for state, names in found.items() if names]
+    return f" ({'; '.join(said)})" if said else ""
 
 
 def _measured_words(answer: Answer, best: found_by.Calibration, *, meets: bool) -> str:

@@ -7,16 +7,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from registry.taxonomy import Architecture
-from survey_data import labels
 
 INCLUDES: Mapping[tuple[str, str], tuple[str, ...]] = MappingProxyType(
     {("detector", "PD"): ("QPD",), ("mask", "Slit"): ("L-Slit",)}
 )
 """Values that the survey's advice means beside the one it names (notes of the table of advice)."""
-
-ADVISING = ("task", "accuracy", "error")
-"""What is advised for. Where no error is asked for, its rows say where it is met, which advises
-nothing."""
 
 
 @dataclass(frozen=True)
@@ -55,16 +50,3 @@ class Advice:
         return (not self.extractor or self.extractor in extractor) and (
             not self.model_category or self.model_category in categories
         )
-
-    def to_dict(self) -> dict[str, str]:
-        """Return the advice as in the HTTP answer."""
-        return {
-            "id": self.id,
-            "requirement": self.requirement,
-            "value": self.value,
-            "model_category": self.model_category,
-            "extractor": self.extractor,
-            "section": self.section,
-            "section_name": labels.name(self.section),
-            "note": self.note,
-        }

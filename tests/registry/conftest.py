@@ -5,7 +5,10 @@ from types import MappingProxyType
 
 import pytest
 
+from benchmark.results.pipelines import pipelines, standard_benches
+from benchmark.results.store import PUBLISHED, Store
 from registry import studies
+from registry.measured_pipelines import Measurements
 from registry.studies import AttributeValue, Facts, Study
 
 sys.path.append(str(Path(__file__).parent / "fakes"))
@@ -42,3 +45,11 @@ def facts_of(survey: Facts) -> Callable[[Sequence[Row]], Facts]:
         return Facts(found, survey.taxonomy)
 
     return build
+
+
+@pytest.fixture(scope="session")
+def published() -> Measurements:
+    """The published measurements."""
+    store = Store(PUBLISHED)
+    rows = pipelines(store.rows(unit=None), bench_deg=standard_benches(store.pins()))
+    return Measurements(rows)

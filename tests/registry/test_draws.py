@@ -1,7 +1,6 @@
 """Requirements at a confidence against drawn units and benches, and closed forms."""
 
 import math
-import re
 
 import numpy as np
 import pytest
@@ -10,16 +9,17 @@ from hypothesis import strategies as st
 
 from registry.draws import (
     BENCHES,
+    at_confidence,
     bench_for,
-    largest_bench,
-    one_at_confidence,
     unit_errors,
     unit_ratios,
 )
-from registry.measured_pipelines import MeasuredPipeline, Score
-from registry.recommendation import recommend
 
 ALIKE = (1.0,) * 10
+
+
+def one_at_confidence(own, ratios, bench, share):
+    return at_confidence(np.array([own]), np.array([ratios]), np.array([bench]), share)[0]
 
 
 @settings(deadline=None, derandomize=True)
@@ -79,23 +79,6 @@ def test_the_bench_that_would_do_does_and_a_worse_one_does_not():
     assert bench[2] == 0.0
 
 
-@settings(deadline=None, derandomize=True)
-@given(
-    pipelines=st.lists(
-        st.tuples(st.floats(1e-4, 0.05), st.lists(st.floats(0.1, 3.0), min_size=10, max_size=10)),
-        min_size=1,
-        max_size=6,
-    ),
-    limit=st.floats(1e-4, 0.1),
-    share=st.floats(0.5, 0.999),
-)
-def test_the_largest_bench_is_the_largest_of_all(pipelines, limit, share):
-    own = np.array([error for error, _ in pipelines])
-    ratios = np.array([units for _, units in pipelines])
-    found = largest_bench(own, ratios, limit, share)
-    assert found == bench_for(own, ratios, limit, share).max()
-
-
 def test_of_what_is_said_to_meet_a_limit_fresh_units_and_benches_do():
     """A hundred drawn limits; pipelines measured on ten units, the bench's errors as tabulated."""
     rng = np.random.default_rng(20261125)
@@ -113,83 +96,3 @@ def test_of_what_is_said_to_meet_a_limit_fresh_units_and_benches_do():
     assert len(met) > 30
     assert np.mean(met) > 0.9
     assert np.mean(np.array(met) >= 0.85) > 0.95
-
-
-def pipeline(name, own, **more):
-    row = {
-        "dataset": name,
-        "detector": "CMOS",
-        "mask": "Single-Ap.",
-        "extractor": "e",
-        "extractor_taxonomy": "BCTM",
-        "model": "m",
-        "stages": ("SPM",),
-        "nominal": Score("nominal", own, availability=1.0),
-        "half_fov_deg": 60.0,
-        "unit_own_deg": (own,) * 10,
-        "bench_deg": 0.0158,
-    }
-    return MeasuredPipeline(**{**row, **more})
-
-
-def test_an_error_is_judged_on_the_bench_asked_for_and_one_that_would_do_is_named():
-    row = pipeline("a", 0.004)
-
-    def measured(**asked):
-        answer = recommend({"max_error_deg": 0.01, "mask": "Single-Ap.", **asked}, [row])
-        return [a.best.measured for a in answer.architectures if a.best.measured]
-
-    assert [one["units"]["within_limit"] for one in measured(bench_deg=0.0)] == [10]
-    assert [one["units"]["within_limit"] for one in measured(bench_deg=0.002)] == [10]
-    assert measured() == []
-    only = {"max_error_deg": 0.0042, "detector": "CMOS", "mask": "Single-Ap.", "survive": []}
-    assert row.judge(draws=(None, 0.9)).error_deg > 0.0158
-    blocked = recommend({**only, "min_availability": 0.5}, [row]).blocking_constraint
-    assert blocked is not None
-    assert "bench good to" in blocked.detail
-
-
-def test_units_within_a_limit_are_counted_for_each_calibration_of_an_architecture():
-    rows = [
-        pipeline(
-            "a",
-            own,
-            model=model,
-            stages=(model,),
-            unit_own_deg=(own,) * within + (0.5,) * (10 - within),
-            unit_ratios=(1.0,) * within + (0.5 / own,) * (10 - within),
-        )
-        for own, model, within in ((0.003, "SPM", 9), (0.0035, "Linear", 10), (0.004, "ANN", 9))
-    ]
-    answer = recommend({"max_error_deg": 0.01, "mask": "Single-Ap.", "bench_deg": 0.0}, rows)
-    (place,) = (one for one in answer.architectures if one.best.measured)
-    found = {
-        one.model: one.measured["units"]["within_limit"]
-        for one in place.calibrations
-        if one.measured
-    }
-    assert found == {"SPM": 9, "Linear": 10, "ANN": 9}
-
-
-@pytest.mark.parametrize(("own", "over"), [(0.004, 1.3), (0.004, 1.5), (0.0333, 2.2)])
-def test_the_bench_named_would_do_and_one_a_tenth_worse_would_not(own, over):
-    rows = [pipeline("a", own, bench_deg=1.0)]
-    only = {"mask": "Single-Ap.", "detector": "CMOS", "min_availability": 0.5}
-    asked = {"max_error_deg": over * own, **only}
-    blocked = recommend(asked, rows).blocking_constraint
-    assert blocked is not None
-    named = re.search(r"bench good to (\S+) deg would do", blocked.detail)
-    assert named is not None
-    counts = [
-        recommend({**asked, "bench_deg": times * float(named[1])}, rows).count
-        for times in (1.0, 1.11)
-    ]
-    assert counts == [1, 0]
-
-
-def test_what_a_calibration_reads_can_be_excluded():
-    rows = [pipeline("a", 0.004, needs=("rates", "time")), pipeline("b", 0.4)]
-    free = recommend({"exclude_needs": ["rates"], "bench_deg": 0.0}, rows, sort="measured")
-    assert free.architectures[0].best.measured["dataset"] == "b"
-    asked = recommend({"bench_deg": 0.0}, rows, sort="measured")
-    assert asked.architectures[0].best.measured["dataset"] == "a"

@@ -19,7 +19,7 @@ def loaded(code: str) -> set[str]:
 
 
 def test_importing_the_registry_loads_no_table_and_no_array_library() -> None:
-    modules = ("flows", "recommendation", "resolution", "catalogue", "studies")
+    modules = ("flows", "requirements", "resolution", "catalogue", "studies")
     found = loaded("\n".join(f"import registry.{name}" for name in modules))
     assert not found & {*HEAVY, "pandas", "numpy"}
 

@@ -9,8 +9,6 @@ from typing import Any
 import pytest
 
 from registry import studies
-from registry.design_arrays import DesignArrays
-from registry.designs import Design, Place
 from registry.studies import Facts, FactsError, facts, facts_from, study_from
 from registry.taxonomy import InvalidValueError
 from survey_data.texts import load_texts
@@ -100,11 +98,3 @@ def test_an_attribute_without_entries_names_the_nearest(survey: Facts) -> None:
     assert [entry.value for entry in survey.taxonomy.entries("accuracy")] == list(
         survey.taxonomy.values("accuracy")
     )
-
-
-def test_more_studies_than_an_order_of_designs_has_bits_for_are_refused() -> None:
-    design = Design(("CMOS", "Slit"), "BCM", ("SPM",), 1, 1, (), ())
-    places = [Place(("CMOS", "Slit"), 1, (design,), (), {})]
-    assert DesignArrays(places, 2**16).support_bits == 49
-    with pytest.raises(ValueError, match="1 designs of 2097152 studies are too many to be ranked"):
-        DesignArrays(places, 2**21)

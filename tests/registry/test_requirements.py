@@ -1,26 +1,41 @@
 """What may be asked of a sun sensor, where its limits are, and how it is said again."""
 
 import math
+from dataclasses import fields
+from typing import Any
 
 import pytest
 
+from registry.ranking import SORTS
 from registry.recommendation import recommend
-from registry.requirements import LIMITS, Requirements
+from registry.requirements import (
+    LIMITS,
+    MISSIONS,
+    PARAMETERS,
+    SETTINGS,
+    Requirements,
+    light_at,
+)
 from registry.studies import Facts
 from registry.taxonomy import InvalidValueError
+from tests.registry.drawn_questions import drawn_questions
+
+
+def parse(survey: Facts, **asked: object) -> Requirements:
+    return Requirements.parse(asked, survey.taxonomy, survey.properties)
 
 
 def test_requirements_are_given_back_as_they_can_be_given_again(survey: Facts) -> None:
-    one = next(iter(survey.properties))
-    ask = {"task": "Cost", "exclude_mask": ["Lens", "Slit"], "max_error_deg": 2, "model": []}
-    answer = recommend({**ask, "properties": one, "survive": []}, facts=survey)
-    echo = answer.document["requirements"]
-    assert echo == {
-        "task": ["Cost"], "exclude_mask": ["Lens", "Slit"], "max_error_deg": 2.0,
-        "properties": [one],
-    }  # fmt: skip
-    assert isinstance(echo, dict)
-    assert recommend(echo, facts=survey) == answer
+    for ask in drawn_questions(50, 4, survey):
+        asked = Requirements.parse(ask, survey.taxonomy, survey.properties)
+        mission = MISSIONS.get(ask.get("mission", ""), {})
+        expected = {**mission, **ask}
+        assert asked.to_dict() == {
+            name: list(value) if isinstance(value, tuple) else value
+            for name, value in expected.items()
+        }
+        assert Requirements.parse(asked.to_dict(), survey.taxonomy, survey.properties) == asked
+        assert set(asked.names) == expected.keys() & {*PARAMETERS, "sun_distance_au"}
 
 
 @pytest.mark.parametrize(
@@ -28,110 +43,115 @@ def test_requirements_are_given_back_as_they_can_be_given_again(survey: Facts) -
     [
         ({"tsk": "Accuracy"}, "did you mean 'task'"),
         ({"exclude_detektor": "PD"}, "did you mean 'exclude_detector'"),
+        ({"benchdeg": 0.1}, "did you mean 'bench_deg'"),
         ({"mask": ["Encodd"]}, "mask: .*did you mean 'Encoded'"),
         ({"exclude_mask": ["Encodd"]}, "exclude_mask: .*did you mean 'Encoded'"),
         ({"mask": 3}, "a value of the taxonomy"),
         ({"mask": [3]}, "a value of the taxonomy"),
-        ({"max_error_deg": 0}, r"max_error_deg.*degrees.* 0$"),
-        ({"max_error_deg": math.nan}, r"max_error_deg.*degrees.* nan$"),
-        ({"max_error_deg": "0.1"}, r"max_error_deg.*degrees.* '0\.1'$"),
-        ({"max_latency_us": True}, r"max_latency_us.*microseconds.* True$"),
-        ({"min_fov_deg": 361}, "at most 360; got 361"),
-        ({"min_availability": 1.01}, "got 1.01"),
         ({"survive": "albdo"}, "survive: .*did you mean 'albedo'"),
+        ({"exclude_needs": "nadr"}, "exclude_needs: .*did you mean 'nadir'"),
         ({"properties": ["Robustnes"]}, "properties: "),
         ({"survive": 3}, "a list of them; got 3"),
+        ({"mission": "deep-spac"}, "mission: .*did you mean 'deep-space'"),
+        ({"evidence": "mesured"}, "evidence: .*did you mean 'measured'"),
     ],
 )
-def test_wrong_requirements_name_what_was_expected(
+def test_unknown_names_are_refused_with_the_nearest(
     survey: Facts, ask: dict[str, object], message: str
 ) -> None:
     with pytest.raises(InvalidValueError, match=message):
         recommend(ask, facts=survey)
 
 
-def test_requirements_built_by_hand_are_checked_too(survey: Facts) -> None:
-    with pytest.raises(InvalidValueError, match="did you mean 'CMOS'"):
-        recommend(Requirements(include={"detector": ("CMOZ",)}), facts=survey)
-    with pytest.raises(InvalidValueError, match="did you mean 'albedo'"):
-        recommend(Requirements(survive=("albedoo",)), facts=survey)
-    for wrong in ({"limit": 0}, {"calibrations": 0}):
-        with pytest.raises(InvalidValueError, match="at least 1"):
-            recommend({}, facts=survey, **wrong)
-    with pytest.raises(InvalidValueError, match=r"sort: .*did you mean 'support'"):
-        recommend({}, sort="suport", facts=survey)  # type: ignore[arg-type]
-
-
 @pytest.mark.parametrize("name", LIMITS)
-@pytest.mark.parametrize("wrong", [0, 0.0, -1e-9, math.inf, -math.inf, math.nan, True, "1", [1.0]])
+@pytest.mark.parametrize("wrong", [0, -1e-9, math.inf, math.nan, True, "1", [1.0]])
 def test_a_limit_is_a_positive_finite_number(survey: Facts, name: str, wrong: object) -> None:
     with pytest.raises(InvalidValueError, match=name):
-        Requirements.parse({name: wrong}, survey.taxonomy)
+        parse(survey, **{name: wrong})
 
 
 @pytest.mark.parametrize(
-    ("name", "bound"),
+    ("name", "least", "most"),
     [
-        ("max_error_deg", 5e-324),
-        ("max_error_deg", 1e6),
-        ("min_fov_deg", 0.5),
-        ("min_fov_deg", 360),
-        ("max_latency_us", 361.0),
-        ("min_availability", 1.0),
+        ("min_fov_deg", 5e-324, 360.0),
+        ("min_availability", 5e-324, 1.0),
+        ("bench_deg", 0.0, None),
+        ("confidence", 0.5, 0.999),
+        ("sun_distance_au", 0.05, 100.0),
+        ("max_mass_g", 5e-324, None),
     ],
 )
-def test_a_limit_at_the_end_of_its_range_is_taken_as_it_is(
-    survey: Facts, name: str, bound: float
+def test_numbers_are_taken_up_to_the_ends_of_their_range_and_not_beyond(
+    survey: Facts, name: str, least: float, most: float | None
 ) -> None:
-    asked = Requirements.parse({name: bound}, survey.taxonomy)
-    assert asked.to_dict() == {name: float(bound)}
-    assert isinstance(asked.limit(name), float)
-    assert {asked.limit(other) for other in set(LIMITS) - {name}} == {None}
+    for end, beyond in ((least, -math.inf), (most or 1e300, math.inf)):
+        assert parse(survey, **{name: end}).to_dict() == {name: end}
+        out = math.nextafter(end, beyond) if end == most or beyond < 0 else math.inf
+        with pytest.raises(InvalidValueError, match=name):
+            parse(survey, **{name: out})
 
 
-def test_the_field_of_view_ends_at_the_whole_turn(survey: Facts) -> None:
-    with pytest.raises(InvalidValueError, match="at most 360; got 360"):
-        Requirements.parse({"min_fov_deg": math.nextafter(360.0, 400.0)}, survey.taxonomy)
-    with pytest.raises(InvalidValueError, match="at most 360"):
-        recommend(Requirements(min_fov_deg=361.0), facts=survey)
+def test_requirements_built_by_hand_are_checked_too(survey: Facts) -> None:
+    for made, said in (
+        (Requirements(include={"detector": ("CMOZ",)}), "did you mean 'CMOS'"),
+        (Requirements(survive=("albedoo",)), "did you mean 'albedo'"),
+        (Requirements({"maks": ("Slit",)}), "did you mean 'mask'"),
+        (Requirements({}, {"maks": ("Slit",)}), "did you mean 'mask'"),
+        (Requirements({}, {"mask": ("Slitt",)}), "exclude_mask: .*did you mean 'Slit'"),
+        (Requirements(min_fov_deg=361.0), "at most 360"),
+    ):
+        with pytest.raises(InvalidValueError, match=said):
+            recommend(made, facts=survey)
+    with pytest.raises(InvalidValueError, match=r"sort: .*did you mean 'studies'"):
+        recommend({}, sort="studis", facts=survey)  # type: ignore[arg-type]
+    assert SORTS[0] == "evidence"
 
 
 def test_values_are_asked_once_each_in_the_order_given(survey: Facts) -> None:
-    ask = {
-        "mask": ["Slit", "Lens", "Slit"],
-        "exclude_task": ("Cost",),
-        "exclude_detector": [],
-        "model": None,
-        "max_latency_us": None,
-        "detector": "CMOS",
-        "survive": ("spin", "albedo", "spin"),
-    }
-    asked = Requirements.parse(ask, survey.taxonomy)
+    asked = parse(
+        survey, mask=["Slit", "Lens", "Slit"], exclude_task=("Cost",), exclude_detector=[],
+        model=None, detector="CMOS", survive=("spin", "albedo", "spin"),
+    )  # fmt: skip
     assert dict(asked.include) == {"mask": ("Slit", "Lens"), "detector": ("CMOS",)}
     assert dict(asked.exclude) == {"task": ("Cost",)}
     assert asked.survive == ("spin", "albedo")
-    assert asked.names == ("detector", "mask", "exclude_task", "survive")  # as they are reported
+    assert asked.names == ("detector", "mask", "exclude_task", "survive")
 
 
 def test_what_is_left_out_or_changed_leaves_the_rest(survey: Facts) -> None:
-    ask = {"mask": "Slit", "exclude_mask": ["Lens", "Encoded"], "max_error_deg": 1.0}
-    asked = Requirements.parse({**ask, "min_fov_deg": 90.0}, survey.taxonomy)
-    rest = {"exclude_mask": ["Lens", "Encoded"], "min_fov_deg": 90.0}
-    assert asked.without("mask", "max_error_deg").to_dict() == rest
-    assert asked.without("task").to_dict() == asked.to_dict()
-    assert asked.with_value("exclude_mask", ("Lens",)).to_dict()["exclude_mask"] == ["Lens"]
-    assert asked.with_value("exclude_mask", ("Lens",)).include == asked.include
-    assert asked.with_value("exclude_mask", ()).names == ("mask", "max_error_deg", "min_fov_deg")
-    assert asked.with_value("mask", ("Encoded",)).to_dict()["mask"] == ["Encoded"]
-    assert asked.with_value("mask", ("Encoded",)).exclude == asked.exclude
-    assert asked.with_value("max_error_deg", 2.0).limit("max_error_deg") == 2.0
-    assert asked.with_value("survive", ("spin",)).names[-1] == "survive"
-    assert asked.with_value("survive", ("spin",)).without("survive") == asked
+    for ask in drawn_questions(50, 6, survey):
+        asked = Requirements.parse(ask, survey.taxonomy, survey.properties)
+        whole = asked.to_dict()
+        for name in asked.names:
+            rest = {n: value for n, value in whole.items() if n != name}
+            assert asked.without(name).to_dict() == rest
+            assert asked.without(name).with_value(name, asked.value_of(name)) == asked
 
 
-def test_attributes_named_by_hand_are_checked_on_both_sides(survey: Facts) -> None:
-    for made in (Requirements({"maks": ("Slit",)}), Requirements({}, {"maks": ("Slit",)})):
-        with pytest.raises(InvalidValueError, match="did you mean 'mask'"):
-            made.check(survey.taxonomy)
-    with pytest.raises(InvalidValueError, match=r"exclude_mask: .*did you mean 'Slit'"):
-        Requirements({}, {"mask": ("Slitt",)}).check(survey.taxonomy)
+def test_a_mission_is_a_set_of_requirements_that_others_replace(survey: Facts) -> None:
+    for name, of_mission in MISSIONS.items():
+        alone = parse(survey, mission=name).to_dict()
+        assert alone.pop("mission") == name
+        assert alone == parse(survey, **of_mission).to_dict()
+        changed = parse(survey, mission=name, max_error_deg=0.25, mask="Slit").to_dict()
+        assert changed == {**alone, "mission": name, "max_error_deg": 0.25, "mask": ["Slit"]}
+
+
+@pytest.mark.parametrize(
+    ("distance", "hazard"),
+    [(0.05, "saturation"), (0.56, "saturation"), (0.57, ""), (1.0, ""), (1.77, ""),
+     (1.79, "noise"), (100.0, "noise")],
+)  # fmt: skip
+def test_light_is_judged_by_the_condition_nearest_in_ratio(distance: float, hazard: str) -> None:
+    """Ten times the light of 1 au is at 0.316 au, a tenth at 3.16: half way is 0.562 and 1.778."""
+    light = light_at(distance)
+    assert light.hazard == hazard
+    assert light.flux == pytest.approx(1 / distance**2)
+    assert (hazard or "nominal") in light.words
+    assert Requirements(sun_distance_au=distance).hazards == ((hazard,) if hazard else ())
+
+
+def test_every_name_is_documented_in_one_place() -> None:
+    known = {each.name for each in fields(Requirements)} - {"include", "exclude"}
+    named: set[Any] = {*LIMITS, *SETTINGS, "survive", "properties", "exclude_needs", "mission"}
+    assert known == named

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import shlex
 from collections.abc import Sequence
 from typing import Annotated, Any
@@ -138,16 +137,11 @@ def _command(asked: RequirementsQuery) -> str:
 
 def _own(known: Knowledge, measured: Measured) -> Markup:
     """Return an own error; what is the record's, nominal and over the whole field, is marked."""
-    place = (measured.dataset, measured.extractor, measured.model)
-    row, shown = known.measurements.nominal.get(place), measured.own_deg
-    if (
-        row is not None
-        and measured.condition == row["condition"]
-        and None not in {shown, row["own_deg"]}
-        and math.isclose(shown or 0.0, row["own_deg"], rel_tol=1e-3)
-    ):
+    row = known.measurements.nominal.get((measured.dataset, measured.extractor, measured.model))
+    is_nominal = row is not None and measured.condition == row["condition"]
+    if row is not None and is_nominal and measured.own_deg == row["own_deg"]:
         return own_error(row)
-    return Markup("<span>{}</span>").format(degrees(shown))
+    return Markup("<span>{}</span>").format(degrees(measured.own_deg))
 
 
 def _scatter(known: Knowledge, found: Answer, across: str) -> Scatter:

@@ -1,0 +1,108 @@
+"""Designs of the survey, and the decision flow behind an answer, with nothing measured."""
+
+import dataclasses
+
+from registry.designs import gather
+from registry.flows import chart
+from registry.measured_pipelines import Measurements
+from registry.paths import PATH_LEVELS, answer_flow
+from registry.recommendation import recommend
+from registry.studies import Facts
+
+
+def without_what_was_only_compared(facts: Facts) -> Facts:
+    kept = {}
+    for key, study in facts.studies.items():
+        values = {
+            attribute: tuple(c for c in cells if study.role(attribute, c.value) != "compared")
+            for attribute, cells in study.values.items()
+        }
+        kept[key] = dataclasses.replace(study, values=values)
+    return Facts(kept, facts.taxonomy)
+
+
+def test_designs_are_named_once_with_the_studies_that_use_them(survey: Facts) -> None:
+    places = gather(survey, Measurements())
+    assert len({place.architecture for place in places}) == len(places) > 20
+    compared = 0
+    for place in places:
+        assert len({(d.extractor, d.stages) for d in place.designs}) == len(place.designs)
+        for design in place.designs:
+            with_model = {
+                key
+                for key, study in place.studies.items()
+                if any(
+                    design.model in survey.taxonomy.kinds("model", model)
+                    for model in study.has_value("model")
+                )
+            }
+            assert design.with_model == with_model
+            assert design.users == {
+                key
+                for key in with_model
+                if design.extractor in place.studies[key].has_value("extractor")
+            }
+            compared += 1
+    assert compared > 50
+
+
+def test_what_a_study_only_compared_is_not_what_it_uses(survey: Facts) -> None:
+    # Chang2007a and Chang2008 took basic centroids to show that a template is better.
+    ask = {"detector": ["CMOS"], "mask": ["Single-Ap."], "model": ["SPM"], "task": ["Accuracy"]}
+    (place,) = recommend(ask, facts=survey).architectures
+    users = {d.extractor: d.users for d in place.place.designs if d.stages == ("SPM",)}
+    assert users["TM"] >= {"Chang2007a", "Chang2008"}
+    assert users["BCTM"] >= {"ONeill2020", "Rhee2012"}
+    assert not {"Chang2007a", "Chang2008"} & (users["BCTM"] | users.get("BCM", frozenset()))
+
+
+def test_no_architecture_is_of_a_sensor_that_there_is_not(survey: Facts) -> None:
+    pairs = {one.place.architecture for one in recommend({}, facts=survey).architectures}
+    assert ("PDA", "N-Slit") in pairs
+    assert not pairs & {("PDA", "Maskless"), ("PVA", "N-Slit")}
+
+
+def test_an_extractor_has_every_property_asked_for(survey: Facts) -> None:
+    for name, marks in survey.properties.items():
+        answer = recommend({"properties": name}, facts=survey)
+        found = {
+            calibration.design.extractor
+            for one in answer.architectures
+            for calibration in answer.calibrations(one)
+        }
+        assert found
+        assert all(marks.get(extractor, 0) > 0 for extractor in found)
+
+
+def test_paths_are_the_values_that_studies_have_together(survey: Facts) -> None:
+    flow = answer_flow(recommend({"detector": ["CMOS"]}, facts=survey))
+    assert len(flow.paths) > 50
+    for path, studies in flow.paths.items():
+        values = dict(zip(PATH_LEVELS, path, strict=True))
+        assert set(studies) == {
+            s.key
+            for s in survey.studies.values()
+            if all(values[level] in s.has_value(level) for level in PATH_LEVELS)
+            and (values["detector"], values["mask"]) in s.architectures
+        }
+
+
+def test_nodes_and_links_are_the_cross_analysis_narrowed_to_the_answer(survey: Facts) -> None:
+    ask = {"task": ["Accuracy"], "detector": ["CMOS"]}
+    flow = answer_flow(recommend(ask, facts=survey))
+    whole = chart("cross-analysis", ask, facts=without_what_was_only_compared(survey))
+    wide = {(link.source, link.target): set(link.studies) for link in whole.links}
+    complete = {s.key for s in survey.studies.values() if all(map(s.of, PATH_LEVELS))}
+    narrow = {(link.source, link.target): set(link.studies) for link in flow.links}
+    assert narrow == {k: v & complete for k, v in wide.items() if v & complete}
+    assert {node.id for node in flow.nodes} == {end for link in narrow for end in link}
+    assert {left.level: len(left.studies) for left in flow.left_out} == {
+        level: sum(not s.of(level) for s in survey.studies.values())
+        for level in ("task", "detector", "mask")
+    }
+
+
+def test_an_impossible_question_has_no_flow(survey: Facts) -> None:
+    ask = {"task": ["Accuracy"], "detector": ["Event"], "mask": ["V-Slit"]}
+    flow = answer_flow(recommend(ask, facts=survey))
+    assert (flow.paths, flow.nodes, flow.links) == ({}, (), ())
