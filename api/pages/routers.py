@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from api.pages import (
     algorithm,
-    answer,
     bibliography,
     calibrate,
     claim,
@@ -18,6 +17,7 @@ from api.pages import (
     sensors,
     study,
 )
+from api.pages.home import answer
 
 ROUTERS = (
     *(

@@ -9,7 +9,8 @@ let asking = null;
 
 /** What the form asks, without its empty fields, as a query; each value once. */
 function asked() {
-  const pairs = [...new FormData(byId("question"))].filter(([, value]) => value !== "");
+  const pairs = [...new FormData(byId("question"))].filter(([, value]) => value !== "")
+    .map(([name, value]) => [name, value.replace(/^\./, "0.")]);
   const distinct = new Map(pairs.map((pair) => [pair.join("="), pair]));
   return new URLSearchParams([...distinct.values()]).toString();
 }

@@ -49,7 +49,7 @@ def test_each_architecture_says_which_evidence_meets_which_requirement(wide: Vis
         assert states == [[e[kind] for kind in kinds if e[kind]] for e in one["evidence"]]
         measured, said = one["best"]["measured"], row.locator(".best").inner_text()
         assert f"own error {degrees(measured['own_deg'])}" in said
-        assert f"needs a calibration bench of {measured['needs_bench_deg']:g}° or better" in said
+        assert f"Needs a calibration bench of {measured['needs_bench_deg']:g}° or better" in said
         for report in one["reports"]:
             assert (report["name"] or report["key"]) in row.locator(".reports").inner_text()
         dois = {f"https://doi.org/{report['doi']}" for report in one["reports"] if report["doi"]}

@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from api.pages.dataset import FIRST
-from tests.api.browser.visiting import PATIENCE_MS, WIDE, Visit, follow, get_json
+from tests.api.browser.visiting import NARROW, PATIENCE_MS, WIDE, Visit, follow, get_json
 
 pytestmark = pytest.mark.slow
 
@@ -90,10 +90,10 @@ def test_read_a_claim(wide: Visit) -> None:
 def test_glossary(narrow: Visit) -> None:
     page = narrow.page
     page.goto(narrow.address + "/studies/Chang2008")
-    word = page.locator("a.term", has_text="RMS").first
+    word = page.locator("a.term", has_text="bound").first
     word.click()
     tip = page.locator(".tip")
-    expect(tip).to_contain_text("root mean square")
+    expect(tip).to_contain_text("Cramer-Rao bound")
     box = tip.bounding_box()
     assert box is not None
     assert box["x"] >= 0
@@ -102,8 +102,8 @@ def test_glossary(narrow: Visit) -> None:
     expect(tip).to_have_count(0)
     word.click()
     tip.get_by_role("link").click()
-    page.wait_for_url("**/glossary#term-rms")
-    expect(page.locator(":target")).to_contain_text("root of the mean", ignore_case=True)
+    page.wait_for_url("**/glossary#term-bound")
+    expect(page.locator(":target")).to_contain_text("Cramer-Rao", ignore_case=True)
 
 
 def test_on_a_phone_a_question_is_asked_and_the_answer_stands_below_it(narrow: Visit) -> None:
@@ -112,9 +112,9 @@ def test_on_a_phone_a_question_is_asked_and_the_answer_stands_below_it(narrow: V
     page.wait_for_url("**/?detector=CMOS")
     narrow.settle()
     assert all(name.startswith("CMOS + ") for name in narrow.names())
-    top = page.locator(".architecture").first.bounding_box()
+    top = page.locator("#architectures").bounding_box()
     assert top is not None
-    assert top["y"] < 844  # the first of the list is on the first screen
+    assert top["y"] < NARROW[1]  # the list begins on the first screen
 
 
 @pytest.fixture

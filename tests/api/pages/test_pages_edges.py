@@ -84,7 +84,7 @@ def test_a_point_without_a_bound_has_no_stem_and_no_points_make_no_line() -> Non
     assert drawn.count(", bound ") == 1
     assert drawn.count('class="front"') == 1
     empty = Scatter([], "field", more_is_better=True).__html__()
-    assert "Measured error of 0 architectures" in empty
+    assert "Own error of 0 architectures" in empty
     assert 'class="front"' not in empty
 
 

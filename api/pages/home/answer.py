@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
-from typing import Any
+from typing import Annotated, Any
 from urllib.parse import urlencode
 
-from fastapi import Request
+from fastapi import Query, Request
 from markupsafe import Markup
 from pydantic import ValidationError
 
 from api.addresses import architecture_page
-from api.http.routers import recommendations as http
 from api.metadata import schema_org
 from api.metadata.identity import identity
 from api.metadata.signposting import landing_of_atlas
 from api.pages.editions import edition_shown
+from api.pages.home.question import clauses, form
 from api.pages.numbers import degrees, own_error
 from api.pages.plots.scatter import Point, Scatter
-from api.pages.question import clauses, form
 from api.pages.serving import PageRouter, View
 from api.schema.recommendations import Architecture, Measured, RecommendationRow, Recommendations
 from api.schema.requirements import RequirementsQuery
@@ -58,12 +57,12 @@ async def answer(known: Known, request: Request) -> View:
             raise
         parts: dict[str, Any] = {"asked": asked, "across": across, "document": None}
         parts["form"] = form(known, fields, {})
-        view = View("answer.html", Document({}), problem=problem.document("/"), **parts)
+        view = View("home/answer.html", Document({}), problem=problem.document("/"), **parts)
         view.status_code = problem.status_code
         return view
     document = service.document(found, asked, shown.items, shown.next)
     return View(
-        "answer.html",
+        "home/answer.html",
         _as_table(document, found),
         document=document,
         landing=landing_of_atlas(identity()),
@@ -91,14 +90,19 @@ def _ask(fields: Sequence[tuple[str, str]]) -> RequirementsQuery:
         if name in PAGED:
             raise Problem(400, "unknown-parameter", f"{name} cannot be asked for here")
         if name in SINGLE:
-            given[name] = value
+            given[name] = f"0{value}" if value.startswith(".") else value  # as a browser sends it
         else:
             given.setdefault(name, []).append(value)
     try:
         return RequirementsQuery.model_validate(given)
     except ValidationError as error:
         errors = [{**found, "loc": ("query", *found["loc"])} for found in error.errors()]
-        raise refusal(errors, http.recommendations) from error
+        raise refusal(errors, _declared) from error
+
+
+def _declared(query: Annotated[RequirementsQuery, Query()]) -> RequirementsQuery:
+    """Declare the parameters that a refusal names."""
+    return query
 
 
 def _as_table(document: Recommendations, found: Answer) -> Document:
