@@ -10,7 +10,6 @@ from types import MappingProxyType
 from typing import Any, Literal, Self
 
 from registry.taxonomy import ATTRIBUTES, InvalidValueError, Taxonomy, unknown_name
-from survey_data.processors import PROCESSORS, is_processor
 
 EXCLUDE = "exclude_"
 
@@ -259,8 +258,6 @@ class Requirements:
             for value in getattr(self, name):
                 if value not in known:
                     raise unknown_name(name, value, known)
-        if not is_processor(self.processor):
-            raise unknown_name("processor", self.processor, PROCESSORS)
         if self.evidence not in (None, *EVIDENCE):
             raise unknown_name("evidence", self.evidence, EVIDENCE)
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
 
+from api.cli.working import working_directory
 from api.cli.wrong_call import WrongCallError, unfit
 from api.service import asking
 from api.service.documents import Document
@@ -40,8 +41,8 @@ def ask(
 
 @cache
 def knowledge() -> Knowledge:
-    """Return what is known, loaded on first use."""
-    return Knowledge(Measurements())
+    """Return what is known, with the times of this machine, loaded on first use."""
+    return Knowledge(Measurements(times_directory=working_directory()))
 
 
 #: What a person calls a part of a path, and the command that lists what it can be.

@@ -47,7 +47,7 @@ class Measured(Shape):
     units_within: int | None = Field(description="Of ten units, how many meet the maximum error.")
     bound_deg: float | None = Field(description="Cramer-Rao bound for a known unit.")
     availability: float | None
-    latency_us: float | None = Field(description="Microseconds per sample on your processor.")
+    latency_us: float | None = Field(description="Time per sample on your processor.")
     needs: list[str] = Field(description="Inputs that the calibration needs besides the sensor.")
 
 

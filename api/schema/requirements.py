@@ -20,7 +20,6 @@ from api.schema.parameters import (
 )
 from registry.ranking import Sort
 from registry.requirements import EVIDENCE, MISSIONS
-from survey_data.processors import PROCESSORS
 
 INCLUDE = ("calibrations", "paths", "designs")
 
@@ -121,8 +120,8 @@ class Requirements(OfEdition):
     processor: Annotated[str | None, Field(min_length=1, max_length=60), GIVEN] = Field(
         None,
         description=(
-            f"Your processor: {', '.join(PROCESSORS)}; or its time as a multiple of that on the "
-            "machine of the published times."
+            "Your processor: a name of /v1/processors, or its time relative to the machine of the "
+            "published times."
         ),
     )
     evidence: Annotated[str | None, OneOf(lambda: EVIDENCE), GIVEN] = Field(

@@ -1,7 +1,7 @@
 """The service as the processes of a server make it: each for itself, set up by the environment.
 
-`SUNATLAS_ACCESS_LOG` (any text) writes a line a request; `SUNATLAS_PICTURES` names the directory
-that pictures of data sets are kept in.
+`SUNATLAS_ACCESS_LOG` (any text) writes a line a request; `SUNATLAS_TIMES` names the directory of
+running times of this machine.
 """
 
 from __future__ import annotations
@@ -13,11 +13,12 @@ from fastapi import FastAPI
 
 from api.server.app import create_app
 from api.service.knowledge import Knowledge
+from api.service.measurements import Measurements
 from api.web.observation import log_requests
 from benchmark.processes import end_in_time
 
 ACCESS_LOG = "SUNATLAS_ACCESS_LOG"
-PICTURES = "SUNATLAS_PICTURES"
+TIMES = "SUNATLAS_TIMES"
 
 
 def application(*, loaded: bool = False) -> FastAPI:
@@ -29,8 +30,8 @@ def application(*, loaded: bool = False) -> FastAPI:
     """
     if os.environ.get(ACCESS_LOG):
         log_requests()
-    kept = os.environ.get(PICTURES)
-    known = Knowledge(pictures_directory=Path(kept) if kept else None)
+    times = os.environ.get(TIMES)
+    known = Knowledge(Measurements(times_directory=Path(times) if times else None))
     if loaded:
         known.load_all()
     return create_app(known)

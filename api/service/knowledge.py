@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from pathlib import Path
 
 import survey_data
 from api.previews import Pictures
@@ -35,16 +34,12 @@ class Knowledge:
     Parameters
     ----------
     measurements : the published ones by default
-    pictures_directory : where pictures of data sets are kept; None for memory alone
     """
 
     edition: Choice = "survey"
 
-    def __init__(
-        self, measurements: Measurements | None = None, pictures_directory: Path | None = None
-    ) -> None:
+    def __init__(self, measurements: Measurements | None = None) -> None:
         self.measurements = Measurements() if measurements is None else measurements
-        self.pictures_directory = pictures_directory
 
     def of(self, edition: Choice) -> Knowledge:
         """Return the same with the studies of an edition; only these are not shared."""
@@ -114,8 +109,8 @@ class Knowledge:
 
     @cached_property
     def pictures(self) -> Pictures:
-        """Pictures of the data sets."""
-        return Pictures(self.pictures_directory)
+        """Pictures of the data sets, kept where the times of this machine are."""
+        return Pictures(self.measurements.times_directory)
 
     @cached_property
     def index(self) -> Index:

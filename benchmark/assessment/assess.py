@@ -21,7 +21,7 @@ from benchmark.assessment.definitions import DEFINITIONS, Definition
 from benchmark.assessment.measures import SCORED, SWEPT, NotMeasuredError, Quantity, Row, Values
 from benchmark.metrics.score import store
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.results.times import Time, read_times
+from benchmark.running.times import Place, Time
 from benchmark.sweeps.record import swept
 from survey_data.tables import load
 
@@ -100,6 +100,7 @@ class MethodAssessment:
 def assess(
     directory: Path | str = PUBLISHED,
     extractors: Mapping[str, type[Extractor]] | None = None,
+    times: Mapping[Place, Time] | None = None,
     scores: Sequence[Row] | None = None,
 ) -> list[MethodAssessment]:
     """Assess every method of the survey's table from published results.
@@ -110,6 +111,8 @@ def assess(
         Of the published files.
     extractors
         Implementations by name; those installed by default.
+    times
+        Of this machine (`benchmark.running.times`); none by default.
     scores
         Published scores of the standard unit, where they have been read already.
 
@@ -121,9 +124,7 @@ def assess(
     known = discover_extractors() if extractors is None else extractors
     store = Store(directory)
     rows: Sequence[Row] = store.rows() if scores is None else scores
-    evidence = _Evidence(
-        swept(store.directory), rows, list(read_times(store.directory).rows.values())
-    )
+    evidence = _Evidence(swept(store.directory), rows, list((times or {}).values()))
     tables = load()
     table = tables.feature_assessment
     methods = list(dict.fromkeys(zip(table["extractor"], table["case_study"], strict=True)))
@@ -262,7 +263,7 @@ def _cost(times: Sequence[Time]) -> Values:
     """Return the median ratio of extraction to the reference over the data sets with a time."""
     ratios = {time.dataset: time.extract_ratio for time in times if time.extract_ratio is not None}
     if not ratios:
-        raise NotMeasuredError("no published times: `sunatlas leaderboard times`")
+        raise NotMeasuredError("no times of this machine: `sunatlas leaderboard times`")
     return [Quantity(median(ratios.values()), f"{len(ratios)} data sets")]
 
 

@@ -49,7 +49,7 @@ def build(
     rows
         Rows of all units, as `Store.rows(unit=None)` gives them.
     times
-        Of each pipeline on the machine they were measured on; none by default.
+        Of this machine; none by default.
     swept
         Rows of sweeps as `benchmark.sweeps.record.swept` gives them.
     studied

@@ -46,7 +46,7 @@ def pipelines(
         Of the store, of all units. Rows of data sets, conditions and models that there are no
         longer are passed over.
     latency_us
-        Published time of one sample, by data set, extractor and model.
+        Of a call with one sample on this machine, by data set, extractor and model.
     bench_deg
         Fixed error of the standard calibration bench by data set; 0 by default.
     """

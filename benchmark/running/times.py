@@ -192,7 +192,7 @@ def _processor() -> str:
         about = Path("/proc/cpuinfo").read_text(encoding="utf-8")
     except OSError:
         return platform.processor() or platform.machine()
-    known = dict(re.findall(r"^(model name|cpu family|model)\s*: (.+)$", about, re.MULTILINE))
+    known = dict(re.findall(r"^(model name|cpu family|model)\s*: (.+)$", about, re.M))
     if "model name" not in known:
         return platform.machine()
     family, model = known.get("cpu family", "?"), known.get("model", "?")

@@ -15,7 +15,7 @@ OFFERED = (
     "without --apply"
 )
 OTHERS = "the damaged tables are valid, and there is no manifest to compare them with; ours has one"
-OWN = "the damaged file is valid: no digest covers times, which differ each time they are measured"
+OWN = "the damaged file is valid; run times of this machine are not published"
 
 
 class RefusedError(ValueError):

@@ -14,6 +14,7 @@ from api.cli.boards import architectures_text, overview_text
 from api.cli.measuring import (
     AVAILABLE_WORKERS,
     ManyWorkersOption,
+    StoreOption,
 )
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, line_width
@@ -42,7 +43,6 @@ WIDEST_COLUMNS = (
     *("rank", "dataset", "condition", "extractor", "model", "widest_field_deg", "half_fov_deg"),
     *("own_deg", "availability", "false_sun"),
 )
-TIME_COLUMNS = ("dataset", "extractor", "model", "latency_us", "time_ratio")
 DIFFERENCES = ("file", "cell", "committed", "measured", "kernels")
 
 Row = Mapping[str, Any]
@@ -208,7 +208,8 @@ def render(
 ) -> None:
     """Write the leaderboard as leaderboard.{json,csv,md,html} and sweeps.csv.
 
-    Files of the same name are replaced. Nothing is measured; times are the published ones.
+    Files of the same name are replaced. Nothing is measured; times are those kept by `sunatlas
+    leaderboard times`.
     """
     from api.cli.asking import knowledge  # noqa: PLC0415 - slow; measuring does without it
     from benchmark.leaderboard import pages  # noqa: PLC0415 - as above
@@ -221,31 +222,22 @@ def render(
 
 
 @app.command()
-def times(
-    *,
-    again: Annotated[
-        bool, typer.Option("--again", help="Measure all times again, on this machine.")
-    ] = False,
-    form: FormatOption = Format.TABLE,
-) -> None:
-    """Measure the run time of every pipeline that has none, and publish it.
+def times(store: StoreOption = None, form: FormatOption = Format.TABLE) -> None:
+    """Measure the time of every pipeline on this machine.
 
-    First condition of each data set, one thread, processor time, best of at least three runs. A
-    time is a multiple of that of a reference loop; `latency_us` is that multiple on the published
-    machine. With --again, times.csv and the machine in times_machine.json are replaced.
+    First condition of each data set, one thread, best of three, with a reference method. Times are
+    kept in the local store, shown by the pages and by `sunatlas recommend` and `sunatlas assess`,
+    and never published.
     """
-    from benchmark.results.times import read_times  # noqa: PLC0415 - as below
     from benchmark.running import times as running_times  # noqa: PLC0415 - slow
 
-    timed = running_times.update(PUBLISHED, again=again)
-    known = read_times(PUBLISHED)
-    rows = [
-        {**dict(zip(TIME_COLUMNS, place, strict=False)), **numbers}
-        for place, numbers in known.columns.items()
-    ]
-    emit(rows, TIME_COLUMNS, form, title=f"{len(rows)} pipelines")
-    on = known.machine.processor if known.machine else "no machine"
-    typer.echo(f"{timed} timed now, {len(rows) - timed} before, on {on}; in {PUBLISHED}", err=True)
+    directory = working_directory(store)
+    timed = running_times.update(directory)
+    kept = running_times.times_of_code(directory)
+    columns = ("dataset", "extractor", "model", "latency_us", "time_ratio", "extract_ratio")
+    rows = [{name: getattr(time, name) for name in columns} for time in kept.values()]
+    emit(rows, columns, form, title=f"{len(rows)} pipelines")
+    typer.echo(f"{timed} timed now, {len(rows) - timed} before; in {directory}", err=True)
 
 
 def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only: bool) -> None:

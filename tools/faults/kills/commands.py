@@ -132,7 +132,7 @@ def run_cells(*datasets: str) -> None:
 
 
 def filled() -> None:
-    """A store with cells and pins, of which the code of today plans half."""
+    """A store with cells, pins and times, of which the code of today plans half."""
     parts = small.parts()
     runner.run(cells(parts=parts), Store("store"), 1, silent, parts=parts)
 
@@ -166,9 +166,8 @@ def tidy() -> None:
 
 def take_times() -> None:
     """`sunatlas leaderboard times` of a small plan."""
-    _give(running_times, "installed_parts", small.parts)
-    _give(leaderboard_command, "PUBLISHED", Path("store"))
-    sunatlas("leaderboard", "times")
+    _give(running_times, "installed", small.parts)
+    sunatlas("leaderboard", "times", "--store", "store")
 
 
 def compile_all() -> None:

@@ -41,6 +41,7 @@ PAIRS: Mapping[str, tuple[str, Act, Act]] = {
         lambda: run_cells("fake-second"),
     ),
     "leaderboard and pins": ("update", COMMANDS["update"].act, lambda: pin("fake-second")),
+    "times and tidying": ("gc", COMMANDS["times"].act, COMMANDS["gc"].act),
     "claims": ("claims", lambda: measure_claims("C01", "C02"), lambda: measure_claims("C03")),
     "error budgets": (
         "error_budget",
