@@ -25,25 +25,23 @@ FILE = "prepared-measurements.json"
 
 _ROOT = Path(__file__).resolve().parents[2]
 _PUBLISHED = _ROOT / "benchmark" / "published"
-#: Python files that make it, and what they read beside the times.
+#: Python files that make it, and what they read.
 _CODE = ("algorithms", "benchmark", "files", "registry", "survey_data")
 _MAKERS = ("api/http/measurements.py", "api/cli/prepared_measurements.py")
-_READ = ("components.json", "pins.csv", "scores/*.csv")
-_TIMES = "times.csv"
+_READ = ("components.json", "pins.csv", "scores/*.csv", "times*")
 
 _SCORE = tuple(field.name for field in fields(Score))
 _MEASURED = tuple(field.name for field in fields(MeasuredPipeline))
 
 
 def measure() -> Measurements:
-    """Return what is measured of every pipeline, times of this machine included."""
-    directory = working_directory()
-    path, key = directory / FILE, digest(directory)
+    """Return what is measured of every pipeline, times included."""
+    path, key = working_directory() / FILE, digest()
     gc.disable()  # it would walk all that is read again and again, of which nothing goes
     try:
         rows = _keep(path, key)
         if rows is None:
-            rows = _made(directory)
+            rows = _made()
             with suppress(OSError):  # no room, or not ours to write: then it is made at every call
                 replace_file(path, to_json({"key": key, "rows": list(map(_plain, rows))}).decode())
         return Measurements(rows)
@@ -51,37 +49,28 @@ def measure() -> Measurements:
         gc.enable()
 
 
-def digest(directory: Path) -> str:
-    """Return the digest of all that it is made from.
-
-    Parameters
-    ----------
-    directory : the working store, which has the times
-    """
+def digest() -> str:
+    """Return the digest of all that it is made from."""
     found = hashlib.blake2b(digest_size=16)
-    for path in _sources(directory):
-        try:
-            content = path.read_bytes()
-        except (FileNotFoundError, NotADirectoryError):  # of times, where nothing was timed
-            content = b""
+    for path in _sources():
+        content = path.read_bytes()
         found.update(f"{path.name} {len(content)}\n".encode())
         found.update(content)
     return found.hexdigest()
 
 
-def _sources(directory: Path) -> Iterator[Path]:
+def _sources() -> Iterator[Path]:
     for package in _CODE:
         yield from sorted((_ROOT / package).rglob("*.py"))
     yield from (_ROOT / name for name in _MAKERS)
     for pattern in _READ:
         yield from sorted(_PUBLISHED.glob(pattern))
-    yield directory / _TIMES
 
 
-def _made(directory: Path) -> list[MeasuredPipeline]:
+def _made() -> list[MeasuredPipeline]:
     from api.http.measurements import Measurements as Published  # noqa: PLC0415 - slow, see above
 
-    return Published(times_directory=directory).pipelines
+    return Published().pipelines
 
 
 def _keep(path: Path, key: str) -> list[MeasuredPipeline] | None:

@@ -116,9 +116,10 @@ class ComparedRow(Shape):
         description="False detections: share of unobservable test samples with an answer."
     )
     latency_us: float | None = Field(
-        description="Time per sample on this machine, microseconds; null if not timed."
+        description="Time per sample on the machine of `/v1/leaderboard`'s `timed_on`, "
+        "microseconds; null if not timed or not runnable."
     )
-    time_ratio: float | None = Field(description="Time divided by that of a reference method.")
+    time_ratio: float | None = Field(description="The same divided by that of the reference loop.")
     needed_poses: int | None = Field(
         description=(
             "Calibration poses needed to be within 10 % of the error floor; null without "

@@ -237,11 +237,11 @@ class Units(OpenShape):
     )
     latency_us: float | None = Field(
         description=(
-            "Time of extraction and prediction per sample on this machine, microseconds; "
-            "null if not timed."
+            "Time of extraction and prediction of one sample of a batch on the machine of "
+            "`timed_on`, microseconds; null if not timed or not runnable."
         )
     )
-    time_ratio: float | None = Field(description="Time divided by that of a reference method.")
+    time_ratio: float | None = Field(description="The same divided by that of `timed_on.loop`.")
     field_deg: float | None = Field(
         None, description="Off-axis angle that the rank is for; null if not asked for."
     )
@@ -328,6 +328,19 @@ class RecordNamed(Shape):
     )
 
 
+class TimedOn(Shape):
+    """The machine on which running times were measured."""
+
+    processor: str
+    cores: int = Field(description="Number of cores used.")
+    python: str
+    numpy: str
+    date: str
+    loop: str = Field(description="The reference loop that times are multiples of.")
+    loop_us: float = Field(description="Its time, microseconds.")
+    also_on: list[str] = Field(description="Processors on which some pipelines were timed instead.")
+
+
 class Leaderboard(OpenShape):
     """The published leaderboard; empty if none is published."""
 
@@ -337,6 +350,7 @@ class Leaderboard(OpenShape):
         alias="schema", description="Version of the document's structure."
     )
     datasets: list[LeaderboardDataset]
+    timed_on: TimedOn | None = Field(None, description="Machine of the times; null for none.")
     record: RecordNamed = Field(description="Version and digest of the published measurements.")
     total: int = Field(description="Total number of rows.")
     next: str | None = Field(description="Cursor of the next page; null on the last page.")

@@ -31,7 +31,7 @@ function availability(rows, limit) {
 function latency(rows, limit) {
   const timed = rows.filter((r) => r.latency_us !== null && r.latency_us !== undefined);
   return timed.length ? `${share(rows, (r) => timed.includes(r) && r.latency_us <= limit)} meet it`
-    : "cannot be checked: no times on this machine; run `sunatlas leaderboard times`, then restart the service";
+    : "cannot be checked: no pipeline here is timed";
 }
 
 const JUDGES = { max_error_deg: error, min_fov_deg: field, min_availability: availability, max_latency_us: latency };

@@ -18,7 +18,7 @@ const ANSWERED = {
   field: "availability", name: "Availability", title: "Share of observable samples with an answer. False detections: share of the other samples with an answer, such as those in eclipse",
   write: (share, row) => [percent(share), row.false_sun > 0 && h("div", { class: "below" }, `${percent(row.false_sun)} false detections`)],
 };
-const TIME = { field: "time_ratio", name: "Time", write: times, title: "Time of extraction and prediction on this machine, divided by that of a reference method" };
+const TIME = { field: "latency_us", name: "Time", write: (us) => (us === null ? "–" : `${number(us)} µs`), title: "Extraction and prediction of one sample of a batch on one core of the machine that /v1/leaderboard names in timed_on" };
 const WHOLE = "";
 const FIELDS = [10, 20, 30, 40, 50, 60, 70, 90, 180];
 
@@ -32,7 +32,7 @@ function columns() {
   const { rows, field } = shown;
   const errors = field === WHOLE ? [ERROR, ...(rows.some((r) => r.on_bench_deg > 0) ? [BENCH] : []), BOUND]
     : [{ field: "field_rms_deg", name: `RMS within ${field}°`, write: degrees, title: "Weighted by the solid angle of each ring of the field" }, ERROR];
-  return [RANK, ...NAMES, ...errors, ANSWERED, ...(rows.some((r) => r.time_ratio > 0) ? [TIME] : [])];
+  return [RANK, ...NAMES, ...errors, ANSWERED, ...(rows.some((r) => r.latency_us > 0) ? [TIME] : [])];
 }
 
 /** Smallest and largest error of the units a pipeline was scored on. */
@@ -218,7 +218,7 @@ function draw() {
       field !== WHOLE && rows[0].half_fov_deg !== null && rows[0].half_fov_deg < Number(field) && h("span", {}, `The field of view of this sensor ends at ${degrees(rows[0].half_fov_deg)}`),
       field === WHOLE && !ranged && h("span", {}, "Ranks of this condition are from one sensor unit"),
       asListed() && h("span", {}, "The best pipeline of each extractor first, then the others"),
-      shownColumns.includes(TIME) && h("span", {}, "Time: relative to a reference method")),
+      shownColumns.includes(TIME) && h("span", {}, "Time: on the machine of the published times")),
     h("div", { class: "sort-narrow" }, choice("Sort by", "sort-narrow", shownColumns.map((c) => [c.field, c.name]), state.board_sort, (field) => show({ board_sort: field, board_order: "ascending" }))),
     h("table", { class: "stacks board", role: "table", "aria-labelledby": "leaderboard-title" },
       h("thead", { role: "rowgroup" }, h("tr", { role: "row" }, shownColumns.map(heading),
