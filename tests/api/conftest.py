@@ -85,7 +85,7 @@ def knowledge(_own_working_store: None) -> Iterator[Knowledge]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(recommend, "measure", cache(recommend.measure))
         patch.setattr(
-            prepared_measurements, "_made", lambda _: asking.knowledge().measurements.pipelines
+            prepared_measurements, "_made", lambda: asking.knowledge().measurements.pipelines
         )
         patch.setattr(service, "Knowledge", asking.knowledge)
         patch.setattr(of_docs, "Knowledge", asking.knowledge)
