@@ -331,11 +331,11 @@ class RecordNamed(Shape):
 class TimedOn(Shape):
     """The machine on which running times were measured."""
 
-    processor: str
+    processor: str = Field(description="Model of the processor.")
     cores: int = Field(description="Number of cores used.")
-    python: str
-    numpy: str
-    date: str
+    python: str = Field(description="Version of Python.")
+    numpy: str = Field(description="Version of NumPy.")
+    date: str = Field(description="Date of the first measurement.")
     loop: str = Field(description="The reference loop that times are multiples of.")
     loop_us: float = Field(description="Its time, microseconds.")
     also_on: list[str] = Field(description="Processors on which some pipelines were timed instead.")
