@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Any, Literal, Self
 
 from registry.taxonomy import ATTRIBUTES, InvalidValueError, Taxonomy, unknown_name
+from survey_data.processors import is_processor, processors
 
 EXCLUDE = "exclude_"
 
@@ -258,6 +259,8 @@ class Requirements:
             for value in getattr(self, name):
                 if value not in known:
                     raise unknown_name(name, value, known)
+        if not is_processor(self.processor):
+            raise unknown_name("processor", self.processor, processors())
         if self.evidence not in (None, *EVIDENCE):
             raise unknown_name("evidence", self.evidence, EVIDENCE)
 

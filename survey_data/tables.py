@@ -62,6 +62,7 @@ class SurveyTables:
     statistics: pd.DataFrame
     sources: pd.DataFrame
     labels: pd.DataFrame
+    processors: pd.DataFrame
     extension_studies: pd.DataFrame
     extension_attributes: pd.DataFrame
     extension_roles: pd.DataFrame

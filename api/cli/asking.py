@@ -11,7 +11,6 @@ from api.cli.wrong_call import WrongCallError, unfit
 from api.service import asking
 from api.service.documents import Document
 from api.service.knowledge import Knowledge
-from api.service.measurements import Measurements
 from api.service.problems import Problem, Violation
 
 
@@ -41,8 +40,8 @@ def ask(
 
 @cache
 def knowledge() -> Knowledge:
-    """Return what is known, with the times of this machine, loaded on first use."""
-    return Knowledge(Measurements(times_directory=working_directory()))
+    """Return what is known, loaded on first use."""
+    return Knowledge(working=working_directory())
 
 
 #: What a person calls a part of a path, and the command that lists what it can be.

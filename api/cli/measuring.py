@@ -19,6 +19,7 @@ from api.cli import completion
 from api.cli.working import working_directory
 from benchmark.contract import Cell
 from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.times import read_times
 from benchmark.suites.selection import SUITES
 
 Row = dict[str, Any]
@@ -84,8 +85,7 @@ class ScoredCells:
 
     Attributes
     ----------
-    rows : score rows in the order of the cells, with latency_us and time_ratio where this machine
-        has timed the pipeline
+    rows : score rows in the order of the cells, with latency_us and time_ratio as published
     published_count, stored_count, measured_count : numbers of scores read from the published
         results, read from the working store, and measured now
     directory : the working store
@@ -122,7 +122,6 @@ def score_cells(
         As `benchmark.running.runner.run`.
     """
     from benchmark.running.runner import run, stale  # noqa: PLC0415 - slow
-    from benchmark.running.times import times_of_code  # noqa: PLC0415 - slow
 
     wanted = sorted(set(cells))
     shipped, work = stores_of(directory)
@@ -132,11 +131,9 @@ def score_cells(
     if missing:
         warnings = run(missing, work, workers, scheduler=scheduler, others=[shipped]).warnings
     found = {**_rows(shipped, set(wanted) - set(elsewhere)), **_rows(work, set(elsewhere))}
-    times = times_of_code(work.directory)
+    times = read_times(PUBLISHED)
     for cell, row in found.items():
-        time = times.get((cell.dataset, cell.extractor, cell.model))
-        row["latency_us"] = time.latency_us if time else None
-        row["time_ratio"] = time.time_ratio if time else None
+        row.update(times.columns_of(cell.dataset, cell.extractor, cell.model))
     return ScoredCells(
         rows=[found[cell] for cell in wanted],
         published_count=len(wanted) - len(elsewhere),

@@ -71,6 +71,7 @@ async def compare(known: Known, query: Annotated[CompareQuery, Query()], request
         conditions=known.measurements.presets[query.dataset].conditions if query.dataset else (),
         every_condition=list(dict.fromkeys(c for i in items for c in i["conditions"])),
         available=AVAILABLE,
+        machine=timed.processor if (timed := known.measurements.times.machine) else "",
         chart=_chart(items, names),
     )
 

@@ -118,7 +118,7 @@ class ComparedRow(Shape):
     availability: float | None
     false_sun: float | None = Field(description="Share of unobservable samples answered.")
     latency_us: float | None = Field(description="Time per sample, microseconds.")
-    time_ratio: float | None = Field(description="Time divided by that of a reference method.")
+    time_ratio: float | None = Field(description="The same divided by that of the reference loop.")
     needed_poses: int | None = Field(description="Poses to be within 10 % of the error floor.")
     needed_low: int | None = Field(description="Poses needed in the best random draw.")
     needed_high: int | None = Field(description="Poses needed in the worst random draw.")

@@ -20,6 +20,7 @@ from api.schema.parameters import (
 )
 from registry.ranking import Sort
 from registry.requirements import EVIDENCE, MISSIONS
+from survey_data.processors import processors
 
 INCLUDE = ("calibrations", "paths", "designs")
 
@@ -120,8 +121,7 @@ class Requirements(OfEdition):
     processor: Annotated[str | None, Field(min_length=1, max_length=60), GIVEN] = Field(
         None,
         description=(
-            "Your processor: a name of /v1/processors, or its time relative to the machine of the "
-            "published times."
+            f"Your processor: {', '.join(processors())}; or its time relative to the reference."
         ),
     )
     evidence: Annotated[str | None, OneOf(lambda: EVIDENCE), GIVEN] = Field(

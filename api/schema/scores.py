@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
@@ -141,8 +141,8 @@ class LeaderboardRow(Score, Rank):
     best_of_extractor: bool = Field(description="Whether it is the best of its extractor.")
     studies: list[str] = Field(description="Studies that used it, or the nearest method.")
     unit_rms_deg: list[float | None] | None = Field(description="RMS of all answers by unit.")
-    latency_us: float | None = Field(description="Time per sample, microseconds.")
-    time_ratio: float | None = Field(description="Time divided by that of a reference method.")
+    latency_us: float | None = Field(description="Time per sample on `timed_on`, microseconds.")
+    time_ratio: float | None = Field(description="The same divided by that of `timed_on.loop`.")
     field_deg: float | None = Field(None, description="Off-axis angle of the rank, if asked for.")
     field_rms_deg: float | None = Field(None, description="Unit 0 RMS within that angle.")
     widest_field_deg: float | None = Field(None, description="Widest field within the limit.")
@@ -192,6 +192,7 @@ class Leaderboard(OpenShape):
 
     schema_version: int | str | None = Field(alias="schema", description="Its version.")
     datasets: list[LeaderboardDataset]
+    timed_on: dict[str, Any] | None = Field(None, description="Machine of the running times.")
     record: RecordNamed = Field(description="Version and digest of the published measurements.")
     total: int = Field(description="Total number of rows.")
     next: str | None = Field(description="Cursor of the next page; null on the last page.")

@@ -1,7 +1,7 @@
 """The service as the processes of a server make it: each for itself, set up by the environment.
 
-`SUNATLAS_ACCESS_LOG` (any text) writes a line a request; `SUNATLAS_TIMES` names the directory of
-running times of this machine.
+`SUNATLAS_ACCESS_LOG` (any text) writes a line a request; `SUNATLAS_WORKING` names the working
+directory, where pictures are kept that had to be drawn.
 """
 
 from __future__ import annotations
@@ -13,12 +13,11 @@ from fastapi import FastAPI
 
 from api.server.app import create_app
 from api.service.knowledge import Knowledge
-from api.service.measurements import Measurements
 from api.web.observation import log_requests
 from benchmark.processes import end_in_time
 
 ACCESS_LOG = "SUNATLAS_ACCESS_LOG"
-TIMES = "SUNATLAS_TIMES"
+WORKING = "SUNATLAS_WORKING"
 
 
 def application(*, loaded: bool = False) -> FastAPI:
@@ -30,8 +29,8 @@ def application(*, loaded: bool = False) -> FastAPI:
     """
     if os.environ.get(ACCESS_LOG):
         log_requests()
-    times = os.environ.get(TIMES)
-    known = Knowledge(Measurements(times_directory=Path(times) if times else None))
+    working = os.environ.get(WORKING)
+    known = Knowledge(working=Path(working) if working else None)
     if loaded:
         known.load_all()
     return create_app(known)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from pathlib import Path
 
 import survey_data
 from api.previews import Pictures
@@ -34,12 +35,16 @@ class Knowledge:
     Parameters
     ----------
     measurements : the published ones by default
+    working : directory where pictures that had to be drawn are kept; None keeps none
     """
 
     edition: Choice = "survey"
 
-    def __init__(self, measurements: Measurements | None = None) -> None:
+    def __init__(
+        self, measurements: Measurements | None = None, working: Path | None = None
+    ) -> None:
         self.measurements = Measurements() if measurements is None else measurements
+        self.working = working
 
     def of(self, edition: Choice) -> Knowledge:
         """Return the same with the studies of an edition; only these are not shared."""
@@ -109,8 +114,8 @@ class Knowledge:
 
     @cached_property
     def pictures(self) -> Pictures:
-        """Pictures of the data sets, kept where the times of this machine are."""
-        return Pictures(self.measurements.times_directory)
+        """Pictures of the data sets."""
+        return Pictures(self.working)
 
     @cached_property
     def index(self) -> Index:
@@ -152,7 +157,7 @@ class KnowledgeOfAll(Knowledge):
     edition: Choice = "all"
 
     def __init__(self, survey: Knowledge) -> None:
-        super().__init__(survey.measurements)
+        super().__init__(survey.measurements, survey.working)
         self._survey = survey
 
     def of(self, edition: Choice) -> Knowledge:

@@ -19,6 +19,7 @@ from benchmark.metrics.ranking import spreads
 from benchmark.results import record_manifest, samples
 from benchmark.results.pipelines import pipelines, standard_benches
 from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.times import Times, read_times
 from benchmark.sweeps.record import swept
 from files import manifest
 from files.reading import read_bytes
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
 
     from benchmark.claims.ledger import Entry
     from benchmark.datasets import Preset
-    from benchmark.running.times import Place, Time
 
 Row = Mapping[str, Any]
 
@@ -40,13 +40,10 @@ class Measurements:
     Parameters
     ----------
     directory : of the published files
-    times_directory : of running times of this machine (`benchmark.running.times`), which are no
-        part of what is published; None for none
     """
 
-    def __init__(self, directory: Path = PUBLISHED, times_directory: Path | None = None) -> None:
+    def __init__(self, directory: Path = PUBLISHED) -> None:
         self.directory = directory
-        self.times_directory = times_directory
 
     @cached_property
     def _store(self) -> Store:
@@ -98,29 +95,21 @@ class Measurements:
         }
 
     @cached_property
-    def times(self) -> Mapping[Place, Time]:
-        """Times of this machine that are of the code as it is."""
-        if self.times_directory is None:
-            return {}
-        from benchmark.running import times  # noqa: PLC0415 - slow, and of no use without times
-
-        return times.times_of_code(self.times_directory)
+    def times(self) -> Times:
+        """Running times of the pipelines, and the machine they were measured on."""
+        return read_times(self.directory)
 
     @cached_property
     def pipelines(self) -> list[MeasuredPipeline]:
         """What is measured of every pipeline on every data set, for recommendations."""
-        latency = {place: time.latency_us for place, time in self.times.items()}
-        return pipelines(self._every_unit, latency, standard_benches(self._store.pins()))
+        latency_us, benches = self.times.latency_us, standard_benches(self._store.pins())
+        return pipelines(self._every_unit, latency_us, benches)
 
     @cached_property
     def leaderboard(self) -> Mapping[str, Any]:
         """The leaderboard of the published scores; without data sets where there are none."""
-        times = {
-            pipeline: {"latency_us": time.latency_us, "time_ratio": time.time_ratio}
-            for pipeline, time in self.times.items()
-        }
         pins = self._store.pins()
-        board = build(self._every_unit, times, self.sweeps, self._studied, pins)
+        board = build(self._every_unit, self.times, self.sweeps, self._studied, pins)
         return board if board["datasets"] else {"schema": None, "datasets": []}
 
     @property
@@ -149,7 +138,7 @@ class Measurements:
         from benchmark.assessment import assess as assessment  # noqa: PLC0415 - imports every implementation
 
         directory = self._store.directory
-        assessed = assessment.assess(directory, times=self.times, scores=self.scores)
+        assessed = assessment.assess(directory, times=self.times.rows, scores=self.scores)
         return assessment.document(assessed)
 
     @cached_property

@@ -1,8 +1,7 @@
 """The survey's assessment of its methods beside what was measured, property by property.
 
 Definitions and limits stand in `benchmark.assessment.definitions`; the numbers come from stored
-results alone (sweeps and scores) and from running times of this machine where there are any, so
-that asking measures nothing.
+results alone (sweeps, scores and running times), so that asking measures nothing.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from benchmark.assessment.definitions import DEFINITIONS, Definition
 from benchmark.assessment.measures import SCORED, SWEPT, NotMeasuredError, Quantity, Row, Values
 from benchmark.metrics.score import store
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running.times import Place, Time
+from benchmark.results.times import Place, Time
 from benchmark.sweeps.record import swept
 from survey_data.tables import load
 
@@ -112,7 +111,7 @@ def assess(
     extractors
         Implementations by name; those installed by default.
     times
-        Of this machine (`benchmark.running.times`); none by default.
+        Published running times; none by default.
     scores
         Published scores of the standard unit, where they have been read already.
 
@@ -263,7 +262,7 @@ def _cost(times: Sequence[Time]) -> Values:
     """Return the median ratio of extraction to the reference over the data sets with a time."""
     ratios = {time.dataset: time.extract_ratio for time in times if time.extract_ratio is not None}
     if not ratios:
-        raise NotMeasuredError("no times of this machine: `sunatlas leaderboard times`")
+        raise NotMeasuredError("not timed: `sunatlas leaderboard times`")
     return [Quantity(median(ratios.values()), f"{len(ratios)} data sets")]
 
 

@@ -162,8 +162,8 @@ _ALL = (
         "Computationally light",
         "times",
         "median over the data sets, in their first condition, of extraction time over the time of "
-        "one weighted sum of the same observations in NumPy, both measured side by side on the "
-        "machine that is asked (`sunatlas leaderboard times`). A plain first moment is three such "
+        "one weighted sum of the same observations in NumPy, both measured side by side "
+        "(`sunatlas leaderboard times`). A plain first moment is three such "
         "sums. Machines and runs move the ratio by tens of per cent, the limits lie a factor "
         "of ten apart",
         unit="weighted sums",

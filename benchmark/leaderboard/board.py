@@ -8,6 +8,7 @@ the same for the same rows.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
 from itertools import groupby
 from typing import Any
 
@@ -22,22 +23,20 @@ from benchmark.metrics.rings import EDGES_DEG, field_error, widest_field
 from benchmark.metrics.score import METRIC_VERSION, is_available
 from benchmark.results.components import SCHEMA_VERSION
 from benchmark.results.store import Store
+from benchmark.results.times import Times
 from benchmark.sweeps import record as sweeps
 
 Row = Mapping[str, Any]
-#: Times of one pipeline on a machine, by (dataset, extractor, model).
-Times = Mapping[tuple[str, str, str], Mapping[str, float | None]]
 
 NOMINAL = "nominal"
 #: An error that no board shows unasked.
 HOPELESS_DEG = 10.0
-
-UNTIMED: Mapping[str, float | None] = {"latency_us": None, "time_ratio": None}
+_NOT_TIMED = Times()
 
 
 def build(
     rows: Iterable[Row],
-    times: Times | None = None,
+    times: Times = _NOT_TIMED,
     swept: Iterable[Row] = (),
     studied: Studied | None = None,
     pins: Mapping[Place, Pin] | None = None,
@@ -49,7 +48,7 @@ def build(
     rows
         Rows of all units, as `Store.rows(unit=None)` gives them.
     times
-        Of this machine; none by default.
+        Of the pipelines; none by default.
     swept
         Rows of sweeps as `benchmark.sweeps.record.swept` gives them.
     studied
@@ -61,7 +60,8 @@ def build(
     -------
     dict
         ``schema``, ``metric_version``, ``units`` (how many leading pipelines are scored on),
-        ``sweeps`` (as given) and ``datasets``: each with ``name``, ``version``, ``detector``,
+        ``timed_on`` (the machine of the times, null for none), ``sweeps`` (as given) and
+        ``datasets``: each with ``name``, ``version``, ``detector``,
         ``mask``, ``idealisation`` (why it stands for no built sensor, null where it does),
         ``conditions`` (the nominal one first), what its first condition's board states once
         (``smallest_ratio`` that it tells apart, ``quoted_deg`` of its leader on units that did not
@@ -109,7 +109,7 @@ def build(
                         known[at].own_deg, bench_deg, benches.get(_cell(board[at]))
                     ),
                     "twin_of": twins.get((*_used(board[at])[2:], name)),
-                    **_times(board[at], times),
+                    **times.columns_of(name, *_used(board[at])[2:]),
                 }
                 for at in found.order
             ]
@@ -135,6 +135,7 @@ def build(
         "metric_version": METRIC_VERSION,
         "units": UNITS,
         "datasets": datasets,
+        "timed_on": asdict(times.machine) if times.machine else None,
         "sweeps": list(swept),
     }
 
@@ -173,7 +174,7 @@ def _with_folded(ranked: Sequence[Row]) -> list[dict[str, Any]]:
     ]
 
 
-def board_of(store: Store, times: Times | None = None) -> dict[str, Any]:
+def board_of(store: Store, times: Times = _NOT_TIMED) -> dict[str, Any]:
     """Build the leaderboard of a store, with the studies that used its pipelines.
 
     Raises
@@ -303,8 +304,3 @@ def _cell(row: Row) -> Cell:
 
 def _used(row: Row) -> tuple[str, str, str, str]:
     return row["detector"], row["mask"], row["extractor"], row["model"]
-
-
-def _times(row: Row, times: Times | None) -> Mapping[str, float | None]:
-    known = (times or {}).get((row["dataset"], row["extractor"], row["model"]), UNTIMED)
-    return {name: known.get(name) for name in UNTIMED}

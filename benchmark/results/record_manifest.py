@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from benchmark.results.csv_tables import StoreError
+from benchmark.results.times import MACHINE, TIMES
 from files import manifest
 from files.problems import Problem
 from files.reading import FileRefusedError, path_exists
@@ -16,8 +17,6 @@ COMMAND = "python -m benchmark.suites.manifest_renewal"
 
 #: Suffixes of the files that a record is made of.
 _KINDS = frozenset({".csv", ".json", ".md", ".parquet"})
-#: Running times are of a machine, and may stand in its working store.
-_OF_A_MACHINE = "times.csv"
 
 
 def names(folder: Path) -> tuple[str, ...]:
@@ -32,7 +31,7 @@ def names(folder: Path) -> tuple[str, ...]:
             path.as_posix()
             for path in relative
             if path.suffix in _KINDS
-            and path.as_posix() not in {manifest.FILE, _OF_A_MACHINE}
+            and path.as_posix() not in {manifest.FILE, TIMES, MACHINE}
             and not any(part.startswith(".") for part in path.parts)
         )
     )

@@ -1,19 +1,19 @@
-"""Running times of every pipeline on this machine: derived, never part of the record.
-
-A time is of one machine on one day. They are kept beside other working files in ``times.csv``, each
-with a digest of what it is of, so that only what has changed is timed again.
-"""
+"""Measuring the published running times: every pipeline against one fixed reference loop."""
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
+import json
+import platform
+import re
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import asdict, dataclass, replace
+from datetime import UTC, datetime
 from functools import partial
 from itertools import groupby
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,194 +25,182 @@ from benchmark.contract import Cell, Preset, Samples
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback, terminal_progress
-from benchmark.results.components import Components, current
-from benchmark.results.csv_tables import StoreError, above_zero, read_csv, text_of, word
+from benchmark.results.csv_tables import text_of
+from benchmark.results.times import COLUMNS, MACHINE, TIMES, Machine, Place, Time, read_times
 from benchmark.running.threads import one_thread
-from benchmark.running.timing import best_of, best_time
 from files.atomic import replace_file
 from files.locks import wait_for_lock
 from files.temporary import remove_stale_files
 
-#: Name of the file.
-TIMES = "times.csv"
-
 #: Observations that are timed together: as many as fill this, of what the test split has.
 _TIMED_BYTES = 8 * 2**20
 _FEWEST = 8
-#: Values the reference turns to floats at a time: 32 MB of them.
-_REFERENCE_VALUES = 2**22
+#: Values that the weighted sum turns to floats at a time: 32 MB of them.
+_SUMMED_VALUES = 2**22
+#: A call is timed at least so often, and on until it took so long or was timed so often.
+_FEWEST_RUNS, _ENOUGH_S, _MOST_RUNS = 5, 0.1, 20
+_LOOP_RUNS = 200
 
-Place = tuple[str, str, str]  # (dataset, extractor, model)
+_VALUES = np.linspace(0.0, 1.0, 100_000)
+_WEIGHTS = _VALUES[::-1].copy()
+LOOP = (
+    "10 weighted sums of 100,000 float64 numbers by NumPy, and 10,000 steps of x = 0.5 x + 1 in "
+    "Python; processor time, best of several"
+)
+
+T = TypeVar("T")
 
 
-@dataclass(frozen=True)
-class Time:
-    """Times of one pipeline on its dataset's first condition.
+def reference_loop() -> float:
+    """Do the work that times are multiples of.
 
-    Attributes
-    ----------
-    dataset, extractor, model
-        Which pipeline.
-    latency_us
-        Extraction and prediction of one sample of a batch, microseconds; None where the pipeline
-        cannot be run.
-    time_ratio
-        The same over the time of the reference (`reference`) on the same observations.
-    extract_ratio
-        Extraction alone over that reference.
-    digest
-        Of what was timed.
+    Ten weighted sums (`numpy.dot`) of 100,000 float64 numbers, and 10,000 steps of
+    ``x = 0.5 * x + 1.0`` in the interpreter. It reads no observation and never changes, so that it
+    says how fast a machine does arithmetic and runs Python.
     """
-
-    dataset: str
-    extractor: str
-    model: str
-    latency_us: float | None
-    time_ratio: float | None
-    extract_ratio: float | None
-    digest: str
-
-    @property
-    def pipeline(self) -> Place:
-        """What was timed."""
-        return self.dataset, self.extractor, self.model
+    x = 0.0
+    for _ in range(10):
+        x += float(np.dot(_VALUES, _WEIGHTS))
+    for _ in range(10_000):
+        x = 0.5 * x + 1.0
+    return x
 
 
-_COLUMNS = {
-    "dataset": word,
-    "extractor": word,
-    "model": word,
-    "latency_us": above_zero,
-    "time_ratio": above_zero,
-    "extract_ratio": above_zero,
-    "digest": word,
-}
+def weighted_sums(observations: NDArray[Any]) -> object:
+    """Sum every observation with weights.
 
-
-def read_times(directory: Path) -> dict[Place, Time]:
-    """Read what was timed on this machine, up to date or not; nothing where there is no file.
-
-    Raises
-    ------
-    StoreError
-        For a line that is no time.
+    The least that anything reading all of an observation must do.
     """
-    found: dict[Place, Time] = {}
-    for line, row in read_csv(directory / TIMES, _COLUMNS):
-        time = Time(**row)
-        if time.pipeline in found:
-            raise StoreError(f"{directory / TIMES}, line {line}: {time.pipeline} is there twice")
-        found[time.pipeline] = time
-    return found
+    samples = observations.reshape(len(observations), -1)
+    if samples.dtype.names is not None:
+        samples = samples.view(np.uint8).reshape(len(observations), -1)  # events: their bytes
+    weights = np.linspace(0.0, 1.0, samples.shape[1])
+    rows = max(_SUMMED_VALUES // samples.shape[1], 1)
+    parts = range(0, len(samples), rows)
+    return [samples[start : start + rows].astype(np.float64) @ weights for start in parts]
 
 
-def times_of_code(
-    directory: Path, parts: Parts | None = None, components: Components | None = None
-) -> dict[Place, Time]:
-    """Return the times that are of datasets and implementations as they now are.
+def best_of(call: Callable[[], T], *references: Callable[[], object]) -> tuple[T, list[float]]:
+    """Return the result of `call`, its best time in seconds, and those of references.
 
-    Raises
-    ------
-    StoreError
-        For a line that is no time.
+    Processor time of this process, so that other programs do not count. The references run before
+    each run of the call, so that a change of the processor's frequency changes all alike.
     """
-    there = read_times(directory)
-    if not there:
-        return {}
-    known = parts or installed_parts()
-    now = components or current(known)
-    return {
-        pipeline: time
-        for pipeline, time in there.items()
-        if _is_installed(pipeline, known) and time.digest == _digest(pipeline, now)
-    }
+    best = [float("inf")] * (1 + len(references))
+    spent, runs = 0.0, 0
+    while runs < _FEWEST_RUNS or (spent < _ENOUGH_S and runs < _MOST_RUNS):
+        seconds = [_time(reference)[0] for reference in references]
+        own, result = _time(call)
+        best = [min(pair) for pair in zip(best, [own, *seconds], strict=True)]
+        spent, runs = spent + own, runs + 1
+    return result, best
+
+
+def _time(call: Callable[[], T]) -> tuple[float, T]:
+    started = time.process_time()
+    result = call()
+    return time.process_time() - started, result
 
 
 def update(
     directory: Path,
     progress: ProgressCallback | None = None,
     *,
+    again: bool = False,
     parts: Parts | None = None,
 ) -> int:
-    """Time what is not timed for the code as it is; returns how many pipelines were.
+    """Time the pipelines that have no time yet; returns how many were.
 
-    In this process and one after another: what runs beside takes time from it. Times are on disk
-    dataset by dataset.
+    In this process and one after another. Times are on disk data set by data set, and those of
+    pipelines that there are no longer are dropped.
 
     Parameters
     ----------
     directory
-        Where the times are kept.
+        Of the record.
     progress
         As `benchmark.running.runner.run`.
+    again
+        Whether to forget all times first, and the machine they were measured on.
     parts
-        Datasets and implementations; what is installed by default.
+        Data sets and implementations; what is installed by default.
 
     Raises
     ------
     StoreError
-        Where the file cannot be read.
+        Where the files cannot be read.
     """
     known = parts or installed_parts()
-    components = current(known)
     first = {name: preset.conditions[0] for name, preset in known.presets.items()}
     planned = [cell for cell in cells(parts=known) if cell.condition == first[cell.dataset]]
-    with _held(directory):  # also where nothing is missing: what a killed process left goes
-        remove_stale_files(directory, TIMES)
-        there = times_of_code(directory, known, components)
+    for name in (TIMES, MACHINE):
+        remove_stale_files(directory, name)
+    if again:
+        _write(directory, {}, planned, forget=True)
+    there = read_times(directory).rows
     missing = [cell for cell in planned if _pipeline(cell) not in there]
     with terminal_progress() if progress is None else nullcontext(progress) as report:
         done = 0
         report(done, len(missing), "")
         for dataset, group in groupby(missing, key=lambda cell: cell.dataset):
-            timed = {
-                time.pipeline: replace(time, digest=_digest(time.pipeline, components))
-                for time in _time(known, list(group))
-            }
+            timed = {one.pipeline: one for one in _timed(known, list(group))}
+            _write(directory, timed, planned)
             done += len(timed)
-            with _held(directory):  # meanwhile another process may have written
-                _write(directory, times_of_code(directory, known, components) | timed)
             report(done, len(missing), dataset)
     return len(missing)
 
 
-def drop_outdated(directory: Path, parts: Parts, components: Components) -> int:
-    """Forget times of other code than there is; returns how many."""
-    with _held(directory):
-        there = read_times(directory)
-        kept = times_of_code(directory, parts, components)
-        if len(kept) < len(there):
-            _write(directory, kept)
-    return len(there) - len(kept)
-
-
-def _held(directory: Path) -> AbstractContextManager[None]:
-    """Hold the table of times."""
+def _write(
+    directory: Path, timed: Mapping[Place, Time], planned: Sequence[Cell], *, forget: bool = False
+) -> None:
+    """Add times to those on disk, which another process may have written meanwhile."""
     directory.mkdir(parents=True, exist_ok=True)
-    return wait_for_lock(directory / TIMES)
+    with wait_for_lock(directory / TIMES):
+        if forget:
+            (directory / TIMES).unlink(missing_ok=True)
+        there = read_times(directory)
+        here = there.machine or _this_machine()
+        if timed and (also := _processor()) not in {here.processor, *here.also_on}:
+            here = replace(here, also_on=(*here.also_on, also))
+        kept = {**there.rows, **timed}
+        rows = [asdict(kept[place]) for place in sorted(kept.keys() & set(map(_pipeline, planned)))]
+        if rows:
+            replace_file(directory / MACHINE, json.dumps(asdict(here), indent=2) + "\n")
+            replace_file(directory / TIMES, text_of(list(COLUMNS), rows))
 
 
-def _write(directory: Path, kept: Mapping[Place, Time]) -> None:
-    rows = [asdict(kept[pipeline]) for pipeline in sorted(kept)]
-    replace_file(directory / TIMES, text_of(list(_COLUMNS), rows))
+def _this_machine() -> Machine:
+    with one_thread():
+        _, (seconds, *_) = min(
+            (best_of(reference_loop) for _ in range(_LOOP_RUNS // _MOST_RUNS)),
+            key=lambda found: found[1],
+        )
+    return Machine(
+        processor=_processor(),
+        cores=1,
+        python=platform.python_version(),
+        numpy=np.__version__,
+        date=datetime.now(UTC).date().isoformat(),
+        loop=LOOP,
+        loop_us=_round(1e6 * seconds),
+    )
 
 
-def reference(observations: NDArray[Any]) -> object:
-    """Do a fixed amount of NumPy work on the same observations; times are stated against it.
+def _processor() -> str:
+    """Return the processor's model, of ``/proc/cpuinfo`` where there is one."""
+    try:
+        about = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+    except OSError:
+        return platform.processor() or platform.machine()
+    known = dict(re.findall(r"^(model name|cpu family|model)\s*: (.+)$", about, re.MULTILINE))
+    if "model name" not in known:
+        return platform.machine()
+    family, model = known.get("cpu family", "?"), known.get("model", "?")
+    return f"{known['model name']} (family {family}, model {model})"
 
-    One weighted sum a sample: the least that anything reading all of an observation must do.
-    """
-    samples = observations.reshape(len(observations), -1)
-    if samples.dtype.names is not None:
-        samples = samples.view(np.uint8).reshape(len(observations), -1)  # events: their bytes
-    weights = np.linspace(0.0, 1.0, samples.shape[1])
-    rows = max(_REFERENCE_VALUES // samples.shape[1], 1)
-    parts = range(0, len(samples), rows)
-    return [samples[start : start + rows].astype(np.float64) @ weights for start in parts]
 
-
-def _time(parts: Parts, group: list[Cell]) -> Iterator[Time]:
-    """Time the pipelines of one dataset."""
+def _timed(parts: Parts, group: list[Cell]) -> Iterator[Time]:
+    """Time the pipelines of one data set."""
     preset, condition = parts.preset(group[0].dataset), group[0].condition
     with one_thread():
         data = _Data(
@@ -222,8 +210,8 @@ def _time(parts: Parts, group: list[Cell]) -> Iterator[Time]:
         )
         for name, of_extractor in groupby(group, key=lambda cell: cell.extractor):
             models = [parts.model(cell.model) for cell in of_extractor]
-            for model, numbers in _numbers(data, parts.extractor(name), models):
-                yield Time(preset.name, name, model.about.name, *numbers, digest="")
+            for model, numbers in _ratios(data, parts.extractor(name), models):
+                yield Time(preset.name, name, model.about.name, *numbers)
 
 
 @dataclass(frozen=True)
@@ -233,19 +221,20 @@ class _Data:
     test: Samples
 
 
-_Numbers = tuple[float | None, float | None, float | None]
-_UNTIMED: _Numbers = (None, None, None)
+_Ratios = tuple[float | None, float | None]
+_UNTIMED: _Ratios = (None, None)
 
 
-def _numbers(
+def _ratios(
     data: _Data, extractor_class: type[Extractor], models: Sequence[Scored]
-) -> Iterator[tuple[Scored, _Numbers]]:
-    """Give latency and ratios of an extractor with each of the models."""
+) -> Iterator[tuple[Scored, _Ratios]]:
+    """Give the ratios of an extractor with each of the models."""
+    sums = partial(weighted_sums, data.test.observations)
     try:
         extractor = extractor_class.for_sensor(data.geometry)
         known = _features(extractor, data.calibration)  # also warms compiled code up
-        features, timing = best_of(
-            lambda: _features(extractor, data.test), lambda: reference(data.test.observations)
+        features, (extract_s, loop_s, sums_s) = best_of(
+            lambda: _features(extractor, data.test), reference_loop, sums
         )
     except Exception:  # noqa: BLE001 - the record says what failed; here it has no time
         yield from ((model, _UNTIMED) for model in models)
@@ -256,19 +245,12 @@ def _numbers(
             pipeline = Pipeline(extractor, model)
             pipeline.fit_features(known, data.calibration.sun, data.calibration.context)
             predict = partial(pipeline.predict_features, features, data.test.context)
-            _, predict_s = best_time(predict)
+            _, (predict_s, loop_again_s) = best_of(predict, reference_loop)
         except Exception:  # noqa: BLE001 - likewise
             yield model_class, _UNTIMED
             continue
-        whole_s = timing.seconds + predict_s
-        yield (
-            model_class,
-            (
-                _round_to(1e6 * whole_s / len(data.test.sun)),
-                _round_to(whole_s / timing.reference_s),
-                _round_to(timing.seconds / timing.reference_s),
-            ),
-        )
+        whole = extract_s / loop_s + predict_s / loop_again_s
+        yield model_class, (_round(whole / len(data.test.sun)), _round(extract_s / sums_s))
 
 
 def _batch(preset: Preset, condition: str) -> int:
@@ -281,20 +263,9 @@ def _features(extractor: Extractor, samples: Samples) -> Floats:
     return extract_features(extractor, samples.observations, samples.origin_px)
 
 
-def _round_to(value: float) -> float:
+def _round(value: float) -> float:
     return float(f"{value:.3g}")
 
 
 def _pipeline(cell: Cell) -> Place:
     return cell.dataset, cell.extractor, cell.model
-
-
-def _is_installed(pipeline: Place, parts: Parts) -> bool:
-    dataset, extractor, model = pipeline
-    return dataset in parts.presets and extractor in parts.extractors and model in parts.models
-
-
-def _digest(pipeline: Place, components: Components) -> str:
-    dataset, extractor, model = pipeline
-    whole = components.cell_key(Cell(dataset, "", extractor, model))
-    return hashlib.sha256(whole.encode()).hexdigest()[:8]

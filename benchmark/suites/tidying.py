@@ -13,7 +13,7 @@ from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.components import current
 from benchmark.results.record import open_record
 from benchmark.results.store import Store
-from benchmark.running import durations, pinning, times
+from benchmark.running import durations, pinning
 from benchmark.running.task import data_condition
 from files.temporary import temporary_directory
 
@@ -25,7 +25,7 @@ class TidyResult:
     Attributes
     ----------
     scores, pins, times
-        How many scores, pinned splits and measurements of time.
+        How many scores, pinned splits and durations of tasks.
     kept
         Scores that stay.
     freed
@@ -40,7 +40,7 @@ class TidyResult:
 
 
 def tidy(store: Store, *, parts: Parts | None = None) -> TidyResult:
-    """Drop scores, pins and times of code or data that have changed or are gone.
+    """Drop scores, pins and durations of code or data that have changed or are gone.
 
     Raises
     ------
@@ -72,8 +72,7 @@ def tidy(store: Store, *, parts: Parts | None = None) -> TidyResult:
 
         record.drop(scores=is_current, pins=is_pinned)
         record.write(components)
-        dropped = times.drop_outdated(store.directory, known, components)
-        dropped += durations.drop_unplanned(store, planned)
+        dropped = durations.drop_unplanned(store, planned)
     return TidyResult(
         scores=there[0] - len(record.scores),
         pins=there[1] - len(record.pins),
@@ -99,8 +98,8 @@ def would_tidy(store: Store, *, parts: Parts | None = None) -> TidyResult:
 def _files(store: Store) -> list[Path]:
     """List the files of a store: whatever else lies in its directory is nobody's garbage."""
     top = [store.pins_path, store.components_path]
-    top += [store.directory / times.TIMES, store.work_directory / durations.DURATIONS]
-    found = [*top, store.work_directory / "journal.jsonl", *store.scores_directory.glob("*.csv")]
+    found = [*top, store.work_directory / durations.DURATIONS]
+    found += [store.work_directory / "journal.jsonl", *store.scores_directory.glob("*.csv")]
     found += store.samples_directory.glob("*.parquet")
     return [path for path in found if path.is_file()]
 

@@ -184,6 +184,7 @@ UNKNOWN = {
     "statistics": [("kind", "median"), ("rms_divisor", "three"), ("rms_divisor", "0")],
     "sources": [("kind", "rumour"), ("host", "No Host")],
     "labels": [("kind", "chorus"), ("label", "sundial")],
+    "processors": [("name", "No Name"), ("coremark", "fast"), ("coremark", "0")],
 }  # fmt: skip
 
 

@@ -15,7 +15,7 @@ OFFERED = (
     "without --apply"
 )
 OTHERS = "the damaged tables are valid, and there is no manifest to compare them with; ours has one"
-OWN = "the damaged file is valid; run times of this machine are not published"
+OWN = "the damaged file is valid; running times are no part of the record"
 
 
 class RefusedError(ValueError):

@@ -93,7 +93,7 @@ GROUPS: Mapping[str, Group] = {
         {
             "benchmark/running/kernels.py": _in(_RUNNING, "kernels"),
             "benchmark/running/pinning.py": _in(_RUNNING, "pinning_rules", "pinning"),
-            "benchmark/running/tim*.py": _in(_RUNNING, "timing", "times"),
+            "benchmark/running/times.py": _in(_RUNNING, "times"),
             "benchmark/running/threads.py": _in(_RUNNING, "threads"),
             "benchmark/running/condition_data.py": _in(
                 _RUNNING, "condition_data", "pinning_rules", "runner"

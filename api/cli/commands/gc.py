@@ -28,8 +28,8 @@ def gc(
 ) -> None:
     """Delete unused results from the local store.
 
-    Unused: scores, hashes and times whose data set, extractor, model or measuring code has changed
-    or no longer exists. Nothing is deleted without --yes. `freed` is in bytes.
+    Unused: scores, hashes and durations whose data set, extractor, model or measuring code has
+    changed or no longer exists. Nothing is deleted without --yes. `freed` is in bytes.
     """
     published, there = stores_of(store)
     if there.directory.resolve() == published.directory.resolve():

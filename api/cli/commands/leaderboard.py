@@ -14,11 +14,9 @@ from api.cli.boards import architectures_text, overview_text
 from api.cli.measuring import (
     AVAILABLE_WORKERS,
     ManyWorkersOption,
-    StoreOption,
 )
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, line_width
-from api.cli.working import working_directory
 from api.cli.wrong_call import WrongCallError
 from api.schema.boards import BestOfArchitecture, OverviewQuery, PartOverview
 from api.schema.scores import LeaderboardRow
@@ -208,8 +206,7 @@ def render(
 ) -> None:
     """Write the leaderboard as leaderboard.{json,csv,md,html} and sweeps.csv.
 
-    Files of the same name are replaced. Nothing is measured; times are those kept by `sunatlas
-    leaderboard times`.
+    Files of the same name are replaced. Nothing is measured.
     """
     from api.cli.asking import knowledge  # noqa: PLC0415 - slow; measuring does without it
     from benchmark.leaderboard import pages  # noqa: PLC0415 - as above
@@ -222,22 +219,29 @@ def render(
 
 
 @app.command()
-def times(store: StoreOption = None, form: FormatOption = Format.TABLE) -> None:
-    """Measure the time of every pipeline on this machine.
+def times(
+    *,
+    again: Annotated[
+        bool,
+        typer.Option("--again", help="Forget all times and measure them anew on this machine."),
+    ] = False,
+) -> None:
+    """Measure the running times of pipelines that have none, and publish them.
 
-    First condition of each data set, one thread, best of three, with a reference method. Times are
-    kept in the local store, shown by the pages and by `sunatlas recommend` and `sunatlas assess`,
-    and never published.
+    First condition of each data set, one thread, best of several, as a multiple of a reference loop
+    that is timed in between. They are written to times.csv data set by data set, the machine to
+    times_machine.json: an interrupted call is continued by the next one, without --again.
     """
+    from benchmark.results.times import TIMES, read_times  # noqa: PLC0415 - slow
     from benchmark.running import times as running_times  # noqa: PLC0415 - slow
 
-    directory = working_directory(store)
-    timed = running_times.update(directory)
-    kept = running_times.times_of_code(directory)
-    columns = ("dataset", "extractor", "model", "latency_us", "time_ratio", "extract_ratio")
-    rows = [{name: getattr(time, name) for name in columns} for time in kept.values()]
-    emit(rows, columns, form, title=f"{len(rows)} pipelines")
-    typer.echo(f"{timed} timed now, {len(rows) - timed} before; in {directory}", err=True)
+    timed = running_times.update(PUBLISHED, again=again)
+    found = read_times(PUBLISHED)
+    on = found.machine.processor if found.machine else "no machine"
+    typer.echo(
+        f"{timed} timed now, {len(found.rows) - timed} before, of {on}; in {PUBLISHED / TIMES}",
+        err=True,
+    )
 
 
 def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only: bool) -> None:
@@ -260,9 +264,7 @@ def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only:
 
 def _architectures(query: Asked, form: Format) -> None:
     """Print the best pipeline of each architecture, as the service answers it."""
-    unchanged = KeptAnswer(
-        f"architectures {sorted(query.items())}", [PUBLISHED, working_directory()]
-    )
+    unchanged = KeptAnswer(f"architectures {sorted(query.items())}", [PUBLISHED])
     if form is Format.TABLE and (known := unchanged.recall()):
         _tell(*known)
         return

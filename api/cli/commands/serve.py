@@ -46,7 +46,7 @@ def serve(
     description at /openapi.json, Prometheus metrics at /metrics. The guide must be built first
     (`sunatlas guide build`). Stop with Ctrl-C.
     """
-    os.environ[serving.TIMES] = str(working_directory())
+    os.environ[serving.WORKING] = str(working_directory())
     os.environ[serving.ACCESS_LOG] = "1" if access_log else ""
     listener = listen(host, port)
     with listener, contextlib.ExitStack() as stack:

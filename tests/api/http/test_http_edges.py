@@ -90,10 +90,10 @@ def test_a_worker_loads_at_once_what_it_was_told_to_and_reads_times_where_they_a
         read.append(known)
 
     monkeypatch.setattr(Knowledge, "load_all", load_all)
-    monkeypatch.setenv(serving.TIMES, str(tmp_path))
+    monkeypatch.setenv(serving.WORKING, str(tmp_path))
     app = serving.application(loaded=loaded)
     assert read == [app.state.knowledge] * loaded
-    assert app.state.knowledge.measurements.times_directory == tmp_path
+    assert app.state.knowledge.working == tmp_path
 
 
 def test_a_service_that_is_not_installed_says_so_as_its_version(

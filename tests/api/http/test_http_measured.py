@@ -1,7 +1,10 @@
 """Scores, leaderboard and data sets, from a hand-made store whose every number is known."""
 
+import json
 import math
+import shutil
 import statistics
+from dataclasses import asdict
 
 import jsonschema
 import pytest
@@ -13,10 +16,10 @@ from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin
 from benchmark.metrics.score import METRICS
 from benchmark.plan.parts import installed_parts
+from benchmark.results import times
 from benchmark.results.components import Components, ComponentsError, current
 from benchmark.results.csv_tables import text_of
 from benchmark.results.store import Store, StoreError
-from benchmark.running import times
 
 CMOS = "cmos-single-aperture"
 QPD = "qpd-single-aperture"
@@ -85,26 +88,27 @@ def published(tmp_path_factory, components):
 
 
 @pytest.fixture(scope="module")
-def measured(tmp_path_factory, client_of, published, components):
-    """A service with those scores, and with times that one pipeline has outlived."""
-    directory = tmp_path_factory.mktemp("working")
+def measured(tmp_path_factory, client_of, published):
+    """A service with those scores, and with times of all but one pipeline."""
+    directory = tmp_path_factory.mktemp("timed")
+    shutil.copytree(published, directory, dirs_exist_ok=True)
     rows = [
         {
             "dataset": dataset,
             "extractor": extractor,
             "model": model,
-            "latency_us": latency,
-            "time_ratio": 2.0,
+            "ratio": latency / 4.0,
             "extract_ratio": 1.0,
-            "digest": times._digest((dataset, extractor, model), components),
         }
         for dataset, condition, extractor, model, *_, latency in CELLS
         if condition == "nominal" and latency is not None
     ]
-    rows[0] |= {"latency_us": 5.0}
-    rows[2] |= {"digest": "of-older-code"}
+    rows[0] |= {"ratio": 1.25}
+    del rows[2]
     (directory / times.TIMES).write_text(text_of(list(rows[0]), rows))
-    return client_of(create_app(Knowledge(Measurements(published, directory))))
+    machine = times.Machine("fake", 1, "3.11", "2.4", "2026-11-28", "a loop", 4.0)
+    (directory / times.MACHINE).write_text(json.dumps(asdict(machine)))
+    return client_of(create_app(Knowledge(Measurements(directory))))
 
 
 @pytest.fixture(scope="module")
@@ -166,8 +170,8 @@ def test_the_leaderboard_ranks_by_error_within_a_condition(measured):
     assert (board[0]["low_deg"], board[0]["high_deg"]) == (0.01, 0.012)
     assert board[3]["unit_rms_deg"] == [0.02, *UNITS["spm"]]
     assert (board[1]["unit_rms_deg"], board[1]["low_deg"]) == ([0.5], None)
-    assert (board[0]["time_ratio"], board[0]["latency_us"]) == (2.0, 9.0)
-    assert board[1]["time_ratio"] is board[1]["latency_us"] is None  # timed with other code
+    assert (board[0]["time_ratio"], board[0]["latency_us"]) == (2.25, 9.0)
+    assert board[1]["time_ratio"] is board[1]["latency_us"] is None  # not timed
     assert board[-1]["status"] == "failed"
     assert board[-1]["reason"] == "fit: too few samples"
     whole = measured.get("/v1/leaderboard").json()

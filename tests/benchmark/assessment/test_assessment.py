@@ -14,7 +14,7 @@ from benchmark.assessment import former
 from benchmark.assessment.assess import assess
 from benchmark.assessment.definitions import DEFINITIONS
 from benchmark.assessment.measures import SCORED, SWEPT, NotMeasuredError
-from benchmark.running.times import Time
+from benchmark.results.times import Time
 from benchmark.sweeps.record import RECORD, point_of
 from survey_data.tables import load
 
@@ -255,7 +255,7 @@ def test_verdicts_compare_with_the_survey_and_costs_are_medians(tmp_path):
     swept = [row("reference", "disc", over_bound=1.2)]
     keep(tmp_path, swept)
     times = {
-        (name, "bctm", model): Time(name, "bctm", model, 1.0, ratio, ratio, "")
+        (name, "bctm", model): Time(name, "bctm", model, ratio, ratio)
         for name, ratio in (("d0", 0.1), ("d1", 40.0), ("d2", 20.0), ("d3", None))
         for model in ("lut", "linear")
     }

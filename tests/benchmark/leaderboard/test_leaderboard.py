@@ -22,6 +22,7 @@ from benchmark.leaderboard.update import update, write_page
 from benchmark.progress import silent
 from benchmark.results.digests import stage_digests
 from benchmark.results.store import Store
+from benchmark.results.times import Machine, Time, Times
 from benchmark.running import condition_data
 from benchmark.running.pinning import UnversionedChangeError
 from benchmark.sweeps.record import swept
@@ -304,13 +305,18 @@ def test_json_and_csv_hold_every_stored_number(made):
                 assert line[name] == str(value)
 
 
-def test_times_of_this_machine_stand_beside_the_numbers(made):
-    times = {("fake-diodes", "fake-gaps", "fake-least-squares"): {"latency_us": 7.5}}
-    rows = board_of(Store(made), times)["datasets"][0]["rows"]
-    assert {(row["extractor"], row["latency_us"]) for row in rows} == {
-        ("fake-currents", None),
-        ("fake-gaps", 7.5),
+def test_times_stand_beside_the_numbers_with_their_machine(made):
+    time = Time("fake-diodes", "fake-gaps", "fake-least-squares", 0.5, 0.1)
+    machine = Machine("fake", 1, "3.11", "2.4", "2026-11-28", "a loop", 15.0)
+    board = board_of(Store(made), Times({time.pipeline: time}, machine))
+    assert {
+        (r["extractor"], r["latency_us"], r["time_ratio"]) for r in board["datasets"][0]["rows"]
+    } == {
+        ("fake-currents", None, None),
+        ("fake-gaps", 7.5, 0.5),
     }
+    assert board["timed_on"]["processor"] == "fake"
+    assert board_of(Store(made))["timed_on"] is None
 
 
 class Tags(HTMLParser):

@@ -131,7 +131,7 @@ def test_all_that_the_survey_advises_for_a_task_is_marked_and_nothing_far_better
         evident = [a for a in first if (a.advice or a.studies) and a.best.measured]
         costs = [cost_of(a.measures[0]) for a in evident]
         priced = [cost for cost in costs if cost is not None]
-        if priced:  # nothing is timed in the record
+        if priced:  # the record alone has no times
             assert costs[0] is not None
             assert costs[0] <= 2.0 * min(priced)
         else:

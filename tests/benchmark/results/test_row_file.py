@@ -110,7 +110,7 @@ def test_no_column_of_a_parquet_file_may_be_null() -> None:
 
 
 def test_a_record_is_of_its_files_alone(tmp_path: Path) -> None:
-    for name in ("a.csv", "b/c.json", "times.csv", ".d/e.csv", "f.txt"):
+    for name in ("a.csv", "b/c.json", "times.csv", "times_machine.json", ".d/e.csv", "f.txt"):
         path = tmp_path / name
         path.parent.mkdir(exist_ok=True)
         path.touch()

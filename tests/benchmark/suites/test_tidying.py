@@ -15,7 +15,6 @@ from benchmark.plan.parts import Parts
 from benchmark.progress import silent
 from benchmark.results.record import StoreLockedError, open_record
 from benchmark.results.store import Store
-from benchmark.running import times
 from benchmark.running.durations import Durations
 from benchmark.running.runner import run, stale
 from benchmark.suites.tidying import TidyResult, tidy, would_tidy
@@ -35,7 +34,6 @@ def parts(**changes: Any) -> Parts:
 def store(tmp_path: Path) -> Store:
     there = Store(tmp_path / "store")
     run(cells(parts=parts()), there, progress=silent, parts=parts())
-    times.update(there.directory, silent, parts=parts())
     (there.directory / "notes.txt").write_text("mine")
     return there
 
@@ -76,7 +74,7 @@ def test_a_store_of_today_s_code_stays_as_it_is(store: Store) -> None:
         assert contents(store) == before
 
 
-def test_scores_pins_and_times_of_changed_data_go(store: Store) -> None:
+def test_scores_and_pins_of_changed_data_go(store: Store) -> None:
     before = contents(store)
     size = total(before)
     now = parts(seed=8)
@@ -84,7 +82,7 @@ def test_scores_pins_and_times_of_changed_data_go(store: Store) -> None:
     assert contents(store) == before, "only reported"
     done = tidy(store, parts=now)
     assert result == done
-    assert (dropped(done), done.kept) == ((4, 3, 4), 4)
+    assert (dropped(done), done.kept) == ((4, 3, 0), 4)
     assert done.freed == size - total(contents(store)) > 0
     assert (store.directory / "notes.txt").read_text() == "mine"
     assert {cell.dataset for cell in store.scores()} == {"fake-diodes"}
@@ -99,12 +97,9 @@ def test_what_is_not_installed_any_more_goes_with_the_time_it_took(store: Store)
     known = parts()
     now = replace(known, extractors={"fake-currents": known.extractors["fake-currents"]})
     done = tidy(store, parts=now)
-    assert dropped(done) == (4, 0, 4 + 2)  # four pipelines timed, two tasks
+    assert dropped(done) == (4, 0, 2)  # durations of two tasks
     assert {cell.extractor for cell in store.scores()} == {"fake-currents"}
     assert {task.extractor for task in Durations.read([store]).known} == {"fake-currents"}
-    assert set(times.read_times(store.directory)) == {
-        (cell.dataset, cell.extractor, cell.model) for cell in store.scores()
-    }
 
 
 def test_a_broken_off_run_s_journal_is_taken_in_before(tmp_path: Path) -> None:

@@ -166,8 +166,9 @@ def tidy() -> None:
 
 def take_times() -> None:
     """`sunatlas leaderboard times` of a small plan."""
-    _give(running_times, "installed", small.parts)
-    sunatlas("leaderboard", "times", "--store", "store")
+    _give(leaderboard_command, "PUBLISHED", Path("store"))
+    _give(running_times, "installed_parts", small.parts)
+    sunatlas("leaderboard", "times")
 
 
 def compile_all() -> None:
@@ -287,7 +288,9 @@ COMMANDS: Mapping[str, Command] = {
     ),
     "run": Command("`run`", _nothing, run_cells, varying=("durations.csv",)),
     "gc": Command("`gc --yes`", filled, tidy, varying=("durations.csv",)),
-    "times": Command("`leaderboard times`", _nothing, take_times, varying=("times.csv",)),
+    "times": Command(
+        "`leaderboard times`", _nothing, take_times, varying=("times.csv", "times_machine.json")
+    ),
     "render": Command(
         "`leaderboard render`", _nothing, lambda: sunatlas("leaderboard", "render", "--out", "all")
     ),

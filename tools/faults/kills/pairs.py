@@ -41,7 +41,6 @@ PAIRS: Mapping[str, tuple[str, Act, Act]] = {
         lambda: run_cells("fake-second"),
     ),
     "leaderboard and pins": ("update", COMMANDS["update"].act, lambda: pin("fake-second")),
-    "times and tidying": ("gc", COMMANDS["times"].act, COMMANDS["gc"].act),
     "claims": ("claims", lambda: measure_claims("C01", "C02"), lambda: measure_claims("C03")),
     "error budgets": (
         "error_budget",
@@ -49,7 +48,7 @@ PAIRS: Mapping[str, tuple[str, Act, Act]] = {
         lambda: budget_errors("set-1"),
     ),
 }
-_VARYING = ("durations.csv", "times.csv")
+_VARYING = ("durations.csv", "times.csv", "times_machine.json")
 
 
 @dataclass(frozen=True)

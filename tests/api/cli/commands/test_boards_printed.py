@@ -6,8 +6,8 @@ Measuring has tests of its own (`test_cli_measuring.py`); here a stand-in tells 
 from __future__ import annotations
 
 import csv
-import io
 import json
+import shutil
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -17,6 +17,7 @@ from typer.testing import CliRunner
 
 from api.cli import asking
 from api.cli.command_line import app
+from api.cli.commands import leaderboard
 from api.cli.commands import rank as ranking
 from api.cli.contract import ContractResult
 from api.service.knowledge import Knowledge
@@ -26,9 +27,9 @@ from benchmark.leaderboard.candidate import Ranking
 from benchmark.leaderboard.check import Difference
 from benchmark.leaderboard.pages import FORMATS
 from benchmark.results.store import PUBLISHED
+from benchmark.results.times import COLUMNS, MACHINE, TIMES, read_times
 from benchmark.running import times
 from benchmark.running.runner import Summary
-from benchmark.running.times import Time
 
 DATASET = "qpd-maskless-pyramid"
 
@@ -166,31 +167,26 @@ def test_where_nothing_is_published_nothing_is_written(
     assert not (tmp_path / "out").exists()
 
 
-def test_times_are_listed_with_how_many_are_new(
+def test_times_say_how_many_are_new_and_of_which_machine(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    rows = [
-        Time("pd-slit", "direct", "basic", 1.5, 0.5, 0.25, "0"),
-        Time("pd-slit", "direct", "lut", None, None, None, "0"),
-    ]
-    kept = {(row.dataset, row.extractor, row.model): row for row in rows}
-    asked: list[Path] = []
+    asked: list[tuple[Path, bool]] = []
 
-    def update(directory: Path) -> int:
-        asked.append(directory)
+    def update(directory: Path, *, again: bool) -> int:
+        asked.append((directory, again))
         return 1
 
     monkeypatch.setattr(times, "update", update)
-    monkeypatch.setattr(times, "times_of_code", lambda _: kept)
-    shown = sunatlas("leaderboard", "times", "--store", tmp_path, "--format", "csv")
+    monkeypatch.setattr(leaderboard, "PUBLISHED", tmp_path)
+    (tmp_path / TIMES).write_text(
+        f"{','.join(COLUMNS)}\npd-slit,direct,basic,0.5,0.25\npd-slit,direct,lut,,\n"
+    )
+    shutil.copy(PUBLISHED / MACHINE, tmp_path)
+    shown = sunatlas("leaderboard", "times", "--again")
     assert shown.exit_code == 0, shown.stderr
-    listed = list(csv.DictReader(io.StringIO(shown.stdout)))
-    assert [(row["model"], row["latency_us"], row["time_ratio"]) for row in listed] == [
-        ("basic", "1.5", "0.5"),
-        ("lut", "", ""),
-    ]
-    assert shown.stderr == f"1 timed now, 1 before; in {tmp_path}\n"
-    assert asked == [tmp_path]
+    processor = read_times(PUBLISHED).machine.processor  # type: ignore[union-attr]
+    assert shown.stderr == f"1 timed now, 1 before, of {processor}; in {tmp_path / TIMES}\n"
+    assert asked == [(tmp_path, True)]
 
 
 # ---- leaderboard --dataset

@@ -1,0 +1,80 @@
+"""The published running times: their form, and that they are of every pipeline with a score."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from benchmark import datasets
+from benchmark.results.csv_tables import StoreError
+from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.times import MACHINE, TIMES, Times, read_times
+
+
+@pytest.fixture(scope="module")
+def published() -> Times:
+    return read_times(PUBLISHED)
+
+
+def test_every_pipeline_with_a_published_score_has_a_time(published: Times) -> None:
+    first = {name: datasets.get(name).conditions[0] for name in datasets.names()}
+    scored = {
+        (row["dataset"], row["extractor"], row["model"])
+        for row in Store(PUBLISHED).rows()
+        if row["condition"] == first[row["dataset"]] and row["status"] == "ok"
+    }
+    lacking = [place for place in sorted(scored) if published.latency_us.get(place) is None]
+    assert not lacking, f"not timed: {lacking}; `sunatlas leaderboard times`"
+
+
+def test_times_are_multiples_of_the_loop_of_a_named_machine(published: Times) -> None:
+    machine = published.machine
+    assert machine is not None
+    assert machine.processor
+    assert machine.cores == 1
+    assert machine.loop_us > 0
+    for place, time in published.rows.items():
+        if time.ratio is None:
+            assert published.latency_us[place] is None
+        else:
+            assert published.latency_us[place] == pytest.approx(time.ratio * machine.loop_us, 0.006)
+
+
+def test_what_is_not_there_is_not_timed(tmp_path: Path) -> None:
+    found = read_times(tmp_path)
+    assert (found.rows, found.machine) == ({}, None)
+    assert found.columns_of("a", "b", "c") == {"latency_us": None, "time_ratio": None}
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        (["dataset,extractor", "a,b"], r"times\.csv, line 1: expected the columns"),
+        (["a,b,c,1,1", "a,b,c,1,1"], "line 3: .*there twice"),
+        (["a,b,c,0,1"], "above 0"),
+        (["a,b,c,-1,1"], "above 0"),
+        (["a,b,c,nan,1"], "column ratio"),
+    ],
+)
+def test_a_line_that_is_no_time_is_refused(tmp_path: Path, lines: list[str], said: str) -> None:
+    header = (PUBLISHED / TIMES).read_text().splitlines()[0]
+    whole = lines if lines[0].startswith("dataset") else [header, *lines]
+    (tmp_path / TIMES).write_text("\n".join([*whole, ""]))
+    shutil.copy(PUBLISHED / MACHINE, tmp_path)
+    with pytest.raises(StoreError, match=said):
+        read_times(tmp_path)
+
+
+@pytest.mark.parametrize("change", [{"loop_us": "fast"}, {"loop_us": 0}, {"other": 1}, None])
+def test_times_without_a_sound_machine_are_refused(
+    tmp_path: Path, change: dict[str, object] | None
+) -> None:
+    shutil.copy(PUBLISHED / TIMES, tmp_path)
+    if change is not None:
+        held = json.loads((PUBLISHED / MACHINE).read_text())
+        (tmp_path / MACHINE).write_text(json.dumps(held | change))
+    with pytest.raises(StoreError, match="times_machine"):
+        read_times(tmp_path)
