@@ -10,6 +10,7 @@ from typing import Any
 from typer.testing import CliRunner
 
 from api.cli.command_line import COMMANDS, app, load
+from api.http.openapi_sharing import inlined
 from api.http.reference import target, words
 from api.server.app import create_app
 from api.service.problems import MEDIA_TYPE
@@ -72,9 +73,8 @@ def _own_options(text: str) -> str:
 def http_examples() -> str:
     """Return every endpoint with its parameters and the answer to its example."""
     service = create_app()
-    described = service.openapi()
     parts = []
-    for path, operations in described["paths"].items():
+    for path, operations in inlined(service.openapi()).items():
         for method, operation in operations.items():
             parts.append(_operation(service, path, method, operation))
     refused = _ask(service, "GET", REFUSED)

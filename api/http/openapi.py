@@ -25,7 +25,6 @@ LONGEST_TEXT = 80  # characters of a text in an example
 REFUSALS = {
     400: "Unknown parameter, contradictory parameters, or malformed request.",
     404: "Not found; the nearest name is given.",
-    405: "Method not allowed.",
     406: "None of the accepted media types is available.",
     413: "Request body too long.",
     415: "Content-Type is not JSON.",
@@ -100,8 +99,8 @@ def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> N
         given = example if parameter["in"] == "path" else example.get("query", {})
         if parameter["name"] in given:
             parameter["example"] = given[parameter["name"]]
-    statuses = {400, 405, 406, *([404] if declared["path"] else [])}
-    success = operation["responses"]["200"]
+    statuses = {400, 406, *([404] if declared["path"] else [])}
+    success = operation["responses"]["200"] | {"description": "OK."}
     success["headers"] = {"ETag": {"$ref": "#/components/headers/ETag"}}
     if "body" in declared:
         operation["requestBody"]["content"][JSON]["example"] = example["body"]
@@ -109,7 +108,8 @@ def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> N
     elif declared["query"]:
         statuses |= {422}
     if route.response_class in (Answer, CitedAnswer):
-        success["headers"]["Link"] = {"$ref": "#/components/headers/Link"}
+        if "cursor" in declared["query"]:
+            success["headers"]["Link"] = {"$ref": "#/components/headers/Link"}
         answer = _answered(route, known, example)
         if answer is None:  # what it compares has not been measured
             success["content"][CSV] = {"schema": {"type": "string"}}

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 Node = dict[str, Any]
 
 #: Closed lists of at least so many words are components where they stand more than once.
 _MANY_WORDS = 4
-#: Bytes that a group of equal schemas takes, from which a reference is shorter.
-_WORTH_SHARING = 150
 
 
 def share(document: Node) -> Node:
@@ -37,6 +35,43 @@ def share(document: Node) -> Node:
     _share_parameters(document, operations)
     _share_responses(document, operations)
     return document
+
+
+def inlined(document: Mapping[str, Any]) -> dict[str, Node]:
+    """Return the paths of a shared document with references replaced by what they refer to.
+
+    Schemas of bodies and answers keep theirs, those of parameters do not.
+    """
+    components = document["components"]
+
+    def whole(value: Any) -> Any:
+        if isinstance(value, list):
+            return [whole(member) for member in value]
+        if not isinstance(value, dict):
+            return value
+        found = {name: whole(member) for name, member in value.items() if name != "$ref"}
+        return {**whole(_target(components, value)), **found} if "$ref" in value else found
+
+    def operation(shared: Node) -> Node:
+        responses = {
+            status: _target(components, one) if "$ref" in one else one
+            for status, one in shared["responses"].items()
+        }
+        found = {**shared, "responses": responses}
+        if "parameters" in shared:
+            found["parameters"] = whole(shared["parameters"])
+        return found
+
+    return {
+        path: {method: operation(one) for method, one in operations.items()}
+        for path, operations in document["paths"].items()
+    }
+
+
+def _target(components: Node, reference: Node) -> Node:
+    _, _, kind, name = reference["$ref"].split("/")
+    found: Node = components[kind][name]
+    return found
 
 
 def _plain(schema: Node) -> None:
@@ -105,15 +140,16 @@ def _refer(
         alike.setdefault(json.dumps(whole), []).append((name, schema))
     for text, group in alike.items():
         whole = json.loads(text)
-        if len(group) < 2 or len(group) * len(json.dumps(whole)) < _WORTH_SHARING:
-            continue
         names = Counter(name.removeprefix("exclude_") for name, _ in group)
         name = _free_name(names.most_common(1)[0][0], components)
+        reference = {"$ref": f"#/components/schemas/{name}"}
+        if len(group) * (_bytes(whole) - _bytes(reference)) <= _bytes({name: whole}):
+            continue
         components[name] = whole
         for _, schema in group:
             for one in whole:
                 del schema[one]
-            schema["$ref"] = f"#/components/schemas/{name}"
+            schema.update(reference)
 
 
 def _share_parameters(document: Node, operations: list[Node]) -> None:
@@ -134,8 +170,21 @@ def _share_parameters(document: Node, operations: list[Node]) -> None:
 
 
 def _share_responses(document: Node, operations: list[Node]) -> None:
-    """Refer to one response for each status but 200, with the first example there is."""
+    """Refer to one response for each status but 200, with the first example there is.
+
+    Answers of status 200 that several operations give alike are shared too.
+    """
     components = document["components"].setdefault("responses", {})
+    alike: dict[str, list[Node]] = {}
+    for operation in operations:
+        answer = operation["responses"]["200"]
+        alike.setdefault(json.dumps(answer, sort_keys=True), []).append(operation)
+    for group in alike.values():
+        if len(group) > 1:
+            name = _free_name("Answer", components)
+            components[name] = group[0]["responses"]["200"]
+            for operation in group:
+                operation["responses"]["200"] = {"$ref": f"#/components/responses/{name}"}
     for operation in operations:
         for status, response in operation["responses"].items():
             if status.startswith("2"):
@@ -145,6 +194,10 @@ def _share_responses(document: Node, operations: list[Node]) -> None:
                 if "example" in content:
                     known["content"][kind].setdefault("example", content["example"])
             operation["responses"][status] = {"$ref": f"#/components/responses/Status{status}"}
+
+
+def _bytes(value: Node) -> int:
+    return len(json.dumps(value, separators=(",", ":"), ensure_ascii=False).encode())
 
 
 def _free_name(name: str, taken: Node) -> str:

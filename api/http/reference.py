@@ -11,6 +11,7 @@ from urllib.parse import quote
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from api.http.openapi_sharing import inlined
 from api.web.negotiation import CSV, JSON
 
 METHODS = ("get", "post")
@@ -64,7 +65,7 @@ def columns(operation: Mapping[str, Any]) -> str:
 
 
 def _operations(document: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    for path, item in document["paths"].items():
+    for path, item in inlined(document).items():
         for method in METHODS:
             if method not in item:
                 continue

@@ -8,11 +8,11 @@ OpenAPI document as an `enum`.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, TypeVar
 
-from pydantic import AfterValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, WrapValidator
 from pydantic_core import CoreSchema, core_schema
 
 LARGEST_PAGE = 500
@@ -80,12 +80,13 @@ class Whole(Spelt):
         return int(given) if isinstance(given, float) and given.is_integer() else given
 
 
-def _distinct(values: Iterable[str]) -> list[str]:
-    return sorted(set(values))
+def _distinct(given: Any, read: Callable[[Any], list[str]]) -> list[str]:
+    """Return the words in order; a single one is a list of one."""
+    return sorted(set(read([given] if isinstance(given, str) else given)))
 
 
 Word = TypeVar("Word")
-Several = Annotated[list[Word], Field(max_length=MOST_VALUES), AfterValidator(_distinct)]
+Several = Annotated[list[Word], Field(max_length=MOST_VALUES), WrapValidator(_distinct)]
 
 
 def several(description: str) -> Any:

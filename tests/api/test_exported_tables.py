@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 
 from api.cli import command_line
 from api.cli.command_line import COMMANDS, app
+from api.http.openapi_sharing import inlined
 from api.http.reference import target
 from api.server import handlers
 from api.web.answers import Answer, AnswerRoute
@@ -42,7 +43,7 @@ WHOLE = (
 
 def tables(atlas: Client) -> list[str]:
     """Addresses of every table: each endpoint's example, whole lists, and pages."""
-    paths = atlas.get("/openapi.json").json()["paths"]
+    paths = inlined(atlas.get("/openapi.json").json())
     found = [
         target(path, methods["get"])[0]
         for path, methods in paths.items()

@@ -116,9 +116,10 @@ def help_texts() -> Iterator[Block]:
 
 def openapi() -> Iterator[Block]:
     """Give summaries and descriptions of the HTTP API."""
+    from api.http.openapi_sharing import inlined
     from api.server.app import create_app
 
-    for path, operations in create_app().openapi()["paths"].items():
+    for path, operations in inlined(create_app().openapi()).items():
         for method, operation in operations.items():
             where = f"{method.upper()} {path}"
             said = [operation.get("summary"), *(operation.get("description") or "").split("\n\n")]

@@ -37,7 +37,9 @@ async def recommendations(known: Known, query: Annotated[RequirementsQuery, Quer
 @router.post(
     "/recommendations",
     summary="Recommended sensors and calibrations (requirements in the body)",
-    description=DESCRIPTION,
+    description=(
+        "As GET, with the requirements as JSON. A list of one value may be given as that value."
+    ),
     response_model=Recommendations,
 )
 async def recommend(

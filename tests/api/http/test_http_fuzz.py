@@ -18,6 +18,8 @@ OPERATIONS = [
     ("GET", "/v1/figures/{figure}"),
     ("GET", "/v1/recommendations"),
     ("POST", "/v1/recommendations"),
+    ("GET", "/v1/recommendations/flow"),
+    ("GET", "/v1/recommendations/designs"),
     ("POST", "/v1/calibrations"),
     ("GET", "/v1/algorithms"),
     ("GET", "/v1/datasets"),

@@ -7,15 +7,47 @@ import json
 import jsonschema
 import pytest
 
+from api.http.openapi import LARGEST_EXAMPLE
 from api.server.app import ROUTES
+from tools.bench.service import OPENAPI_BYTES
 
 PROBLEM = "application/problem+json"
 
 
+def resolved(document, value):
+    """Return what a reference refers to, with what stands beside it."""
+    if "$ref" not in value:
+        return value
+    found = document
+    for part in value["$ref"].removeprefix("#/").split("/"):
+        found = found[part]
+    beside = {name: member for name, member in value.items() if name != "$ref"}
+    return {**resolved(document, found), **beside}
+
+
 def operations(document):
+    """Yield path, method and operation, with its parameters and responses in place."""
     for path, item in document["paths"].items():
         for method, operation in item.items():
-            yield path, method, operation
+            parameters = [resolved(document, one) for one in operation.get("parameters", ())]
+            responses = {
+                status: resolved(document, one) for status, one in operation["responses"].items()
+            }
+            yield path, method, {**operation, "parameters": parameters, "responses": responses}
+
+
+def operation_of(document, path, method="get"):
+    return next(one for p, m, one in operations(document) if (p, m) == (path, method))
+
+
+def references(value):
+    if isinstance(value, dict):
+        if isinstance(value.get("$ref"), str):
+            yield value["$ref"]
+        value = list(value.values())
+    if isinstance(value, list):
+        for member in value:
+            yield from references(member)
 
 
 def validator(document, schema):
@@ -46,6 +78,8 @@ def test_every_endpoint_of_the_contract_is_documented(document):
         ("/v1/figures/{figure}", "get"),
         ("/v1/recommendations", "get"),
         ("/v1/recommendations", "post"),
+        ("/v1/recommendations/flow", "get"),
+        ("/v1/recommendations/designs", "get"),
         ("/v1/calibrations", "post"),
         ("/v1/algorithms", "get"),
         ("/v1/datasets", "get"),
@@ -87,17 +121,41 @@ def begins(example, answer):
         kept = answer[: len(example)]
         return bool(example) == bool(answer) and all(map(begins, example, kept))
     if isinstance(answer, str) and example != answer:
-        return example.endswith("…") and answer.startswith(example[:-1]) and len(example) > 100
+        return example.endswith("…") and answer.startswith(example[:-1]) and len(example) > 70
     return example == answer
 
 
 def test_the_document_is_short(atlas):
-    assert len(atlas.get("/openapi.json").content) < 400_000
+    assert len(atlas.get("/openapi.json").content) <= OPENAPI_BYTES == 200_000
+
+
+def test_every_reference_leads_somewhere_and_every_component_is_used(document):
+    used = set(references(document))
+    for reference in used:
+        assert resolved(document, {"$ref": reference})
+    components = {
+        f"#/components/{kind}/{name}" for kind, of in document["components"].items() for name in of
+    }
+    assert components - used == set()
+
+
+def test_columns_are_listed_once_and_sort_takes_them(document):
+    for path, _, operation in operations(document):
+        parameters = {p["name"]: p["schema"] for p in operation["parameters"]}
+        if "fields" in parameters:
+            items = resolved(document, parameters["fields"]["items"])
+            assert len(items["enum"]) > 3
+            sort = resolved(document, parameters["sort"])
+            assert "enum" not in sort, path
 
 
 def test_every_member_and_parameter_is_described(document):
     schemas = document["components"]["schemas"]
-    members = [(n, m, of) for n, s in schemas.items() for m, of in s.get("properties", {}).items()]
+    members = [
+        (name, member, resolved(document, of))
+        for name, schema in schemas.items()
+        for member, of in schema.get("properties", {}).items()
+    ]
     assert len(members) > 700
     assert [(name, member) for name, member, of in members if not of.get("description")] == []
     for path, _, operation in operations(document):
@@ -107,7 +165,7 @@ def test_every_member_and_parameter_is_described(document):
 
 def test_every_example_validates_against_its_schema(document):
     checked = 0
-    for path, _, operation in operations(document):
+    for _, _, operation in operations(document):
         places = [p for p in operation.get("parameters", ()) if "example" in p]
         places += operation.get("requestBody", {}).get("content", {}).values()
         for response in operation["responses"].values():
@@ -115,13 +173,22 @@ def test_every_example_validates_against_its_schema(document):
         for place in places:
             validator(document, place["schema"]).validate(place["example"])
             checked += 1
-        answers = operation["responses"]["200"].get("content", {})
-        files = {"image/png", "application/vnd.apache.parquet"}
-        files |= {"application/ld+json", "application/linkset+json"}
-        assert (
-            path == "/healthz" or files & set(answers) or "example" in answers["application/json"]
-        )
     assert checked > 100
+
+
+def test_short_answers_have_an_example_and_tables_their_columns(document):
+    whole, tables = 0, 0
+    for path, _, operation in operations(document):
+        content = operation["responses"]["200"].get("content", {})
+        example = content.get("application/json", {}).get("example")
+        if example is not None:
+            assert len(json.dumps(example)) <= LARGEST_EXAMPLE, path
+            whole += 1
+        if "text/csv" in content:
+            assert content["text/csv"]["example"].count("\n") == 1, path
+            tables += 1
+    assert whole > 10
+    assert tables > 25
 
 
 @pytest.mark.slow
@@ -143,40 +210,37 @@ def test_examples_are_what_is_answered(atlas, document):
             else:
                 answer = atlas.get(path, accept, params=query)
             assert answer.status_code == 200
-            example = content[accept]["example"]
+            example = content[accept].get("example")
             if accept == "text/csv":
-                assert answer.text.startswith(example)
-                shown, whole = (
-                    list(csv.reader(io.StringIO(t), strict=True)) for t in (example, answer.text)
-                )
-                assert len(shown) == min(2, len(whole))
+                header = next(csv.reader(io.StringIO(answer.text), strict=True))
+                assert next(csv.reader(io.StringIO(example), strict=True)) == header, path
             else:
-                assert begins(example, answer.json()), path
+                assert example is None or begins(example, answer.json()), path
                 validator(document, content[accept]["schema"]).validate(answer.json())
             checked += 1
     assert checked >= 40
 
 
-def test_examples_of_refusals_are_what_is_refused(atlas, document):
+def test_refusals_stand_once_for_each_status_with_what_is_refused(atlas, document):
     problem = validator(document, {"$ref": "#/components/schemas/ProblemDocument"})
-    checked = 0
-    for path, method, operation in operations(document):
-        for status, response in operation["responses"].items():
-            if not status.startswith("4"):
-                continue
+    for path, item in document["paths"].items():
+        for operation in item.values():
+            for status, response in operation["responses"].items():
+                if status.startswith("4"):
+                    assert response == {"$ref": f"#/components/responses/Status{status}"}, path
+    shown = {}
+    for name, response in document["components"]["responses"].items():
+        if name.startswith("Status4"):
             content = response["content"][PROBLEM]
             assert content["schema"] == {"$ref": "#/components/schemas/ProblemDocument"}
-            example = content.get("example")
-            if example is None:
-                continue
-            problem.validate(example)
-            assert example["status"] == int(status)
-            checked += 1
-            if method == "get" and status == "400":
-                wrong = example["errors"][0]["parameter"]
-                live = atlas.get(f"{example['instance']}?{wrong}=1").json()
-                assert live == example, path
-    assert checked == 77
+            if "example" in content:
+                shown[int(name.removeprefix("Status"))] = content["example"]
+    assert set(shown) == {400, 404, 422}
+    for status, example in shown.items():
+        problem.validate(example)
+        assert example["status"] == status
+    wrong = shown[400]["errors"][0]["parameter"]
+    assert atlas.get(f"{shown[400]['instance']}?{wrong}=1").json() == shown[400]
 
 
 @pytest.mark.slow
@@ -196,6 +260,9 @@ def test_examples_of_refusals_are_what_is_refused(atlas, document):
         "/v1/figures/publications",
         "/v1/recommendations",
         "/v1/recommendations?max_error_deg=0.000001",
+        "/v1/recommendations?include=calibrations,paths,designs",
+        "/v1/recommendations/flow?task=Accuracy",
+        "/v1/recommendations/designs?survive=albedo",
         "/v1/recommendations?task=Accuracy&exclude_task=Accuracy",
         "/v1/algorithms",
         "/v1/datasets",
@@ -232,7 +299,7 @@ def test_whole_answers_fit_their_schemas(atlas, document, path):
         "/v1/figures/models": "/v1/figures/{figure}",
         "/v1/figures/publications": "/v1/figures/{figure}",
     }.get(plain, plain)
-    content = document["paths"][template]["get"]["responses"]["200"]["content"]
+    content = operation_of(document, template)["responses"]["200"]["content"]
     answer = atlas.get(path)
     assert answer.status_code == 200
     schema = content["application/json"]["schema"]
@@ -243,8 +310,7 @@ def test_whole_answers_fit_their_schemas(atlas, document, path):
 def test_documented_words_are_the_vocabulary(atlas, document):
     taxonomy = atlas.get("/v1/taxonomy").json()["attributes"]
     parameters = {
-        p["name"]: p["schema"]
-        for p in document["paths"]["/v1/recommendations"]["get"]["parameters"]
+        p["name"]: p["schema"] for p in operation_of(document, "/v1/recommendations")["parameters"]
     }
     body = document["paths"]["/v1/recommendations"]["post"]["requestBody"]["content"]
     reference = body["application/json"]["schema"]["$ref"]
@@ -255,8 +321,9 @@ def test_documented_words_are_the_vocabulary(atlas, document):
     for attribute, entries in taxonomy.items():
         words = [entry["value"] for entry in entries]
         for name in (attribute, f"exclude_{attribute}"):
-            assert parameters[name]["items"]["enum"] == words
-            assert properties[name]["items"]["enum"] == words
+            for schema in (parameters[name], properties[name]):
+                items = resolved(document, schema)["items"]
+                assert resolved(document, items)["enum"] == words
 
 
 def test_the_document_is_valid_openapi_without_foreign_addresses(document):

@@ -221,3 +221,19 @@ def test_a_query_is_read_as_a_body_of_the_same_requirements(atlas, query, status
         assert posted.content == answer.content
     else:
         assert answer.json()["errors"]
+
+
+def test_a_body_takes_one_value_for_a_list_of_it(atlas):
+    for name, value in [
+        ("detector", "CMOS"),
+        ("exclude_task", "Cost"),
+        ("survive", "albedo"),
+        ("include", "paths"),
+    ]:
+        single = atlas.post(PATH, json={name: value})
+        assert single.status_code == 200, name
+        assert single.content == atlas.post(PATH, json={name: [value]}).content
+    for wrong in ("CMO", 1, None, {"CMOS": 1}):
+        refused = atlas.post(PATH, json={"detector": wrong})
+        assert refused.status_code == 422, wrong
+        assert refused.json()["errors"][0]["parameter"] == "detector"
