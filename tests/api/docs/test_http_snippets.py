@@ -24,8 +24,22 @@ def run(snippet, address):
     return names
 
 
+def test_a_client_of_the_standard_library_prints_the_first_architecture(atlas, address, capsys):
+    snippet = SNIPPETS[0]
+    assert len(snippet.strip().splitlines()) <= 15
+    assert set(re.findall(r"^(?:import|from) (\w+)", snippet, re.MULTILINE)) == {"json", "urllib"}
+    asked = run(snippet, address)["requirements"]
+    first = atlas.post("/v1/recommendations", json=asked).json()["architectures"][0]
+    best = first["best"]["measured"]
+    assert first["rank"] == 1
+    assert capsys.readouterr().out == (
+        f"{first['detector']} {first['mask']}: {best['extractor']} + {best['model']}\n"
+        f"own error {best['own_deg']:.3g} deg\n"
+    )
+
+
 def test_a_table_is_one_line(atlas, address):
-    best = run(SNIPPETS[0], address)["best"]
+    best = run(SNIPPETS[1], address)["best"]
     items = atlas.get("/v1/leaderboard/architectures").json()["items"]
     assert list(best["rms_deg"].dropna()) == [
         i["rms_deg"] for i in items if i["rms_deg"] is not None
@@ -34,13 +48,13 @@ def test_a_table_is_one_line(atlas, address):
 
 
 def test_an_answer_with_a_shape_is_two(address):
-    names = run(SNIPPETS[1], address)
+    names = run(SNIPPETS[2], address)
     names["atlas"].close()
     assert names["first"]["rank"] == 1
 
 
 def test_a_long_list_is_walked_to_its_end(atlas, address):
-    scores = run(SNIPPETS[2], address)["scores"]
+    scores = run(SNIPPETS[3], address)["scores"]
     total = atlas.get("/v1/results?condition=nominal&limit=1").json()["total"]
     assert len(scores) == total > 500
     assert not scores.duplicated(["dataset", "extractor", "model"]).any()
