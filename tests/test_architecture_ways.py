@@ -112,8 +112,9 @@ def test_a_query_passes_the_functions_listed_from_http_to_answer() -> None:
 
     asyncio.run(asked("task=Cost"))  # facts and measurements are loaded by the first query
     landmarks = [
-        "registry/judging.py: Question.matching_designs",
-        "registry/answer_json.py: answer_json",
+        "registry/answer.py: Answer.__init__",
+        "registry/judging.py: Question.matching_places",
+        "api/service/recommendations.py: document",
         "api/web/answers.py: Answer.representation",
         "api/web/representations.py: Representation.respond",
     ]

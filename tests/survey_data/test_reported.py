@@ -78,4 +78,7 @@ def test_cells_that_the_survey_tells_of_rest_on_its_text() -> None:
 def test_requirements_ask_by_the_limits_of_the_taxonomy() -> None:
     taxonomy = survey_data.load().taxonomy
     limits = taxonomy[taxonomy["attribute"] == "accuracy"].set_index("value")["max_deg"].dropna()
-    assert dict(CLASSES_DEG) == pytest.approx(limits.to_dict())
+    least = taxonomy[taxonomy["attribute"] == "accuracy"].set_index("value")["min_deg"].to_dict()
+    assert {name: low for name, (low, _) in CLASSES_DEG.items()} == pytest.approx(least)
+    ends = {name: high for name, (_, high) in CLASSES_DEG.items() if high < math.inf}
+    assert ends == pytest.approx(limits.to_dict())

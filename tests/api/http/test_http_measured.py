@@ -242,7 +242,7 @@ def test_recommendations_carry_what_is_measured(measured):
     assert place["best"] == calibration
     logs = [math.log(error / OWN) for error in (0.02, *UNITS["spm"])]
     ratios = [sorted(logs)[int((at + 0.5) / 2)] for at in range(10)]
-    spread = math.exp(2.0 * statistics.stdev(ratios) / math.sqrt(10))
+    spread = math.exp(2.0 * statistics.stdev(ratios) / math.sqrt(1 + len(UNITS["spm"])))
     assert calibration["measured"] == {
         "dataset": CMOS,
         "extractor": "bctm",
