@@ -7,6 +7,7 @@ import pytest
 
 from benchmark.results.pipelines import pipelines, standard_benches
 from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.times import read_times
 from registry import studies
 from registry.measured_pipelines import Measurements
 from registry.studies import AttributeValue, Facts, Study
@@ -49,7 +50,8 @@ def facts_of(survey: Facts) -> Callable[[Sequence[Row]], Facts]:
 
 @pytest.fixture(scope="session")
 def published() -> Measurements:
-    """The published measurements."""
+    """The published measurements, with their times."""
     store = Store(PUBLISHED)
-    rows = pipelines(store.rows(unit=None), bench_deg=standard_benches(store.pins()))
+    times = read_times(store.directory).latency_us
+    rows = pipelines(store.rows(unit=None), times, standard_benches(store.pins()))
     return Measurements(rows)

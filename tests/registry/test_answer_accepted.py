@@ -14,6 +14,7 @@ from registry.comparison import contradictions
 from registry.measured_pipelines import Measurements
 from registry.recommendation import recommend
 from registry.studies import Facts
+from survey_data.processors import factor
 from tests.registry.brute_force import BruteForce, expanded
 from tests.registry.drawn_questions import drawn_questions
 
@@ -79,6 +80,23 @@ def test_power_is_of_three_products_or_unknown_and_self_powered_is_said(
         own = [p.family for p in one.place.products if p.supply == "self-powered"]
         assert all(family in measure.words for family in own)
     assert "self-powered" in said["CMOS", "Encoded"]
+
+
+def test_a_latency_is_judged_by_published_times_and_the_readers_processor(
+    published: Measurements,
+) -> None:
+    asked = {"max_error_deg": 0.5, "max_latency_us": 100.0}
+    here = recommend(asked, published)
+    assert len(measured(here)) > 1
+    assert all(
+        one.best.latency_us <= 100.0
+        for one in measured(here)
+        if one.best is not None and one.best.latency_us is not None
+    )
+    slow = recommend({**asked, "processor": "gr712rc"}, published)
+    assert 0 < len(measured(slow)) < len(measured(here))
+    same = recommend({**asked, "processor": str(factor("gr712rc"))}, published)
+    assert places(same) == places(slow)
 
 
 def test_a_bench_that_stands_in_the_way_is_said_and_the_one_named_would_do(
