@@ -189,11 +189,11 @@ def _share_responses(document: Node, operations: list[Node]) -> None:
         for status, response in operation["responses"].items():
             if status.startswith("2"):
                 continue
-            known = components.setdefault(f"Status{status}", response)
+            known = components.setdefault(status, response)
             for kind, content in response.get("content", {}).items():
                 if "example" in content:
                     known["content"][kind].setdefault("example", content["example"])
-            operation["responses"][status] = {"$ref": f"#/components/responses/Status{status}"}
+            operation["responses"][status] = {"$ref": f"#/components/responses/{status}"}
 
 
 def _bytes(value: Node) -> int:

@@ -61,7 +61,8 @@ def words(schema: Mapping[str, Any]) -> tuple[list[str], int, str]:
 def columns(operation: Mapping[str, Any]) -> str:
     """Return what an operation's CSV has as columns, as a sentence; empty where it has no CSV."""
     content = operation["responses"]["200"].get("content", {})
-    return str(content[CSV]["schema"].get("description", "")) if CSV in content else ""
+    header = content.get(CSV, {}).get("example", "").strip()
+    return f"Columns: {header.replace(',', ', ')}." if header else ""
 
 
 def _operations(document: Mapping[str, Any]) -> Iterator[dict[str, Any]]:

@@ -81,7 +81,6 @@ class Whole(Spelt):
 
 
 def _distinct(given: Any, read: Callable[[Any], list[str]]) -> list[str]:
-    """Return the words in order; a single one is a list of one."""
     return sorted(set(read([given] if isinstance(given, str) else given)))
 
 

@@ -17,6 +17,7 @@ from pydantic import BaseModel, ConfigDict
 from starlette.types import Message, Receive, Scope, Send
 
 from api.http.openapi import describe
+from api.http.openapi_sharing import inlined
 from api.http.reference import target
 from api.schema.parameters import OneOf
 from api.server import app as service
@@ -248,7 +249,7 @@ def test_an_operation_that_takes_any_text_has_no_example_of_a_refused_value() ->
 
     app.state.knowledge = Knowledge()
     routes = [route for route in app.routes if isinstance(route, AnswerRoute)]
-    (operation,) = describe(app, routes)["paths"]["/free"].values()
+    (operation,) = inlined(describe(app, routes))["/free"].values()
     said = operation["responses"]
     assert said["200"]["content"]["application/json"]["example"] == {"words": "sun"}
     assert "example" not in said["422"]["content"]["application/problem+json"]

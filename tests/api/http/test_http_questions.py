@@ -175,7 +175,7 @@ def test_query_and_body_are_refused_in_the_same_words(query, body, expected):
 @pytest.mark.parametrize(
     ("body", "expected"),
     [
-        ({"task": "FOV"}, r"\blist\b.*Accuracy, Cost, FOV"),
+        ({"task": 5}, r"\blist\b.*Accuracy, Cost, FOV"),
         ({"max_error_deg": "1"}, r"number.*\b0\b.*\b180\b"),
         ({"max_error_deg": True}, r"number.*\b0\b.*\b180\b"),
         ({"max_error_deg": None}, r"number.*\b0\b.*\b180\b"),

@@ -48,6 +48,13 @@ def test_every_operation_and_parameter_is_told(atlas, page):
                 assert parameter["name"] in page.words
 
 
+def test_the_columns_of_every_table_are_listed(atlas, page):
+    text = " ".join(page.words)
+    for path in ("/v1/results", "/v1/advice"):
+        header = atlas.get(f"{path}?format=csv&limit=1").text.partition("\n")[0]
+        assert f"Columns: {header.replace(',', ', ')}." in text
+
+
 def test_it_needs_no_script_and_no_other_server(page):
     assert "script" not in page.tags
     assert not [link for link in page.links if re.match(r"(?:https?:)?//", link)]
