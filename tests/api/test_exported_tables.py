@@ -22,6 +22,7 @@ from benchmark.leaderboard import pages
 from files.csv_writing import escape_formulas, unescape_formulas
 from registry.taxonomy import NONE_STATED, taxonomy_rows
 from tests.api.conftest import Client
+from tests.api.described import paths_with_parameters
 
 WORDS = frozenset({"none", "nan", "null", "n/a", "na", "<na>", "nat", "inf", "-inf", "undefined"})
 #: A term of the glossary, and names of sensors in JSON, which has a null.
@@ -42,7 +43,7 @@ WHOLE = (
 
 def tables(atlas: Client) -> list[str]:
     """Addresses of every table: each endpoint's example, whole lists, and pages."""
-    paths = atlas.get("/openapi.json").json()["paths"]
+    paths = paths_with_parameters(atlas)
     found = [
         target(path, methods["get"])[0]
         for path, methods in paths.items()
