@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from api.schema.requirements import Requirements as Asked
-from api.service.recommendations import document, reason
+from api.service.recommendations import document
 from registry.answer import Answer, RankedArchitecture
 from registry.comparison import contradictions
 from registry.measured_pipelines import Measurements
+from registry.reasons import reason
 from registry.recommendation import recommend
 from registry.studies import Facts
 from tests.registry.brute_force import BruteForce, expanded
