@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 from typing import Any
@@ -34,13 +33,14 @@ from api.service.documents import Document, list_document
 from api.service.knowledge import Knowledge
 from api.service.pagination import Page, page
 from api.service.problems import Problem, Violation
+from api.service.reasons import notes, reason
 from registry import answer as found_by
 from registry.answer import Answer, RankedArchitecture
 from registry.comparison import calibration_name, contradictions
 from registry.measured_pipelines import Measurements
 from registry.paths import PATH_LEVELS, answer_flow
 from registry.recommendation import recommend
-from registry.relaxation import Explanation, in_words
+from registry.relaxation import Explanation
 from registry.reports import Report
 from registry.requirements import PARAMETERS, SETTINGS
 from registry.studies import Facts
@@ -51,7 +51,6 @@ MOST_REPORTS = 3
 """Reports named for an architecture; `links` leads to all."""
 
 PATH = "/v1/recommendations"
-_FEWEST_TIED = 3
 
 
 def ask(asked: Requirements, measured: Measurements, facts: Facts) -> Answer:
@@ -123,7 +122,7 @@ def document(
         order=answer.order,
         count=len(answer.architectures),
         designs=answer.design_count,
-        notes=list(_notes(answer)),
+        notes=list(notes(answer)),
         cards=[] if answer.is_asked else list(_cards(answer)),
         architectures=[architecture(answer, one, most) for one in shown],
         next=next_page,
@@ -219,82 +218,6 @@ def flow(answer: Answer) -> AnswerFlow:
         links=[Link(**link.to_dict()) for link in made.links],
         left_out=[LeftOut(**left.to_dict()) for left in made.left_out],  # type: ignore[arg-type]
     )
-
-
-def reason(answer: Answer, one: RankedArchitecture) -> str:
-    """Return in one sentence why an architecture is in the answer."""
-    said = []
-    if "reported" in one.meets:
-        more = len({report.family for report in one.reports}) - 1
-        said.append(one.reports[0].words + (f" ({more} more meet all)" if more else ""))
-    elif one.reports:
-        said.append(one.reports[0].words + _lacks(answer, one, 0))
-    if one.best is None or one.best.pipeline is None:
-        said.append("not measured here")
-    else:
-        meets = "measured" in one.meets
-        said.append(
-            _measured_words(answer, one.best, meets=meets) + _lacks(answer, one, 1) * (not meets)
-        )
-    sentence = "; ".join(said)
-    if not one.place.is_built:
-        sentence = f"measured here, never built: {sentence}"
-    return sentence[0].upper() + sentence[1:] + "."
-
-
-def _lacks(answer: Answer, one: RankedArchitecture, kind: int) -> str:
-    """Return in brackets which requirements a kind of evidence misses or leaves unknown."""
-    value_of = answer.question.requirements.value_of
-    found = {
-        state: [
-            in_words(name, value)
-            for name, states in one.evidence.items()
-            if states[kind] == state and (value := value_of(name)) is not None
-        ]
-        for state in ("misses", "unknown")
-    }
-    said = [f"{state}: {', '.join(names)}" for state, names in found.items() if names]
-    return f" ({'; '.join(said)})" if said else ""
-
-
-def _measured_words(answer: Answer, best: found_by.Calibration, *, meets: bool) -> str:
-    pipeline, own, asked = best.pipeline, best.own, answer.question.requirements
-    assert pipeline is not None  # noqa: S101 - the caller has looked
-    name = f"{pipeline.extractor} + {pipeline.model}"
-    if own is None or best.interval_deg is None:
-        return f"{name} on {pipeline.dataset} answers too seldom, or not over this field"
-    over = "" if own.field_deg in {None, 360.0} else f" over {own.field_deg:g} deg"
-    said = f"{name} has an own error of {own.error_deg:.3g} deg{over} ({pipeline.dataset}, "
-    said += f"{own.condition})"
-    if asked.bench_deg is not None and best.judged_deg is not None:
-        said += f", on your bench {best.judged_deg:.3g} deg"
-    is_over = (best.judged_deg or 0.0) > (asked.largest_deg or math.inf)
-    if best.needs_bench_deg and (meets if asked.bench_deg is None else is_over):
-        said += f", and needs a calibration bench of {best.needs_bench_deg:g} deg or better"
-    return said
-
-
-def _notes(answer: Answer) -> Iterator[str]:
-    question, asked = answer.question, answer.question.requirements
-    if asked.mission is not None:
-        yield f"Mission {asked.mission}: the requirements listed are its set, with your changes."
-    if asked.light is not None:
-        yield f"Distance from the Sun, {asked.light.words}."
-    if asked.bench_deg is not None and asked.largest_deg is not None:
-        tied = [one for one in answer.architectures if one.rank == 1 and "measured" in one.meets]
-        if len(tied) >= _FEWEST_TIED:
-            yield f"{len(tied)} tie on this bench; choose by power, field or latency."
-        if answer.on_better_bench is not None:
-            more, bench = answer.on_better_bench
-            yield (
-                f"The calibration bench of {asked.bench_deg:g} deg stands in the way of {more} "
-                f"architecture{'s' * (more > 1)}; the first of them needs one of {bench:g} deg or "
-                "better."
-            )
-    if asked.max_latency_us is not None:
-        untimed = int((question.table.latency_us != question.table.latency_us).sum())
-        if untimed:
-            yield f"{untimed} pipelines were not timed; the latency limit cannot judge them."
 
 
 def _designs(answer: Answer, asked: Requirements) -> Designs:

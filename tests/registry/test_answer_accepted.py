@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from api.schema.requirements import Requirements as Asked
-from api.service.recommendations import document, reason
+from api.service.reasons import reason
+from api.service.recommendations import document
 from registry.answer import Answer, RankedArchitecture
 from registry.comparison import contradictions
 from registry.measured_pipelines import Measurements

@@ -67,9 +67,7 @@ _RESULTS = "benchmark/results"
 _DATASETS = "benchmark/datasets"
 _MODELS = "algorithms/models"
 _EXTRACTORS = "algorithms/extractors"
-_ANSWERS = _in(
-    "registry", "draws", "recommendation_measured", "recommendation_survey", "recommendation"
-)
+_ANSWERS = _in("registry", "answer_accepted", "answer_cases", "answer_brute_force")
 
 GROUPS: Mapping[str, Group] = {
     "metrics": Group(
@@ -140,28 +138,15 @@ GROUPS: Mapping[str, Group] = {
             "registry/resolution.py": _in("registry", "resolution", "resolution_sensors"),
             "registry/fitting.py": _in("registry", "resolution"),
             "registry/sensors.py": _in("registry", "resolution_sensors"),
-            "registry/draws.py": _in("registry", "draws", "recommendation"),
-            "registry/answer_json.py": _ANSWERS,
-            "registry/texts/calibrations.py": _ANSWERS,
+            "registry/draws.py": _in("registry", "draws", "answer_brute_force"),
+            "registry/ranking.py": (*_in("registry", "ranking"), *_ANSWERS),
+            "registry/paths.py": _in("registry", "paths"),
+            "registry/relaxation.py": (*_in("registry", "relaxation"), *_ANSWERS),
             "registry/evidence.py": _in("api/figures", "evidence_map"),
             "registry/possibility.py": _in("api/figures", "evidence_map"),
-            "registry/contradiction.py": (
-                *_in("registry", "recommendation_measured", "recommendation"),
-                *_in("api/cli", "cli_recommend"),
-            ),
             "registry/fidelity/*": _in("registry", "fidelity", "resolution"),
             "registry/catalogue.py": _in("registry", "catalogue", "resolution"),
-            "registry/*": _in(
-                "registry",
-                "draws",
-                "task_measures",
-                "recommendation_order_of_questions",
-                "recommendation_measured",
-                "relaxation",
-                "requirements",
-                "recommendation_survey",
-                "recommendation",
-            ),
+            "registry/*": (*_in("registry", "draws", "ranking", "requirements"), *_ANSWERS),
         },
     ),
     "datasets": Group(

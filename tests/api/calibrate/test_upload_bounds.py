@@ -50,7 +50,7 @@ def task(tmp_path: Path) -> Path:
     """A directory as the process finds it."""
     (tmp_path / "0").mkdir()
     (tmp_path / "0" / "bench.csv").write_bytes(FILE.data)
-    stated = {"names": ["0/bench.csv"], "config": "", "apply": False}
+    stated = {"names": ["0/bench.csv"], "config": "", "apply": False, "model": ""}
     (tmp_path / "task.json").write_text(json.dumps(stated), encoding="utf-8")
     return tmp_path
 

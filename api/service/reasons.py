@@ -1,0 +1,88 @@
+"""Sentences of an answer: why an architecture is in it, and what holds of the whole answer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from registry.answer import Answer, Calibration, RankedArchitecture
+from registry.relaxation import in_words
+
+_FEWEST_TIED = 3
+
+
+def reason(answer: Answer, one: RankedArchitecture) -> str:
+    """Return in one sentence why an architecture is in the answer."""
+    said = []
+    if "reported" in one.meets:
+        more = len({report.family for report in one.reports}) - 1
+        said.append(one.reports[0].words + (f" ({more} more meet all)" if more else ""))
+    elif one.reports:
+        said.append(one.reports[0].words + _lacks(answer, one, 0))
+    if one.best is None or one.best.pipeline is None:
+        said.append("not measured here")
+    else:
+        meets = "measured" in one.meets
+        said.append(
+            _measured_words(answer, one.best, meets=meets) + _lacks(answer, one, 1) * (not meets)
+        )
+    sentence = "; ".join(said)
+    if not one.place.is_built:
+        sentence = f"measured here, never built: {sentence}"
+    return sentence[0].upper() + sentence[1:] + "."
+
+
+def _lacks(answer: Answer, one: RankedArchitecture, kind: int) -> str:
+    """Return in brackets which requirements a kind of evidence misses or leaves unknown."""
+    value_of = answer.question.requirements.value_of
+    found = {
+        state: [
+            in_words(name, value)
+            for name, states in one.evidence.items()
+            if states[kind] == state and (value := value_of(name)) is not None
+        ]
+        for state in ("misses", "unknown")
+    }
+    said = [f"{state}: {', '.join(names)}" for state, names in found.items() if names]
+    return f" ({'; '.join(said)})" if said else ""
+
+
+def _measured_words(answer: Answer, best: Calibration, *, meets: bool) -> str:
+    pipeline, own, asked = best.pipeline, best.own, answer.question.requirements
+    assert pipeline is not None  # noqa: S101 - the caller has looked
+    name = f"{pipeline.extractor} + {pipeline.model}"
+    if own is None or best.interval_deg is None:
+        return f"{name} on {pipeline.dataset} answers too seldom, or not over this field"
+    over = "" if own.field_deg in {None, 360.0} else f" over {own.field_deg:g} deg"
+    said = f"{name} has an own error of {own.error_deg:.3g} deg{over} ({pipeline.dataset}, "
+    said += f"{own.condition})"
+    if asked.bench_deg is not None and best.judged_deg is not None:
+        said += f", on your bench {best.judged_deg:.3g} deg"
+    is_over = (best.judged_deg or 0.0) > (asked.largest_deg or math.inf)
+    if best.needs_bench_deg and (meets if asked.bench_deg is None else is_over):
+        said += f", and needs a calibration bench of {best.needs_bench_deg:g} deg or better"
+    return said
+
+
+def notes(answer: Answer) -> Iterator[str]:
+    """Yield what holds of the whole answer: its mission, light, bench and running times."""
+    question, asked = answer.question, answer.question.requirements
+    if asked.mission is not None:
+        yield f"Mission {asked.mission}: the requirements listed are its set, with your changes."
+    if asked.light is not None:
+        yield f"Distance from the Sun, {asked.light.words}."
+    if asked.bench_deg is not None and asked.largest_deg is not None:
+        tied = [one for one in answer.architectures if one.rank == 1 and "measured" in one.meets]
+        if len(tied) >= _FEWEST_TIED:
+            yield f"{len(tied)} tie on this bench; choose by power, field or latency."
+        if answer.on_better_bench is not None:
+            more, bench = answer.on_better_bench
+            yield (
+                f"The calibration bench of {asked.bench_deg:g} deg stands in the way of {more} "
+                f"architecture{'s' * (more > 1)}; the first of them needs one of {bench:g} deg or "
+                "better."
+            )
+    if asked.max_latency_us is not None:
+        untimed = int((question.table.latency_us != question.table.latency_us).sum())
+        if untimed:
+            yield f"{untimed} pipelines were not timed; the latency limit cannot judge them."
