@@ -1,8 +1,9 @@
-"""Croissant metadata and link sets of data sets and leaderboard, and the software's description."""
+"""Croissant metadata, link sets, the software's description, and the versions of what is known."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from api.metadata import served, signposting
 from api.metadata.codemeta import codemeta
@@ -60,4 +61,17 @@ def _samples(known: Knowledge, name: str) -> dict[str, Callable[[], bytes]]:
     return {
         "errors": lambda: known.measurements.file(samples.path_of(name)),
         "directions": lambda: known.measurements.file(samples.path_of(name, directions=True)),
+    }
+
+
+def health(known: Knowledge, version: str) -> dict[str, Any]:
+    """Return the status of a service of a version, with versions of facts and record."""
+    return {
+        "status": "ok",
+        "version": version,
+        "studies": len(known.facts.studies),
+        "datasets": len(known.measurements.presets),
+        "scores": len(known.measurements.scores),
+        "facts_sha256": known.facts_digest,
+        "record_sha256": known.measurements.digest,
     }

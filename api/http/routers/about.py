@@ -9,7 +9,7 @@ from pydantic_core import to_json
 
 from api.http.reference import reference
 from api.schema.service import Health
-from api.service import about as service
+from api.service import metadata as service
 from api.web.answers import StrictRoute
 from api.web.dependencies import JSON_ONLY, NO_PARAMETERS, Known
 from api.web.negotiation import JSON
