@@ -67,10 +67,10 @@ class Calibration(Shape):
 class EvidenceState(Shape):
     """What the kinds of evidence say of a requirement; null where a kind cannot judge it."""
 
-    requirement: str
-    reported: State | None
-    measured: State | None
-    advised: State | None
+    requirement: str = Field(description="Requirement.")
+    reported: State | None = Field(description="By reports.")
+    measured: State | None = Field(description="By measurements.")
+    advised: State | None = Field(description="By the survey's advice.")
 
 
 class Advised(Shape):
@@ -121,7 +121,7 @@ class Card(Shape):
     title: Literal["most built", "advised for accuracy", "lowest simulated"]
     detector: str
     mask: str
-    built: bool
+    built: bool = Field(description="Whether a study or product realises it.")
     words: str
 
 
@@ -138,15 +138,15 @@ class Contradiction(Shape):
     other: str = Field(description="Calibration with the smallest own error there.")
     other_own_deg: float = Field(description="Its own error, degrees.")
     studies: int = Field(description="Number of studies that used the first.")
-    ratio: float | None
-    sentence: str
+    ratio: float | None = Field(description="First error over the other.")
+    sentence: str = Field(description="The comparison in words.")
 
 
 class Relaxation(Shape):
     """A change of the requirements that gives results."""
 
-    drop: dict[str, Any]
-    change: dict[str, Any]
+    drop: dict[str, Any] = Field(description="Requirements to leave out.")
+    change: dict[str, Any] = Field(description="Requirements with their new values.")
     architectures: int
     words: str
 
