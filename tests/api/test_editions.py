@@ -18,10 +18,11 @@ from registry.studies import facts
 from tests.api.conftest import Client
 
 LATER = "Herman2025c"
-TABLES = ("/v1/studies", "/v1/recommendations", *(f"/v1/flows/{name}" for name in CHARTS))
+ANSWERS = ("/v1/recommendations", "/v1/recommendations/flow", "/v1/recommendations/designs")
+TABLES = ("/v1/studies", *ANSWERS, *(f"/v1/flows/{name}" for name in CHARTS))
 FIGURES = (*TITLES, MATRIX)
 SENSORS = ("/detectors", "/masks", "/detectors/CMOS", "/masks/Slit", "/architectures/CMOS/Slit")
-PAGES = ("/", "/studies", "/scatter", *(f"/figures/{name}" for name in FIGURES))
+PAGES = ("/", "/studies", *(f"/figures/{name}" for name in FIGURES))
 TWINS = ("/answer", "/studies", "/compare", *SENSORS, *(f"/figures/{name}" for name in FIGURES))
 
 
