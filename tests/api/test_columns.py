@@ -76,8 +76,8 @@ def test_published_headers_stay_as_they_are():
         AttributeValue: "attribute,value,basis,source,source_name,note,role,name_in_study,nearest",
         Score: "dataset,condition,extractor,model,status,reason,rms_deg,charged_deg,aligned_deg,"
         "bound_deg,bound_unit_deg,availability,false_sun",
-        LeaderboardRow: "rank,group,tied,dataset,condition,extractor,model,own_deg,own_se,"
-        "on_bench_deg,on_bench_basis,rms_deg,charged_deg",
+        LeaderboardRow: "rank,group,tied,dataset,condition,extractor,model,status,"
+        "reason,rms_deg,charged_deg",
         ClaimRow: "id,section,section_name,study,statement,verdict,trials,explanation",
     }
     for model, head in heads.items():
