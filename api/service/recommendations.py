@@ -111,7 +111,9 @@ def document(
     next_page : cursor of the next one
     """
     most = asked.calibrations if "calibrations" in asked.include else 0
-    asking = urlencode(answer.question.requirements.to_dict(), doseq=True)
+    chosen = {name: getattr(asked, name) for name in ("edition", "sort")}
+    changed = {n: one for n, one in chosen.items() if one != type(asked).model_fields[n].default}
+    asking = urlencode({**answer.question.requirements.to_dict(), **changed}, doseq=True)
     links = {
         "csv": f"{PATH}?{asking}&format=csv" if asking else f"{PATH}?format=csv",
         "flow": f"{PATH}/flow?{asking}" if asking else f"{PATH}/flow",

@@ -237,3 +237,13 @@ def test_a_body_takes_one_value_for_a_list_of_it(atlas):
         refused = atlas.post(PATH, json={"detector": wrong})
         assert refused.status_code == 422, wrong
         assert refused.json()["errors"][0]["parameter"] == "detector"
+
+
+def test_links_of_an_answer_lead_to_the_same_order_of_the_same_edition(atlas):
+    asked = "max_error_deg=0.1&edition=all&sort=studies"
+    links = atlas.get(f"/v1/recommendations?{asked}").json()["links"]
+    whole = atlas.get(f"/v1/recommendations?{asked}&format=csv").text
+    assert atlas.get(links["csv"]).text == whole
+    assert whole != atlas.get("/v1/recommendations?max_error_deg=0.1&format=csv").text
+    flow = f"/v1/recommendations/flow?{asked}"
+    assert atlas.get(links["flow"]).json() == atlas.get(flow).json()
