@@ -25,6 +25,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from urllib.parse import urlsplit
 
+from api.http.openapi_sharing import inlined
 from tools.load.crowd import Crowd, crowd
 from tools.load.fuzzing import fuzz
 from tools.load.unread import unread
@@ -85,9 +86,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with running(SERVICE) as (place, _):
         url = f"http://{place[0]}:{place[1]}"
         with urllib.request.urlopen(f"{url}/openapi.json", timeout=600) as answer:
-            document = json.load(answer)
+            paths = inlined(json.load(answer))
         try:
-            found = fuzz(place, document, given.requests, seed)
+            found = fuzz(place, paths, given.requests, seed)
             print(f"fuzzed: {given.requests} requests, {dict(sorted(found.items()))}", flush=True)
         except AssertionError as error:
             broken.append(f"fuzzed: {error}")

@@ -25,9 +25,9 @@ HEADERS = (
 )
 
 
-def request(draw: random.Random, document: Mapping[str, Any]) -> bytes:
-    """Return a request made of what the document declares and of what it does not."""
-    template, item = draw.choice(sorted(document["paths"].items()))
+def request(draw: random.Random, paths: Mapping[str, Any]) -> bytes:
+    """Return a request made of what the document's paths declare and of what they do not."""
+    template, item = draw.choice(sorted(paths.items()))
     operation = draw.choice(list(item.values()))
     declared = operation.get("parameters", ())
     path = template
@@ -35,7 +35,7 @@ def request(draw: random.Random, document: Mapping[str, Any]) -> bytes:
     for parameter in declared:
         if parameter["in"] == "path":
             path = path.replace(f"{{{parameter['name']}}}", _value(draw, parameter["schema"]))
-        elif draw.random() < 0.2 or parameter["required"]:
+        elif draw.random() < 0.2 or parameter.get("required"):
             count = draw.choice((1, 1, 1, 2, 5))
             pairs += [(parameter["name"], _value(draw, parameter["schema"])) for _ in range(count)]
     if draw.random() < 0.15:
@@ -59,9 +59,7 @@ def request(draw: random.Random, document: Mapping[str, Any]) -> bytes:
     return whole
 
 
-def fuzz(
-    place: tuple[str, int], document: Mapping[str, Any], count: int, seed: int
-) -> Counter[str]:
+def fuzz(place: tuple[str, int], paths: Mapping[str, Any], count: int, seed: int) -> Counter[str]:
     """Send `count` requests; return how often each status came ("closed" for none).
 
     Raises
@@ -72,7 +70,7 @@ def fuzz(
     draw = random.Random(seed)
     found: Counter[str] = Counter()
     for _ in range(count):
-        whole = request(draw, document)
+        whole = request(draw, paths)
         status = _status(place, whole)
         found[status] += 1
         if status.startswith("5"):
