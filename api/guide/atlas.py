@@ -14,7 +14,11 @@ from api.addresses import NAVIGATION, algorithm_page, claim_page, dataset_page, 
 
 def atlas_links() -> str:
     """Return links to the parts of the atlas, as HTML for the head of every page."""
-    parts = [f'<a href="{at}">{name}</a>' for at, name in NAVIGATION if at != "/guide"]
+    linked = (
+        *((at, name) for at, name in NAVIGATION if at != "/guide"),
+        ("/docs", "API reference"),
+    )
+    parts = [f'<a href="{at}">{name}</a>' for at, name in linked]
     return f"Sun Sensor Atlas: {' · '.join(parts)}"
 
 
