@@ -247,7 +247,7 @@ class Answer:
             advised = None
             if name in {*OF_STUDIES, "accuracy"}:
                 advised = "unknown"
-                if table.advised_for(name, asked.include[name])[number]:
+                if table.places[number].is_advised_for(name, asked.include[name]):
                     advised = "meets"
             yield name, (reported, measured, advised)
 
@@ -384,10 +384,8 @@ def _nearest(
     for one in states.values():
         failed += one[rows] != MEETS
     order = rows[np.lexsort((values[rows], failed, place[rows]))]
-    found: dict[int, int] = {}
-    for row in order.tolist():
-        found.setdefault(int(place[row]), row)
-    return found
+    places, first = np.unique(place[order], return_index=True)
+    return dict(zip(places.tolist(), order[first].tolist(), strict=True))
 
 
 def _name_of(states: Mapping[str, States], name: str, at: int) -> str | None:

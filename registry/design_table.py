@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -36,12 +36,14 @@ class PipelineErrors:
     nominal_deg : error under the first condition alone
     availability : least answered share; NaN where one is unknown
     covers : whether the data set has conditions with all hazards
+    on_bench : errors kept on a bench by a share of units; NaN where none has asked yet
     """
 
     own_deg: Numbers
     nominal_deg: Numbers
     availability: Numbers
     covers: Flags
+    on_bench: dict[tuple[float, float], Numbers] = field(default_factory=dict)
 
 
 class DesignTable:
@@ -125,13 +127,13 @@ class DesignTable:
     def advised_for(self, requirement: str, values: Iterable[str]) -> Flags:
         """Return the architectures that the survey advises for one of some values."""
         wanted = set(values)
-        return np.array(
-            [
-                any(a.requirement == requirement and a.value in wanted for a in place.advice)
-                for place in self.places
-            ],
-            bool,
-        )
+        return np.array([one.is_advised_for(requirement, wanted) for one in self.places], bool)
+
+    @cached_property
+    def uses(self) -> tuple[Positions, Positions]:
+        """Positions of the designs and studies of all uses."""
+        design, study = np.nonzero(self.used)
+        return design, study
 
     @cached_property
     def half_fov_deg(self) -> Numbers:
@@ -145,8 +147,9 @@ class DesignTable:
 
     @cached_property
     def unit_ratios(self) -> Numbers:
-        """Errors of ten units over their geometric mean, shape (pipelines, 10)."""
-        return np.array([row.unit_ratios for row in self.rows], float).reshape(-1, UNITS)
+        """Errors of ten units over their geometric mean, ascending, shape (pipelines, 10)."""
+        found = np.array([row.unit_ratios for row in self.rows], float).reshape(-1, UNITS)
+        return np.sort(found, axis=1)
 
     @cached_property
     def log_error(self) -> Numbers:
@@ -190,26 +193,21 @@ class DesignTable:
         return PipelineErrors(own, first, share, covers)
 
     def within(
-        self, own_deg: Numbers, among: Flags, bench_deg: float | None, share: float
+        self, own_deg: Numbers, among: Flags | list[int], bench_deg: float | None, share: float
     ) -> Numbers:
-        """Return the errors that a share of units (and benches) stays within; infinite elsewhere.
+        """Return the errors that a share of units (and benches) stays within, of some pipelines.
 
         Parameters
         ----------
         own_deg : own errors of all pipelines
-        among : those of them that are looked at
+        among : those of them that are looked at, as flags or positions
         bench_deg : error of the bench; None or 0 for true directions
         share : of units and benches
         """
-        found = np.full(len(own_deg), np.inf)
+        own, ratios = own_deg[among], self.unit_ratios[among]
         if bench_deg:
-            bench = np.full(int(among.sum()), bench_deg)
-            found[among] = at_confidence(own_deg[among], self.unit_ratios[among], bench, share)
-            return found
-        ratios = np.sort(self.unit_ratios[among], axis=1)
-        place = math.ceil(share * ratios.shape[1] - 1e-9) - 1
-        found[among] = own_deg[among] * ratios[:, place]
-        return found
+            return at_confidence(own, ratios, np.full(len(own), bench_deg), share)
+        return np.asarray(own * ratios[:, math.ceil(share * UNITS - 1e-9) - 1])
 
     @cached_property
     def report_numbers(self) -> Mapping[str, Numbers]:

@@ -8,7 +8,7 @@ same values are one design, scored as often as there are of them and of data set
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from registry.mapping.advice import Advice
@@ -65,6 +65,10 @@ class Place:
     def is_built(self) -> bool:
         """Whether a study or a product realises it."""
         return bool(self.studies or self.products)
+
+    def is_advised_for(self, requirement: str, values: Collection[str]) -> bool:
+        """Say whether the survey advises it for one of some values of a requirement."""
+        return any(a.requirement == requirement and a.value in values for a in self.advice)
 
 
 def gather(facts: Facts, measurements: Measurements) -> tuple[Place, ...]:

@@ -82,21 +82,21 @@ class Question:
         """Error that a limit is compared with: kept by the share of units (and stated benches)."""
         own, asked = self.errors.own_deg, self.requirements
         among = self.candidates & np.isfinite(own)
-        found = self.table.within(own, among, None, asked.share)
+        found = np.full(len(own), np.inf)
+        found[among] = self.table.within(own, among, None, asked.share)
         if not asked.bench_deg:
             return found
         if asked.largest_deg is not None:  # what misses without a bench misses with one
             among &= found <= asked.largest_deg
-        return self.table.within(own, among, asked.bench_deg, asked.share)
+        known = self.errors.on_bench.setdefault((asked.bench_deg, asked.share), found * np.nan)
+        new = among & np.isnan(known)
+        known[new] = self.table.within(own, new, asked.bench_deg, asked.share)
+        return np.where(among, known, np.inf)
 
     def judged_alone_deg(self, row: int) -> float:
         """Return the same of one pipeline, also where it misses without a bench."""
-        only = np.zeros(len(self.table.rows), bool)
-        only[row] = np.isfinite(self.errors.own_deg[row])
-        asked = self.requirements
-        return float(
-            self.table.within(self.errors.own_deg, only, asked.bench_deg, asked.share)[row]
-        )
+        own, asked = self.errors.own_deg, self.requirements
+        return float(self.table.within(own, [row], asked.bench_deg, asked.share)[0])
 
     @cached_property
     def shown_deg(self) -> Numbers:
@@ -154,7 +154,7 @@ class Question:
             named = np.logical_or.reduce([classes[name] for name in asked.exclude["accuracy"]])
             found[EXCLUDE + "accuracy"] = _states(~named)
         if names := self.of_parts:
-            design, user = np.nonzero(table.used)
+            design, user = table.uses
             kept = self.designs[design]
             meets = np.zeros((len(table.places), len(table.keys)), bool)
             meets[table.design_place[design[kept]], user[kept]] = True
@@ -266,17 +266,16 @@ class Question:
         found[self.table.report_place[among]] = True
         return found
 
-    @property
+    @cached_property
     def _architectures(self) -> Flags:
         """Architectures with the required detector and mask."""
         table, asked = self.table, self.requirements
         found = np.ones(len(table.places), bool)
         for at, name in enumerate(("detector", "mask")):
-            has = [place.architecture[at] for place in table.places]
-            if name in asked.include:
-                found &= np.isin(has, asked.include[name])
-            if name in asked.exclude:
-                found &= ~np.isin(has, asked.exclude[name])
+            for side, wanted in ((asked.include, True), (asked.exclude, False)):
+                if name in side:
+                    has = [(one.architecture[at] in side[name]) == wanted for one in table.places]
+                    found &= np.array(has, bool)
         return found
 
     @property
