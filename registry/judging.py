@@ -26,7 +26,7 @@ _TWO_DIGITS = Context(prec=2, rounding=ROUND_FLOOR)
 
 _OF_DESIGNS = ("detector", "mask", "model", "extractor")
 #: Limits on a reported number, and whether it must be at most or at least that.
-_REPORTED = {
+REPORTED = {
     "max_error_deg": ("rms_deg", True),
     "min_fov_deg": ("fov_deg", False),
     "max_mass_g": ("mass_g", True),
@@ -160,7 +160,7 @@ class Question:
             meets[table.design_place[design[kept]], user[kept]] = True
             states = _states(meets[table.report_place, study], is_study)
             found |= dict.fromkeys(names, states)
-        found |= {n: self._reports_within(n) for n in _REPORTED if asked.value_of(n) is not None}
+        found |= {n: self._reports_within(n) for n in REPORTED if asked.value_of(n) is not None}
         untold = ("min_availability", "max_latency_us", "survive", "exclude_needs")
         silent = [name for name in untold if asked.value_of(name) is not None]
         if asked.light and asked.light.hazard:
@@ -176,7 +176,7 @@ class Question:
 
     def _within(self, name: str) -> tuple[Flags, Flags]:
         """Return which reports keep a limit on a number, and which state the number."""
-        column, at_most = _REPORTED[name]
+        column, at_most = REPORTED[name]
         values, limit = self.table.report_numbers[column], self.requirements.value_of(name)
         assert isinstance(limit, float | int)  # noqa: S101 - only limits asked for are looked at
         known = ~np.isnan(values)
@@ -222,13 +222,8 @@ class Question:
     def matching_places(self) -> Flags:
         """Architectures that the evidence asked for brings into the answer."""
         reported, measured = self._any_report(self.reported), self.measured_places
-        wanted = self.requirements.evidence or "any"
-        return {
-            "any": reported | measured,
-            "reported": reported,
-            "measured": measured,
-            "both": reported & measured,
-        }[wanted]
+        kinds = {"reported": reported, "measured": measured, "both": reported & measured}
+        return kinds.get(self.requirements.evidence or "any", reported | measured)
 
     @cached_property
     def matching_designs(self) -> Flags:

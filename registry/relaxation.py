@@ -5,15 +5,12 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from registry.judging import REPORTED, Question
 from registry.requirements import EXCLUDE, LIMITS, LISTS, Requirements
 from survey_data.processors import factor
-
-if TYPE_CHECKING:
-    from registry.judging import Question
 
 Value = tuple[str, ...] | float
 
@@ -143,15 +140,9 @@ def _nearest_limit(question: Question, name: str) -> float | None:
         widest = sorted((one for one in fields if 0.0 < one <= 360.0), reverse=True)
         met = (w for w in widest if _count(question, question.requirements.with_value(name, w)))
         return next(met, None)
-    by_report = {
-        "max_error_deg": "rms_deg",
-        "max_mass_g": "mass_g",
-        "max_power_mw": "power_mw",
-        "min_rate_hz": "rate_hz",
-    }
     values = []
-    if name in by_report:
-        values.append(table.report_numbers[by_report[name]][rest.reported])
+    if name in REPORTED:
+        values.append(table.report_numbers[REPORTED[name][0]][rest.reported])
     by_row = {
         "max_error_deg": rest.judged_deg,
         "min_availability": rest.errors.availability,

@@ -34,6 +34,14 @@ class Processor:
         return float(f"{processors()[REFERENCE].coremark / self.coremark:.2g}")
 
 
+def form() -> dict[str, object]:
+    """Return the JSON Schema of a processor: a name, or a factor above 0 in plain digits."""
+    names = "|".join(processors())
+    number = r"[1-9]\d{0,5}(\.\d{1,6})?|0\.\d{0,5}[1-9]"
+    pattern = f"^({names}|{number})$"
+    return {"type": "string", "minLength": 1, "maxLength": 60, "pattern": pattern}
+
+
 class UnknownProcessorError(ValueError):
     """A processor that is not known; names the known ones and the nearest."""
 

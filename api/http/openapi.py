@@ -16,11 +16,11 @@ from api.http.openapi_sharing import share
 from api.schema.service import ProblemDocument
 from api.service.knowledge import Knowledge
 from api.service.problems import MEDIA_TYPE, Problem
-from api.service.refusals import asked_models, refusal, schemas
+from api.service.refusals import asked_models, of_list, refusal, schemas
 from api.web.answers import Answer, AnswerRoute, CitedAnswer
 from api.web.negotiation import CITATIONS, CSL, CSV, JSON
 
-LARGEST_EXAMPLE = 800  # bytes; a larger answer has no example of its JSON
+LARGEST_EXAMPLE = 600  # bytes; a larger answer has no example of its JSON
 LONGEST_TEXT = 80  # characters of a text in an example
 REFUSALS = {
     400: "Unknown parameter, contradictory parameters, or malformed request.",
@@ -38,7 +38,7 @@ TAGS: dict[str, tuple[str, frozenset[str]]] = {
     ),
     "Literature": (
         "Studies of the survey, its vocabulary, figures and claims.",
-        frozenset({"studies", "taxonomy", "flows", "figures", "claims", "protocol"}),
+        frozenset({"studies", "taxonomy", "flows", "figures", "claims", "protocol", "editions"}),
     ),
     "Measurements": (
         "Algorithms, data sets, scores, leaderboards and experiments.",
@@ -94,8 +94,9 @@ def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> N
     declared = schemas(route.endpoint)
     example = _example(route)
     for parameter in operation.get("parameters", ()):
+        parameter["schema"] = of_list(parameter["schema"])  # given once or several times
         if parameter["name"] == "sort" and "fields" in declared["query"]:
-            parameter["schema"].pop("enum", None)  # twice the columns, which `fields` lists
+            parameter["schema"] = _either_way(parameter["schema"])
         given = example if parameter["in"] == "path" else example.get("query", {})
         if parameter["name"] in given:
             parameter["example"] = given[parameter["name"]]
@@ -114,10 +115,16 @@ def _complete(operation: dict[str, Any], route: APIRoute, known: Knowledge) -> N
         if answer is None:  # what it compares has not been measured
             success["content"][CSV] = {"schema": {"type": "string"}}
         else:
-            _give_example(success["content"], answer)
+            _give_example(success["content"], answer, columns="fields" not in declared["query"])
     refused = {str(status): _refuse(status, route, example, known) for status in sorted(statuses)}
     same = {"304": NOT_MODIFIED} if "body" not in declared else {}
     operation["responses"] = {"200": success, **same, **refused}
+
+
+def _either_way(schema: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of an order as a pattern, which has each column once."""
+    columns = [word for word in schema["enum"] if not word.startswith("-")]
+    return {"type": "string", "pattern": f"^-?({'|'.join(columns)})$"}
 
 
 def _answered(route: APIRoute, known: Knowledge, example: dict[str, Any]) -> Answer | None:
@@ -127,16 +134,17 @@ def _answered(route: APIRoute, known: Knowledge, example: dict[str, Any]) -> Ans
         return None
 
 
-def _give_example(content: dict[str, Any], answer: Answer) -> None:
-    """Add what is answered, shortened, and the columns of the table."""
+def _give_example(content: dict[str, Any], answer: Answer, *, columns: bool) -> None:
+    """Add what is answered, shortened, and the columns of the table where nothing lists them."""
     # Through bytes and back: the example is what travels, NaN as null included.
     whole = json.loads(answer.representation(JSON).body)
     example = shorten(whole)
     if len(json.dumps(example)) <= LARGEST_EXAMPLE:
         content[JSON]["example"] = example
-    table = answer.representation(CSV).body.decode()
-    table = table.partition("\n")[0] + "\n"
-    content[CSV] = {"schema": {"type": "string"}, "example": table}
+    content[CSV] = {"schema": {"type": "string"}}
+    if columns:
+        header = answer.representation(CSV).body.decode().partition("\n")[0]
+        content[CSV]["example"] = f"{header}\n"
     if isinstance(answer, CitedAnswer):
         for kind in CITATIONS.values():
             text = answer.representation(kind).body.decode()

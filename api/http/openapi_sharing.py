@@ -119,8 +119,9 @@ def _named(name: str, schema: Node) -> Iterator[tuple[str, Node]]:
     yield name, schema
     for member, inner in schema.get("properties", {}).items():
         yield from _named(member, inner)
-    if isinstance(schema.get("items"), dict):
-        yield from _named(name, schema["items"])
+    for inner in (*schema.get("anyOf", ()), schema.get("items")):
+        if isinstance(inner, dict):
+            yield from _named(name, inner)
 
 
 def _refer(

@@ -59,10 +59,18 @@ def words(schema: Mapping[str, Any]) -> tuple[list[str], int, str]:
 
 
 def columns(operation: Mapping[str, Any]) -> str:
-    """Return what an operation's CSV has as columns, as a sentence; empty where it has no CSV."""
+    """Return what an operation's CSV has as columns, as a sentence; empty where it has no CSV.
+
+    They are the words of its `fields`, or stand in its example.
+    """
     content = operation["responses"]["200"].get("content", {})
-    header = content.get(CSV, {}).get("example", "").strip()
-    return f"Columns: {header.replace(',', ', ')}." if header else ""
+    if CSV not in content:
+        return ""
+    names = content[CSV].get("example", "").strip().split(",")
+    for parameter in operation.get("parameters", ()):
+        if parameter["name"] == "fields":
+            names = parameter["schema"]["items"]["enum"]
+    return f"Columns: {', '.join(names)}." if any(names) else ""
 
 
 def _operations(document: Mapping[str, Any]) -> Iterator[dict[str, Any]]:

@@ -84,8 +84,21 @@ def _distinct(given: Any, read: Callable[[Any], list[str]]) -> list[str]:
     return sorted(set(read([given] if isinstance(given, str) else given)))
 
 
+class OneOrSeveral:
+    """Allows a word beside a list of words in the JSON Schema, as `_distinct` reads it."""
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Return the schema; `api.service.refusals.of_list` returns that of the list alone."""
+        several = handler(schema)
+        return {"anyOf": [several["items"], several]}
+
+
 Word = TypeVar("Word")
-Several = Annotated[list[Word], Field(max_length=MOST_VALUES), WrapValidator(_distinct)]
+Several = Annotated[
+    list[Word], Field(max_length=MOST_VALUES), WrapValidator(_distinct), OneOrSeveral()
+]
 
 
 def several(description: str) -> Any:

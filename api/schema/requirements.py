@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, ConfigDict, Field
+from pydantic import BeforeValidator, ConfigDict, Field, WithJsonSchema
 
 from api.schema import words
 from api.schema.base import OfEdition, TableQuestion
@@ -20,7 +20,7 @@ from api.schema.parameters import (
 )
 from registry.ranking import Sort
 from registry.requirements import EVIDENCE, MISSIONS
-from survey_data.processors import processors
+from survey_data.processors import form, processors
 
 INCLUDE = ("calibrations", "paths", "designs")
 
@@ -118,7 +118,9 @@ class Requirements(OfEdition):
             "Share of sensor units and benches that must meet the maximum error; default 0.9."
         ),
     )
-    processor: Annotated[str | None, Field(min_length=1, max_length=60), GIVEN] = Field(
+    processor: Annotated[
+        str | None, Field(min_length=1, max_length=60), GIVEN, WithJsonSchema(form())
+    ] = Field(
         None,
         description=(
             f"Your processor: {', '.join(processors())}; or its time relative to the reference."

@@ -64,11 +64,22 @@ def schemas(endpoint: Callable[..., Any]) -> Mapping[str, Mapping[str, Schema]]:
     """
     found: dict[str, dict[str, Schema]] = {"path": {}, "query": {}}
     for name, model in asked_models(endpoint).items():
-        found[name] = model.model_json_schema().get("properties", {})
+        members = model.model_json_schema().get("properties", {})
+        found[name] = {member: of_list(schema) for member, schema in members.items()}
     for name, hint in get_type_hints(endpoint, include_extras=True).items():
         if _kind(hint) is str:
             found["path"][name] = TypeAdapter(hint).json_schema()
     return found
+
+
+def of_list(schema: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the schema of a parameter, of one that may be given several times as a list."""
+    one = dict(schema)
+    for kind in schema.get("anyOf", ()):
+        if kind.get("type") == "array":
+            one = {**kind, **one}
+            del one["anyOf"]
+    return one
 
 
 def asked_models(endpoint: Callable[..., Any]) -> Mapping[str, type[BaseModel]]:
@@ -94,7 +105,9 @@ def _violation(error: Mapping[str, Any], declared: Mapping[str, Mapping[str, Sch
         expected = f"at most {schema['maxItems']} values"
         return Violation(name, f"{len(given)} values", expected)
     if schema["type"] == "array" and len(where) == 1:
-        return Violation(name, _show(given), f"a list, each item {_expected(schema['items'])}")
+        return Violation(
+            name, _show(given), f"a value or a list of values, each {_expected(schema['items'])}"
+        )
     if place == "query" and isinstance(given, list):
         return Violation(name, ", ".join(given), "one value, given once")
     valid = schema.get("items", schema)

@@ -9,6 +9,8 @@ import jsonschema
 import pytest
 
 from api.http.openapi import LARGEST_EXAMPLE
+from api.http.openapi_sharing import inlined
+from api.http.reference import columns
 from api.server.app import ROUTES
 from tools.bench.service import OPENAPI_BYTES
 
@@ -144,9 +146,14 @@ def test_columns_are_listed_once_and_sort_takes_them(document):
     for path, _, operation in operations(document):
         parameters = {p["name"]: p["schema"] for p in operation["parameters"]}
         if "fields" in parameters:
-            items = resolved(document, parameters["fields"]["items"])
-            assert len(items["enum"]) > 3
-            assert "enum" not in resolved(document, parameters.get("sort", {})), path
+            columns = resolved(document, parameters["fields"]["items"])["enum"]
+            assert len(columns) > 3
+            if "sort" in parameters:  # by a column of one value, either way
+                order = validator(document, parameters["sort"])
+                taken = [name for name in columns if order.is_valid(name)]
+                assert len(taken) > 3, path
+                assert all(order.is_valid(f"-{name}") for name in taken), path
+                assert not any(map(order.is_valid, ("", "-", "x", "--" + taken[0]))), path
 
 
 def test_every_member_and_parameter_is_described(document):
@@ -182,14 +189,14 @@ def test_every_example_validates_against_its_schema(document):
 
 def test_short_answers_have_an_example_and_tables_their_columns(document):
     whole, tables = 0, 0
-    for path, _, operation in operations(document):
+    for path, method, operation in operations(document):
         content = operation["responses"]["200"].get("content", {})
         example = content.get("application/json", {}).get("example")
         if example is not None:
             assert len(json.dumps(example)) <= LARGEST_EXAMPLE, path
             whole += 1
         if "text/csv" in content:
-            assert content["text/csv"]["example"].count("\n") == 1, path
+            assert columns(inlined(document)[path][method]).startswith("Columns: "), path
             tables += 1
     assert whole > 10
     assert tables > 25
@@ -199,6 +206,7 @@ def test_short_answers_have_an_example_and_tables_their_columns(document):
 def test_examples_are_what_is_answered(atlas, document):
     """The example's question is asked over HTTP; its answer begins as the example does."""
     checked = 0
+    paths = inlined(document)
     for template, method, operation in operations(document):
         content = operation["responses"]["200"]["content"]
         if "text/csv" not in content:
@@ -217,7 +225,7 @@ def test_examples_are_what_is_answered(atlas, document):
             example = content[accept].get("example")
             if accept == "text/csv":
                 header = next(csv.reader(io.StringIO(answer.text), strict=True))
-                assert next(csv.reader(io.StringIO(example), strict=True)) == header, path
+                assert columns(paths[template][method]) == f"Columns: {', '.join(header)}.", path
             else:
                 assert example is None or begins(example, answer.json()), path
                 validator(document, content[accept]["schema"]).validate(answer.json())
@@ -325,7 +333,9 @@ def test_documented_words_are_the_vocabulary(atlas, document):
     for attribute, entries in taxonomy.items():
         words = [entry["value"] for entry in entries]
         for name in (attribute, f"exclude_{attribute}"):
-            for schema in (parameters[name], properties[name]):
+            one, several = (resolved(document, kind) for kind in properties[name]["anyOf"])
+            assert one["enum"] == words
+            for schema in (parameters[name], several):
                 items = resolved(document, schema)["items"]
                 assert resolved(document, items)["enum"] == words
 
@@ -338,3 +348,24 @@ def test_the_document_is_valid_openapi_without_foreign_addresses(document):
     assert "http://" not in text
     for path, method, operation in operations(document):
         assert operation["summary"], (path, method)
+
+
+def test_what_a_body_may_say_fits_its_schema(atlas, document):
+    schema = validator(document, {"$ref": "#/components/schemas/RequirementsBody"})
+    for detector, fits in (("CMOS", True), (["CMOS"], True), ("CMS", False), (["CMS"], False)):
+        answer = atlas.post("/v1/recommendations", json={"detector": detector})
+        assert (answer.status_code == 200) == schema.is_valid({"detector": detector}) == fits
+    alone, listed = (
+        atlas.post("/v1/recommendations", json={"detector": detector, "mask": mask}).content
+        for detector, mask in (("CMOS", "Slit"), (["CMOS"], ["Slit"]))
+    )
+    assert alone == listed
+
+
+def test_operations_are_grouped_and_the_licence_is_said(document):
+    groups = {tag["name"] for tag in document["tags"] if tag["description"]}
+    used = [operation["tags"] for _, _, operation in operations(document)]
+    assert {name for (name,) in used} == groups
+    assert [server["url"] for server in document["servers"]] == ["/"]
+    assert document["info"]["license"]["identifier"] == "MIT"
+    assert "CC BY 4.0" in document["info"]["description"]
