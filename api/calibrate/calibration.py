@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,12 +12,18 @@ import numpy as np
 from algorithms.angles import separation_deg
 from algorithms.chain import Scored
 from algorithms.contract import Floats, Model, SensorGeometry, UnusableDataError
+from api.calibrate.causes.bad_cells import BadCells, joined_levels, without_bad_cells
+from api.calibrate.causes.held_out import parts_of
+from api.calibrate.causes.limits import ReadingLimits, limits_of
+from api.calibrate.causes.removed import unexplained
+from api.calibrate.causes.untested import untested_in
+from api.calibrate.conventions.channels import of_cells
 from api.calibrate.conventions.finding import Finding, change_of
 from api.calibrate.conventions.findings import findings
-from api.calibrate.exclusions import Excluded, excluded_of, kept_by_model, sound_of
+from api.calibrate.exclusions import WRONG, Excluded, excluded_of, kept_by_model, sound_of
 from api.calibrate.frames import of_spots, table_in, with_spots
 from api.calibrate.halves import halves
-from api.calibrate.readings import BEHIND, Readings, joined, readings_of
+from api.calibrate.readings import BEHIND, EMPTY, Readings, joined, readings_of
 from api.calibrate.robust import wrong_poses
 from api.calibrate.roles import guess
 from api.calibrate.runs import RunOffset
@@ -29,9 +35,10 @@ from api.calibrate.selection import (
     deviation_of,
     fitted,
     geometry_of,
+    settled,
 )
 from api.calibrate.settings import Settings
-from api.calibrate.table import Table, read_table
+from api.calibrate.table import Table, TableError, read_table
 from api.calibrate.uncertainty import (
     Intervals,
     intervals,
@@ -39,6 +46,7 @@ from api.calibrate.uncertainty import (
     noise_deg,
     refits,
     spread_deg,
+    tangent_offsets,
 )
 from api.calibrate.verdict import (
     Verdict,
@@ -46,7 +54,9 @@ from api.calibrate.verdict import (
     next_poses,
     patterns_in,
     with_uncertain_conventions,
+    withheld,
 )
+from benchmark.running.threads import one_thread
 from files.reading import read_bytes
 
 #: Samples from which wrong poses are looked for.
@@ -57,8 +67,6 @@ _ONE_AXIS = 0.02
 _CHANCE = 0.5
 #: Share of rows with the light behind the sensor from which the angles' own form is uncertain.
 _MANY_BEHIND = 0.05
-#: Median error over the smallest up to which models are compared again without wrong poses.
-_CONTENDERS = 1.5
 #: Samples a final fit is made of at most; more are thinned evenly.
 MOST_FITTED = 40_000
 
@@ -104,7 +112,9 @@ class Calibration:
     sources : tuple of str
         Names of the files.
     notes : tuple of str
-        On how pictures were read.
+        On how pictures and cells were read, and changes that did not settle.
+    limits : ReadingLimits
+        Of readings that may be used.
     """
 
     settings: Settings
@@ -127,6 +137,7 @@ class Calibration:
     digest: str
     sources: tuple[str, ...]
     notes: tuple[str, ...] = ()
+    limits: ReadingLimits = field(default_factory=lambda: ReadingLimits((), (), 0.0, np.inf))
 
     def deviation_deg(self, features: Floats, context: dict[str, Floats] | None = None) -> Floats:
         """Return the 1-sigma (N,) of a tangent axis at features (N, F), degrees."""
@@ -134,7 +145,7 @@ class Calibration:
         return stated * (1.0 if self.intervals is None else self.intervals.factor)
 
 
-def calibrate(  # noqa: PLR0915 - the steps in their order
+def calibrate(
     paths: Sequence[Path],
     settings: Settings | None = None,
     *,
@@ -172,6 +183,18 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     UnusableDataError
         If the samples settle no model; the message says what would.
     """
+    with one_thread():  # small fits: waiting for each other takes threads most of their time
+        return _calibrated(paths, settings, apply, thorough, models, progress)
+
+
+def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
+    paths: Sequence[Path],
+    settings: Settings | None,
+    apply: bool,
+    thorough: bool,
+    models: Sequence[str] | None,
+    progress: Callable[[str, int, int], None],
+) -> Calibration:
     paths = [table_in(path) if path.is_dir() else path for path in paths]
     tables = [read_table(path) for path in paths]
     stated = settings or guess(tables[0])
@@ -183,17 +206,15 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
             )
             notes += said
         stated = of_spots(stated)
-    readings, found = _read(tables, stated)
     progress("conventions", 0, 1)
+    file = _read(tables, stated if settings else _with_cells(tables, stated))
     applied: list[Finding] = []
-    while apply and len(applied) < 4:
-        certain = next((one for one in found if one.certain and one.change), None)
-        if certain is None:
-            break
-        stated = change_of(stated, certain)
-        applied.append(certain)
-        readings, found = _read(tables, stated)
+    if apply:
+        file, applied = _applied(tables, file, notes)
+    stated, readings, found = file.settings, file.readings, file.findings
+    notes += [note for part in file.bad for note in part.notes]
     sound, excluded, runs, fold = sound_of(readings)
+    excluded = [*(one for part in file.bad for one in part.excluded), *excluded]
     _require_two_axes(sound)
     readings = sound
     if len(sound) >= _FEWEST_FOR_WRONG:
@@ -211,7 +232,7 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
 
     def tick(name: str) -> None:
         nonlocal count
-        progress(name, count, len(wanted) + 3)
+        progress(name, count, 2 * len(wanted) + 4)
         count += 1
 
     candidates = [_explained(one, readings) for one in compare(readings, geometry, wanted, tick)]
@@ -220,16 +241,15 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     kept = kept_by_model(wanted[chosen.name], chosen, sound, readings, geometry)
     changed = not np.array_equal(sound.rows[kept], readings.rows)
     readings = sound.only(kept)
-    excluded += excluded_of(~kept, "wrong pose", sound)
+    wrong_ones = sound.only(~kept)
+    excluded += excluded_of(~kept, WRONG, sound)
     if changed:  # a wrong pose that was not seen may have misled the choice
-        near = [one.name for one in candidates if _near(one, candidates)]
-        again = {
-            one.name: _explained(one, readings)
-            for one in compare(readings, geometry, {name: wanted[name] for name in near})
-        }
-        candidates = [again.get(one.name, one) for one in candidates]
+        candidates = [
+            _explained(one, readings) for one in compare(readings, geometry, wanted, tick)
+        ]
         candidates.sort(key=_by_error)
-        chosen, why = choose([one for one in candidates if one.name in again])
+        chosen, why = choose(candidates)
+    count = 2 * len(wanted)
     tick("fit")
     thinned = readings.only(np.arange(0, len(readings), max(-(-len(readings) // MOST_FITTED), 1)))
     model = fitted(wanted[chosen.name], thinned, geometry)
@@ -239,33 +259,92 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     tick("uncertainty")
     sample = readings.only(np.arange(0, len(readings), max(len(readings) // 2000, 1)))
     around = noise_around(model.predict(sample.features, sample.context) - sample.sun, sample.sun)
-    spread = _fit_spread(wanted[chosen.name], sample, geometry, around, readings)
-    split = halves(wanted[chosen.name], sample, geometry, around)
+    same = settled(wanted[chosen.name], model)
+    spread = _fit_spread(same, sample, geometry, around, readings)
+    tick("halves")
+    split = halves(same, sample, geometry, around)
+    tick("verdict")
     compared = readings.only(np.arange(0, len(readings), _step(readings, chosen)))
     patterns = patterns_in(np.asarray(chosen.offsets), compared)
     verdict = judge(
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
         *next_poses(readings.sun),
     )  # fmt: skip
-    if uncertain := next((one for one in found if one.certain and one.change), None):
+    known = intervals(chosen, readings)
+    verdict = withheld(
+        replace(verdict, untested=untested_in(readings, stated)),
+        unexplained(readings, excluded, wrong_ones, stated.sensor.half_fov_deg, fold),
+        () if known is None else parts_of(compared, *_along(chosen, known, compared)),
+    )
+    if uncertain := next((one for one in found if one.certain), None):
         verdict = with_uncertain_conventions(verdict, uncertain.found)
-    progress("done", len(wanted) + 3, len(wanted) + 3)
+    progress("done", 2 * len(wanted) + 4, 2 * len(wanted) + 4)
     return Calibration(
         stated, (*applied, *found), tuple(applied), readings, tuple(excluded), tuple(runs), fold,
         geometry, tuple(candidates), chosen, why, model, residual, noise,
-        intervals(chosen, readings), spread, verdict, _digest(paths), tuple(p.name for p in paths),
-        tuple(notes),
+        known, spread, verdict, _digest(paths), tuple(p.name for p in paths), tuple(notes),
+        limits_of(readings, stated, joined_levels(file.bad)),
     )  # fmt: skip
 
 
-def _read(tables: Sequence[Table], settings: Settings) -> tuple[Readings, list[Finding]]:
-    """Return the samples of all tables, and what their conventions seem to be."""
-    readings = joined([readings_of(table, settings) for table in tables])
+@dataclass(frozen=True)
+class _File:
+    """Samples of all tables under some settings, and what their conventions seem to be."""
+
+    settings: Settings
+    readings: Readings
+    findings: list[Finding]
+    bad: list[BadCells]
+
+
+def _read(tables: Sequence[Table], settings: Settings) -> _File:
+    """Read all tables, without cells that hold no reading."""
+    cleaned = [without_bad_cells(table, settings) for table in tables]
+    bad = [found for _, found in cleaned]
+    readings = joined([readings_of(table, settings) for table, _ in cleaned])
+    dropped = {**readings.dropped}
+    dropped[EMPTY] = dropped.get(EMPTY, 0) - sum(len(one.excluded) for one in bad)
+    readings = replace(readings, dropped={name: n for name, n in dropped.items() if n > 0})
     _require_two_axes(readings)
     every = None
     if readings.dropped.get(BEHIND, 0) > _MANY_BEHIND * len(readings):
-        every = joined([readings_of(table, settings, behind=True) for table in tables])
-    return readings, findings(readings, settings, every)
+        every = joined([readings_of(table, settings, behind=True) for table, _ in cleaned])
+    return _File(settings, readings, findings(readings, settings, every), bad)
+
+
+def _with_cells(tables: Sequence[Table], guessed: Settings) -> Settings:
+    """Return settings guessed from names, with channels where four readings are plain cells."""
+    if guessed.readings.kind != "quadrants":
+        return guessed
+    readings = joined([readings_of(table, guessed) for table in tables])
+    change = next((one for one in of_cells(readings, guessed)), None)
+    return guessed if change is None else change_of(guessed, change)
+
+
+def _applied(tables: Sequence[Table], file: _File, notes: list[str]) -> tuple[_File, list[Finding]]:
+    """Apply certain findings one by one, judging all again after each, until none is left.
+
+    A finding about what was changed already, or that leads back to settings that were left,
+    contradicts what was applied: it stays, so that the verdict is not good.
+    """
+    applied: list[Finding] = []
+    seen = [file.settings]
+    while certain := next((one for one in file.findings if one.certain and one.change), None):
+        changed = change_of(file.settings, certain)
+        if changed in seen or certain.about in {one.about for one in applied}:
+            notes.append(
+                f"changes did not settle: after {'; '.join(one.found for one in applied)}, "
+                f"{certain.found}"
+            )
+            break
+        try:
+            file = _read(tables, changed)
+        except (TableError, UnusableDataError) as error:
+            notes.append(f"{certain.found}: not applied, since then {error}")
+            break
+        applied.append(certain)
+        seen.append(changed)
+    return file, applied
 
 
 def _require_two_axes(readings: Readings) -> None:
@@ -295,15 +374,11 @@ def _by_error(one: Candidate) -> tuple[bool, bool, float]:
     return bool(one.refused), one.missing > 0.05, one.rms_deg
 
 
-def _near(one: Candidate, candidates: Sequence[Candidate]) -> bool:
-    """Say whether a model's usual error is near the best: wrong poses do not move a median."""
-    usual = [_usual(other) for other in candidates if not other.refused]
-    return not one.refused and _usual(one) <= _CONTENDERS * min(usual)
-
-
-def _usual(one: Candidate) -> float:
-    errors = np.asarray(one.errors)
-    return float(np.median(errors[np.isfinite(errors)]))
+def _along(chosen: Candidate, known: Intervals, compared: Readings) -> tuple[Floats, Floats]:
+    """Return errors (N, 2) of samples left out along two axes, and their stated 1-sigma."""
+    along = tangent_offsets(np.asarray(chosen.offsets), compared.sun)
+    along[~np.isfinite(np.asarray(chosen.errors))] = np.nan
+    return along, np.repeat(known.factor * np.asarray(chosen.deviation)[:, None], 2, axis=1)
 
 
 def _fit_spread(

@@ -1,0 +1,186 @@
+"""Laws of sensors that a file may follow down to its noise, and the scale of its angles by them.
+
+A camera images tangents by a projection, and a plain cell takes light by the cosine. Where such a
+law leaves no more than noise, the angles of the table are right by it; where it does so only with
+angles multiplied by a factor, the table's scale is wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from algorithms.angles import angles_from_sun, sun_from_angles
+from algorithms.contract import FeatureKind, Floats
+from api.calibrate.causes.light import plane_of, reading_noise
+from api.calibrate.conventions.finding import Finding
+from api.calibrate.readings import Readings, sun_of_angles
+from api.calibrate.settings import Settings
+
+#: What a law leaves, over the noise, to be followed, and not to be.
+FOLLOWED, BROKEN = 1.3, 2.0
+#: Factors of angles that are tried, and the change from which one is told.
+_FACTORS, _LEAST = (0.7, 1.4), 0.003
+_WITHIN_DEG = 75.0
+_MOST = 600
+_ROUNDS = 8
+#: Cosine of incidence from which a cell is taken for lit.
+_LIT = 0.2
+UNTESTED = (
+    "the scale of the angles: no law of this sensor is known that its readings follow down to "
+    "their noise; a second turntable, or a star tracker's directions, would test it"
+)
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What is known of the scale of a table's angles.
+
+    Attributes
+    ----------
+    followed : float
+        What the law leaves with the angles as stated, over the noise.
+    best : float
+        The same with the best factor.
+    factor : float
+        Of the angles as they should be over those stated.
+    axis : str
+        Whose angles.
+    """
+
+    followed: float
+    best: float
+    factor: float
+    axis: str
+
+
+def scale_of_angles(readings: Readings, settings: Settings) -> Scale:
+    """Return how far a law of such sensors is followed, as stated and with a factor."""
+    from scipy.optimize import minimize_scalar  # noqa: PLC0415 - SciPy, at the first use
+
+    used = readings.thinned(_MOST)
+    noise = np.maximum(reading_noise(used.features, used.sun), 1e-12)
+    left = _left_of_cells if readings.kind is FeatureKind.SIGNALS else _left_of_projection
+    as_stated = left(used.features, used.sun, noise)
+    best = Scale(as_stated, as_stated, 1.0, "")
+    if as_stated < FOLLOWED:
+        return best
+    for axis, turned in _scaled(used, settings):
+        found = minimize_scalar(
+            lambda factor, turned=turned: left(used.features, turned(factor), noise),
+            bounds=_FACTORS, method="bounded", options={"xatol": 1e-4},
+        )  # fmt: skip
+        if found.fun < best.best:
+            best = Scale(as_stated, float(found.fun), float(found.x), axis)
+    return best
+
+
+def of_scale(readings: Readings, settings: Settings, known: Scale) -> Iterator[Finding]:
+    """Yield the factor of the angles with which a law is followed that is broken without."""
+    inside = _FACTORS[0] + 0.02 < known.factor < _FACTORS[1] - 0.02
+    told = known.followed > BROKEN and known.best < FOLLOWED
+    if not (told and inside and abs(known.factor - 1.0) > _LEAST):
+        return
+    law = "cells" if readings.kind is FeatureKind.SIGNALS else "a projection"
+    sure = readings.kind is FeatureKind.SIGNALS or settings.readings.kind in ("spot", "frames")
+    yield Finding(
+        "scale",
+        f"{known.axis} of the table seem to be {100.0 * abs(1.0 / known.factor - 1.0):.2g} % too "
+        f"{'large' if known.factor < 1.0 else 'small'}: {law} of the directions leaves "
+        f"{known.best:.2g} times the noise with a factor of {known.factor:.4g} and "
+        f"{known.followed:.2g} times without",
+        known.followed, known.best, {}, sure,
+        "optics with a distortion of the same shape would look alike",
+    )  # fmt: skip
+
+
+def _scaled(
+    readings: Readings, settings: Settings
+) -> Iterator[tuple[str, Callable[[float], Floats]]]:
+    """Yield ways to multiply the table's angles, with a word for the angles."""
+    form = settings.direction.form
+    if readings.angles is None:
+        angles = angles_from_sun(readings.sun)
+        if not np.isfinite(angles).all():
+            return
+        yield "all angles", lambda factor: sun_from_angles(_near_circle(angles * factor))
+        return
+    stated = readings.angles
+    if form.startswith("azimuth"):
+        middle = 90.0 if form == "azimuth-elevation" else 0.0
+        yield (
+            f"angles off the axis ({settings.direction.columns[1]})",
+            lambda factor: sun_of_angles(
+                np.column_stack([stated[:, 0], middle + factor * (stated[:, 1] - middle)]), form
+            ),
+        )
+        return
+    for word, at in (
+        ("all angles", (1, 1)),
+        *zip(settings.direction.columns, ((1, 0), (0, 1)), strict=True),
+    ):
+        yield (
+            f"the {word}" if word != "all angles" else word,
+            lambda factor, at=at: sun_of_angles(
+                _near_circle(stated * np.where(at, factor, 1.0)), form
+            ),
+        )
+
+
+def _near_circle(angles: Floats) -> Floats:
+    return np.clip(angles, -89.0, 89.0)
+
+
+def _left_of_projection(features: Floats, sun: Floats, noise: Floats) -> float:
+    """Return the RMS, over the noise, of what a projection of the directions leaves of readings."""
+    front = sun[:, 2] > np.cos(np.radians(_WITHIN_DEG))
+    if front.sum() < 20:
+        return np.inf
+    tangents, seen = sun[front, :2] / sun[front, 2:], features[front]
+    middle, width = np.median(seen, axis=0), max(float(np.std(seen)), 1e-300)
+    aims = (seen - middle) / width
+    columns = np.column_stack([np.ones(len(aims)), tangents])
+    below = np.ones(len(aims))
+    weight = np.ones(len(aims))
+    size = np.zeros(len(aims))
+    for _ in range(_ROUNDS):
+        root = np.sqrt(weight) / below
+        block = np.zeros((2, len(aims), 8))
+        for axis in (0, 1):
+            block[axis, :, 3 * axis : 3 * axis + 3] = columns
+            block[axis, :, 6:] = -aims[:, [axis]] * tangents
+        design = (block * root[:, None]).reshape(-1, 8)
+        fit = np.linalg.lstsq(design, (aims.T * root).reshape(-1), rcond=1e-12)[0]
+        below = 1.0 + tangents @ fit[6:]
+        below = np.where(np.abs(below) > 0.05, below, 0.05)
+        made = (columns @ fit[:6].reshape(2, 3).T) / below[:, None]
+        size = np.sqrt(np.mean(((made - aims) * width / noise) ** 2, axis=1))
+        weight = 1.0 / np.maximum(size, max(float(np.median(size)), 1e-12))
+    return _trimmed(size)
+
+
+def _left_of_cells(features: Floats, sun: Floats, noise: Floats) -> float:
+    """Return the RMS, over the noise, of what cosines leave of lit cells' signals."""
+    left = []
+    for signal, of_one in zip(features.T, noise, strict=True):
+        design, slope, linear = plane_of(signal, sun)
+        normal = slope / (np.linalg.norm(slope) or 1.0)
+        for _ in range(1 if linear else 10):
+            lit = np.ones(len(sun), dtype=np.bool_) if linear else sun @ normal > _LIT
+            if lit.sum() < 12:
+                return np.inf
+            fit = np.linalg.lstsq(sun[lit], signal[lit], rcond=1e-12)[0]
+            normal = fit / (np.linalg.norm(fit) or 1.0)
+        used = design[lit] if linear else sun[lit]
+        fit = np.linalg.lstsq(used, signal[lit], rcond=1e-12)[0]
+        free = len(used) / max(len(used) - used.shape[1], 1)
+        left.append(free**0.5 * _trimmed(np.abs(signal[lit] - used @ fit) / of_one))
+    return float(np.sqrt(np.mean(np.square(left))))
+
+
+def _trimmed(size: Floats) -> float:
+    """Return the RMS without the worst twentieth, of normal errors that of all."""
+    kept = np.sort(size)[: max(int(0.95 * len(size)), 1)]
+    return float(np.sqrt(np.mean(kept**2)) / 0.871)
