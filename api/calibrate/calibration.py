@@ -12,18 +12,17 @@ import numpy as np
 from algorithms.angles import separation_deg
 from algorithms.chain import Scored
 from algorithms.contract import Floats, Model, SensorGeometry, UnusableDataError
-from api.calibrate.causes.bad_cells import BadCells, joined_levels, without_bad_cells
+from api.calibrate.causes.applying import applied_to, read_as, require_two_axes, with_cells
+from api.calibrate.causes.bad_cells import joined_levels
 from api.calibrate.causes.held_out import parts_of
 from api.calibrate.causes.limits import ReadingLimits, limits_of
 from api.calibrate.causes.removed import unexplained
 from api.calibrate.causes.untested import untested_in
-from api.calibrate.conventions.channels import of_cells
-from api.calibrate.conventions.finding import Finding, change_of
-from api.calibrate.conventions.findings import findings
+from api.calibrate.conventions.finding import Finding
 from api.calibrate.exclusions import WRONG, Excluded, excluded_of, kept_by_model, sound_of
 from api.calibrate.frames import of_spots, table_in, with_spots
 from api.calibrate.halves import halves
-from api.calibrate.readings import BEHIND, EMPTY, Readings, joined, readings_of
+from api.calibrate.readings import Readings
 from api.calibrate.robust import wrong_poses
 from api.calibrate.roles import guess
 from api.calibrate.runs import RunOffset
@@ -38,7 +37,7 @@ from api.calibrate.selection import (
     settled,
 )
 from api.calibrate.settings import Settings
-from api.calibrate.table import Table, TableError, read_table
+from api.calibrate.table import read_table
 from api.calibrate.uncertainty import (
     Intervals,
     intervals,
@@ -61,12 +60,8 @@ from files.reading import read_bytes
 
 #: Samples from which wrong poses are looked for.
 _FEWEST_FOR_WRONG = 40
-#: Directions that lie this near to one plane through the sensor are those of one axis.
-_ONE_AXIS = 0.02
 #: RMS over the directions' own spread from which a model explains no more than chance does.
 _CHANCE = 0.5
-#: Share of rows with the light behind the sensor from which the angles' own form is uncertain.
-_MANY_BEHIND = 0.05
 #: Samples a final fit is made of at most; more are thinned evenly.
 MOST_FITTED = 40_000
 
@@ -207,15 +202,15 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
             notes += said
         stated = of_spots(stated)
     progress("conventions", 0, 1)
-    file = _read(tables, stated if settings else _with_cells(tables, stated))
+    file = read_as(tables, stated if settings else with_cells(tables, stated))
     applied: list[Finding] = []
     if apply:
-        file, applied = _applied(tables, file, notes)
+        file, applied = applied_to(tables, file, notes)
     stated, readings, found = file.settings, file.readings, file.findings
     notes += [note for part in file.bad for note in part.notes]
     sound, excluded, runs, fold = sound_of(readings)
     excluded = [*(one for part in file.bad for one in part.excluded), *excluded]
-    _require_two_axes(sound)
+    require_two_axes(sound)
     readings = sound
     if len(sound) >= _FEWEST_FOR_WRONG:
         wrong = wrong_poses(sound.features, sound.sun, 3.0 * stated.bench.floor_deg)
@@ -270,11 +265,11 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
         *next_poses(readings.sun),
     )  # fmt: skip
-    known = intervals(chosen, readings)
+    held = intervals(chosen, readings)
     verdict = withheld(
         replace(verdict, untested=untested_in(readings, stated)),
         unexplained(readings, excluded, wrong_ones, stated.sensor.half_fov_deg, fold),
-        () if known is None else parts_of(compared, *_along(chosen, known, compared)),
+        () if held is None else parts_of(compared, *_along(chosen, held, compared)),
     )
     if uncertain := next((one for one in found if one.certain), None):
         verdict = with_uncertain_conventions(verdict, uncertain.found)
@@ -282,79 +277,9 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     return Calibration(
         stated, (*applied, *found), tuple(applied), readings, tuple(excluded), tuple(runs), fold,
         geometry, tuple(candidates), chosen, why, model, residual, noise,
-        known, spread, verdict, _digest(paths), tuple(p.name for p in paths), tuple(notes),
+        held, spread, verdict, _digest(paths), tuple(p.name for p in paths), tuple(notes),
         limits_of(readings, stated, joined_levels(file.bad)),
     )  # fmt: skip
-
-
-@dataclass(frozen=True)
-class _File:
-    """Samples of all tables under some settings, and what their conventions seem to be."""
-
-    settings: Settings
-    readings: Readings
-    findings: list[Finding]
-    bad: list[BadCells]
-
-
-def _read(tables: Sequence[Table], settings: Settings) -> _File:
-    """Read all tables, without cells that hold no reading."""
-    cleaned = [without_bad_cells(table, settings) for table in tables]
-    bad = [found for _, found in cleaned]
-    readings = joined([readings_of(table, settings) for table, _ in cleaned])
-    dropped = {**readings.dropped}
-    dropped[EMPTY] = dropped.get(EMPTY, 0) - sum(len(one.excluded) for one in bad)
-    readings = replace(readings, dropped={name: n for name, n in dropped.items() if n > 0})
-    _require_two_axes(readings)
-    every = None
-    if readings.dropped.get(BEHIND, 0) > _MANY_BEHIND * len(readings):
-        every = joined([readings_of(table, settings, behind=True) for table, _ in cleaned])
-    return _File(settings, readings, findings(readings, settings, every), bad)
-
-
-def _with_cells(tables: Sequence[Table], guessed: Settings) -> Settings:
-    """Return settings guessed from names, with channels where four readings are plain cells."""
-    if guessed.readings.kind != "quadrants":
-        return guessed
-    readings = joined([readings_of(table, guessed) for table in tables])
-    change = next((one for one in of_cells(readings, guessed)), None)
-    return guessed if change is None else change_of(guessed, change)
-
-
-def _applied(tables: Sequence[Table], file: _File, notes: list[str]) -> tuple[_File, list[Finding]]:
-    """Apply certain findings one by one, judging all again after each, until none is left.
-
-    A finding about what was changed already, or that leads back to settings that were left,
-    contradicts what was applied: it stays, so that the verdict is not good.
-    """
-    applied: list[Finding] = []
-    seen = [file.settings]
-    while certain := next((one for one in file.findings if one.certain and one.change), None):
-        changed = change_of(file.settings, certain)
-        if changed in seen or certain.about in {one.about for one in applied}:
-            notes.append(
-                f"changes did not settle: after {'; '.join(one.found for one in applied)}, "
-                f"{certain.found}"
-            )
-            break
-        try:
-            file = _read(tables, changed)
-        except (TableError, UnusableDataError) as error:
-            notes.append(f"{certain.found}: not applied, since then {error}")
-            break
-        applied.append(certain)
-        seen.append(changed)
-    return file, applied
-
-
-def _require_two_axes(readings: Readings) -> None:
-    size = np.linalg.svd(readings.sun, compute_uv=False)
-    if len(readings) < 3 or size[2] < _ONE_AXIS * size[1]:
-        raise UnusableDataError(
-            f"the {len(readings)} poses lie along one axis: a second axis would settle the "
-            "calibration (turn the sensor by 90 deg about its boresight, or sweep the other "
-            "gimbal, and add the rows)"
-        )
 
 
 def _explained(candidate: Candidate, readings: Readings) -> Candidate:
@@ -374,11 +299,11 @@ def _by_error(one: Candidate) -> tuple[bool, bool, float]:
     return bool(one.refused), one.missing > 0.05, one.rms_deg
 
 
-def _along(chosen: Candidate, known: Intervals, compared: Readings) -> tuple[Floats, Floats]:
+def _along(chosen: Candidate, held: Intervals, compared: Readings) -> tuple[Floats, Floats]:
     """Return errors (N, 2) of samples left out along two axes, and their stated 1-sigma."""
     along = tangent_offsets(np.asarray(chosen.offsets), compared.sun)
     along[~np.isfinite(np.asarray(chosen.errors))] = np.nan
-    return along, np.repeat(known.factor * np.asarray(chosen.deviation)[:, None], 2, axis=1)
+    return along, np.repeat(held.factor * np.asarray(chosen.deviation)[:, None], 2, axis=1)
 
 
 def _fit_spread(

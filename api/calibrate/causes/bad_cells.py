@@ -159,7 +159,7 @@ def _word(value: float, at_top: bool, settings: Settings) -> str:
         return "saturated"
     # faces without light read one value, and a quadrant without light may
     dark = np.atleast_1d(np.asarray(stated.dark, dtype=np.float64))
-    unlit = stated.kind == "channels" or value == 0 or bool((value == dark).any())
+    unlit = stated.kind == "channels" or value == 0 or value in dark
     return "" if unlit else "clipped"
 
 
@@ -181,7 +181,7 @@ def _repeated(table: Table, settings: Settings) -> Iterator[tuple[str, NDArray[n
     """Yield rows that repeat another, and readings that stand for directions far apart."""
     readings = np.column_stack([table.numbers(name) for name in settings.readings.columns])
     stated = np.column_stack([table.numbers(name) for name in settings.direction.columns])
-    whole = np.isfinite(readings).all(axis=1) & np.isfinite(stated).all(axis=1)
+    whole = np.asarray(np.isfinite(readings).all(axis=1) & np.isfinite(stated).all(axis=1))
     at = np.flatnonzero(whole)
     if len(at) < _FEWEST_VALUES:
         return

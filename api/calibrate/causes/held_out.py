@@ -54,7 +54,7 @@ def parts_of(readings: Readings, along: Floats, sigma_deg: Floats) -> tuple[Part
     """
     from scipy.stats import binom  # noqa: PLC0415 - SciPy, at the first use
 
-    known = np.isfinite(along).all(axis=1) & np.isfinite(sigma_deg).all(axis=1)
+    known = np.asarray(np.isfinite(along + sigma_deg).all(axis=1))
     used = readings.only(known)
     within = np.abs(along[known]) <= _NORMAL_95 * sigma_deg[known]
     found = []

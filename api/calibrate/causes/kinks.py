@@ -15,7 +15,8 @@ from api.calibrate.settings import Settings
 
 _MOST, _FEWEST = 2000, 100
 _BLOCKS, _CERTAIN = 8, 8.0
-#: Change of slope at a kink from which one is told.
+#: Share of what a smooth function leaves that the kink explains, and the least change of slope.
+_SHARE = 0.5
 _LEAST = 0.01
 
 
@@ -33,9 +34,9 @@ def of_kinks(readings: Readings, settings: Settings, noise_deg: float) -> Iterat
     for at, name in enumerate(names):
         if azimuth or not (angles[:, at] < 0).any() or not (angles[:, at] > 0).any():
             continue
-        bend, error = _bend(used, angles[:, at])
+        bend, error, share = _bend(used, angles[:, at])
         moved = abs(bend) * float(np.std(np.maximum(angles[:, at], 0.0)))
-        if abs(bend) > max(_CERTAIN * error, _LEAST) and moved > noise_deg:
+        if share > _SHARE and abs(bend) > max(_CERTAIN * error, _LEAST) and moved > noise_deg:
             yield Finding(
                 "kink",
                 f"angles of {name} above zero seem to be {100 * abs(bend):.2g} % "
@@ -46,10 +47,11 @@ def of_kinks(readings: Readings, settings: Settings, noise_deg: float) -> Iterat
             )  # fmt: skip
 
 
-def _bend(readings: Readings, angle: Floats) -> tuple[float, float]:
-    """Return the change of slope of an angle (N,) at zero, and its error by a jackknife of blocks.
+def _bend(readings: Readings, angle: Floats) -> tuple[float, float, float]:
+    """Return the change of slope of an angle (N,) at zero, its error, and what it explains.
 
-    Angles are a smooth function of the readings and of the angle above zero.
+    Angles are a smooth function of the readings and of the angle above zero. The error is that of a
+    jackknife of blocks; explained is a share of the variance that the smooth function leaves.
     """
     features = readings.features
     scaled = (features - features.mean(axis=0)) / np.maximum(features.std(axis=0), 1e-12) / 2.0
@@ -68,7 +70,9 @@ def _bend(readings: Readings, angle: Floats) -> tuple[float, float]:
         [_ratio(hinge_left[kept & (block != n)], left[kept & (block != n)]) for n in range(_BLOCKS)]
     )
     scatter = float(np.sum((without - without.mean()) ** 2))
-    return whole, float(np.sqrt((_BLOCKS - 1) / _BLOCKS * scatter))
+    rest = float(np.var(left[kept] - whole * hinge_left[kept]))
+    share = 1.0 - rest / max(float(np.var(left[kept])), 1e-300)
+    return whole, float(np.sqrt((_BLOCKS - 1) / _BLOCKS * scatter)), share
 
 
 def _ratio(hinge: Floats, left: Floats) -> float:

@@ -11,13 +11,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from algorithms.angles import angles_from_sun, sun_from_angles
 from algorithms.contract import FeatureKind, Floats
 from api.calibrate.causes.light import plane_of, reading_noise
 from api.calibrate.conventions.finding import Finding
 from api.calibrate.readings import Readings, sun_of_angles
-from api.calibrate.settings import Settings
+from api.calibrate.settings import Form, Settings
 
 #: What a law leaves, over the noise, to be followed, and not to be.
 FOLLOWED, BROKEN = 1.3, 2.0
@@ -117,16 +118,14 @@ def _scaled(
             ),
         )
         return
-    for word, at in (
-        ("all angles", (1, 1)),
-        *zip(settings.direction.columns, ((1, 0), (0, 1)), strict=True),
-    ):
-        yield (
-            f"the {word}" if word != "all angles" else word,
-            lambda factor, at=at: sun_of_angles(
-                _near_circle(stated * np.where(at, factor, 1.0)), form
-            ),
-        )
+    first, second = settings.direction.columns
+    for word, at in (("all angles", (1, 1)), (f"the {first}", (1, 0)), (f"the {second}", (0, 1))):
+        yield word, _times(stated, np.asarray(at), form)
+
+
+def _times(stated: Floats, which: NDArray[np.int64], form: Form) -> Callable[[float], Floats]:
+    """Return directions by the factor of some of the angles."""
+    return lambda factor: sun_of_angles(_near_circle(stated * (1 + which * (factor - 1))), form)
 
 
 def _near_circle(angles: Floats) -> Floats:

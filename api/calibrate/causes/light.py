@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from api.calibrate.readings import Readings
@@ -19,6 +20,8 @@ from api.calibrate.robust import degree_for, terms
 _BLOCKS = 8
 #: Cosine of incidence from behind from which a channel takes no light.
 _UNLIT = 0.15
+#: Spread of a signal without light over that of all, up to which it is one level.
+_FLAT = 0.3
 #: Poses without light on a channel that tell its level then.
 _FEWEST_UNLIT = 12
 #: Standard deviations from which a level is another than stated.
@@ -132,15 +135,24 @@ def level_of_channels(readings: Readings, falls: bool) -> Dark:
     levels, errors = [], []
     for signal in readings.features.T:
         design, slope, linear = plane_of(signal, readings.sun)
-        unlit = away * (readings.sun @ (slope / (np.linalg.norm(slope) or 1.0))) > _UNLIT
-        if not linear and unlit.sum() >= _FEWEST_UNLIT:
-            levels.append(float(np.median(signal[unlit])))
-            errors.append(1.25 * float(np.std(signal[unlit])) / np.sqrt(unlit.sum()))
-            continue
-        level, error = _by_blocks(design, signal, readings.sun)
+        if linear:
+            level, error = _by_blocks(design, signal, readings.sun)
+        else:
+            towards = away * (readings.sun @ (slope / (np.linalg.norm(slope) or 1.0)))
+            level, error = _plateau(signal, towards > _UNLIT)
         levels.append(level)
         errors.append(error)
     return Dark(np.asarray(levels), float(np.max(errors)), "the light against the cosine")
+
+
+def _plateau(signal: Floats, unlit: NDArray[np.bool_]) -> tuple[float, float]:
+    """Return the level of a signal where its face has no light, and its error; infinite if none."""
+    if unlit.sum() < _FEWEST_UNLIT:
+        return 0.0, np.inf
+    scatter = float(np.std(signal[unlit]))
+    if scatter > _FLAT * float(np.std(signal)):
+        return 0.0, np.inf
+    return float(np.median(signal[unlit])), float(1.25 * scatter / np.sqrt(unlit.sum()))
 
 
 def plane_of(signal: Floats, sun: Floats) -> tuple[Floats, Floats, bool]:
@@ -151,7 +163,7 @@ def plane_of(signal: Floats, sun: Floats) -> tuple[Floats, Floats, bool]:
     design = np.column_stack([np.ones(len(signal)), sun])
     fit = np.linalg.lstsq(design, signal, rcond=1e-12)[0]
     left = float(np.var(signal - design @ fit))
-    return design, fit[1:], left < _PLANE * float(np.var(signal))
+    return design, np.asarray(fit[1:]), left < _PLANE * float(np.var(signal))
 
 
 def changes_answers(dark: Dark, readings: Readings, noise_deg: float) -> bool:

@@ -94,14 +94,13 @@ def _certain(found: Sequence[Finding]) -> bool:
 
 def _of_sensor(readings: Readings, settings: Settings, noise: float) -> Iterator[Finding]:
     """Yield what the sensor's readings are, each only where those before it are settled."""
-    for part in (of_cells, of_light, of_quadrants):
-        found = list(
-            part(readings, settings, noise) if part is of_light else part(readings, settings)
-        )
-        yield from found
-        if _certain(found):
-            return
-    yield from _of_axes(readings)
+    found = list(of_cells(readings, settings))
+    found = found or list(of_light(readings, settings, noise))
+    if not _certain(found):
+        found += of_quadrants(readings, settings)
+    yield from found
+    if not _certain(found):
+        yield from _of_axes(readings)
 
 
 def _moves_axes(found: Finding, settings: Settings) -> bool:
