@@ -14,9 +14,9 @@ from api.calibrate.robust import degree_for, terms
 from api.calibrate.settings import Settings
 
 _MOST, _FEWEST = 2000, 100
-_BLOCKS, _CERTAIN = 8, 8.0
+_BLOCKS, _CERTAIN = 8, 6.0
 #: Share of what a smooth function leaves that the kink explains, and the least change of slope.
-_SHARE = 0.5
+_SHARE = 0.1
 _LEAST = 0.01
 
 
@@ -36,7 +36,7 @@ def of_kinks(readings: Readings, settings: Settings, noise_deg: float) -> Iterat
             continue
         bend, error, share = _bend(used, angles[:, at])
         moved = abs(bend) * float(np.std(np.maximum(angles[:, at], 0.0)))
-        if share > _SHARE and abs(bend) > max(_CERTAIN * error, _LEAST) and moved > noise_deg:
+        if share > _SHARE and abs(bend) > max(_CERTAIN * error, _LEAST) and moved > 0.5 * noise_deg:
             yield Finding(
                 "kink",
                 f"angles of {name} above zero seem to be {100 * abs(bend):.2g} % "

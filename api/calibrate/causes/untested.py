@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from algorithms.contract import FeatureKind
-from api.calibrate.causes.laws import FOLLOWED, UNTESTED, scale_of_angles
+from api.calibrate.causes.laws import UNTESTED, scale_of_angles, settles_scale
 from api.calibrate.causes.light import Dark, changes_answers, level_of_channels
 from api.calibrate.conventions.channels import level_of
 from api.calibrate.readings import Readings
@@ -29,7 +29,8 @@ def untested_in(readings: Readings, settings: Settings) -> tuple[str, ...]:
 
     used = readings.thinned(_MOST)
     found = []
-    if scale_of_angles(used, settings).followed >= FOLLOWED:
+    noise = answer_noise_deg(used.features, used.sun)
+    if not settles_scale(scale_of_angles(used, settings), used, noise):
         found.append(UNTESTED)
     kind = settings.readings.kind
     if kind == "balance":
@@ -38,7 +39,6 @@ def untested_in(readings: Readings, settings: Settings) -> tuple[str, ...]:
         signals = used.kind is FeatureKind.SIGNALS
         dark = level_of_channels(used, falls=False) if signals else level_of(used, settings)
         unsure = Dark(np.full(len(dark.level), dark.error), dark.error, dark.by)
-        noise = answer_noise_deg(used.features, used.sun)
         if not np.isfinite(dark.error) or changes_answers(unsure, used, noise):
             found.append(_DARK.format("the signals follow no law by which they tell it"))
     if not np.isfinite(fraction_late(readings)[1]):

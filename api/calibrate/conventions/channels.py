@@ -31,7 +31,7 @@ _FALLING = 0.5
 _SURER = 0.1
 #: Share of the spread of four readings that planes of the direction leave of plain cells, and of
 #: the product of their slopes, which quadrants under one opening would show.
-_PLAIN, _OF_PRODUCT = 0.02, 0.2
+_PLAIN, _OF_PRODUCT = 0.05, 0.2
 
 
 def of_light(readings: Readings, settings: Settings, noise_deg: float) -> Iterator[Finding]:
