@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -71,21 +72,21 @@ def scale_of_angles(readings: Readings, settings: Settings) -> Scale:
     noise = np.maximum(reading_noise(used.features, used.sun), 1e-12)
     law = _left_of_cells if readings.kind is FeatureKind.SIGNALS else _left_of_projection
 
-    def left(sun: Floats) -> float:
-        return law(used.features, sun, noise)
+    def left(turned: Callable[[float], Floats], factor: float) -> float:
+        return law(used.features, turned(factor), noise)
 
-    as_stated = left(used.sun)
+    as_stated = law(used.features, used.sun, noise)
     best = Scale(as_stated, as_stated, 1.0, np.inf, "")
     if not np.isfinite(as_stated):
         return best
     error = np.inf
     for axis, turned in _scaled(used, settings):
+        of_factor = partial(left, turned)
         found = minimize_scalar(
-            lambda factor, turned=turned: left(turned(factor)),
-            bounds=_FACTORS, method="bounded", options={"xatol": 1e-4},
-        )  # fmt: skip
+            of_factor, bounds=_FACTORS, method="bounded", options={"xatol": 1e-4}
+        )
         if not np.isfinite(error):  # of all angles, which come first
-            error = _error_of_factor(lambda f, turned=turned: left(turned(f)), found, used)
+            error = _error_of_factor(of_factor, found, used)
         if found.fun < best.best:
             best = Scale(as_stated, float(found.fun), float(found.x), np.inf, axis)
     return replace(best, error=error)
