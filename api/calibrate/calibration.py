@@ -142,7 +142,7 @@ class Calibration:
     def deviations_deg(
         self, features: Floats, context: Mapping[str, Floats] | None = None
     ) -> Floats:
-        """Return the 1-sigma (N, 2) of both axes of `api.calibrate.uncertainty.tangent_axes`.
+        """Return the 1-sigma (N, 2) of both axes of `api.calibrate.intervals.places.tangent_axes`.
 
         In degrees, at features (N, F): by the place of the direction, or as the model states it
         where there were too few samples for intervals. NaN where nothing is answered.

@@ -22,12 +22,13 @@ from algorithms.calibration.saving import (
 from algorithms.contract import Compensation, Floats, Model
 from algorithms.discovery import discover_compensations, discover_models
 from api.calibrate.calibration import Calibration
+from api.calibrate.intervals.places import tangent_axes
 from api.calibrate.readings import readings_of
 from api.calibrate.recalibration import Correction
 from api.calibrate.selection import deviation_of
 from api.calibrate.settings import Settings, parse_settings
 from api.calibrate.table import Table
-from api.calibrate.uncertainty import Intervals, covariance_of, tangent_axes
+from api.calibrate.uncertainty import Intervals, covariance_of
 from api.calibrate.verdict import as_text
 from files.atomic import replace_file
 
@@ -104,7 +105,7 @@ class SavedCalibration:
     def deviations_deg(
         self, features: Floats, context: Mapping[str, Floats] | None = None
     ) -> Floats:
-        """Return the 1-sigma (N, 2) of both axes of `api.calibrate.uncertainty.tangent_axes`.
+        """Return the 1-sigma (N, 2) of both axes of `api.calibrate.intervals.places.tangent_axes`.
 
         In degrees, at features (N, F).
         """
