@@ -22,6 +22,8 @@ REFITS = 6
 #: Samples from which intervals are stated.
 FEWEST = 40
 _FOLDS = 5
+#: Smaller errors are rounding, degrees.
+_LEAST = 1e-12
 #: Poses are told apart to so many digits.
 _DIGITS = 6
 #: Poses around one that tell its noise.
@@ -105,7 +107,9 @@ def intervals(offsets: Floats, sun: Floats) -> Intervals | None:
     over, inside = np.empty_like(along), np.empty(along.shape, dtype=np.bool_)
     for test in tests:
         table = scale_of(along[~test], sun[~test], grid)
-        over[test] = np.abs(along[test]) / bilinear(grid.weights(sun[test]), table)
+        over[test] = np.maximum(np.abs(along[test]), _LEAST) / bilinear(
+            grid.weights(sun[test]), table
+        )
     for test in tests:
         inside[test] = over[test] <= _limits(over[~test], rings[~test], rings[test])
     limits = _limits(over, rings, np.eye(len(grid.rings_deg))) / NORMAL_95
