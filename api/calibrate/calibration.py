@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,6 +17,7 @@ from api.calibrate.conventions.findings import findings
 from api.calibrate.exclusions import Excluded, excluded_of, kept_by_model, sound_of
 from api.calibrate.frames import of_spots, table_in, with_spots
 from api.calibrate.halves import halves
+from api.calibrate.intervals.left_out import errors_left_out
 from api.calibrate.readings import BEHIND, Readings, joined, readings_of
 from api.calibrate.robust import wrong_poses
 from api.calibrate.roles import guess
@@ -34,6 +35,7 @@ from api.calibrate.settings import Settings
 from api.calibrate.table import Table, read_table
 from api.calibrate.uncertainty import (
     Intervals,
+    covariance_of,
     intervals,
     noise_around,
     noise_deg,
@@ -128,10 +130,34 @@ class Calibration:
     sources: tuple[str, ...]
     notes: tuple[str, ...] = ()
 
-    def deviation_deg(self, features: Floats, context: dict[str, Floats] | None = None) -> Floats:
-        """Return the 1-sigma (N,) of a tangent axis at features (N, F), degrees."""
-        stated = deviation_of(self.model, features, context or {})
-        return stated * (1.0 if self.intervals is None else self.intervals.factor)
+    def deviation_deg(
+        self, features: Floats, context: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """Return the 1-sigma (N,) of a tangent axis at features (N, F), degrees.
+
+        RMS of the two axes of `deviations_deg`.
+        """
+        return np.asarray(np.sqrt(np.mean(self.deviations_deg(features, context) ** 2, axis=1)))
+
+    def deviations_deg(
+        self, features: Floats, context: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """Return the 1-sigma (N, 2) of both axes of `api.calibrate.intervals.places.tangent_axes`.
+
+        In degrees, at features (N, F): by the place of the direction, or as the model states it
+        where there were too few samples for intervals. NaN where nothing is answered.
+        """
+        if self.intervals is None:
+            return np.repeat(deviation_of(self.model, features, context or {})[:, None], 2, axis=1)
+        return self.intervals.at(self.model.predict(features, context or {}))
+
+    def covariance(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
+        """Return the covariance (N, 3, 3) of the unit vectors at features (N, F), radians squared.
+
+        Errors along the two tangent axes are taken for uncorrelated; along the direction, zero.
+        """
+        sun = self.model.predict(features, context or {})
+        return covariance_of(self.deviations_deg(features, context), sun)
 
 
 def calibrate(  # noqa: PLR0915 - the steps in their order
@@ -196,6 +222,7 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     sound, excluded, runs, fold = sound_of(readings)
     _require_two_axes(sound)
     readings = sound
+    wrong = np.zeros(len(sound), dtype=np.bool_)
     if len(sound) >= _FEWEST_FOR_WRONG:
         wrong = wrong_poses(sound.features, sound.sun, 3.0 * stated.bench.floor_deg)
         readings = sound.only(~wrong)
@@ -243,6 +270,10 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     split = halves(wanted[chosen.name], sample, geometry, around)
     compared = readings.only(np.arange(0, len(readings), _step(readings, chosen)))
     patterns = patterns_in(np.asarray(chosen.offsets), compared)
+    removed = sound.only(~kept & ~wrong)
+    stated_sigma = intervals(
+        *errors_left_out(wanted[chosen.name], chosen, compared, geometry, model, removed)
+    )
     verdict = judge(
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
         *next_poses(readings.sun),
@@ -253,7 +284,7 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     return Calibration(
         stated, (*applied, *found), tuple(applied), readings, tuple(excluded), tuple(runs), fold,
         geometry, tuple(candidates), chosen, why, model, residual, noise,
-        intervals(chosen, readings), spread, verdict, _digest(paths), tuple(p.name for p in paths),
+        stated_sigma, spread, verdict, _digest(paths), tuple(p.name for p in paths),
         tuple(notes),
     )  # fmt: skip
 
