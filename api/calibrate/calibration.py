@@ -20,7 +20,7 @@ from api.calibrate.halves import halves
 from api.calibrate.intervals.left_out import errors_left_out
 from api.calibrate.readings import BEHIND, Readings, joined, readings_of
 from api.calibrate.robust import wrong_poses
-from api.calibrate.roles import guess
+from api.calibrate.roles import understood
 from api.calibrate.runs import RunOffset
 from api.calibrate.selection import (
     Candidate,
@@ -106,7 +106,7 @@ class Calibration:
     sources : tuple of str
         Names of the files.
     notes : tuple of str
-        On how pictures were read.
+        On how the files and pictures were read.
     """
 
     settings: Settings
@@ -199,9 +199,8 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
         If the samples settle no model; the message says what would.
     """
     paths = [table_in(path) if path.is_dir() else path for path in paths]
-    tables = [read_table(path) for path in paths]
-    stated = settings or guess(tables[0])
-    notes: list[str] = []
+    tables = [read_table(path, settings.file if settings else None) for path in paths]
+    stated, notes = _stated(tables, settings)
     if stated.readings.kind == "frames":
         for at, path in enumerate(paths):
             tables[at], said = with_spots(
@@ -287,6 +286,15 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
         stated_sigma, spread, verdict, _digest(paths), tuple(p.name for p in paths),
         tuple(notes),
     )  # fmt: skip
+
+
+def _stated(tables: Sequence[Table], settings: Settings | None) -> tuple[Settings, list[str]]:
+    """Return settings, guessed where none are stated, and how files and columns were read."""
+    notes = list(dict.fromkeys(note for table in tables for note in table.notes))
+    if settings is not None:
+        return settings, notes
+    guessed = understood(tables[0])
+    return guessed.settings, [*notes, *guessed.notes]
 
 
 def _read(tables: Sequence[Table], settings: Settings) -> tuple[Readings, list[Finding]]:
