@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -105,6 +105,8 @@ class Calibration:
         Names of the files.
     notes : tuple of str
         On how pictures were read.
+    digests : tuple of str
+        SHA-256 of each file.
     """
 
     settings: Settings
@@ -127,6 +129,7 @@ class Calibration:
     digest: str
     sources: tuple[str, ...]
     notes: tuple[str, ...] = ()
+    digests: tuple[str, ...] = ()
 
     def deviation_deg(self, features: Floats, context: dict[str, Floats] | None = None) -> Floats:
         """Return the 1-sigma (N,) of a tangent axis at features (N, F), degrees."""
@@ -134,7 +137,7 @@ class Calibration:
         return stated * (1.0 if self.intervals is None else self.intervals.factor)
 
 
-def calibrate(  # noqa: PLR0915 - the steps in their order
+def calibrate(
     paths: Sequence[Path],
     settings: Settings | None = None,
     *,
@@ -183,6 +186,43 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
             )
             notes += said
         stated = of_spots(stated)
+    found = calibrate_tables(
+        tables, stated, apply=apply, thorough=thorough, models=models, progress=progress
+    )
+    digests, digest = _digests(paths)
+    return replace(found, digest=digest, digests=digests, notes=tuple(notes))
+
+
+def calibrate_tables(  # noqa: PLR0915 - the steps in their order
+    tables: Sequence[Table],
+    stated: Settings,
+    *,
+    apply: bool = False,
+    thorough: bool = False,
+    models: Sequence[str] | None = None,
+    progress: Callable[[str, int, int], None] = lambda *_: None,
+) -> Calibration:
+    """Calibrate a sensor by tables in memory, each a run; else as `calibrate`.
+
+    Parameters
+    ----------
+    tables : sequence of Table
+        With the columns that the settings name.
+    stated : Settings
+        Of any kind but ``frames``.
+    apply, thorough, models, progress
+        As `calibrate` takes them.
+
+    Returns
+    -------
+    Calibration
+        Without notes and digests, which are those of files.
+
+    Raises
+    ------
+    TableError, UnusableDataError
+        As `calibrate`.
+    """
     readings, found = _read(tables, stated)
     progress("conventions", 0, 1)
     applied: list[Finding] = []
@@ -253,8 +293,8 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     return Calibration(
         stated, (*applied, *found), tuple(applied), readings, tuple(excluded), tuple(runs), fold,
         geometry, tuple(candidates), chosen, why, model, residual, noise,
-        intervals(chosen, readings), spread, verdict, _digest(paths), tuple(p.name for p in paths),
-        tuple(notes),
+        intervals(chosen, readings), spread, verdict, "",
+        tuple(table.source for table in tables),
     )  # fmt: skip
 
 
@@ -329,8 +369,12 @@ def _rms(errors: Floats) -> float:
     return float(np.sqrt(np.mean(known**2))) if len(known) else float("nan")
 
 
-def _digest(paths: Sequence[Path]) -> str:
-    state = hashlib.sha256()
-    for path in paths:
-        state.update(read_bytes(path, 512 * 1024 * 1024))
-    return state.hexdigest()[:32]
+def _digests(paths: Sequence[Path]) -> tuple[tuple[str, ...], str]:
+    """Return the SHA-256 of each file, and the first 32 digits of that of all."""
+    states = [hashlib.sha256() for _ in paths]
+    whole = hashlib.sha256()
+    for path, state in zip(paths, states, strict=True):
+        data = read_bytes(path, 512 * 1024 * 1024)
+        state.update(data)
+        whole.update(data)
+    return tuple(state.hexdigest() for state in states), whole.hexdigest()[:32]
