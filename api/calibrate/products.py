@@ -13,7 +13,7 @@ from api.calibrate.flight.channels import ChannelTable, channel_table
 from api.calibrate.flight.channels_c import channel_files
 from api.calibrate.flight.python_source import channels_module, python_module
 from api.calibrate.flight.table import FlightTable, NoTableError, flight_table
-from api.calibrate.report import report
+from api.calibrate.report.page import report
 from files.atomic import replace_file
 
 

@@ -11,7 +11,7 @@ from api.calibrate.calibration import Calibration
 from api.calibrate.documents import selection_table
 from api.calibrate.flight.channels import ChannelTable
 from api.calibrate.flight.table import FlightTable
-from api.calibrate.pictures import pictures
+from api.calibrate.report.pictures import pictures
 
 _TEMPLATES = Path(__file__).parent
 
