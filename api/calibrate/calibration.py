@@ -106,6 +106,8 @@ class Calibration:
         On how pictures were read.
     digests : tuple of str
         SHA-256 of each file.
+    left_out : ndarray, shape (M, 3), optional
+        Predicted minus true direction of the samples compared on, each when a fit did not see it.
     """
 
     settings: Settings
@@ -129,6 +131,7 @@ class Calibration:
     sources: tuple[str, ...]
     notes: tuple[str, ...] = ()
     digests: tuple[str, ...] = ()
+    left_out: Floats | None = None
 
     def deviation_deg(
         self, features: Floats, context: Mapping[str, Floats] | None = None
@@ -302,9 +305,8 @@ def calibrate_tables(  # noqa: PLR0915 - the steps in their order
     compared = readings.only(np.arange(0, len(readings), _step(readings, chosen)))
     patterns = patterns_in(np.asarray(chosen.offsets), compared)
     removed = sound.only(~kept & ~wrong)
-    stated_sigma = intervals(
-        *errors_left_out(wanted[chosen.name], chosen, compared, geometry, model, removed)
-    )
+    left_out = errors_left_out(wanted[chosen.name], chosen, compared, geometry, model, removed)
+    stated_sigma = intervals(*left_out)
     verdict = judge(
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
         *next_poses(readings.sun),
@@ -316,6 +318,7 @@ def calibrate_tables(  # noqa: PLR0915 - the steps in their order
         stated, (*applied, *found), tuple(applied), readings, tuple(excluded), tuple(runs), fold,
         geometry, tuple(candidates), chosen, why, model, residual, noise,
         stated_sigma, spread, verdict, "", tuple(table.source for table in tables),
+        left_out=left_out[0][: len(compared)],
     )  # fmt: skip
 
 
