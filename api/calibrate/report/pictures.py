@@ -11,6 +11,7 @@ import numpy as np
 
 from algorithms.contract import Floats
 from api.calibrate.calibration import Calibration
+from api.calibrate.readings import Readings
 from api.calibrate.report.errors import Errors, field_of, level, ray
 from api.calibrate.report.requirement import Requirement
 from api.calibrate.uncertainty import NORMAL_95
@@ -38,10 +39,9 @@ def pictures(
         errors.errors_deg[drawn],
         errors.sigma_deg[drawn],
     )
-    off_axis = _flat(few.readings.sun)
     made = {}
     if errors.known.any():
-        made["Errors over the field"] = _map(off_axis, few)
+        made["Errors over the field"] = _map(_flat(few.readings.sun), few)
         made["Error against off-axis angle"] = _against_angle(few, asked)
         made["Distribution of errors"] = _histogram(errors)
     if (
@@ -50,8 +50,9 @@ def pictures(
         made["Errors against temperature"] = _against_temperature(few, temperature)
     if len(np.unique(errors.readings.run)) > 1 and errors.known.any():
         made["Mean error of each run"] = _runs(errors)
-    made["Stated 1-sigma over the field"] = _uncertainty(few, off_axis)
-    made["Poses, their hull, and the next to take"] = _poses(found, off_axis)
+    poses = found.readings.thinned(_MOST_DRAWN)
+    made["Stated 1-sigma over the field"] = _uncertainty(found, poses)
+    made["Poses, their hull, and the next to take"] = _poses(found, _flat(poses.sun))
     return made
 
 
@@ -119,8 +120,9 @@ def _against_angle(few: Errors, asked: Sequence[Requirement]) -> str:
         half = one.half_angle_deg or float(off.max())
         axes.plot([0.0, half], [one.limit_deg] * 2, color="#222222", linestyle="--")
         axes.annotate(
-            one.text, (0.0, one.limit_deg), xytext=(2, 3), textcoords="offset points", fontsize=9
-        )
+            one.text, (half, one.limit_deg), xytext=(-2, 3), textcoords="offset points", fontsize=9,
+            ha="right",
+        )  # fmt: skip
     axes.set_xlabel("off-axis angle, deg")
     axes.set_ylabel("error, deg")
     axes.set_ylim(bottom=0.0)
@@ -159,10 +161,10 @@ def _against_temperature(few: Errors, temperature: Floats) -> str:
     return _svg(figure)
 
 
-def _uncertainty(few: Errors, places: Floats) -> str:
+def _uncertainty(found: Calibration, poses: Readings) -> str:
     figure, axes = _axes()
-    sigma = np.sqrt(np.mean(few.sigma_deg**2, axis=1))
-    points = axes.scatter(*places.T, c=sigma, s=16, cmap="magma")
+    sigma = found.deviation_deg(poses.features, dict(poses.context))
+    points = axes.scatter(*_flat(poses.sun).T, c=sigma, s=16, cmap="magma")
     figure.colorbar(points, label="1-sigma of an axis, deg", shrink=0.85)
     return _svg(figure)
 

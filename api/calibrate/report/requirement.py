@@ -87,16 +87,15 @@ class Judged:
 
     @property
     def sentence(self) -> str:
-        """The outcome, with its margin."""
-        said = f"{self.word}"
+        """The error found and its margin, or why it is not known."""
+        said = []
         if np.isfinite(self.found_deg):
             limit = self.requirement.limit_deg
-            said += (
-                f" - {self.found_deg:.3g} deg of {limit:.3g} deg allowed, margin "
-                f"{self.margin_deg:.2g} deg ({100 * self.margin_deg / limit:.0f} %), on "
-                f"{self.samples} poses left out"
+            said.append(
+                f"{self.found_deg:.3g} of {limit:.3g} deg on {self.samples} poses left out, margin "
+                f"{self.margin_deg:.2g} deg ({100 * self.margin_deg / limit:.0f} %)"
             )
-        return said + (f": {self.reason}" if self.reason else "")
+        return "; ".join([*said, self.reason] if self.reason else said)
 
 
 def requirement(text: str) -> Requirement:
@@ -148,7 +147,7 @@ def judged(asked: Requirement, found: Calibration, errors: Errors) -> Judged:
             return Judged(asked, "not met", np.nan, len(size), reason)
         wanted = fewest_for(asked.share or 0.5)
         reason = (
-            f"needs {wanted} poses left out; got {len(size)}, the largest of them errs "
+            f"it takes {wanted} poses left out, there are {len(size)}; their largest error is "
             f"{size[np.isfinite(size)].max(initial=0.0):.3g} deg"
         )
         return Judged(asked, "not shown", np.nan, len(size), reason)

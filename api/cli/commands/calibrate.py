@@ -144,7 +144,7 @@ def calibrate(
     _print(found, written, out)
     met = outcomes(found, asked)
     for one in met:
-        typer.echo(f"requirement {one.requirement.text}: {one.sentence}")
+        typer.echo(f"requirement {one.requirement.text}: {one.word} - {one.sentence}")
     if certificate is not None:
         typer.echo(f"wrote {certificate}")
     good = found.verdict.word == "good" and all(one.word == "met" for one in met)
