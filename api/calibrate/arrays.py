@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 from algorithms.contract import Floats
 from api.calibrate.calibration import Calibration, calibrate_tables
 from api.calibrate.readings import features_of
-from api.calibrate.roles import guess
+from api.calibrate.roles import understood
 from api.calibrate.settings import COLUMNS, Settings, SettingsError, parse_settings
-from api.calibrate.table import Table
+from api.calibrate.table import Table, table_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -188,8 +188,12 @@ def calibrate_frame(
     UnusableDataError
         If the rows settle no model; the message says what would.
     """
-    table = _table(frame)
-    stated = guess(table) if settings is None else parse_settings(dict(settings), "settings")
+    table = table_of(frame, "data frame")
+    stated = (
+        understood(table).settings
+        if settings is None
+        else parse_settings(dict(settings), "settings")
+    )
     if stated.readings.kind == "frames":
         raise SettingsError(
             "readings.kind: expected readings in the frame; pictures are read by "
@@ -207,21 +211,3 @@ def _calibrated(
         state.update(name.encode() + np.ascontiguousarray(column).tobytes())
     digest = state.hexdigest()
     return CalibratedSensor(replace(found, digest=digest[:32], digests=(digest,)))
-
-
-def _table(frame: pd.DataFrame) -> Table:
-    import pandas as pd  # noqa: PLC0415 - for frames only
-
-    columns: dict[str, NDArray[Any]] = {}
-    unread: dict[str, tuple[int, str]] = {}
-    for name in map(str, frame.columns):
-        column = frame.iloc[:, len(columns)]
-        numbers = pd.to_numeric(column, errors="coerce").to_numpy(dtype=np.float64)
-        wrong = np.isnan(numbers) & column.notna().to_numpy()
-        if wrong.any():
-            at = int(np.argmax(wrong))
-            unread[name] = (at, str(column.iloc[at]))
-            columns[name] = column.astype(str).to_numpy(dtype=str)
-        else:
-            columns[name] = numbers
-    return Table(columns, 0, "data frame", unread)

@@ -103,7 +103,7 @@ class Calibration:
     sources : tuple of str
         Names of the files.
     notes : tuple of str
-        On how pictures were read.
+        On how the files and pictures were read.
     digests : tuple of str
         SHA-256 of each file.
     left_out : ndarray, shape (M, 3), optional

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from api.calibrate.frames import of_spots, table_in, with_spots
-from api.calibrate.roles import guess
+from api.calibrate.roles import understood
 from api.calibrate.settings import Settings
 from api.calibrate.table import Table, read_table
 from files.reading import read_bytes
@@ -27,7 +27,7 @@ class Sources:
     settings : Settings
         Of the tables.
     notes : tuple of str
-        On how pictures were read.
+        On how the files and pictures were read.
     digest : str
         SHA-256 of all files, 32 digits.
     digests : tuple of str
@@ -54,9 +54,8 @@ def read_sources(
         If a file is none, or lacks a column.
     """
     paths = [table_in(path) if path.is_dir() else path for path in paths]
-    tables = [read_table(path) for path in paths]
-    stated = settings or guess(tables[0])
-    notes: list[str] = []
+    tables = [read_table(path, settings.file if settings else None) for path in paths]
+    stated, notes = _stated(tables, settings)
     if stated.readings.kind == "frames":
         for at, path in enumerate(paths):
             tables[at], said = with_spots(
@@ -71,3 +70,12 @@ def read_sources(
         whole.update(data)
         digests.append(hashlib.sha256(data).hexdigest())
     return Sources(tuple(tables), stated, tuple(notes), whole.hexdigest()[:32], tuple(digests))
+
+
+def _stated(tables: Sequence[Table], settings: Settings | None) -> tuple[Settings, list[str]]:
+    """Return settings, guessed where none are stated, and how files and columns were read."""
+    notes = list(dict.fromkeys(note for table in tables for note in table.notes))
+    if settings is not None:
+        return settings, notes
+    guessed = understood(tables[0])
+    return guessed.settings, [*notes, *guessed.notes]

@@ -15,7 +15,7 @@ from api.calibrate.calibration import Calibration
 from api.calibrate.documents import load
 from api.calibrate.readings import joined, readings_of
 from api.calibrate.report.errors import Errors, level
-from api.calibrate.roles import guess
+from api.calibrate.roles import understood
 from api.calibrate.selection import applicable, fitted
 from api.calibrate.settings import RowSettings, Settings
 from api.calibrate.table import Table, TableError, read_table
@@ -136,7 +136,7 @@ def _of_table(path: Path, found: Calibration) -> tuple[Floats, str]:
 def _settings_of(table: Table, settings: Settings) -> Settings:
     wanted = {*settings.readings.columns, *settings.direction.columns}
     if not wanted <= set(table.columns):
-        return guess(table).model_copy(update={"rows": RowSettings()})
+        return understood(table).settings.model_copy(update={"rows": RowSettings()})
     return settings.model_copy(update={"rows": RowSettings()})
 
 

@@ -105,16 +105,15 @@ def calibrate(
     from api.calibrate.frames import table_in  # noqa: PLC0415 - as above
     from api.calibrate.products import write_products  # noqa: PLC0415 - as above
     from api.calibrate.report.page import Asked, outcomes  # noqa: PLC0415 - as above
-    from api.calibrate.roles import guess  # noqa: PLC0415 - as above
     from api.calibrate.settings import read_settings  # noqa: PLC0415 - as above
     from api.calibrate.table import read_table  # noqa: PLC0415 - as above
-    from api.calibrate.template import template  # noqa: PLC0415 - as above
+    from api.calibrate.template import template_of  # noqa: PLC0415 - as above
     from benchmark.progress import terminal_progress  # noqa: PLC0415 - Rich, where it is shown
     from files.atomic import replace_file  # noqa: PLC0415 - as above
 
     if init is not None:
         table = read_table(table_in(files[0]) if files[0].is_dir() else files[0])
-        replace_file(init, template(guess(table), list(table.columns)))
+        replace_file(init, template_of(table))
         typer.echo(
             f"wrote {init}; correct it and run: sunatlas calibrate {files[0]} --config {init}"
         )
