@@ -134,11 +134,7 @@ def readings_of(table: Table, settings: Settings, *, behind: bool = False) -> Re
     stated = np.column_stack([table.numbers(name) for name in settings.direction.columns])
     sun, angles = _directions(stated, table, settings)
     signals = _signals(raw, settings.readings)
-    features = _features(signals, settings.readings)
-    for transform in settings.apply:
-        features = (
-            features @ np.asarray(MATRICES[transform]).T if features.shape[1] == 2 else features
-        )
+    features = _turned(_features(signals, settings.readings), settings)
     run, names = _runs(table, settings)
     context = _context(table, settings)
     rows = table.rows
@@ -168,6 +164,12 @@ def readings_of(table: Table, settings: Settings, *, behind: bool = False) -> Re
         signals, context, angles, {reason: count for reason, count in dropped.items() if count},
     )  # fmt: skip
     return made.only(usable)
+
+
+def features_of(raw: Floats, settings: Settings) -> Floats:
+    """Return features (N, F) of readings (N, K) as they stand in a file's columns."""
+    signals = _signals(np.asarray(raw, dtype=np.float64), settings.readings)
+    return _turned(_features(signals, settings.readings), settings)
 
 
 def _directions(stated: Floats, table: Table, settings: Settings) -> tuple[Floats, Floats | None]:
@@ -229,6 +231,13 @@ def sun_of_angles(angles_deg: Floats, form: AngleForm) -> Floats:
 def _signals(raw: Floats, settings: ReadingsSettings) -> Floats:
     sign = -1.0 if settings.inverted else 1.0
     return np.asarray(sign * (raw - np.asarray(settings.dark)) / np.asarray(settings.gain))
+
+
+def _turned(features: Floats, settings: Settings) -> Floats:
+    for transform in settings.apply:
+        if features.shape[1] == 2:
+            features = features @ np.asarray(MATRICES[transform]).T
+    return features
 
 
 def _features(signals: Floats, settings: ReadingsSettings) -> Floats:
