@@ -141,8 +141,8 @@ class Answer:
         place = question.table.row_place
         more = without.measured & ~question.measured_places[place]
         found = _nearest(more, {}, without.shown_deg, place)
-        benches = [without.bench_for(row) or 0.0 for row in found.values()]
-        return (len(benches), max(benches)) if benches else None
+        bench = without.bench_for(list(found.values()))
+        return None if bench is None else (len(found), bench)
 
     def calibrations(self, one: RankedArchitecture) -> Iterator[Calibration]:
         """Yield the calibrations of an architecture that meet the requirements, best first."""
@@ -265,11 +265,11 @@ class Answer:
                 found = unit_errors(
                     np.array([own.error_deg]),
                     table.unit_ratios[[row]],
-                    np.array([asked.bench_deg or 0.0]),
+                    asked.bench_deg or 0.0,
                     asked.share,
                 )
                 within = int(np.count_nonzero(found <= limit))
-                needed = question.bench_for(row)
+                needed = question.bench_for([row])
         time = pipeline.latency_us
         return Calibration(
             design=design,

@@ -206,7 +206,7 @@ class DesignTable:
         """
         own, ratios = own_deg[among], self.unit_ratios[among]
         if bench_deg:
-            return at_confidence(own, ratios, np.full(len(own), bench_deg), share)
+            return at_confidence(own, ratios, bench_deg, share)
         return np.asarray(own * ratios[:, math.ceil(share * UNITS - 1e-9) - 1])
 
     @cached_property

@@ -6,8 +6,7 @@ of evidence are judged apart, and neither stands in for the other.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from decimal import ROUND_FLOOR, Context
 from functools import cached_property
 
@@ -244,17 +243,17 @@ class Question:
         found[self.table.row_design] = False
         return found
 
-    def bench_for(self, row: int) -> float | None:
-        """Return the bench error up to which a pipeline keeps the limit; None without a limit.
+    def bench_for(self, rows: Sequence[int]) -> float | None:
+        """Return the bench error up to which one of some pipelines keeps the limit.
 
-        Rounded down to two digits, so that a bench of that error does.
+        Rounded down to two digits, so that a bench of that error does. None without a limit, or
+        where none of them has an error.
         """
-        limit, own = self.requirements.largest_deg, self.errors.own_deg[[row]]
-        if limit is None or not math.isfinite(own[0]):
+        limit, own = self.requirements.largest_deg, self.errors.own_deg[rows]
+        if limit is None or not np.isfinite(own).any():
             return None
-        ratios, share = self.table.unit_ratios[[row]], self.requirements.share
-        needed = float(bench_for(own, ratios, limit, share)[0])
-        return float(_TWO_DIGITS.create_decimal(needed))
+        needed = bench_for(own, self.table.unit_ratios[rows], limit, self.requirements.share)
+        return float(_TWO_DIGITS.create_decimal(float(needed.max())))
 
     def _any_report(self, among: Flags) -> Flags:
         found = np.zeros(len(self.table.places), bool)

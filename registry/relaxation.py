@@ -163,8 +163,7 @@ def _bench(question: Question) -> str:
     if asked.bench_deg is None or asked.largest_deg is None:
         return ""
     without = question.relaxed(replace(asked, bench_deg=None))
-    rows = np.flatnonzero(without.measured).tolist()
-    needed = max((without.bench_for(row) or 0.0 for row in rows), default=0.0)
+    needed = without.bench_for(np.flatnonzero(without.measured).tolist())
     if not needed:
         return ""
     return (
