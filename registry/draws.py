@@ -29,6 +29,8 @@ BENCHES: tuple[float, ...] = (
 FEWEST_UNITS = 5
 
 _BENCHES = np.array(BENCHES)
+#: Draws, itself among them, in which neither the unit's nor the bench's error is smaller.
+_AS_LARGE = np.outer(np.arange(UNITS, 0, -1), np.arange(len(BENCHES), 0, -1))
 _SHARES = [(at + 0.5) / UNITS for at in range(UNITS)]
 
 
@@ -98,19 +100,18 @@ def bench_for(own_deg: Numbers, ratios: Numbers, limit_deg: float, share: float)
     most = np.sqrt(np.maximum(limit_deg**2 - (own_deg[:, None] * ratios) ** 2, 0.0))
     draws = most[:, unit] / _BENCHES[bench]
     draws.partition(reach - 1, axis=1)
-    return np.minimum(draws[:, reach - 1], limit_deg)
+    return np.asarray(np.minimum(draws[:, reach - 1], limit_deg))
 
 
 def _largest_draws(share: float) -> tuple[int, Positions, Positions]:
     """Return the draws among which the error kept by a share of all is, as units and benches.
 
-    It is the n-th largest, and n is returned first. Errors of units and benches ascend: a draw with
-    n others that have neither a smaller unit's nor a smaller bench's error is not among them.
+    It is the n-th largest, and n is returned first. Errors of units and benches ascend, so a draw
+    that n others equal or exceed in both is not it.
     """
     size = UNITS * len(BENCHES)
     reach = size - _fewest(share, size) + 1
-    as_large = np.outer(np.arange(UNITS, 0, -1), np.arange(len(BENCHES), 0, -1))
-    unit, bench = np.nonzero(as_large <= reach)
+    unit, bench = np.nonzero(reach >= _AS_LARGE)
     return reach, unit, bench
 
 

@@ -6,6 +6,7 @@ of evidence are judged apart, and neither stands in for the other.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from decimal import ROUND_FLOOR, Context
 from functools import cached_property
@@ -95,6 +96,8 @@ class Question:
     def judged_alone_deg(self, row: int) -> float:
         """Return the same of one pipeline, also where it misses without a bench."""
         own, asked = self.errors.own_deg, self.requirements
+        if math.isfinite(self.judged_deg[row]):
+            return float(self.judged_deg[row])
         return float(self.table.within(own, [row], asked.bench_deg, asked.share)[0])
 
     @cached_property
