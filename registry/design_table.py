@@ -193,7 +193,11 @@ class DesignTable:
         return PipelineErrors(own, first, share, covers)
 
     def within(
-        self, own_deg: Numbers, among: Flags | list[int], bench_deg: float | None, share: float
+        self,
+        own_deg: Numbers,
+        among: Flags | list[int] | slice,
+        bench_deg: float | None,
+        share: float,
     ) -> Numbers:
         """Return the errors that a share of units (and benches) stays within, of some pipelines.
 
@@ -204,10 +208,10 @@ class DesignTable:
         bench_deg : error of the bench; None or 0 for true directions
         share : of units and benches
         """
-        own, ratios = own_deg[among], self.unit_ratios[among]
         if bench_deg:
-            return at_confidence(own, ratios, bench_deg, share)
-        return np.asarray(own * ratios[:, math.ceil(share * UNITS - 1e-9) - 1])
+            return at_confidence(own_deg[among], self.unit_ratios[among], bench_deg, share)
+        unit = math.ceil(share * UNITS - 1e-9) - 1
+        return np.asarray(own_deg[among] * self.unit_ratios[among, unit])
 
     @cached_property
     def report_numbers(self) -> Mapping[str, Numbers]:
