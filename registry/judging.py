@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from decimal import ROUND_FLOOR, Context
-from functools import cached_property, wraps
+from functools import cached_property
 from typing import Any, TypeVar
 
 import numpy as np
@@ -54,15 +54,7 @@ Found = TypeVar("Found")
 
 def _shared(*names: str) -> Callable[[Callable[[Question], Found]], cached_property[Found]]:
     """Return a decorator for what is the same for questions that ask the same by some names."""
-
-    def share(find: Callable[[Question], Found]) -> cached_property[Found]:
-        @wraps(find)
-        def found(question: Question) -> Found:
-            return question.once(find, of=names)
-
-        return cached_property(found)
-
-    return share
+    return lambda find: cached_property(lambda question: question.once(find, of=names))
 
 
 class Question:
@@ -89,8 +81,7 @@ class Question:
         key = (find, *of_what, *map(self.requirements.value_of, of))
         if key not in self._found:
             self._found[key] = find(self, *of_what)
-        found: Found = self._found[key]
-        return found
+        return self._found[key]  # type: ignore[no-any-return]  # what this method found
 
     @_shared(*_ERRORS)
     def errors(self) -> PipelineErrors:
@@ -141,7 +132,7 @@ class Question:
         }
 
     def _by_pipeline(self, name: str) -> States:
-        errors, limit = self.errors, self._limit(name)
+        errors, limit = self.errors, self.requirements.value_of(name)
         answered = np.isfinite(errors.own_deg)
         known: Flags | bool = True
         if name == "max_error_deg":
@@ -177,7 +168,7 @@ class Question:
             return _states(self._studies_alone(name)[table.report_study], table.report_study >= 0)
         if attribute == "accuracy":
             classes = table.report_classes
-            named = np.logical_or.reduce([classes[one] for one in self._limit(name)])
+            named = np.logical_or.reduce([classes[one] for one in self.requirements.value_of(name)])
             if name != attribute:
                 return _states(~named)
             return _states(named, np.logical_or.reduce([*classes.values()]))
@@ -199,10 +190,6 @@ class Question:
         passed = () if light is None or light.hazard else ("sun_distance_au",)
         return [name for name in names if name not in (*_ARCHITECTURE, *passed)]
 
-    def _limit(self, name: str) -> Any:
-        """Return what is asked by a requirement that is set."""
-        return self.requirements.value_of(name)
-
     @_shared(*_ARCHITECTURE, *_PARTS)
     def _with_parts(self) -> States:
         """State of each report for model, extractor and properties: those that its study uses."""
@@ -216,14 +203,14 @@ class Question:
     def _within(self, name: str) -> tuple[Flags, Flags]:
         """Return which reports keep a limit on a number, and which state the number."""
         column, at_most = REPORTED[name]
-        values, limit = self.table.report_numbers[column], self._limit(name)
+        values, limit = self.table.report_numbers[column], self.requirements.value_of(name)
         known = ~np.isnan(values)
         return (values <= limit if at_most else values >= limit) & known, known
 
     @cached_property
     def by_place(self) -> Mapping[str, States]:
         """State of each architecture for mass, power and rate, by all that is built of it."""
-        asked = [name for name in OF_PRODUCTS if self._limit(name) is not None]
+        asked = [name for name in OF_PRODUCTS if self.requirements.value_of(name) is not None]
         return {name: self.once(Question._by_place, name, of=(name,)) for name in asked}
 
     def _by_place(self, name: str) -> States:

@@ -299,8 +299,8 @@ class Requirements:
         found = tuple(name for name in PARAMETERS if name in self._values)
         return (*found, "sun_distance_au") if self.sun_distance_au is not None else found
 
-    def value_of(self, name: str) -> tuple[str, ...] | float | None:
-        """Return the value of a requirement; None if it is not set."""
+    def value_of(self, name: str) -> Any:
+        """Return the value of a requirement, texts or a number; None if it is not set."""
         return self._values.get(name)
 
     @cached_property
