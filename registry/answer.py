@@ -12,7 +12,7 @@ import numpy as np
 from registry.calibration import Calibration, calibration
 from registry.design_table import Flags, Numbers, Positions
 from registry.designs import Place
-from registry.judging import MEETS, MISSES, Question, States
+from registry.judging import MEETS, MISSES, PARTS, Question, States
 from registry.ranking import ALIKE, Sort, TaskMeasure, in_words, joint_order, task_measure
 from registry.relaxation import Explanation, explain
 from registry.reports import Report
@@ -319,7 +319,7 @@ def _evidence(
             continue
         reported = _name_of(question.by_report, name, report)
         measured = _name_of(question.by_pipeline, name, row)
-        if measured is None and row >= 0 and name in question.of_parts:
+        if measured is None and row >= 0 and name in PARTS:
             measured = "meets"  # only pipelines of the required parts are candidates
         advised = None
         if name in {*OF_STUDIES, "accuracy"}:

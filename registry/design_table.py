@@ -78,6 +78,7 @@ class DesignTable:
         self.report_study = np.array([-1 if k is None else self._at[k] for k in keys], int)
         self.is_built = np.array([place.is_built for place in self.places], bool)
         self.is_specified = np.array([d.is_specified for d in self.designs], bool)
+        self.is_measured = np.array([bool(d.rows) for d in self.designs], bool)
         self.is_advised = np.array([bool(d.advice) for d in self.designs], bool)
 
     def _sets(self, of: Iterable[Iterable[str]]) -> Flags:

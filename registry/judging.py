@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from registry.design_table import DesignTable, Flags, Numbers, PipelineErrors
+from registry.design_table import DesignTable, Flags, Numbers, PipelineErrors, Positions
 from registry.draws import bench_for
 from registry.requirements import CLASSES_DEG, EXCLUDE, OF_PRODUCTS, OF_STUDIES, Requirements
 from survey_data.processors import factor
@@ -38,9 +38,10 @@ REPORTED = {
 
 #: Names of the requirements on what a question finds.
 _ARCHITECTURE = ("detector", "mask", "exclude_detector", "exclude_mask")
-_PARTS = ("model", "extractor", "exclude_model", "exclude_extractor", "properties")
+PARTS = ("model", "extractor", "exclude_model", "exclude_extractor", "properties")
+_DESIGNS = (*_ARCHITECTURE, *PARTS)
 _STUDIES = ("task", "error", "exclude_task", "exclude_error", "exclude_accuracy")
-_CANDIDATES = (*_ARCHITECTURE, *_PARTS, *_STUDIES)
+_CANDIDATES = (*_DESIGNS, *_STUDIES)
 _ERRORS = ("min_fov_deg", "survive", "sun_distance_au")
 _JUDGED = (*_CANDIDATES, *_ERRORS, "max_error_deg", "accuracy", "bench_deg", "confidence")
 #: Those that a measured pipeline can meet or miss.
@@ -158,9 +159,10 @@ class Question:
     def by_report(self) -> Mapping[str, States]:
         """State of each report for every requirement but detector and mask."""
         find = Question._by_report
-        parts = dict.fromkeys(self.of_parts, self._with_parts) if self.of_parts else {}
-        others = [name for name in self._judged_names if name not in parts]
-        return parts | {name: self.once(find, name, of=(name, "task")) for name in others}
+        return {
+            name: self.once(find, name, of=(name, *(_DESIGNS if name in PARTS else ("task",))))
+            for name in self._judged_names
+        }
 
     def _by_report(self, name: str) -> States:
         table, attribute = self.table, name.removeprefix(EXCLUDE)
@@ -169,16 +171,16 @@ class Question:
         if attribute == "accuracy":
             classes = table.report_classes
             named = np.logical_or.reduce([classes[one] for one in self.requirements.value_of(name)])
-            if name != attribute:
-                return _states(~named)
-            return _states(named, np.logical_or.reduce([*classes.values()]))
+            known = np.logical_or.reduce([*classes.values()])
+            return _states(named, known) if name == attribute else _states(~named)
+        if name in PARTS:
+            return self._with_parts
         if name not in REPORTED:
             return np.zeros(len(table.reports), np.int8)
         found = _states(*self._within(name))
-        if name not in OF_PRODUCTS:
-            return found
-        # what is built of an architecture tells of its studies that state nothing
-        return np.where(found == UNKNOWN, self.by_place[name][table.report_place], found)
+        if name in OF_PRODUCTS:  # what is built tells of studies on the same that state nothing
+            found = np.where(found == UNKNOWN, self.by_place[name][table.report_place], found)
+        return found
 
     @cached_property
     def _judged_names(self) -> list[str]:
@@ -190,7 +192,7 @@ class Question:
         passed = () if light is None or light.hazard else ("sun_distance_au",)
         return [name for name in names if name not in (*_ARCHITECTURE, *passed)]
 
-    @_shared(*_ARCHITECTURE, *_PARTS)
+    @_shared(*_DESIGNS)
     def _with_parts(self) -> States:
         """State of each report for model, extractor and properties: those that its study uses."""
         table, study = self.table, self.table.report_study
@@ -215,7 +217,8 @@ class Question:
 
     def _by_place(self, name: str) -> States:
         kept, known = self._within(name)
-        return _states(self._any_report(kept), self._any_report(known))
+        place = self.table.report_place
+        return _states(self._places_with(place[kept]), self._places_with(place[known]))
 
     @cached_property
     def reported(self) -> Flags:
@@ -239,14 +242,13 @@ class Question:
     @cached_property
     def measured_places(self) -> Flags:
         """Architectures with a measured pipeline that meets all requirements."""
-        found = np.zeros(len(self.table.places), bool)
-        found[self.table.row_place[self.measured]] = True
-        return found
+        return self._places_with(self.table.row_place[self.measured])
 
     @cached_property
     def matching_places(self) -> Flags:
         """Architectures that the evidence asked for brings into the answer."""
-        reported, measured = self._any_report(self.reported), self.measured_places
+        table, measured = self.table, self.measured_places
+        reported = self._places_with(table.report_place[self.reported])
         kinds = {"reported": reported, "measured": measured, "both": reported & measured}
         return kinds.get(self.requirements.evidence or "any", reported | measured)
 
@@ -259,15 +261,8 @@ class Question:
         counting = np.zeros((len(table.places), len(table.keys)), bool)
         of_studies = self.reported & (table.report_study >= 0)
         counting[table.report_place[of_studies], table.report_study[of_studies]] = True
-        found |= self.unmeasured & (table.used & counting[table.design_place]).any(axis=1)
+        found |= ~table.is_measured & (table.used & counting[table.design_place]).any(axis=1)
         return found & self.designs & self.matching_places[table.design_place]
-
-    @cached_property
-    def unmeasured(self) -> Flags:
-        """Designs without any measured pipeline."""
-        found = np.ones(len(self.table.designs), bool)
-        found[self.table.row_design] = False
-        return found
 
     def bench_for(self, rows: Sequence[int]) -> float | None:
         """Return the bench error up to which one of some pipelines keeps the limit.
@@ -281,9 +276,9 @@ class Question:
         needed = bench_for(own, self.table.unit_ratios[rows], limit, self.requirements.share)
         return float(_TWO_DIGITS.create_decimal(float(needed.max())))
 
-    def _any_report(self, among: Flags) -> Flags:
+    def _places_with(self, place: Positions) -> Flags:
         found = np.zeros(len(self.table.places), bool)
-        found[self.table.report_place[among]] = True
+        found[place] = True
         return found
 
     @_shared(*_ARCHITECTURE)
@@ -298,11 +293,6 @@ class Question:
                     found &= np.array(has, bool)
         return found
 
-    @property
-    def of_parts(self) -> tuple[str, ...]:
-        """Names of the requirements on model, extractor and its properties."""
-        return tuple(name for name in _PARTS if self.requirements.value_of(name) is not None)
-
     def _in_classes(self, classes: Iterable[str]) -> Flags:
         """Say of each pipeline whether it and the best one of its sensor are of a class."""
         table, judged = self.table, self.judged_deg
@@ -315,7 +305,7 @@ class Question:
             found |= is_class[table.row_place] & (judged < most)
         return found
 
-    @_shared(*_ARCHITECTURE, *_PARTS)
+    @_shared(*_DESIGNS)
     def designs(self) -> Flags:
         """Designs that have the required parts."""
         table, asked = self.table, self.requirements
