@@ -126,9 +126,7 @@ def _relatives(
             ((-runs(pair), -alike, years, other.key), pair)
             for pair in other.architectures
             if pair in simulated
-            and all(
-                not (known := filled[a]) or v in known for a, v in zip(SENSOR, pair, strict=True)
-            )
+            and all(v in (filled[a] or (v,)) for a, v in zip(SENSOR, pair, strict=True))
         ]
     if not ranked:
         return None
