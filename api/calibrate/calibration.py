@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -14,17 +13,16 @@ from algorithms.chain import Scored
 from algorithms.contract import Floats, Model, SensorGeometry, UnusableDataError
 from api.calibrate.causes.applying import applied_to, read_as, require_two_axes, with_cells
 from api.calibrate.causes.bad_cells import joined_levels
-from api.calibrate.causes.held_out import parts_of
+from api.calibrate.causes.held_out import Part, parts_of
 from api.calibrate.causes.limits import ReadingLimits, limits_of
 from api.calibrate.causes.removed import unexplained
 from api.calibrate.causes.untested import untested_in
 from api.calibrate.conventions.finding import Finding
 from api.calibrate.exclusions import WRONG, Excluded, excluded_of, kept_by_model, sound_of
-from api.calibrate.frames import of_spots, table_in, with_spots
 from api.calibrate.halves import halves
+from api.calibrate.intervals.left_out import errors_left_out
 from api.calibrate.readings import Readings
 from api.calibrate.robust import wrong_poses
-from api.calibrate.roles import guess
 from api.calibrate.runs import RunOffset
 from api.calibrate.selection import (
     Candidate,
@@ -37,9 +35,11 @@ from api.calibrate.selection import (
     settled,
 )
 from api.calibrate.settings import Settings
-from api.calibrate.table import read_table
+from api.calibrate.sources import read_sources
+from api.calibrate.table import Table
 from api.calibrate.uncertainty import (
     Intervals,
+    covariance_of,
     intervals,
     noise_around,
     noise_deg,
@@ -56,7 +56,6 @@ from api.calibrate.verdict import (
     withheld,
 )
 from benchmark.running.threads import one_thread
-from files.reading import read_bytes
 
 #: Samples from which wrong poses are looked for.
 _FEWEST_FOR_WRONG = 40
@@ -107,7 +106,11 @@ class Calibration:
     sources : tuple of str
         Names of the files.
     notes : tuple of str
-        On how pictures and cells were read, and changes that did not settle.
+        On how the files, pictures and cells were read, and changes that did not settle.
+    digests : tuple of str
+        SHA-256 of each file.
+    left_out : ndarray, shape (M, 3), optional
+        Predicted minus true direction of the samples compared on, each when a fit did not see it.
     limits : ReadingLimits
         Of readings that may be used.
     """
@@ -132,12 +135,38 @@ class Calibration:
     digest: str
     sources: tuple[str, ...]
     notes: tuple[str, ...] = ()
+    digests: tuple[str, ...] = ()
+    left_out: Floats | None = None
     limits: ReadingLimits = field(default_factory=lambda: ReadingLimits((), (), 0.0, np.inf))
 
-    def deviation_deg(self, features: Floats, context: dict[str, Floats] | None = None) -> Floats:
-        """Return the 1-sigma (N,) of a tangent axis at features (N, F), degrees."""
-        stated = deviation_of(self.model, features, context or {})
-        return stated * (1.0 if self.intervals is None else self.intervals.factor)
+    def deviation_deg(
+        self, features: Floats, context: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """Return the 1-sigma (N,) of a tangent axis at features (N, F), degrees.
+
+        RMS of the two axes of `deviations_deg`.
+        """
+        return np.asarray(np.sqrt(np.mean(self.deviations_deg(features, context) ** 2, axis=1)))
+
+    def deviations_deg(
+        self, features: Floats, context: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """Return the 1-sigma (N, 2) of both axes of `api.calibrate.intervals.places.tangent_axes`.
+
+        In degrees, at features (N, F): by the place of the direction, or as the model states it
+        where there were too few samples for intervals. NaN where nothing is answered.
+        """
+        if self.intervals is None:
+            return np.repeat(deviation_of(self.model, features, context or {})[:, None], 2, axis=1)
+        return self.intervals.at(self.model.predict(features, context or {}))
+
+    def covariance(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
+        """Return the covariance (N, 3, 3) of the unit vectors at features (N, F), radians squared.
+
+        Errors along the two tangent axes are taken for uncorrelated; along the direction, zero.
+        """
+        sun = self.model.predict(features, context or {})
+        return covariance_of(self.deviations_deg(features, context), sun)
 
 
 def calibrate(
@@ -178,31 +207,65 @@ def calibrate(
     UnusableDataError
         If the samples settle no model; the message says what would.
     """
+    read = read_sources(paths, settings, progress)
+    stated = read.settings if settings else with_cells(read.tables, read.settings)
+    found = calibrate_tables(
+        read.tables,
+        stated,
+        apply=apply,
+        thorough=thorough,
+        models=models,
+        progress=progress,
+    )
+    notes = (*read.notes, *found.notes)
+    return replace(found, digest=read.digest, digests=read.digests, notes=notes)
+
+
+def calibrate_tables(
+    tables: Sequence[Table],
+    stated: Settings,
+    *,
+    apply: bool = False,
+    thorough: bool = False,
+    models: Sequence[str] | None = None,
+    progress: Callable[[str, int, int], None] = lambda *_: None,
+) -> Calibration:
+    """Calibrate a sensor by tables in memory, each a run; else as `calibrate`.
+
+    Parameters
+    ----------
+    tables : sequence of Table
+        With the columns that the settings name.
+    stated : Settings
+        Of any kind but ``frames``.
+    apply, thorough, models, progress
+        As `calibrate` takes them.
+
+    Returns
+    -------
+    Calibration
+        Without notes and digests, which are those of files.
+
+    Raises
+    ------
+    TableError, UnusableDataError
+        As `calibrate`.
+    """
     with one_thread():  # small fits: waiting for each other takes threads most of their time
-        return _calibrated(paths, settings, apply, thorough, models, progress)
+        return _calibrated(tables, stated, apply, thorough, models, progress)
 
 
 def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
-    paths: Sequence[Path],
-    settings: Settings | None,
+    tables: Sequence[Table],
+    stated: Settings,
     apply: bool,
     thorough: bool,
     models: Sequence[str] | None,
     progress: Callable[[str, int, int], None],
 ) -> Calibration:
-    paths = [table_in(path) if path.is_dir() else path for path in paths]
-    tables = [read_table(path) for path in paths]
-    stated = settings or guess(tables[0])
     notes: list[str] = []
-    if stated.readings.kind == "frames":
-        for at, path in enumerate(paths):
-            tables[at], said = with_spots(
-                tables[at], path.parent, stated, lambda done, all_: progress("frames", done, all_)
-            )
-            notes += said
-        stated = of_spots(stated)
     progress("conventions", 0, 1)
-    file = read_as(tables, stated if settings else with_cells(tables, stated))
+    file = read_as(tables, stated)
     applied: list[Finding] = []
     if apply:
         file, applied = applied_to(tables, file, notes)
@@ -212,6 +275,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     excluded = [*(one for part in file.bad for one in part.excluded), *excluded]
     require_two_axes(sound)
     readings = sound
+    wrong = np.zeros(len(sound), dtype=np.bool_)
     if len(sound) >= _FEWEST_FOR_WRONG:
         wrong = wrong_poses(sound.features, sound.sun, 3.0 * stated.bench.floor_deg)
         readings = sound.only(~wrong)
@@ -261,15 +325,17 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     tick("verdict")
     compared = readings.only(np.arange(0, len(readings), _step(readings, chosen)))
     patterns = patterns_in(np.asarray(chosen.offsets), compared)
+    removed = sound.only(~kept & ~wrong)
+    left_out = errors_left_out(wanted[chosen.name], chosen, compared, geometry, model, removed)
+    stated_sigma = intervals(*left_out)
     verdict = judge(
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
         *next_poses(readings.sun),
     )  # fmt: skip
-    held = intervals(chosen, readings)
     verdict = withheld(
         replace(verdict, untested=untested_in(readings, stated)),
         unexplained(readings, excluded, wrong_ones, stated.sensor.half_fov_deg, fold),
-        () if held is None else parts_of(compared, *_along(chosen, held, compared)),
+        () if stated_sigma is None else _parts(chosen, stated_sigma, compared),
     )
     if uncertain := next((one for one in found if one.certain), None):
         verdict = with_uncertain_conventions(verdict, uncertain.found)
@@ -277,8 +343,9 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     return Calibration(
         stated, (*applied, *found), tuple(applied), readings, tuple(excluded), tuple(runs), fold,
         geometry, tuple(candidates), chosen, why, model, residual, noise,
-        held, spread, verdict, _digest(paths), tuple(p.name for p in paths), tuple(notes),
-        limits_of(readings, stated, joined_levels(file.bad)),
+        stated_sigma, spread, verdict, "", tuple(table.source for table in tables), tuple(notes),
+        left_out=left_out[0][: len(compared)],
+        limits=limits_of(readings, stated, joined_levels(file.bad)),
     )  # fmt: skip
 
 
@@ -299,11 +366,12 @@ def _by_error(one: Candidate) -> tuple[bool, bool, float]:
     return bool(one.refused), one.missing > 0.05, one.rms_deg
 
 
-def _along(chosen: Candidate, held: Intervals, compared: Readings) -> tuple[Floats, Floats]:
-    """Return errors (N, 2) of samples left out along two axes, and their stated 1-sigma."""
-    along = tangent_offsets(np.asarray(chosen.offsets), compared.sun)
+def _parts(chosen: Candidate, sigma: Intervals, compared: Readings) -> tuple[Part, ...]:
+    """Return parts of the samples left out, with how far the stated intervals hold there."""
+    offsets = np.asarray(chosen.offsets)
+    along = tangent_offsets(offsets, compared.sun)
     along[~np.isfinite(np.asarray(chosen.errors))] = np.nan
-    return along, np.repeat(held.factor * np.asarray(chosen.deviation)[:, None], 2, axis=1)
+    return parts_of(compared, along, sigma.at(compared.sun))
 
 
 def _fit_spread(
@@ -327,10 +395,3 @@ def _step(readings: Readings, chosen: Candidate) -> int:
 def _rms(errors: Floats) -> float:
     known = errors[np.isfinite(errors)]
     return float(np.sqrt(np.mean(known**2))) if len(known) else float("nan")
-
-
-def _digest(paths: Sequence[Path]) -> str:
-    state = hashlib.sha256()
-    for path in paths:
-        state.update(read_bytes(path, 512 * 1024 * 1024))
-    return state.hexdigest()[:32]

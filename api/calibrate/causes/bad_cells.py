@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from algorithms.contract import Floats
 from api.calibrate.exclusions import Excluded
-from api.calibrate.readings import directions, runs_of
+from api.calibrate.forms.units import DEGREES
+from api.calibrate.readings import directions_of, runs_of
 from api.calibrate.settings import Settings
 from api.calibrate.table import Table
 
@@ -26,7 +27,6 @@ _CLIPPED, _OVER_NEXT, _NEXT = 4, 4.0, 10
 _UNLIT = 0.25
 #: Rows with one reading to be no reading, and their directions' extent over the field's.
 _STUCK, _STUCK_EXTENT = 3, 0.1
-_CIRCLE = {"deg": 360.0, "rad": 2.0 * np.pi}
 DUPLICATE = "duplicate of another row"
 
 
@@ -72,9 +72,9 @@ def without_bad_cells(table: Table, settings: Settings) -> tuple[Table, BadCells
         values = table.numbers(name).copy()
         _of_readings(name, values, settings, found, cause)
         columns[name] = values
-    for name in settings.direction.columns:
+    for name, unit in zip(settings.direction.columns, settings.direction.units, strict=True):
         values = table.numbers(name).copy()
-        _of_directions(name, values, settings, cause)
+        _of_directions(name, values, settings, DEGREES[unit], cause)
         columns[name] = values
     cleaned = replace(table, columns=columns)
     for reason, bad in _repeated(cleaned, settings):
@@ -164,15 +164,15 @@ def _word(value: float, at_top: bool, settings: Settings) -> str:
 
 
 def _of_directions(
-    name: str, values: Floats, settings: Settings, cause: NDArray[np.object_]
+    name: str, values: Floats, settings: Settings, degrees: float, cause: NDArray[np.object_]
 ) -> None:
     """Blank sentinels and angles beyond a circle of a column of directions, in place."""
     for value in _sentinels(values, _FAR_OFF_ANGLE):
         bad = values == value
         cause[bad & (cause == "")] = f"sentinel {value:g} in {name}"
         values[bad] = np.nan
-    if settings.direction.form != "vector":
-        bad = np.abs(values) > _CIRCLE[settings.direction.unit] * (1.0 + 1e-9)
+    if settings.direction.form not in ("vector", "quaternion", "matrix"):
+        bad = np.abs(values) * degrees > 360.0 * (1.0 + 1e-9)
         cause[bad & (cause == "")] = f"angle beyond a circle in {name}"
         values[bad] = np.nan
 
@@ -190,7 +190,7 @@ def _repeated(table: Table, settings: Settings) -> Iterator[tuple[str, NDArray[n
     again[np.delete(at, first)] = True
     yield DUPLICATE, again
     at = at[np.sort(first)]
-    sun, _ = directions(stated[at], settings.direction)
+    sun = directions_of(stated, table, settings)[0][at]
     _, group, count = np.unique(readings[at], axis=0, return_inverse=True, return_counts=True)
     field = float(np.linalg.norm(np.nanstd(sun, axis=0)))
     stuck = np.zeros(len(whole), dtype=np.bool_)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ from algorithms.contract import FeatureKind, Floats
 from api.calibrate.causes.light import plane_of, reading_noise
 from api.calibrate.conventions.finding import Finding
 from api.calibrate.readings import Readings, sun_of_angles
-from api.calibrate.settings import Form, Settings
+from api.calibrate.settings import AngleForm, Settings
 
 #: What a law leaves, over the noise, to be followed.
 FOLLOWED = 1.3
@@ -136,7 +136,7 @@ def _scaled(
     readings: Readings, settings: Settings
 ) -> Iterator[tuple[str, Callable[[float], Floats]]]:
     """Yield ways to multiply the table's angles, with a word for the angles."""
-    form = settings.direction.form
+    form = cast("AngleForm", settings.direction.form)
     if readings.angles is None:
         angles = angles_from_sun(readings.sun)
         if not np.isfinite(angles).all():
@@ -158,7 +158,7 @@ def _scaled(
         yield word, _times(stated, np.asarray(at), form)
 
 
-def _times(stated: Floats, which: NDArray[np.int64], form: Form) -> Callable[[float], Floats]:
+def _times(stated: Floats, which: NDArray[np.int64], form: AngleForm) -> Callable[[float], Floats]:
     """Return directions by the factor of some of the angles."""
     return lambda factor: sun_of_angles(_near_circle(stated * (1 + which * (factor - 1))), form)
 

@@ -212,7 +212,7 @@ def _sentinels(kind, readings, angles, made, rng):
 
 def _clipped(kind, readings, angles, made, rng):
     share = rng.uniform(0.01, 0.15)
-    limit = float(np.quantile(readings, 1.0 - share))
+    limit = round(float(np.quantile(readings, 1.0 - share)), 6)
     made.in_flight = lambda light: np.minimum(light, limit)
     return np.minimum(readings, limit), angles, f"clipped at {limit:.3f} ({share:.2f})", made
 
