@@ -120,8 +120,8 @@ def _error_of_factor(left: Callable[[float], float], found: Any, readings: Readi
 def of_scale(readings: Readings, settings: Settings, known: Scale) -> Iterator[Finding]:
     """Yield the factor of the angles with which a law is followed that is broken without.
 
-    The laws of cells and of cameras are exact. That of quadrants, or another sensor's, may be off by
-    a small cause that a factor takes up too.
+    The laws of cells and of cameras are exact. That of quadrants, or another sensor's, may be off
+    by a small cause that a factor takes up too.
     """
     exact = readings.kind is FeatureKind.SIGNALS or settings.readings.kind in ("spot", "frames")
     inside = _FACTORS[0] + 0.02 < known.factor < _FACTORS[1] - 0.02
