@@ -23,6 +23,26 @@ from api.web.calibrations import HTML, archive_of, as_response, checked, made_of
 from api.web.representations import Representation
 from api.web.uploads import Form, read_form
 
+#: Kinds of readings and forms of directions as the form calls them.
+_KINDS = {
+    "spot": "x and y of a spot",
+    "balance": "two balances, -1 to 1",
+    "pair": "two readings of one axis",
+    "quadrants": "four quadrants: -x +y, +x +y, +x -y, -x -y",
+    "electrodes": "four electrodes: x+, x-, y+, y-",
+    "channels": "a channel per photodiode",
+}
+_FORMS = {
+    "vector": "unit vector x, y, z",
+    "projection": "projection angles alpha, beta",
+    "alpha-inner": "turntable: axis 1 next to the sensor",
+    "beta-inner": "turntable: axis 2 next to the sensor",
+    "azimuth-elevation": "azimuth, elevation",
+    "azimuth-zenith": "azimuth, off-axis angle",
+    "one-angle": "one angle",
+    "quaternion": "attitude as a quaternion",
+    "matrix": "attitude as a matrix, nine columns",
+}
 router = APIRouter(route_class=StrictRoute, include_in_schema=False)
 
 #: Fields that a form keeps.
@@ -80,11 +100,11 @@ def _page(
     problem: Mapping[str, Any] | None = None,
 ) -> Representation:
     choices = {
-        "kinds": [kind for kind in get_args(Kind) if kind != "frames"],
-        "forms": get_args(DirectionForm),
-        "angle_units": get_args(AngleUnit),
-        "time_units": get_args(TimeUnit),
-        "temperature_units": get_args(TemperatureUnit),
+        "kinds": [(kind, _KINDS.get(kind, kind)) for kind in get_args(Kind) if kind != "frames"],
+        "forms": [(form, _FORMS.get(form, form)) for form in get_args(DirectionForm)],
+        "angle_units": [(unit, unit) for unit in get_args(AngleUnit)],
+        "time_units": [(unit, unit) for unit in get_args(TimeUnit)],
+        "temperature_units": [(unit, unit) for unit in get_args(TemperatureUnit)],
     }
     return page_bytes(
         render(

@@ -70,16 +70,15 @@ function mapping(found) {
     ...Array.from({ length: most }, (_, n) => [`reading-${n + 1}`, `reading ${n + 1}`]),
     ...Array.from({ length: turns }, (_, n) => [`direction-${n + 1}`, `direction ${n + 1}`]),
     ["run", "run"], ["time", "time"], ["temperature", "temperature"]];
-  const same = (values) => values.map((value) => [value, value]);
   const one = (id, label, values, current) => h("label", { for: id }, `${label} `,
-    h("select", { id, onchange: change }, same(values).map(([value, text]) =>
+    h("select", { id, onchange: change }, values.map(([value, text]) =>
       h("option", { value, selected: value === current }, text))));
   columns.replaceChildren(
     h("h3", {}, `Columns of ${found.source}: ${found.rows} rows`),
     found.refused && h("p", { class: "notice" }, `Not recognised: ${found.refused}. Say what the columns are.`),
     h("div", { class: "table-scroll", tabindex: 0, role: "region", "aria-label": "First rows" }, h("table", {},
       h("thead", {}, h("tr", {}, found.columns.map(({ name, unit }) =>
-        h("th", { scope: "col" }, name, unit && h("span", { class: "muted" }, ` ${unit}`))))),
+        h("th", { scope: "col" }, name, unit && !name.toLowerCase().endsWith(unit.toLowerCase()) && h("span", { class: "muted" }, ` ${unit}`))))),
       h("tbody", {},
         h("tr", {}, found.columns.map(({ name, role }) => h("td", { "data-role": name },
           select(`Role of ${name}`, roles, roleOf(role), change)))),
