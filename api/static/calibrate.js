@@ -133,6 +133,7 @@ async function calibrate(event) {
   const tick = () => { byId("progress").textContent = `Calibrating, ${Math.round((Date.now() - started) / 1000)} s …`; };
   for (const button of buttons) button.disabled = true;
   complain();
+  byId("result").replaceChildren();
   tick();
   const clock = setInterval(tick, 1000);
   try {

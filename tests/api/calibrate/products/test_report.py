@@ -43,7 +43,7 @@ def known(offsets: np.ndarray, sigma: float = 0.05, **context: np.ndarray) -> Er
 def towards(axis: int) -> np.ndarray:
     """Unit vectors square to each direction, towards an axis."""
     made = np.eye(3)[axis] - SUN[:, [axis]] * SUN
-    return made / np.linalg.norm(made, axis=1)[:, None]
+    return made / np.maximum(np.linalg.norm(made, axis=1), 1e-12)[:, None]
 
 
 @pytest.mark.parametrize(("axis", "name"), [(0, "along x"), (1, "along y")])
@@ -55,8 +55,7 @@ def test_a_shift_along_an_axis_is_the_mean_error_of_that_axis(axis: int, name: s
 
 
 def test_errors_away_from_the_boresight_are_of_the_off_axis_angle_alone() -> None:
-    away = -towards(2)
-    away[np.argmax(SUN[:, 2])] = np.nan  # on the boresight nothing is away from it
+    away = -towards(2)  # zero on the boresight, where nothing is away from it
     rows = {row.name: row for row in by_axis(known(np.radians(0.3) * away))}
     assert rows["off-axis angle"].mean_deg == pytest.approx(0.3)
     assert rows["around the boresight"].rms_deg == pytest.approx(0.0, abs=1e-9)
@@ -81,7 +80,7 @@ def test_runs_and_temperatures_are_told_apart() -> None:
     offsets = np.radians(np.where(warm > 290.0, 1.0, 0.1))[:, None] * towards(0)
     rows = by_temperature(known(offsets, temperature_K=warm))
     assert [row.samples for row in rows] == pytest.approx([88] * 5, abs=2)
-    assert rows[-1].rms_deg == pytest.approx(1.0)
+    assert rows[-1].rms_deg == pytest.approx(1.0, abs=0.01)
     assert rows[0].rms_deg == pytest.approx(0.1)
     assert by_temperature(known(offsets)) == by_run(known(offsets)) == []
 
@@ -100,11 +99,15 @@ def test_the_share_of_the_next_errors_below_a_level_is_what_it_says() -> None:
 
 
 def test_the_field_of_a_square_reaches_farther_in_its_corners() -> None:
-    field = field_of(SUN)
+    """Of a square in tangents the hull of directions is the square itself."""
+    x, y = np.tan(np.radians(40.0)) * grid(21, 1.0).T
+    square = np.column_stack([x, y, np.ones_like(x)])
+    field = field_of(square / np.linalg.norm(square, axis=1)[:, None])
     assert field is not None
     reach = dict(field.reach)
-    assert reach[0.0] == pytest.approx(40.0, abs=0.3)
-    assert reach[45.0] == pytest.approx(np.degrees(np.arccos(SUN[:, 2].min())), abs=1.5)
+    assert reach[0.0] == field.least_deg == pytest.approx(40.0, abs=0.26)
+    corner = np.degrees(np.arctan(np.sqrt(2.0) * np.tan(np.radians(40.0))))
+    assert reach[45.0] == field.most_deg == pytest.approx(corner, abs=0.26)
     aside = SUN[SUN[:, 0] > 0.2]
     assert field_of(aside) is None
 
@@ -154,14 +157,19 @@ def test_a_requirement_is_met_not_met_or_not_shown(camera: Calibration) -> None:
 
 
 class Text(HTMLParser):
-    """Words of a page, each piece between tags one."""
+    """Words of a page, each piece between tags one; its style is none."""
 
     def __init__(self) -> None:
         super().__init__()
         self.pieces: list[str] = []
+        self.inside = ""
+
+    def handle_starttag(self, tag: str, attrs: object) -> None:
+        self.inside = tag
 
     def handle_data(self, data: str) -> None:
-        self.pieces.append(data.strip())
+        if self.inside != "style":
+            self.pieces.append(data.strip())
 
 
 def test_the_report_says_what_an_engineer_signs(camera: Calibration) -> None:
@@ -174,11 +182,11 @@ def test_the_report_says_what_an_engineer_signs(camera: Calibration) -> None:
     for words in (
         "Requirement 1deg@95%,30deg: met.", "In 95 % interval", "3 sigma", "along y", "Largest",
         "Off-axis angle that poses reach", "readings.columns x_px, y_px", camera.digests[0],
-        "sunatlas calibrate a.csv", "numpy", "Calibrated by", "Models compared", "Not possible",
+        "sunatlas calibrate a.csv", "numpy", "Calibrated by", "Models compared",
     ):  # fmt: skip
-        assert words in said or words == "Not possible", words
+        assert words in said, words
     assert re.search(r"Report of \d{4}-\d\d-\d\d", said)
-    assert max(len(sentence) for sentence in re.split(r"[.!?] ", said)) < 1500
+    assert max(map(len, read.pieces)) < 400
     assert "size: A4" in page
 
 
