@@ -15,11 +15,13 @@ import pytest
 from algorithms.calibration.documents import DIGEST
 from algorithms.calibration.saving import UnreadableCalibrationError
 from algorithms.contract import UnusableDataError
-from api.calibrate import documents, pictures, products
+from api.calibrate import documents, products
 from api.calibrate.calibration import Calibration, calibrate
 from api.calibrate.certificate.certificate import certificate
 from api.calibrate.documents import load, number, save, versions, with_correction
 from api.calibrate.recalibration import Correction
+from api.calibrate.report import pictures
+from api.calibrate.report.errors import Errors
 from api.calibrate.table import read_table
 
 VECTOR = ["sun_x", "sun_y", "sun_z"]
@@ -114,7 +116,7 @@ def test_no_code_is_written_of_a_model_that_reads_a_temperature(
 ) -> None:
     monkeypatch.setattr(products, "report", lambda *_: "")
     made = products.products(warm, "box")
-    assert set(made) == {"box.json", "box_no_code.txt", "box_report.html"}
+    assert set(made) == {"box.json", "box_no_code.txt", "box_report.html", "box.sha256"}
     assert made["box_no_code.txt"] == (
         "No code was written: code for flight knows no temperature_K.\n"
     )
@@ -125,13 +127,19 @@ def test_no_code_is_written_of_a_model_that_reads_a_temperature(
 def test_runs_are_drawn_where_there_are_some_and_poses_without_next_ones(
     nine: Calibration, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for other in ("_residuals", "_histogram", "_uncertainty"):  # each takes a tenth of a second
+    for other in (
+        "_map",
+        "_against_angle",
+        "_histogram",
+        "_uncertainty",
+    ):  # each takes a tenth of a second
         monkeypatch.setattr(pictures, other, lambda *_: "")
     readings = replace(nine.readings, run=np.arange(9) % 3, run_names=("first", "second", "third"))
     verdict = replace(nine.verdict, next_poses=np.empty((0, 3)))
-    drawn = pictures.pictures(replace(nine, readings=readings, verdict=verdict))
-    assert drawn["Each run's mean residual"].startswith("<svg")
-    assert drawn["Poses, and the next twenty to take"].startswith("<svg")
+    found = replace(nine, readings=readings, verdict=verdict)
+    drawn = pictures.pictures(found, Errors.of(found))
+    assert drawn["Mean error of each run"].startswith("<svg")
+    assert drawn["Poses, their hull, and the next to take"].startswith("<svg")
 
 
 def test_a_loaded_calibration_answers_a_table_of_its_columns(
