@@ -105,6 +105,8 @@ class Calibration:
         Names of the files.
     notes : tuple of str
         On how pictures were read.
+    columns : tuple of str
+        Of the first file, in its order.
     """
 
     settings: Settings
@@ -127,6 +129,7 @@ class Calibration:
     digest: str
     sources: tuple[str, ...]
     notes: tuple[str, ...] = ()
+    columns: tuple[str, ...] = ()
 
     def deviation_deg(self, features: Floats, context: dict[str, Floats] | None = None) -> Floats:
         """Return the 1-sigma (N,) of a tangent axis at features (N, F), degrees."""
@@ -254,7 +257,7 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
         stated, (*applied, *found), tuple(applied), readings, tuple(excluded), tuple(runs), fold,
         geometry, tuple(candidates), chosen, why, model, residual, noise,
         intervals(chosen, readings), spread, verdict, _digest(paths), tuple(p.name for p in paths),
-        tuple(notes),
+        tuple(notes), tuple(tables[0].columns),
     )  # fmt: skip
 
 

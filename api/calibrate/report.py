@@ -9,16 +9,13 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from api.calibrate.calibration import Calibration
 from api.calibrate.documents import selection_table
-from api.calibrate.flight.channels import ChannelTable
-from api.calibrate.flight.table import FlightTable
+from api.calibrate.flight.code import FlightCode
 from api.calibrate.pictures import pictures
 
 _TEMPLATES = Path(__file__).parent
 
 
-def report(
-    found: Calibration, command: str = "", table: FlightTable | ChannelTable | None = None
-) -> str:
+def report(found: Calibration, command: str = "", table: FlightCode | None = None) -> str:
     """Return the report as HTML text: the verdict first."""
     environment = Environment(
         loader=FileSystemLoader(_TEMPLATES), autoescape=True, undefined=StrictUndefined
