@@ -120,22 +120,21 @@ class FlightCode:
                 f"{limits.most_light:.6g}"
             )
         lines["Frame"] = "+z is the boresight; the answer is the unit vector from sensor to Sun"
+        size = program.bytes + self.answers.bytes
         lines["Cost"] = (
             f"at most {program.operations} additions, multiplications, divisions and comparisons "
-            f"and {program.calls} calls of libm an answer; {program.bytes + self.answers.bytes} bytes of constants in "
-            "double precision; no heap, nothing kept between calls"
+            f"and {program.calls} calls of libm an answer; {size} bytes of constants in double "
+            "precision; no heap, nothing kept between calls"
         )
         return lines
 
 
-def flight_code(found: Calibration, limits: RawLimits | None = None) -> FlightCode:
+def flight_code(found: Calibration) -> FlightCode:
     """Return the flight code of a calibration.
 
     Parameters
     ----------
     found : Calibration
-    limits : RawLimits, optional
-        Of raw readings; by default the light of the calibration.
 
     Raises
     ------
@@ -151,7 +150,7 @@ def flight_code(found: Calibration, limits: RawLimits | None = None) -> FlightCo
     if set(context) - {"temperature_K"}:
         raise NoCodeError(f"code for flight knows no {', '.join(context)}")
     columns = columns_of(found)
-    allowed = limits or limits_of(readings, settings.readings)
+    allowed = limits_of(found)
     steps = raw_steps(columns, settings, allowed)
     warm = bool(context)
     if warm:

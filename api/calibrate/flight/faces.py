@@ -79,7 +79,7 @@ def _stage(stage: Any, signals: Floats, context: Mapping[str, Floats]) -> Step:
         return Step(
             "angular_loss",
             {"faces": count, "gain": stage.gains_, "response": stage.response_},
-            106 * count,
+            121 * count,
         )
     if name == "maximum-currents":
         plus, minus = axis_faces(stage.face_normals, name)
@@ -252,7 +252,7 @@ def _assembled(model: Any) -> list[Step]:
     }
     a_step = 92 * count + 130
     return [
-        Step("assembled_faces", constants, (STEPS + 1) * a_step + 135 * count + 150,
+        Step("assembled_faces", constants, (STEPS + 1) * a_step + 150 * count + 150,
              (STEPS + 1) * (3 * count + 1) + 3)
     ]  # fmt: skip
 

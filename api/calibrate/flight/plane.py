@@ -106,7 +106,7 @@ class _Family:
     make : callable
         Gives the steps of an order.
     rising : bool
-        Whether orders are tried from the least, where the most takes long.
+        Whether orders are tried from the least: the most takes long, or errs more.
     """
 
     words: str
@@ -160,7 +160,7 @@ def _best_of(family: _Family, most: int, judged: _Samples, aim_deg: float) -> _T
     elif not reaches(most - 1):
         found = most - 1
     else:  # errors fall with the order
-        found = bisect_left(range(most - 1), True, key=reaches)  # noqa: FBT003 - what is sought
+        found = bisect_left(range(most - 1), True, key=reaches)
     return known[found]
 
 
@@ -195,14 +195,15 @@ def _families(fitted: _Samples, spline_of: Callable[[str, int], Step]) -> list[_
     def spline(name: str, size: int) -> list[Step]:
         return [spline_of(name, size), _direction(name)]
 
-    def family(words: str, made: Mapping[Any, int], make: Any) -> _Family:
+    def family(words: str, made: Mapping[Any, int], make: Any, *, rising: bool = False) -> _Family:
         kept = sorted((size, order) for order, size in made.items() if size <= most)
         sizes, orders = zip(*kept, strict=True)
-        return _Family(words, sizes, orders, make)
+        return _Family(words, sizes, orders, make, rising)
 
     mixed = {(n, warm): terms_of(n, warm) for n in _DEGREES for warm in warms}
     ratios = {order: 3 * size for order, size in mixed.items() if order[0] <= _MOST_OF_RATIO}
-    found = [family("a ratio of polynomials of degree {}", ratios, ratio)]
+    # of a ratio that a lower degree gives exactly, a higher one may have a pole in the field
+    found = [family("a ratio of polynomials of degree {}", ratios, ratio, rising=True)]
     surfaces = {order: 2 * size for order, size in mixed.items()}
     if kelvin is None:
         on_axes = {(n,): 2 * (n + 1) for n in _AXES}
@@ -217,7 +218,7 @@ def _families(fitted: _Samples, spline_of: Callable[[str, int], Step]) -> list[_
         nodes = {(n,): 2 * n * n for n in _SIZES}
         found += [
             _Family("a cubic spline of {0} by {0} nodes", tuple(nodes.values()), tuple(nodes),
-                    partial(spline, name))
+                    partial(spline, name), rising=True)
             for name in targets
         ]  # fmt: skip
     return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -54,12 +55,12 @@ def python_module(
 
 def _sources(program: Program) -> list[str]:
     """Return the source of the steps and of what they call, as they stand in the runtime."""
-    known = step_functions()
-    wanted = [step.name for step in program.steps] + ["tangent_sigma", "flagged"]
+    texts = {name: inspect.getsource(one).rstrip() for name, one in step_functions().items()}
+    wanted = [step.name for step in program.steps] + ["tangent_sigma"]
     for name in wanted:
-        names = known[name].__code__.co_names
-        wanted += [other for other in names if other in known and other not in wanted]
-    return [inspect.getsource(known[name]).rstrip() for name in known if name in wanted]
+        called = re.findall(r"\b(\w+)\(", texts[name])
+        wanted += [other for other in called if other in texts and other not in wanted]
+    return [text for name, text in texts.items() if name in wanted]
 
 
 def _mapping(constants: Mapping[str, Any]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,15 +41,41 @@ class RawLimits:
     most_light: float
 
 
-def limits_of(readings: Readings, settings: ReadingsSettings) -> RawLimits:
-    """Return limits by the readings of a calibration: twice and half the light, no clipping."""
+@runtime_checkable
+class Limited(Protocol):
+    """A calibration that found the limits of its raw readings, of the fields of `RawLimits`."""
+
+    @property
+    def limits(self) -> Any:
+        """What readings may be."""
+
+
+def limits_of(found: Calibration) -> RawLimits:
+    """Return the limits that a calibration found; half and twice its light where it found none."""
+    readings, settings = found.readings, found.settings.readings
     count = readings.raw.shape[1]
     none = np.full(count, LARGEST)
+    known: object = found
+    if isinstance(known, Limited):
+        low, high, least, most = (
+            np.nan_to_num(
+                np.asarray(value, dtype=np.float64), nan=nan, posinf=LARGEST, neginf=-LARGEST
+            )
+            for value, nan in (
+                (known.limits.low, -LARGEST),
+                (known.limits.high, LARGEST),
+                (known.limits.least_light, -LARGEST),
+                (known.limits.most_light, LARGEST),
+            )
+        )
+        if settings.kind not in _OF_LIGHT:
+            least, most = np.array(-LARGEST), np.array(LARGEST)
+        return RawLimits(low + 0.0 * none, high + 0.0 * none, float(least), float(most))
     if settings.kind not in _OF_LIGHT:
         return RawLimits(-none, none, -LARGEST, LARGEST)
     light = readings.raw.sum(axis=1)
-    least, most = _LEAST * float(np.percentile(light, 1)), _MOST * float(light.max())
-    return RawLimits(-none, none, least, most)
+    least_light, most_light = _LEAST * float(np.percentile(light, 1)), _MOST * float(light.max())
+    return RawLimits(-none, none, least_light, most_light)
 
 
 def raw_readings(readings: Readings, settings: ReadingsSettings) -> Floats:

@@ -29,11 +29,12 @@ static void weigh(real t, real w[4])
 /* The cell of a place, the first or the last but one where it lies beyond. */
 static int cell_of(real place, int nodes)
 {
+    const int last = nodes - 3;
     int cell = 1;
 
-    if (place >= (real)(nodes - 3))
+    if (place >= (real)last)
     {
-        cell = nodes - 3;
+        cell = last;
     }
     else if (place > R(1.0))
     {
