@@ -31,13 +31,7 @@ from api.calibrate.flight.vectors import Vectors, vectors_of
 _MOST_ADDED = 0.1
 #: Rows of the calibration by which code is judged.
 _JUDGED = 2000
-_ENDS = {
-    "spot": "x and y of the spot",
-    "balance": "two balances",
-    "quadrants": "four quadrants",
-    "electrodes": "four electrodes",
-    "channels": "a reading each photodiode or cell",
-}
+_KINDS = ("spot", "balance", "quadrants", "electrodes", "channels")
 
 
 @dataclass(frozen=True)
@@ -144,8 +138,8 @@ def flight_code(found: Calibration) -> FlightCode:
     """
     settings, readings = found.settings, found.readings
     kind = settings.readings.kind
-    if kind not in _ENDS:
-        raise NoCodeError(f"flight code takes readings of {', '.join(_ENDS)}; these are {kind}")
+    if kind not in _KINDS:
+        raise NoCodeError(f"flight code takes readings of {', '.join(_KINDS)}; these are {kind}")
     context = tuple(found.model.about.context)
     if set(context) - {"temperature_K"}:
         raise NoCodeError(f"code for flight knows no {', '.join(context)}")

@@ -115,10 +115,11 @@ def calibrate(
             models=model,
             progress=lambda step, done, total: report(done, total, step),
         )
-        written = write_products(found, out, name, command)
+        code: list[str] = []
+        written = write_products(found, out, name, command, code.append)
         if certificate is not None:
             replace_file(certificate, xml_of(found, command))
-    _print(found, written, out)
+    _print(found, code, written, out)
     if certificate is not None:
         typer.echo(f"wrote {certificate}")
     return 0 if found.verdict.word == "good" else 3
@@ -142,7 +143,7 @@ def _correct(files: list[Path], onto: Path, written: Path) -> int:
     return 0
 
 
-def _print(found: Any, written: list[Path], out: Path) -> None:
+def _print(found: Any, code: list[str], written: list[Path], out: Path) -> None:
     verdict = found.verdict
     typer.echo(f"verdict: {verdict.word} - {verdict.reason}")
     typer.echo(
@@ -160,4 +161,6 @@ def _print(found: Any, written: list[Path], out: Path) -> None:
         counts[one.reason] = counts.get(one.reason, 0) + 1
     for reason, count in {**found.readings.dropped, **counts}.items():
         typer.echo(f"left out: {count} rows: {reason}")
+    for sentence in code:
+        typer.echo(f"code: {sentence}")
     typer.echo(f"wrote {', '.join(path.name for path in written)} in {out}")
