@@ -12,8 +12,8 @@ from algorithms.models.geometric.detector_faces import axis_faces, opposite_pair
 from algorithms.models.geometric.panoramic import FLATTEST
 from api.calibrate.flight.program import NoCodeError, Step
 
-#: Steps of an assembled array towards a direction; ten are usual.
-STEPS = 30
+#: Steps of an assembled array towards a direction; ten are usual, a few rows take more.
+STEPS = 60
 #: Largest variance that leaves a direction, and the bend's width over the noise, as the model has.
 _WORST, _BEND = 0.1**2, 0.5
 #: Powers of the temperature that an unknown compensation is followed by, and how closely.

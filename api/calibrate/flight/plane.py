@@ -30,6 +30,8 @@ _MOST_OF_RATIO = 4
 _SIZES = (9, 13, 17, 25, 33, 49, 65)
 #: Places between samples at which forms are fitted, and as many others at which they are judged.
 _PLACES = 3000
+#: Margin of code for a model without bounds, over half the field's width.
+_BEYOND = 0.1
 #: Degrees of what compensations do to features.
 _OF_STAGES = range(1, 16)
 
@@ -71,7 +73,9 @@ def plane_steps(
         inner = stage.transform(inner, context)
     if stages:
         steps.append(_warp(stages, features, context, error_deg))
-    region = last.hull_ if len(last.hull_.facets) else Hull.around(inner, "flight code")
+    # a drawing holds everywhere; code stands for it somewhat beyond what was calibrated
+    bounded = len(last.hull_.facets) > 0
+    region = last.hull_ if bounded else Hull.around(inner, "flight code", _BEYOND)
     steps.append(_hull(region))
     kelvin = context.get("temperature_K") if "temperature_K" in last.about.context else None
     open_last = unbounded(last)
