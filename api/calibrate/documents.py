@@ -22,15 +22,20 @@ from algorithms.calibration.saving import (
 from algorithms.contract import Compensation, Floats, Model
 from algorithms.discovery import discover_compensations, discover_models
 from api.calibrate.calibration import Calibration
+from api.calibrate.intervals.places import tangent_axes
 from api.calibrate.readings import readings_of
 from api.calibrate.recalibration import Correction
+from api.calibrate.selection import deviation_of
 from api.calibrate.settings import Settings, parse_settings
 from api.calibrate.table import Table
+from api.calibrate.uncertainty import Intervals, covariance_of
 from api.calibrate.verdict import as_text
 from files.atomic import replace_file
 
 SCHEMA = "sun-sensor-atlas/sensor-calibration"
-SCHEMA_VERSION = 1
+#: Of documents written; those of version 1 have a factor and no table of intervals.
+SCHEMA_VERSION = 2
+_READ = (1, 2)
 _MEMBERS = frozenset(
     {
         *("schema", "schema_version", "conventions", "settings", "compensations", "model", "fit"),
@@ -50,7 +55,9 @@ class SavedCalibration:
     compensations : tuple of Compensation
     model : Model
     factor : float
-        Of the model's stated 1-sigma, so that intervals hold.
+        Of the model's stated 1-sigma, where there are no intervals.
+    intervals : Intervals or None
+        The 1-sigma by place; None of few samples and of a document of version 1.
     temperature_K : tuple of two float, or None
         Lowest and highest that was measured, of a model that reads it; beyond, NaN is answered.
     offset : ndarray, shape (F,)
@@ -65,6 +72,7 @@ class SavedCalibration:
     compensations: tuple[Compensation, ...]
     model: Model
     factor: float
+    intervals: Intervals | None
     temperature_K: tuple[float, float] | None  # noqa: N815 - the unit's symbol
     offset: Floats
     rotation: Floats
@@ -73,15 +81,49 @@ class SavedCalibration:
     def predict(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
         """Return unit vectors (N, 3) of features (N, F); NaN rows outside the hull."""
         columns = context or {}
-        features = np.asarray(features, dtype=np.float64) - self.offset
-        for stage in self.compensations:
-            features = stage.transform(features, columns)
-        sun = self.model.predict(features, columns) @ self.rotation.T
+        sun = self.model.predict(self._compensated(features, columns), columns) @ self.rotation.T
         if self.temperature_K is not None:
             low, high = self.temperature_K
             measured = np.asarray(columns["temperature_K"], dtype=np.float64)
             sun[~((measured >= low) & (measured <= high))] = np.nan
         return np.asarray(sun)
+
+    def covariance(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
+        """Return the covariance (N, 3, 3) of the unit vectors at features (N, F), radians squared.
+
+        A correction turns it with the directions; NaN where nothing is answered.
+        """
+        before = self.predict(features, context) @ self.rotation
+        if self.intervals is None:
+            columns = context or {}
+            stated = deviation_of(self.model, self._compensated(features, columns), columns)
+            sigma = np.repeat(self.factor * stated[:, None], 2, axis=1)
+        else:
+            sigma = self.intervals.at(before)
+        return np.asarray(self.rotation @ covariance_of(sigma, before) @ self.rotation.T)
+
+    def deviations_deg(
+        self, features: Floats, context: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """Return the 1-sigma (N, 2) of both axes of `api.calibrate.intervals.places.tangent_axes`.
+
+        In degrees, at features (N, F).
+        """
+        axes = np.stack(tangent_axes(self.predict(features, context)), axis=1)
+        variance = np.einsum("nai,nij,naj->na", axes, self.covariance(features, context), axes)
+        return np.asarray(np.degrees(np.sqrt(variance)))
+
+    def deviation_deg(
+        self, features: Floats, context: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """Return the 1-sigma (N,) of a tangent axis, degrees: RMS of both of `deviations_deg`."""
+        return np.asarray(np.sqrt(np.mean(self.deviations_deg(features, context) ** 2, axis=1)))
+
+    def _compensated(self, features: Floats, columns: Mapping[str, Floats]) -> Floats:
+        features = np.asarray(features, dtype=np.float64) - self.offset
+        for stage in self.compensations:
+            features = stage.transform(features, columns)
+        return features
 
     def predict_table(self, table: Table) -> Floats:
         """Return unit vectors of the usable rows of a file with the calibration's columns."""
@@ -105,8 +147,7 @@ def document(found: Calibration, command: str = "") -> dict[str, Any]:
             "rms_left_out_deg": number(found.chosen.rms_deg),
             "rms_fitted_deg": number(found.residual_deg),
             "noise_deg": number(found.noise_deg),
-            "interval_factor": 1.0 if found.intervals is None else found.intervals.factor,
-            "interval_coverage": None if found.intervals is None else found.intervals.coverage,
+            "intervals": None if found.intervals is None else _plain(found.intervals),
             "temperature_K": _temperatures(found),
             "fit_spread_deg": number(_rms(found.spread_deg)),
             "sensor": {k: v for k, v in asdict(found.geometry).items() if v is not None},
@@ -175,9 +216,9 @@ def load(path: Path) -> SavedCalibration:
             raise UnreadableCalibrationError(  # noqa: TRY301 - one place for all refusals
                 f"{path.name}: expected a document of {SCHEMA}"
             )
-        if stored.get("schema_version") != SCHEMA_VERSION:
+        if stored.get("schema_version") not in _READ:
             raise UnreadableCalibrationError(  # noqa: TRY301 - as above
-                f"{path.name}: expected version {SCHEMA_VERSION}; "
+                f"{path.name}: expected version {' or '.join(map(str, _READ))}; "
                 f"got {stored.get('schema_version')!r}"
             )
         require_whole(stored, _MEMBERS)
@@ -190,7 +231,8 @@ def load(path: Path) -> SavedCalibration:
                 for stage in stored["compensations"]
             ),
             cast("Model", stage_of(stored["model"], discover_models())),
-            float(stored["fit"]["interval_factor"]),
+            float(stored["fit"].get("interval_factor", 1.0)),
+            _intervals_of(stored["fit"].get("intervals")),
             None if temperatures is None else (float(temperatures[0]), float(temperatures[1])),
             np.asarray(correction.get("offset", 0.0), dtype=np.float64),
             np.asarray(correction.get("rotation", np.eye(3)), dtype=np.float64),
@@ -216,6 +258,33 @@ def with_correction(
         "command": command,
     }
     return {**held, DIGEST: digest_of(held)}
+
+
+def _plain(found: Intervals) -> dict[str, Any]:
+    return {
+        name: value.tolist() if isinstance(value, np.ndarray) else value
+        for name, value in vars(found).items()
+    }
+
+
+def _intervals_of(stored: Mapping[str, Any] | None) -> Intervals | None:
+    """Return the intervals that a document holds; ValueError where they are none."""
+    if stored is None:
+        return None
+    axis, rings_deg, sigma_deg = (
+        np.asarray(stored[name], dtype=np.float64) for name in ("axis", "rings_deg", "sigma_deg")
+    )
+    found = Intervals(
+        float(stored["factor"]), float(stored["coverage"]), int(stored["samples"]), axis, rings_deg,
+        int(stored["sectors"]), sigma_deg,
+    )  # fmt: skip
+    shape = (len(found.rings_deg), found.sectors, 2)
+    if found.axis.shape != (3,) or found.sigma_deg.shape != shape:
+        raise ValueError(
+            f"expected intervals of shape {shape} about an axis of 3; got {found.sigma_deg.shape} "
+            f"about {found.axis.shape}"
+        )
+    return found
 
 
 def _temperatures(found: Calibration) -> list[float] | None:

@@ -1,45 +1,57 @@
-"""Files that a calibration leaves: report, JSON, Python and C, all of them or none."""
+"""Files that a calibration leaves: report, JSON, Python, C and certificate, all of them or none."""
 
 from __future__ import annotations
 
+import hashlib
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
 
 from algorithms.calibration.documents import DIGEST
 from api.calibrate.calibration import Calibration
+from api.calibrate.certificate.certificate import certificate
 from api.calibrate.documents import document, versions
-from api.calibrate.flight.code import FlightCode, flight_code
+from api.calibrate.flight.code import flight_code
 from api.calibrate.flight.names import c_name
 from api.calibrate.flight.program import NoCodeError
-from api.calibrate.report import report
-from files.atomic import replace_file
+from api.calibrate.report.page import Asked, report
+from files.directories import replace_in_directory
+
+#: Ends of the names that were written before there was a list of them.
+_ENDS = (
+    *(".json", ".py", ".h", ".c", "_table.c", "_vectors.h", "_selftest.c", "_example.c"),
+    *("_report.html", "_no_code.txt"),
+)
 
 
 def products(
     found: Calibration,
     name: str,
     command: str = "",
+    asked: Asked | None = None,
+    *,
     tell: Callable[[str], None] = lambda _: None,
 ) -> dict[str, str]:
     """Return the text of every file by its name.
 
     C and Python are left out where no code can stand for the model; ``NAME_no_code.txt`` says so.
+    ``NAME.sha256`` lists the others with their digests, as ``sha256sum --check`` reads them.
     `tell` gets a sentence of what the code adds to the model, or why there is none.
     """
     prefix = c_name(name)
     held = document(found, command)
     made = {f"{prefix}.json": json.dumps(held, indent=1, allow_nan=False) + "\n"}
-    code: FlightCode | None = None
+    code = ""
     try:
-        code = flight_code(found)
+        made_code = flight_code(found)
     except NoCodeError as error:
         made[f"{prefix}_no_code.txt"] = f"No code was written: {error}.\n"
         tell(f"none: {error}")
     else:
-        tell(code.sentence)
+        code = made_code.sentence
+        tell(code)
         said = {
             "Files": ", ".join(found.sources),
             "Data SHA-256": found.digest,
@@ -49,9 +61,11 @@ def products(
             "Command": command,
             "Versions": ", ".join(f"{name} {number}" for name, number in versions().items()),
         }
-        made |= code.files(prefix, said, held[DIGEST])
-    made[f"{prefix}_report.html"] = report(found, command, code)
-    return made
+        made |= made_code.files(prefix, said, held[DIGEST])
+    if asked is not None and asked.certificate:
+        made[asked.certificate] = certificate(found, command)
+    made[f"{prefix}_report.html"] = report(found, command, code, asked or Asked())
+    return made | {f"{prefix}.sha256": _listed(made)}
 
 
 def _readings(found: Calibration) -> str:
@@ -71,15 +85,43 @@ def write_products(
     directory: Path,
     name: str,
     command: str = "",
+    asked: Asked | None = None,
+    *,
     tell: Callable[[str], None] = lambda _: None,
 ) -> list[Path]:
-    """Write every file, the report last; returns their paths.
+    """Write every file, all of them or none; returns their paths.
 
-    Everything is made before the first is written, and each is written whole or not at all.
+    Everything is made before the first is written, and takes its place in one step
+    (`files.directories`): who is killed leaves the files of the calibration before, or these.
+
+    Raises
+    ------
+    UnreplaceableDirectoryError
+        If the directory cannot be replaced as a whole.
+    OSError
+        If it cannot be written.
     """
-    texts = products(found, name, command, tell)
-    directory.mkdir(parents=True, exist_ok=True)
-    paths = [directory / file for file in texts]
-    for path, text in zip(paths, texts.values(), strict=True):
-        replace_file(path, text)
-    return paths
+    return write_set(products(found, name, command, asked, tell=tell), directory, name)
+
+
+def write_set(texts: Mapping[str, str], directory: Path, name: str) -> list[Path]:
+    """Write files of a calibration in place of those of the calibration before; returns paths."""
+    prefix = c_name(name)
+    files = {name: text.encode() for name, text in texts.items()}
+    replace_in_directory(directory, files, _before(directory, prefix))
+    return [directory / name for name in texts]
+
+
+def _listed(texts: Mapping[str, str]) -> str:
+    digests = {name: hashlib.sha256(text.encode()).hexdigest() for name, text in texts.items()}
+    return "".join(f"{digest}  {name}\n" for name, digest in digests.items())
+
+
+def _before(directory: Path, prefix: str) -> set[str]:
+    """Return the names that the calibration before wrote."""
+    listed = directory / f"{prefix}.sha256"
+    names = {prefix + end for end in _ENDS}
+    if listed.is_file():
+        lines = listed.read_text("utf-8", errors="replace").splitlines()
+        names |= {line.partition("  ")[2] for line in lines}
+    return {name for name in names if name and Path(name).name == name}

@@ -90,7 +90,9 @@ def recalibrate(paths: Sequence[Path], old: Any) -> Correction:
     TableError
         As `api.calibrate.table.read_table`.
     """
-    readings = joined([readings_of(read_table(path), old.settings) for path in paths])
+    readings = joined(
+        [readings_of(read_table(path, old.settings.file), old.settings) for path in paths]
+    )
     known = np.isfinite(old.predict(readings.features, readings.context)).all(axis=1)
     if known.sum() < _FEWEST:
         raise UnusableDataError(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
 import numpy as np
 
@@ -68,16 +68,6 @@ _FORMS = {
 }
 
 
-@runtime_checkable
-class Placed(Protocol):
-    """Intervals that know the place: rings about an axis, sectors of each, two tangent axes."""
-
-    axis: Floats
-    rings_deg: Floats
-    sectors: int
-    sigma_deg: Floats
-
-
 @dataclass(frozen=True)
 class Answers:
     """Form of the angles, and the 1-sigma by place.
@@ -92,7 +82,7 @@ class Answers:
     sectors : int
         Of each ring: sector m is at the azimuth 360 m / M about the axis, from +x towards +y.
     sigma_deg : ndarray, shape (K, M, 2)
-        Of the two axes of `api.calibrate.uncertainty.tangent_offsets`.
+        Of the two axes of `api.calibrate.intervals.places.tangent_axes`.
     """
 
     form: AngleForm
@@ -123,12 +113,9 @@ class Answers:
 def answers_of(found: Calibration) -> Answers:
     """Return the form and the 1-sigma of a calibration; one number where it knows no places."""
     form = _FORMS.get(found.settings.direction.form, _POLAR)
-    known: object = found.intervals
-    if isinstance(known, Placed):
-        rings, sigma = np.asarray(known.rings_deg), np.asarray(known.sigma_deg)
-        if len(rings) == 1:
-            rings, sigma = np.append(rings, rings + 1.0), np.repeat(sigma, 2, axis=0)
-        return Answers(form, np.asarray(known.axis), rings, int(known.sectors), sigma)
+    known = found.intervals
+    if known is not None:
+        return Answers(form, known.axis, known.rings_deg, known.sectors, known.sigma_deg)
     constant = _constant_deg(found)
     return Answers(
         form, np.array([0.0, 0.0, 1.0]), np.array([0.0, 180.0]), 1, np.full((2, 1, 2), constant)

@@ -18,19 +18,9 @@ from raw_sensors import OTHERS, SENSORS, compiled
 from api.calibrate.flight.code import flight_code
 from api.calibrate.flight.names import c_name, comment
 from api.calibrate.flight.program import run
+from api.calibrate.uncertainty import Intervals
 
 DIGEST = "0123456789abcdef0123456789abcdef"
-
-
-@dataclass(frozen=True)
-class Rings:
-    """Intervals that know the place."""
-
-    factor: float
-    axis: np.ndarray
-    rings_deg: np.ndarray
-    sectors: int
-    sigma_deg: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -94,7 +84,7 @@ def test_one_sigma_is_bilinear_between_rings_and_sectors(
     sensor = SENSORS["six faces"]
     table = np.random.default_rng(2).uniform(0.1, 1.0, (4, 8, 2))
     rings = np.array([0.0, 30.0, 90.0, 180.0])
-    known = Rings(1.0, np.array(axis), rings, 8, table)
+    known = Intervals(1.0, 0.95, 400, np.array(axis), rings, 8, table)
     found = replace(sensor.calibrated(camera), intervals=known)
     code = flight_code(found)
     for name, text in code.files("ss", {}, DIGEST).items():

@@ -131,7 +131,7 @@ def calibrated(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     )
     written = [Path("out/a.html"), Path("out/a.json")]
     monkeypatch.setattr(calibration, "calibrate", lambda *_, **__: found)
-    monkeypatch.setattr(products, "write_products", lambda *_: written)
+    monkeypatch.setattr(products, "write_products", lambda *_, **__: written)
     monkeypatch.setattr(certificate, "certificate", lambda *_: "<dcc/>\n")
     return found
 
