@@ -15,11 +15,12 @@ import pytest
 from algorithms.calibration.documents import DIGEST
 from algorithms.calibration.saving import UnreadableCalibrationError
 from algorithms.contract import UnusableDataError
-from api.calibrate import documents, pictures, products
+from api.calibrate import documents, products
 from api.calibrate.calibration import Calibration, calibrate
 from api.calibrate.certificate.certificate import certificate
 from api.calibrate.documents import load, number, save, versions, with_correction
 from api.calibrate.recalibration import Correction
+from api.calibrate.report import pictures
 from api.calibrate.table import read_table
 
 VECTOR = ["sun_x", "sun_y", "sun_z"]
@@ -114,7 +115,7 @@ def test_code_is_written_of_a_model_that_reads_a_temperature(
 ) -> None:
     monkeypatch.setattr(products, "report", lambda *_: "")
     made = products.products(warm, "box")
-    ends = (".json", ".py", ".h", ".c", "_selftest.c", "_example.c", "_report.html")
+    ends = (".json", ".py", ".h", ".c", "_selftest.c", "_example.c", "_report.html", ".sha256")
     assert set(made) == {f"box{end}" for end in ends}
     low, high = json.loads(made["box.json"])["fit"]["temperature_K"]
     assert 270.0 <= low < high <= 320.0
@@ -125,7 +126,7 @@ def test_no_code_says_why(warm: Calibration, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(products, "report", lambda *_: "")
     about = replace(warm.model.about, context=("nadir",))
     made = products.products(replace(warm, model=replace(warm.model, about=about)), "box")
-    assert set(made) == {"box.json", "box_no_code.txt", "box_report.html"}
+    assert set(made) == {"box.json", "box_no_code.txt", "box_report.html", "box.sha256"}
     assert made["box_no_code.txt"] == "No code was written: code for flight knows no nadir.\n"
 
 

@@ -36,7 +36,7 @@ def run(directory, *command, **known):
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="no C compiler here")
 def test_c_answers_what_the_saved_model_does(made):
-    _, out = made
+    found, out = made
     build = ["gcc", *FLAGS, "-O2", "box.c"]
     run(out, *build, "-DBOX_SELFTEST", "box_selftest.c", "-o", "selftest", "-lm")
     assert run(out, "./selftest").startswith("24 readings, 0 differ from the model")
@@ -50,6 +50,7 @@ def test_c_answers_what_the_saved_model_does(made):
     assert np.array_equal(answered[:, 0] == 0, np.isfinite(exact[:, 0]))
     good = answered[:, 0] == 0
     assert np.max(separation_deg(answered[good, 1:4], exact[good])) < 1e-9
+    assert np.allclose(answered[good, 6:8], found.intervals.at(exact[good]), rtol=1e-5)
 
 
 def test_all_files_of_a_run_name_its_document(made):

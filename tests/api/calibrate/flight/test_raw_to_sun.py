@@ -127,7 +127,13 @@ def test_the_modules_own_test_passes_on_rows_of_the_calibration(kind, written):
     ],
     ids=["gcc", "clang", "g++", "float", "sanitizers"],
 )
-@pytest.mark.parametrize("kind", ["electrodes", "four tilted cells", "warm faces"])
+@pytest.mark.parametrize(
+    "kind",
+    [
+        "four tilted cells",
+        *(pytest.param(name, marks=pytest.mark.slow) for name in SENSORS if "tilted" not in name),
+    ],
+)
 def test_compilers_have_nothing_to_say_and_the_self_test_passes(compiler, kind, written):
     if shutil.which(compiler[0]) is None:
         pytest.skip(f"no {compiler[0]} here")
