@@ -113,6 +113,8 @@ class Calibration:
         Predicted minus true direction of the samples compared on, each when a fit did not see it.
     limits : ReadingLimits
         Of readings that may be used.
+    columns : tuple of str
+        Of the first table, in its order.
     """
 
     settings: Settings
@@ -138,6 +140,7 @@ class Calibration:
     digests: tuple[str, ...] = ()
     left_out: Floats | None = None
     limits: ReadingLimits = field(default_factory=lambda: ReadingLimits((), (), 0.0, np.inf))
+    columns: tuple[str, ...] = ()
 
     def deviation_deg(
         self, features: Floats, context: Mapping[str, Floats] | None = None
@@ -346,6 +349,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         stated_sigma, spread, verdict, "", tuple(table.source for table in tables), tuple(notes),
         left_out=left_out[0][: len(compared)],
         limits=limits_of(readings, stated, joined_levels(file.bad)),
+        columns=tuple(tables[0].columns),
     )  # fmt: skip
 
 

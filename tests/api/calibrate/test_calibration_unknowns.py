@@ -111,7 +111,7 @@ def test_azimuths_named_as_rotations_are_found_among_rows_that_seem_behind(tmp_p
     assert found.chosen.rms_deg < 0.02
 
 
-def test_no_code_is_written_of_a_model_that_reads_a_temperature(
+def test_code_is_written_of_a_model_that_reads_a_temperature(
     warm: Calibration, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(products, "report", lambda *_: "")
@@ -120,8 +120,19 @@ def test_no_code_is_written_of_a_model_that_reads_a_temperature(
     assert made["box_no_code.txt"] == (
         "No code was written: code for flight knows no temperature_K.\n"
     )
+    ends = (".json", ".py", ".h", ".c", "_selftest.c", "_example.c", "_report.html", ".sha256")
+    assert set(made) == {f"box{end}" for end in ends}
     low, high = json.loads(made["box.json"])["fit"]["temperature_K"]
     assert 270.0 <= low < high <= 320.0
+    assert f"const real low = R({low!r});" in made["box.c"]
+
+
+def test_no_code_says_why(warm: Calibration, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(products, "report", lambda *_: "")
+    about = replace(warm.model.about, context=("nadir",))
+    made = products.products(replace(warm, model=replace(warm.model, about=about)), "box")
+    assert set(made) == {"box.json", "box_no_code.txt", "box_report.html", "box.sha256"}
+    assert made["box_no_code.txt"] == "No code was written: code for flight knows no nadir.\n"
 
 
 def test_runs_are_drawn_where_there_are_some_and_poses_without_next_ones(
