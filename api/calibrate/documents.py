@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import sys
+import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, cast
@@ -22,10 +23,11 @@ from algorithms.calibration.saving import (
 from algorithms.contract import Compensation, Floats, Model
 from algorithms.discovery import discover_compensations, discover_models
 from api.calibrate.calibration import Calibration
-from api.calibrate.readings import readings_of
+from api.calibrate.readings import MATRICES, readings_of
 from api.calibrate.recalibration import Correction
 from api.calibrate.settings import Settings, parse_settings
 from api.calibrate.table import Table
+from api.calibrate.terms.temperature import TERMS
 from api.calibrate.verdict import as_text
 from files.atomic import replace_file
 
@@ -36,6 +38,13 @@ _MEMBERS = frozenset(
         *("schema", "schema_version", "conventions", "settings", "compensations", "model", "fit"),
         *("selection", "verdict", "found", "excluded", "made", "correction", DIGEST),
     }
+)
+#: Number that no reading reaches, and how far rows of a rotation may be from one.
+_LARGEST, _ROTATES = 1e15, 1e-6
+#: What a document leads to that fits no class here.
+_MISFITS = (
+    *(ValueError, LookupError, TypeError, AttributeError, ImportError),
+    *(ArithmeticError, MemoryError, RecursionError),
 )
 
 
@@ -53,8 +62,9 @@ class SavedCalibration:
         Of the model's stated 1-sigma, so that intervals hold.
     temperature_K : tuple of two float, or None
         Lowest and highest that was measured, of a model that reads it; beyond, NaN is answered.
-    offset : ndarray, shape (F,)
-        Subtracted from features since a correction; see `api.calibrate.recalibration`.
+    offset, gain : ndarray, shape (F,) or ()
+        Since a correction features are ``(f - offset) / gain``; see `api.calibrate.recalibration`.
+        Of quadrants and electrodes `settings` have it, whose readings are no features.
     rotation : ndarray, shape (3, 3)
         Of directions since then.
     document : dict
@@ -69,11 +79,18 @@ class SavedCalibration:
     offset: Floats
     rotation: Floats
     document: dict[str, Any]
+    gain: Floats = field(default_factory=lambda: np.ones(()))
+
+    @property
+    def stated_deg(self) -> float:
+        """RMS error of samples left out, by the document."""
+        stated = self.document["fit"].get("rms_left_out_deg")
+        return float("nan") if stated is None else float(stated)
 
     def predict(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
         """Return unit vectors (N, 3) of features (N, F); NaN rows outside the hull."""
         columns = context or {}
-        features = np.asarray(features, dtype=np.float64) - self.offset
+        features = (np.asarray(features, dtype=np.float64) - self.offset) / self.gain
         for stage in self.compensations:
             features = stage.transform(features, columns)
         sun = self.model.predict(features, columns) @ self.rotation.T
@@ -87,6 +104,20 @@ class SavedCalibration:
         """Return unit vectors of the usable rows of a file with the calibration's columns."""
         readings = readings_of(table, self.settings)
         return self.predict(readings.features, readings.context)
+
+    @property
+    def corrected_settings(self) -> Settings:
+        """Settings whose dark level and gain have the correction: what is left of it is a turn.
+
+        For flight software, which takes ``(reading - dark) / gain`` of every reading and turns the
+        directions by `rotation`.
+        """
+        count = len(self.settings.readings.columns)
+        offset, gain = np.broadcast_to(self.offset, count), np.broadcast_to(self.gain, count)
+        for transform in reversed(self.settings.apply if count == 2 else ()):
+            matrix = np.asarray(MATRICES[transform])  # axes changed places or signs, so its
+            offset, gain = offset @ matrix, gain @ np.abs(matrix)  # transpose takes them back
+        return _with_changes(self.settings, offset, gain)
 
 
 def document(found: Calibration, command: str = "") -> dict[str, Any]:
@@ -181,41 +212,142 @@ def load(path: Path) -> SavedCalibration:
                 f"got {stored.get('schema_version')!r}"
             )
         require_whole(stored, _MEMBERS)
-        temperatures = stored["fit"].get("temperature_K")
-        correction = stored.get("correction", {})
-        return SavedCalibration(
-            parse_settings(stored["settings"], path.name),
-            tuple(
-                cast("Compensation", stage_of(stage, discover_compensations()))
-                for stage in stored["compensations"]
-            ),
-            cast("Model", stage_of(stored["model"], discover_models())),
-            float(stored["fit"]["interval_factor"]),
-            None if temperatures is None else (float(temperatures[0]), float(temperatures[1])),
-            np.asarray(correction.get("offset", 0.0), dtype=np.float64),
-            np.asarray(correction.get("rotation", np.eye(3)), dtype=np.float64),
-            stored,
-        )
+        found = _loaded(stored, path.name)
+        with warnings.catch_warnings():  # of numbers that no row would have
+            warnings.simplefilter("ignore", RuntimeWarning)
+            columns = {name: np.ones(1) for name in ("temperature_K", "time_s")}
+            found.predict(np.ones((1, _features(found.settings))), columns)
     except UnreadableCalibrationError:
         raise
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise UnreadableCalibrationError(f"{path.name}: {error}") from error
+    except _MISFITS as error:
+        said = str(error) or type(error).__name__
+        raise UnreadableCalibrationError(f"{path.name}: {said}") from error
+    return found
+
+
+def _loaded(stored: dict[str, Any], source: str) -> SavedCalibration:
+    settings = parse_settings(stored["settings"], source)
+    count = _features(settings)
+    temperatures = stored["fit"].get("temperature_K")
+    correction = stored.get("correction", {})
+    return SavedCalibration(
+        settings,
+        tuple(
+            cast("Compensation", stage_of(stage, {**discover_compensations(), **TERMS}))
+            for stage in stored["compensations"]
+        ),
+        cast("Model", stage_of(stored["model"], discover_models())),
+        _numbers(stored["fit"]["interval_factor"], (), "fit.interval_factor", above=0.0).item(),
+        None if temperatures is None else _range(temperatures),
+        _feature_numbers(correction.get("offset", 0.0), count, "correction.offset"),
+        _rotation(correction.get("rotation", np.eye(3).tolist())),
+        stored,
+        _feature_numbers(correction.get("gain", 1.0), count, "correction.gain", above=0.0),
+    )
+
+
+def _features(settings: Settings) -> int:
+    """Count the features of a sample."""
+    return len(settings.readings.columns) if settings.readings.kind == "channels" else 2
+
+
+def _numbers(value: Any, shape: tuple[int, ...], name: str, above: float = -np.inf) -> Floats:
+    """Return numbers of a document as an array.
+
+    Raises
+    ------
+    UnreadableCalibrationError
+        If they are not of that shape, or one is no number, not above a limit, or so large that no
+        reading is: 1e15 and more.
+    """
+    flat = _flat(value)
+    if not all(
+        isinstance(one, int | float) and not isinstance(one, bool) and above < one < _LARGEST
+        and one > -_LARGEST
+        for one in flat
+    ) or np.shape(value) != shape:  # fmt: skip
+        wanted = " by ".join(str(size) for size in shape) or "one"
+        limit = "" if np.isinf(above) else f" above {above:g}"
+        raise UnreadableCalibrationError(
+            f"{name} must be {wanted} finite numbers{limit}; got {str(value)[:60]}"
+        )
+    return np.asarray(value, dtype=np.float64)
+
+
+def _flat(value: Any) -> list[Any]:
+    if not isinstance(value, list):
+        return [value]
+    return [one for inner in value for one in _flat(inner)]
+
+
+def _feature_numbers(value: Any, count: int, name: str, above: float = -np.inf) -> Floats:
+    """Return one number for all features or one each."""
+    return _numbers(value, (count,) if isinstance(value, list) else (), name, above)
+
+
+def _range(value: Any) -> tuple[float, float]:
+    low, high = _numbers(value, (2,), "fit.temperature_K").tolist()
+    if not low <= high:
+        raise UnreadableCalibrationError(f"fit.temperature_K must rise; got {low:g}, {high:g}")
+    return low, high
+
+
+def _rotation(value: Any) -> Floats:
+    found = _numbers(value, (3, 3), "correction.rotation")
+    off = float(np.abs(found @ found.T - np.eye(3)).max())
+    if not (off < _ROTATES and np.linalg.det(found) > 0):
+        raise UnreadableCalibrationError(
+            f"correction.rotation must be a rotation; rows are off from it by {off:.3g}"
+        )
+    return found
 
 
 def with_correction(
     old: SavedCalibration, found: Correction, files: Sequence[Path], command: str = ""
 ) -> dict[str, Any]:
-    """Return the document of an old calibration with a correction, on top of those it has."""
+    """Return the document of an old calibration with a correction, on top of those it has.
+
+    Of spots, balances and channels the correction has gain and offset of features; of quadrants and
+    electrodes the settings have them as gain and dark level of readings.
+    """
     held = {name: value for name, value in old.document.items() if name != DIGEST}
+    settings, gain, offset = old.settings, np.asarray(found.gain), np.asarray(found.offset)
+    if len(gain) != _features(settings):
+        held["settings"] = _with_changes(settings, offset, gain).model_dump(mode="json")
+        gain, offset = np.ones(()), np.zeros(())
+    for transform in settings.apply if len(settings.readings.columns) == 2 else ():
+        matrix = np.asarray(MATRICES[transform])
+        offset, gain = matrix @ offset, np.abs(matrix) @ gain
     held["correction"] = {
-        **asdict(found),
-        "offset": (np.asarray(found.offset) + old.offset).tolist(),
+        **{name: _plain(value) for name, value in asdict(found).items()},
+        "offset": (offset + gain * old.offset).tolist(),
+        "gain": (gain * old.gain).tolist(),
         "rotation": (np.asarray(found.rotation) @ old.rotation).tolist(),
         "onto": old.document[DIGEST],
         "files": [path.name for path in files],
         "command": command,
     }
     return {**held, DIGEST: digest_of(held)}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _plain(one) for name, one in value.items()}
+    return number(value)
+
+
+def _with_changes(settings: Settings, offset: Floats, gain: Floats) -> Settings:
+    """Return settings whose signals are less an offset (K,), over a gain (K,)."""
+    stated = settings.readings
+    sign = -1.0 if stated.inverted else 1.0
+    dark = np.asarray(stated.dark) + sign * np.asarray(stated.gain) * offset
+    made = stated.model_copy(
+        update={
+            "dark": tuple(float(v) for v in dark),
+            "gain": tuple(float(v) for v in np.asarray(stated.gain) * gain),
+        }
+    )
+    return settings.model_copy(update={"readings": made})
 
 
 def _temperatures(found: Calibration) -> list[float] | None:

@@ -121,11 +121,7 @@ def readings_of(table: Table, settings: Settings, *, behind: bool = False) -> Re
     stated = np.column_stack([table.numbers(name) for name in settings.direction.columns])
     sun, angles = directions(stated, settings.direction)
     signals = _signals(raw, settings.readings)
-    features = _features(signals, settings.readings)
-    for transform in settings.apply:
-        features = (
-            features @ np.asarray(MATRICES[transform]).T if features.shape[1] == 2 else features
-        )
+    features = features_of(signals, settings)
     run, names = _runs(table, settings)
     context = _context(table, settings)
     rows = np.arange(len(table)) + table.first_row
@@ -198,6 +194,14 @@ def _features(signals: Floats, settings: ReadingsSettings) -> Floats:
         balances[~(halves.sum(axis=2) > 0)] = np.nan
         return np.asarray(balances)
     return signals
+
+
+def features_of(signals: Floats, settings: Settings) -> Floats:
+    """Return features (N, F) of signals (N, K): readings less dark over gain."""
+    features = _features(signals, settings.readings)
+    for transform in settings.apply if features.shape[1] == 2 else ():
+        features = features @ np.asarray(MATRICES[transform]).T
+    return features
 
 
 def quadrant_balances(signals: Floats) -> Floats:

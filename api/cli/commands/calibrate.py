@@ -138,8 +138,8 @@ def _correct(files: list[Path], onto: Path, written: Path) -> int:
     stated = with_correction(old, found, files, shlex.join(["sunatlas", *sys.argv[1:]]))
     written.parent.mkdir(parents=True, exist_ok=True)
     replace_file(written, json.dumps(stated, indent=1, allow_nan=False) + "\n")
-    typer.echo(f"wrote {written}")
-    return 0
+    typer.echo(f"wrote {written}; C and Python written with {onto.name} lack this correction")
+    return 0 if found.explained else 3
 
 
 def _print(found: Any, written: list[Path], out: Path) -> None:
