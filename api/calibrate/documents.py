@@ -6,7 +6,7 @@ import json
 import sys
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, cast
@@ -25,6 +25,7 @@ from algorithms.discovery import discover_compensations, discover_models
 from api.calibrate.calibration import Calibration
 from api.calibrate.readings import MATRICES, readings_of
 from api.calibrate.recalibration import Correction
+from api.calibrate.selection import unbounded
 from api.calibrate.settings import Settings, parse_settings
 from api.calibrate.table import Table
 from api.calibrate.terms.temperature import TERMS
@@ -86,6 +87,11 @@ class SavedCalibration:
         """RMS error of samples left out, by the document."""
         stated = self.document["fit"].get("rms_left_out_deg")
         return float("nan") if stated is None else float(stated)
+
+    @property
+    def unbounded(self) -> SavedCalibration:
+        """The same, but answering beyond the field that was calibrated."""
+        return replace(self, model=unbounded(self.model))
 
     def predict(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
         """Return unit vectors (N, 3) of features (N, F); NaN rows outside the hull."""
@@ -217,8 +223,10 @@ def load(path: Path) -> SavedCalibration:
             warnings.simplefilter("ignore", RuntimeWarning)
             columns = {name: np.ones(1) for name in ("temperature_K", "time_s")}
             found.predict(np.ones((1, _features(found.settings))), columns)
-    except UnreadableCalibrationError:
-        raise
+    except UnreadableCalibrationError as error:
+        if str(error).startswith(f"{path.name}: "):
+            raise
+        raise UnreadableCalibrationError(f"{path.name}: {error}") from error
     except _MISFITS as error:
         said = str(error) or type(error).__name__
         raise UnreadableCalibrationError(f"{path.name}: {said}") from error
@@ -230,6 +238,12 @@ def _loaded(stored: dict[str, Any], source: str) -> SavedCalibration:
     count = _features(settings)
     temperatures = stored["fit"].get("temperature_K")
     correction = stored.get("correction", {})
+    if not isinstance(correction, dict):
+        raise UnreadableCalibrationError(f"correction must be a table; got {str(correction)[:60]}")
+    if not isinstance(stored["compensations"], list):
+        raise UnreadableCalibrationError("compensations must be a list")
+    if (stated := stored["fit"].get("rms_left_out_deg")) is not None:
+        _numbers(stated, (), "fit.rms_left_out_deg")
     return SavedCalibration(
         settings,
         tuple(

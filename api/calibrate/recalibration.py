@@ -79,7 +79,7 @@ class Correction:
     changes : tuple of str
         Each change with its 1-sigma, in words.
     samples, unanswered : int
-        Poses that the old calibration answers, and that it does not.
+        Poses that the old calibration answers, and that the corrected one does not.
     stated_deg : float
         RMS error of the old calibration by its own document; NaN where it states none.
     """
@@ -103,13 +103,13 @@ class Correction:
     def sentence(self) -> str:
         """Say what was found."""
         said = f"the old calibration errs {self.before.sentence()} on {self.samples} poses"
-        if self.unanswered:
-            said += f" and does not answer {self.unanswered}"
         if self.kinds:
             said += f"; {', '.join(self.changes)}: that leaves {self.after.sentence()}"
             said += " on poses left out"
         else:
             said += "; no gain, offset, scale or turn explains that better: it stays"
+        if self.unanswered:
+            said += f"; {self.unanswered} are not answered"
         if not self.explained:
             said += (
                 f". It stated {self.stated_deg:.3g} deg: wrong poses, or what no correction "
@@ -146,28 +146,29 @@ def recalibrate(paths: Sequence[Path], old: Any) -> Correction:
             f"the old calibration answers {int(known.sum())} of the {len(readings)} poses; a "
             f"correction needs {_FEWEST}: take some inside the field that it was calibrated on"
         )
-    missing = int((~known).sum())
-    readings = readings.only(known)
+    # what left the old field, as readings of a dimmed cell do, tells most
+    beyond = getattr(old, "unbounded", old)
     none = Changes.none(readings.raw.shape[1])
-    errors = separation_deg(answered(old, readings, none), readings.sun)
-    before = Errors.of(errors)
+    errors = separation_deg(answered(beyond, readings, none), readings.sun)
+    before = Errors.of(errors[known])
     kinds: tuple[Kind, ...] = ()
     while len(kinds) < _MOST_KINDS:
-        more = _better(old, readings, kinds, errors)
+        more = _better(beyond, readings, kinds, errors)
         if more is None:
             break
         kinds, errors = more
-    changes = fit(old, readings, kinds) if kinds else none
+    changes = fit(beyond, readings, kinds) if kinds else none
+    held = np.isfinite(answered(old, readings, changes)).all(axis=1)
     return Correction(
         kinds,
         tuple(float(v) for v in changes.gain),
         tuple(float(v) for v in changes.offset),
         tuple(tuple(float(v) for v in row) for row in changes.rotation),
         before,
-        Errors.of(errors),
+        Errors.of(errors[held]),
         tuple(_said(changes, kinds, old.settings.readings.columns)),
-        len(readings),
-        missing,
+        int(known.sum()),
+        int((~held).sum()),
         float(getattr(old, "stated_deg", "nan")),
     )
 
@@ -187,9 +188,9 @@ def _better(
     for one in _kinds(readings):
         if one not in kinds and not {"scale", "offset"} <= {one, *kinds}:
             tried[*kinds, one] = _left_out(old, readings, (*kinds, one))
-    usual = [float(np.nanmedian(found)) for found in (errors, *tried.values())]
-    if not tried or not np.isfinite(usual).any():
+    if not tried:
         return None
+    usual = [Errors.of(found).median_deg for found in (errors, *tried.values())]
     # no smaller than the old calibration's own: few poses may lie near their answers by chance
     stated = np.nan_to_num(float(getattr(old, "stated_deg", 0.0))) / np.sqrt(2.0)
     scale = max(float(np.nanmin(usual)) / _MEDIAN, float(stated), 1e-12)

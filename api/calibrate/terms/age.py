@@ -16,6 +16,9 @@ from api.calibrate.readings import Readings, features_of
 Kind = Literal["gain", "scale", "offset", "boresight"]
 #: Steps to an answer, of which the first of an offset is at most a tenth of the readings' range.
 _MOST_STEPS = 60
+_HALVINGS = 8
+#: Share of the most that poses tell (squared), below which they do not tell changes apart.
+_TOLD = 1e-6
 #: Largest first step of a gain's logarithm, and that by which slopes are taken.
 _FIRST, _SMALL = 0.3, 1e-4
 #: Residuals over their median up to which poses count in full.
@@ -98,8 +101,10 @@ def fit(old: Any, readings: Readings, kinds: Sequence[Kind]) -> Changes:
         begun = replace(begun, rotation=search.turn(begun))
     free, held = search.telling(begun, free)
     found, covariance = search.steps(begun, free)
+    if "offset" in kinds and old.settings.readings.kind == "quadrants":
+        found = _simplest_darks(found)
     if single:
-        found, kept = _clear(found, free, covariance, held)
+        found, kept = _clear(found, free, covariance, held, search.groups)
         if len(kept) < len(free):
             found, covariance = search.steps(found, kept)
             free = kept
@@ -131,15 +136,27 @@ class _Search:
             weight = 1.0 / np.maximum(left, max(_USUAL * float(np.median(left)), 1e-12))
         return rotation
 
-    def telling(self, changes: Changes, free: Sequence[Free]) -> tuple[list[Free], int | None]:
-        """Leave out gains that no pose tells, and of the others the one that poses tell most."""
-        gains = [one for one in free if one[0] == "gain"]
-        if not gains:
-            return list(free), None
-        told = {one: float(np.nanmean(self._slope(changes, one) ** 2)) ** 0.5 for one in gains}
-        most = max(gains, key=lambda one: told[one])
-        untold = {one for one in gains if not told[one] > _TELLS * told[most]}
-        return [one for one in free if one != most and one not in untold], most[1]
+    @property
+    def groups(self) -> tuple[range, ...]:
+        """Readings of which a common gain changes no direction: all, or pairs of electrodes."""
+        count = self.readings.raw.shape[1]
+        size = 2 if self.old.settings.readings.kind == "electrodes" else count
+        return tuple(range(at, at + size) for at in range(0, count, size))
+
+    def telling(self, changes: Changes, free: Sequence[Free]) -> tuple[list[Free], set[int]]:
+        """Leave out gains that no pose tells, and in a group the one that poses tell most."""
+        told = {
+            one: float(np.nanmean(self._slope(changes, one) ** 2)) ** 0.5
+            for one in free
+            if one[0] == "gain"
+        }
+        if not told:
+            return list(free), set()
+        most = max(told.values())
+        untold = {one for one in told if not told[one] > _TELLS * most}
+        held = {max(group, key=lambda at: told["gain", at]) for group in self.groups}
+        left = untold | {("gain", at) for at in held}
+        return [one for one in free if one not in left], held
 
     def steps(self, changes: Changes, free: Sequence[Free]) -> tuple[Changes, Floats]:
         """Return the changes by which the poses are explained best, and their covariance."""
@@ -149,23 +166,43 @@ class _Search:
         largest = _FIRST * unit
         covariance = np.zeros((len(free), len(free)))
         for _ in range(_MOST_STEPS if free else 0):
-            left = self.readings.sun - answered(self.old, self.readings, changes)
+            left = self.left(changes)
             slopes = np.stack([self._slope(changes, one) for one in free], axis=2)
             usable = np.isfinite(left).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
             if usable.sum() < 3:
                 break
-            left, slopes = left[usable], slopes[usable]
-            length = np.linalg.norm(left, axis=1)
-            weight = 1.0 / np.maximum(length, max(_USUAL * float(np.median(length)), 1e-12))
-            step, covariance = _solved(slopes * unit, left, weight)
+            length = np.linalg.norm(left[usable], axis=1)
+            full = max(_USUAL * float(np.median(length)), 1e-12)
+            step, covariance = _solved(
+                slopes[usable] * unit, left[usable], 1.0 / np.maximum(length, full)
+            )
             step, covariance = step * unit, covariance * np.outer(unit, unit)
             cut = np.clip(step, -largest, largest)
-            changes = _moved(changes, free, cut)
+            better = self._shortened(changes, free, cut, full)
+            if better is None:
+                break
+            changes = better
             if (cut != step).any():  # a long way, which few poses close together do not tell
                 largest = 2.0 * largest
             elif (np.abs(step) < 1e-8 * unit).all():
                 break
         return changes, covariance
+
+    def left(self, changes: Changes) -> Floats:
+        """Return what changes leave (N, 3) between poses and answers."""
+        return np.asarray(self.readings.sun - answered(self.old, self.readings, changes))
+
+    def _shortened(
+        self, changes: Changes, free: Sequence[Free], step: Floats, full: float
+    ) -> Changes | None:
+        """Return the changes after a step that leaves less, halved until it does; None if none."""
+        before = _cost(self.left(changes), full)
+        for _ in range(_HALVINGS):
+            moved = _moved(changes, free, step)
+            if _cost(self.left(moved), full) < before:
+                return moved
+            step = step / 2.0
+        return None
 
     def _slope(self, changes: Changes, one: Free) -> Floats:
         """Change (N, 3) of the answers by a change of one number."""
@@ -178,12 +215,18 @@ class _Search:
         return np.asarray((answered(self.old, self.readings, moved) - at) / small)
 
 
+def _cost(left: Floats, full: float) -> float:
+    """Huber's sum: squares of residuals up to a size, lengths beyond; 2 where not answered."""
+    length = np.nan_to_num(np.linalg.norm(left, axis=1), nan=2.0)
+    return float(np.where(length < full, length**2 / full, 2.0 * length - full).sum())
+
+
 def _solved(slopes: Floats, left: Floats, weight: Floats) -> tuple[Floats, Floats]:
     """Return the step (P,) of weighted least squares and its covariance, which errors tell."""
     count = slopes.shape[2]
     design, aim = slopes.reshape(-1, count), left.reshape(-1)
     each = np.repeat(weight, 3)
-    inverse = np.linalg.pinv((design * each[:, None]).T @ design, rcond=1e-10, hermitian=True)
+    inverse = np.linalg.pinv((design * each[:, None]).T @ design, rcond=_TOLD, hermitian=True)
     step = inverse @ (design.T @ (each * aim))
     # of a pose all components err together; a direction has two of them that are free
     scores = np.einsum("nkp,nk,n->np", slopes, left - slopes @ step, weight)
@@ -212,25 +255,37 @@ def _rotation(turn: Floats) -> Floats:
     return np.asarray(np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross)
 
 
+def _simplest_darks(found: Changes) -> Changes:
+    """Return dark levels of quadrants of which the most stayed.
+
+    What two opposite quadrants gain and the other two lose changes neither balance.
+    """
+    signs = np.array([1.0, -1.0, 1.0, -1.0])
+    return replace(found, offset=found.offset - signs * float(np.median(signs * found.offset)))
+
+
 def _clear(
-    found: Changes, free: Sequence[Free], covariance: Floats, held: int | None
+    found: Changes,
+    free: Sequence[Free],
+    covariance: Floats,
+    held: set[int],
+    groups: Sequence[range],
 ) -> tuple[Changes, list[Free]]:
     """Return the changes without those of single readings that errors explain; what is left."""
     place = {one: at for at, one in enumerate(free)}
-    gain, offset = np.log(found.gain), found.offset.copy()
+    gain, offset = np.zeros(len(found.gain)), found.offset.copy()
     kept: list[Free] = [one for one in free if one[0] not in {"gain", "offset"}]
-    if held is not None:
-        told = {held: np.zeros(len(free))}  # by which numbers: none of the one that was held
-        told |= {at: np.eye(len(free))[place[kind, at]] for kind, at in free if kind == "gain"}
-        usual = sorted(told, key=lambda at: float(gain[at]))[len(told) // 2]
-        level, changed = float(gain[usual]), np.zeros(len(gain))
-        for at, row in told.items():
-            across = row - told[usual]
+    told = {at: np.zeros(len(free)) for at in held}  # by which numbers: none of those held
+    told |= {at: np.eye(len(free))[place[kind, at]] for kind, at in free if kind == "gain"}
+    for group in groups if told else ():
+        logs = {at: float(np.log(found.gain[at])) for at in group if at in told}
+        usual = sorted(logs, key=lambda at: logs[at])[len(logs) // 2]
+        for at, log in logs.items():
+            across = told[at] - told[usual]
             sigma = float(np.sqrt(across @ covariance @ across))
-            if abs(gain[at] - level) > _CLEAR * sigma > 0:
+            if abs(log - logs[usual]) > _CLEAR * sigma > 0:
                 kept.append(("gain", at))
-                changed[at] = gain[at] - level
-        gain = changed
+                gain[at] = log - logs[usual]
     for one in free:
         if one[0] == "offset":
             sigma = float(np.sqrt(covariance[place[one], place[one]]))
