@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,11 +14,10 @@ from algorithms.contract import Floats, Model, SensorGeometry, UnusableDataError
 from api.calibrate.conventions.finding import Finding, change_of
 from api.calibrate.conventions.findings import findings
 from api.calibrate.exclusions import Excluded, excluded_of, kept_by_model, sound_of
-from api.calibrate.frames import of_spots, table_in, with_spots
 from api.calibrate.halves import halves
+from api.calibrate.intervals.left_out import errors_left_out
 from api.calibrate.readings import BEHIND, Readings, joined, readings_of
 from api.calibrate.robust import wrong_poses
-from api.calibrate.roles import guess
 from api.calibrate.runs import RunOffset
 from api.calibrate.selection import (
     Candidate,
@@ -31,9 +29,11 @@ from api.calibrate.selection import (
     geometry_of,
 )
 from api.calibrate.settings import Settings
-from api.calibrate.table import Table, read_table
+from api.calibrate.sources import read_sources
+from api.calibrate.table import Table
 from api.calibrate.uncertainty import (
     Intervals,
+    covariance_of,
     intervals,
     noise_around,
     noise_deg,
@@ -47,7 +47,6 @@ from api.calibrate.verdict import (
     patterns_in,
     with_uncertain_conventions,
 )
-from files.reading import read_bytes
 
 #: Samples from which wrong poses are looked for.
 _FEWEST_FOR_WRONG = 40
@@ -104,7 +103,11 @@ class Calibration:
     sources : tuple of str
         Names of the files.
     notes : tuple of str
-        On how pictures were read.
+        On how the files and pictures were read.
+    digests : tuple of str
+        SHA-256 of each file.
+    left_out : ndarray, shape (M, 3), optional
+        Predicted minus true direction of the samples compared on, each when a fit did not see it.
     """
 
     settings: Settings
@@ -127,14 +130,40 @@ class Calibration:
     digest: str
     sources: tuple[str, ...]
     notes: tuple[str, ...] = ()
+    digests: tuple[str, ...] = ()
+    left_out: Floats | None = None
 
-    def deviation_deg(self, features: Floats, context: dict[str, Floats] | None = None) -> Floats:
-        """Return the 1-sigma (N,) of a tangent axis at features (N, F), degrees."""
-        stated = deviation_of(self.model, features, context or {})
-        return stated * (1.0 if self.intervals is None else self.intervals.factor)
+    def deviation_deg(
+        self, features: Floats, context: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """Return the 1-sigma (N,) of a tangent axis at features (N, F), degrees.
+
+        RMS of the two axes of `deviations_deg`.
+        """
+        return np.asarray(np.sqrt(np.mean(self.deviations_deg(features, context) ** 2, axis=1)))
+
+    def deviations_deg(
+        self, features: Floats, context: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """Return the 1-sigma (N, 2) of both axes of `api.calibrate.intervals.places.tangent_axes`.
+
+        In degrees, at features (N, F): by the place of the direction, or as the model states it
+        where there were too few samples for intervals. NaN where nothing is answered.
+        """
+        if self.intervals is None:
+            return np.repeat(deviation_of(self.model, features, context or {})[:, None], 2, axis=1)
+        return self.intervals.at(self.model.predict(features, context or {}))
+
+    def covariance(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
+        """Return the covariance (N, 3, 3) of the unit vectors at features (N, F), radians squared.
+
+        Errors along the two tangent axes are taken for uncorrelated; along the direction, zero.
+        """
+        sun = self.model.predict(features, context or {})
+        return covariance_of(self.deviations_deg(features, context), sun)
 
 
-def calibrate(  # noqa: PLR0915 - the steps in their order
+def calibrate(
     paths: Sequence[Path],
     settings: Settings | None = None,
     *,
@@ -172,17 +201,48 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     UnusableDataError
         If the samples settle no model; the message says what would.
     """
-    paths = [table_in(path) if path.is_dir() else path for path in paths]
-    tables = [read_table(path) for path in paths]
-    stated = settings or guess(tables[0])
-    notes: list[str] = []
-    if stated.readings.kind == "frames":
-        for at, path in enumerate(paths):
-            tables[at], said = with_spots(
-                tables[at], path.parent, stated, lambda done, all_: progress("frames", done, all_)
-            )
-            notes += said
-        stated = of_spots(stated)
+    read = read_sources(paths, settings, progress)
+    found = calibrate_tables(
+        read.tables,
+        read.settings,
+        apply=apply,
+        thorough=thorough,
+        models=models,
+        progress=progress,
+    )
+    return replace(found, digest=read.digest, digests=read.digests, notes=read.notes)
+
+
+def calibrate_tables(  # noqa: PLR0915 - the steps in their order
+    tables: Sequence[Table],
+    stated: Settings,
+    *,
+    apply: bool = False,
+    thorough: bool = False,
+    models: Sequence[str] | None = None,
+    progress: Callable[[str, int, int], None] = lambda *_: None,
+) -> Calibration:
+    """Calibrate a sensor by tables in memory, each a run; else as `calibrate`.
+
+    Parameters
+    ----------
+    tables : sequence of Table
+        With the columns that the settings name.
+    stated : Settings
+        Of any kind but ``frames``.
+    apply, thorough, models, progress
+        As `calibrate` takes them.
+
+    Returns
+    -------
+    Calibration
+        Without notes and digests, which are those of files.
+
+    Raises
+    ------
+    TableError, UnusableDataError
+        As `calibrate`.
+    """
     readings, found = _read(tables, stated)
     progress("conventions", 0, 1)
     applied: list[Finding] = []
@@ -196,6 +256,7 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     sound, excluded, runs, fold = sound_of(readings)
     _require_two_axes(sound)
     readings = sound
+    wrong = np.zeros(len(sound), dtype=np.bool_)
     if len(sound) >= _FEWEST_FOR_WRONG:
         wrong = wrong_poses(sound.features, sound.sun, 3.0 * stated.bench.floor_deg)
         readings = sound.only(~wrong)
@@ -243,6 +304,9 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     split = halves(wanted[chosen.name], sample, geometry, around)
     compared = readings.only(np.arange(0, len(readings), _step(readings, chosen)))
     patterns = patterns_in(np.asarray(chosen.offsets), compared)
+    removed = sound.only(~kept & ~wrong)
+    left_out = errors_left_out(wanted[chosen.name], chosen, compared, geometry, model, removed)
+    stated_sigma = intervals(*left_out)
     verdict = judge(
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
         *next_poses(readings.sun),
@@ -253,8 +317,8 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     return Calibration(
         stated, (*applied, *found), tuple(applied), readings, tuple(excluded), tuple(runs), fold,
         geometry, tuple(candidates), chosen, why, model, residual, noise,
-        intervals(chosen, readings), spread, verdict, _digest(paths), tuple(p.name for p in paths),
-        tuple(notes),
+        stated_sigma, spread, verdict, "", tuple(table.source for table in tables),
+        left_out=left_out[0][: len(compared)],
     )  # fmt: skip
 
 
@@ -327,10 +391,3 @@ def _step(readings: Readings, chosen: Candidate) -> int:
 def _rms(errors: Floats) -> float:
     known = errors[np.isfinite(errors)]
     return float(np.sqrt(np.mean(known**2))) if len(known) else float("nan")
-
-
-def _digest(paths: Sequence[Path]) -> str:
-    state = hashlib.sha256()
-    for path in paths:
-        state.update(read_bytes(path, 512 * 1024 * 1024))
-    return state.hexdigest()[:32]

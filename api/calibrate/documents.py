@@ -23,26 +23,36 @@ from algorithms.calibration.saving import (
 from algorithms.contract import Compensation, Floats, Model
 from algorithms.discovery import discover_compensations, discover_models
 from api.calibrate.calibration import Calibration
-from api.calibrate.readings import MATRICES, readings_of
+from api.calibrate.intervals.places import tangent_axes
+from api.calibrate.readings import readings_of
 from api.calibrate.recalibration import Correction
-from api.calibrate.selection import unbounded
+from api.calibrate.selection import deviation_of, unbounded
 from api.calibrate.settings import Settings, parse_settings
 from api.calibrate.table import Table
+from api.calibrate.terms.corrections import (
+    Corrected,
+    features_in,
+    numbers,
+    of_features,
+    temperatures,
+    with_changes,
+)
 from api.calibrate.terms.temperature import TERMS
+from api.calibrate.uncertainty import Intervals, covariance_of
 from api.calibrate.verdict import as_text
 from files.atomic import replace_file
 
 SCHEMA = "sun-sensor-atlas/sensor-calibration"
-SCHEMA_VERSION = 1
+#: Of documents written; those of version 1 have a factor and no table of intervals.
+SCHEMA_VERSION = 2
+_READ = (1, 2)
 _MEMBERS = frozenset(
     {
         *("schema", "schema_version", "conventions", "settings", "compensations", "model", "fit"),
         *("selection", "verdict", "found", "excluded", "made", "correction", DIGEST),
     }
 )
-#: Number that no reading reaches, and how far rows of a rotation may be from one.
-_LARGEST, _ROTATES = 1e15, 1e-6
-#: What a document leads to that fits no class here.
+#: What a damaged document leads to that fits no class here.
 _MISFITS = (
     *(ValueError, LookupError, TypeError, AttributeError, ImportError),
     *(ArithmeticError, MemoryError, RecursionError),
@@ -60,7 +70,9 @@ class SavedCalibration:
     compensations : tuple of Compensation
     model : Model
     factor : float
-        Of the model's stated 1-sigma, so that intervals hold.
+        Of the model's stated 1-sigma, where there are no intervals.
+    intervals : Intervals or None
+        The 1-sigma by place; None of few samples and of a document of version 1.
     temperature_K : tuple of two float, or None
         Lowest and highest that was measured, of a model that reads it; beyond, NaN is answered.
     offset, gain : ndarray, shape (F,) or ()
@@ -76,6 +88,7 @@ class SavedCalibration:
     compensations: tuple[Compensation, ...]
     model: Model
     factor: float
+    intervals: Intervals | None
     temperature_K: tuple[float, float] | None  # noqa: N815 - the unit's symbol
     offset: Floats
     rotation: Floats
@@ -93,37 +106,62 @@ class SavedCalibration:
         """The same, but answering beyond the field that was calibrated."""
         return replace(self, model=unbounded(self.model))
 
+    @property
+    def corrected(self) -> Corrected:
+        """What was corrected since; its ``settings`` are those for flight software."""
+        return Corrected(self.offset, self.gain, self.rotation)
+
     def predict(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
         """Return unit vectors (N, 3) of features (N, F); NaN rows outside the hull."""
         columns = context or {}
-        features = (np.asarray(features, dtype=np.float64) - self.offset) / self.gain
-        for stage in self.compensations:
-            features = stage.transform(features, columns)
-        sun = self.model.predict(features, columns) @ self.rotation.T
+        sun = self.model.predict(self._compensated(features, columns), columns) @ self.rotation.T
         if self.temperature_K is not None:
             low, high = self.temperature_K
             measured = np.asarray(columns["temperature_K"], dtype=np.float64)
             sun[~((measured >= low) & (measured <= high))] = np.nan
         return np.asarray(sun)
 
+    def covariance(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
+        """Return the covariance (N, 3, 3) of the unit vectors at features (N, F), radians squared.
+
+        A correction turns it with the directions; NaN where nothing is answered.
+        """
+        before = self.predict(features, context) @ self.rotation
+        if self.intervals is None:
+            columns = context or {}
+            stated = deviation_of(self.model, self._compensated(features, columns), columns)
+            sigma = np.repeat(self.factor * stated[:, None], 2, axis=1)
+        else:
+            sigma = self.intervals.at(before)
+        return np.asarray(self.rotation @ covariance_of(sigma, before) @ self.rotation.T)
+
+    def deviations_deg(
+        self, features: Floats, context: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """Return the 1-sigma (N, 2) of both axes of `api.calibrate.intervals.places.tangent_axes`.
+
+        In degrees, at features (N, F).
+        """
+        axes = np.stack(tangent_axes(self.predict(features, context)), axis=1)
+        variance = np.einsum("nai,nij,naj->na", axes, self.covariance(features, context), axes)
+        return np.asarray(np.degrees(np.sqrt(variance)))
+
+    def deviation_deg(
+        self, features: Floats, context: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """Return the 1-sigma (N,) of a tangent axis, degrees: RMS of both of `deviations_deg`."""
+        return np.asarray(np.sqrt(np.mean(self.deviations_deg(features, context) ** 2, axis=1)))
+
+    def _compensated(self, features: Floats, columns: Mapping[str, Floats]) -> Floats:
+        features = (np.asarray(features, dtype=np.float64) - self.offset) / self.gain
+        for stage in self.compensations:
+            features = stage.transform(features, columns)
+        return features
+
     def predict_table(self, table: Table) -> Floats:
         """Return unit vectors of the usable rows of a file with the calibration's columns."""
         readings = readings_of(table, self.settings)
         return self.predict(readings.features, readings.context)
-
-    @property
-    def corrected_settings(self) -> Settings:
-        """Settings whose dark level and gain have the correction: what is left of it is a turn.
-
-        For flight software, which takes ``(reading - dark) / gain`` of every reading and turns the
-        directions by `rotation`.
-        """
-        count = len(self.settings.readings.columns)
-        offset, gain = np.broadcast_to(self.offset, count), np.broadcast_to(self.gain, count)
-        for transform in reversed(self.settings.apply if count == 2 else ()):
-            matrix = np.asarray(MATRICES[transform])  # axes changed places or signs, so its
-            offset, gain = offset @ matrix, gain @ np.abs(matrix)  # transpose takes them back
-        return _with_changes(self.settings, offset, gain)
 
 
 def document(found: Calibration, command: str = "") -> dict[str, Any]:
@@ -142,8 +180,7 @@ def document(found: Calibration, command: str = "") -> dict[str, Any]:
             "rms_left_out_deg": number(found.chosen.rms_deg),
             "rms_fitted_deg": number(found.residual_deg),
             "noise_deg": number(found.noise_deg),
-            "interval_factor": 1.0 if found.intervals is None else found.intervals.factor,
-            "interval_coverage": None if found.intervals is None else found.intervals.coverage,
+            "intervals": None if found.intervals is None else _plain(found.intervals),
             "temperature_K": _temperatures(found),
             "fit_spread_deg": number(_rms(found.spread_deg)),
             "sensor": {k: v for k, v in asdict(found.geometry).items() if v is not None},
@@ -209,12 +246,10 @@ def load(path: Path) -> SavedCalibration:
     try:
         stored = read_document(path)
         if not isinstance(stored, dict) or stored.get("schema") != SCHEMA:
-            raise UnreadableCalibrationError(  # noqa: TRY301 - one place for all refusals
-                f"{path.name}: expected a document of {SCHEMA}"
-            )
-        if stored.get("schema_version") != SCHEMA_VERSION:
-            raise UnreadableCalibrationError(  # noqa: TRY301 - as above
-                f"{path.name}: expected version {SCHEMA_VERSION}; "
+            raise UnreadableCalibrationError(f"{path.name}: expected a document of {SCHEMA}")
+        if stored.get("schema_version") not in _READ:
+            raise UnreadableCalibrationError(
+                f"{path.name}: expected version {' or '.join(map(str, _READ))}; "
                 f"got {stored.get('schema_version')!r}"
             )
         require_whole(stored, _MEMBERS)
@@ -222,28 +257,24 @@ def load(path: Path) -> SavedCalibration:
         with warnings.catch_warnings():  # of numbers that no row would have
             warnings.simplefilter("ignore", RuntimeWarning)
             columns = {name: np.ones(1) for name in ("temperature_K", "time_s")}
-            found.predict(np.ones((1, _features(found.settings))), columns)
-    except UnreadableCalibrationError as error:
-        if str(error).startswith(f"{path.name}: "):
-            raise
-        raise UnreadableCalibrationError(f"{path.name}: {error}") from error
+            found.predict(np.ones((1, features_in(found.settings))), columns)
     except _MISFITS as error:
         said = str(error) or type(error).__name__
-        raise UnreadableCalibrationError(f"{path.name}: {said}") from error
+        named = said if said.startswith(f"{path.name}: ") else f"{path.name}: {said}"
+        raise UnreadableCalibrationError(named) from error
     return found
 
 
 def _loaded(stored: dict[str, Any], source: str) -> SavedCalibration:
-    settings = parse_settings(stored["settings"], source)
-    count = _features(settings)
-    temperatures = stored["fit"].get("temperature_K")
-    correction = stored.get("correction", {})
-    if not isinstance(correction, dict):
-        raise UnreadableCalibrationError(f"correction must be a table; got {str(correction)[:60]}")
+    settings, fit = parse_settings(stored["settings"], source), stored["fit"]
+    measured = fit.get("temperature_K")
+    correction = Corrected.of(stored.get("correction", {}), settings)
     if not isinstance(stored["compensations"], list):
         raise UnreadableCalibrationError("compensations must be a list")
-    if (stated := stored["fit"].get("rms_left_out_deg")) is not None:
-        _numbers(stated, (), "fit.rms_left_out_deg")
+    if "rms_left_out_deg" not in fit:
+        raise UnreadableCalibrationError("fit lacks rms_left_out_deg")
+    if (stated := fit["rms_left_out_deg"]) is not None:
+        numbers(stated, (), "fit.rms_left_out_deg")
     return SavedCalibration(
         settings,
         tuple(
@@ -251,69 +282,14 @@ def _loaded(stored: dict[str, Any], source: str) -> SavedCalibration:
             for stage in stored["compensations"]
         ),
         cast("Model", stage_of(stored["model"], discover_models())),
-        _numbers(stored["fit"]["interval_factor"], (), "fit.interval_factor", above=0.0).item(),
-        None if temperatures is None else _range(temperatures),
-        _feature_numbers(correction.get("offset", 0.0), count, "correction.offset"),
-        _rotation(correction.get("rotation", np.eye(3).tolist())),
+        numbers(fit.get("interval_factor", 1.0), (), "fit.interval_factor", above=0.0).item(),
+        _intervals_of(fit.get("intervals")),
+        None if measured is None else temperatures(measured),
+        correction.offset,
+        correction.rotation,
         stored,
-        _feature_numbers(correction.get("gain", 1.0), count, "correction.gain", above=0.0),
+        correction.gain,
     )
-
-
-def _features(settings: Settings) -> int:
-    """Count the features of a sample."""
-    return len(settings.readings.columns) if settings.readings.kind == "channels" else 2
-
-
-def _numbers(value: Any, shape: tuple[int, ...], name: str, above: float = -np.inf) -> Floats:
-    """Return numbers of a document as an array.
-
-    Raises
-    ------
-    UnreadableCalibrationError
-        If they are not of that shape, or one is no number, not above a limit, or so large that no
-        reading is: 1e15 and more.
-    """
-    flat = _flat(value)
-    if not all(
-        isinstance(one, int | float) and not isinstance(one, bool) and above < one < _LARGEST
-        and one > -_LARGEST
-        for one in flat
-    ) or np.shape(value) != shape:  # fmt: skip
-        wanted = " by ".join(str(size) for size in shape) or "one"
-        limit = "" if np.isinf(above) else f" above {above:g}"
-        raise UnreadableCalibrationError(
-            f"{name} must be {wanted} finite numbers{limit}; got {str(value)[:60]}"
-        )
-    return np.asarray(value, dtype=np.float64)
-
-
-def _flat(value: Any) -> list[Any]:
-    if not isinstance(value, list):
-        return [value]
-    return [one for inner in value for one in _flat(inner)]
-
-
-def _feature_numbers(value: Any, count: int, name: str, above: float = -np.inf) -> Floats:
-    """Return one number for all features or one each."""
-    return _numbers(value, (count,) if isinstance(value, list) else (), name, above)
-
-
-def _range(value: Any) -> tuple[float, float]:
-    low, high = _numbers(value, (2,), "fit.temperature_K").tolist()
-    if not low <= high:
-        raise UnreadableCalibrationError(f"fit.temperature_K must rise; got {low:g}, {high:g}")
-    return low, high
-
-
-def _rotation(value: Any) -> Floats:
-    found = _numbers(value, (3, 3), "correction.rotation")
-    off = float(np.abs(found @ found.T - np.eye(3)).max())
-    if not (off < _ROTATES and np.linalg.det(found) > 0):
-        raise UnreadableCalibrationError(
-            f"correction.rotation must be a rotation; rows are off from it by {off:.3g}"
-        )
-    return found
 
 
 def with_correction(
@@ -326,17 +302,14 @@ def with_correction(
     """
     held = {name: value for name, value in old.document.items() if name != DIGEST}
     settings, gain, offset = old.settings, np.asarray(found.gain), np.asarray(found.offset)
-    if len(gain) != _features(settings):
-        held["settings"] = _with_changes(settings, offset, gain).model_dump(mode="json")
-        gain, offset = np.ones(()), np.zeros(())
-    for transform in settings.apply if len(settings.readings.columns) == 2 else ():
-        matrix = np.asarray(MATRICES[transform])
-        offset, gain = matrix @ offset, np.abs(matrix) @ gain
+    if len(gain) != features_in(settings):
+        held["settings"] = with_changes(settings, offset, gain).model_dump(mode="json")
+        offset, gain = np.zeros(()), np.ones(())
+    offset, gain = of_features(settings, offset, gain) if gain.ndim else (offset, gain)
+    whole = old.corrected.then(offset, gain, np.asarray(found.rotation))
     held["correction"] = {
-        **{name: _plain(value) for name, value in asdict(found).items()},
-        "offset": (offset + gain * old.offset).tolist(),
-        "gain": (gain * old.gain).tolist(),
-        "rotation": (np.asarray(found.rotation) @ old.rotation).tolist(),
+        **found.as_data(),
+        **{name: value.tolist() for name, value in vars(whole).items()},
         "onto": old.document[DIGEST],
         "files": [path.name for path in files],
         "command": command,
@@ -344,24 +317,31 @@ def with_correction(
     return {**held, DIGEST: digest_of(held)}
 
 
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {name: _plain(one) for name, one in value.items()}
-    return number(value)
+def _plain(found: Intervals) -> dict[str, Any]:
+    return {
+        name: value.tolist() if isinstance(value, np.ndarray) else value
+        for name, value in vars(found).items()
+    }
 
 
-def _with_changes(settings: Settings, offset: Floats, gain: Floats) -> Settings:
-    """Return settings whose signals are less an offset (K,), over a gain (K,)."""
-    stated = settings.readings
-    sign = -1.0 if stated.inverted else 1.0
-    dark = np.asarray(stated.dark) + sign * np.asarray(stated.gain) * offset
-    made = stated.model_copy(
-        update={
-            "dark": tuple(float(v) for v in dark),
-            "gain": tuple(float(v) for v in np.asarray(stated.gain) * gain),
-        }
+def _intervals_of(stored: Mapping[str, Any] | None) -> Intervals | None:
+    """Return the intervals that a document holds; ValueError where they are none."""
+    if stored is None:
+        return None
+    axis, rings_deg, sigma_deg = (
+        np.asarray(stored[name], dtype=np.float64) for name in ("axis", "rings_deg", "sigma_deg")
     )
-    return settings.model_copy(update={"readings": made})
+    found = Intervals(
+        float(stored["factor"]), float(stored["coverage"]), int(stored["samples"]), axis, rings_deg,
+        int(stored["sectors"]), sigma_deg,
+    )  # fmt: skip
+    shape = (len(found.rings_deg), found.sectors, 2)
+    if found.axis.shape != (3,) or found.sigma_deg.shape != shape:
+        raise ValueError(
+            f"expected intervals of shape {shape} about an axis of 3; got {found.sigma_deg.shape} "
+            f"about {found.axis.shape}"
+        )
+    return found
 
 
 def _temperatures(found: Calibration) -> list[float] | None:

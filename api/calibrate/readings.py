@@ -5,13 +5,24 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.angles import sun_from_angles, sun_from_rotations
 from algorithms.contract import FeatureKind, Floats
-from api.calibrate.settings import DirectionSettings, Form, ReadingsSettings, Settings, Transform
+from api.calibrate.forms.almanac import sun_by_date
+from api.calibrate.forms.attitudes import rotated
+from api.calibrate.forms.units import DEGREES, KELVIN, SECONDS, TimeUnit
+from api.calibrate.settings import (
+    AngleForm,
+    DirectionSettings,
+    ReadingsSettings,
+    RowSettings,
+    Settings,
+    Transform,
+)
 from api.calibrate.table import Table, TableError
 
 #: What each transform does to the two features of a row, as a matrix.
@@ -28,6 +39,8 @@ MATRICES: dict[Transform, tuple[tuple[float, float], tuple[float, float]]] = {
 BEHIND = "the light is behind the sensor"
 FALLING = "readings fall when light rises"
 _NO_SUM = "the signals have no positive sum"
+#: Cosine of the angle off the axis up to which the light is along the detector's plane.
+_GRAZING = 1e-6
 #: Share of the usual light below which balances are those of noise.
 _FAINT = 0.1
 _KINDS = {"spot": FeatureKind.SPOT, "channels": FeatureKind.SIGNALS}
@@ -119,12 +132,12 @@ def readings_of(table: Table, settings: Settings, *, behind: bool = False) -> Re
     """
     raw = np.column_stack([table.numbers(name) for name in settings.readings.columns])
     stated = np.column_stack([table.numbers(name) for name in settings.direction.columns])
-    sun, angles = directions(stated, settings.direction)
+    sun, angles = _directions(stated, table, settings)
     signals = _signals(raw, settings.readings)
-    features = features_of(signals, settings)
+    features = features_of_signals(signals, settings)
     run, names = _runs(table, settings)
     context = _context(table, settings)
-    rows = np.arange(len(table)) + table.first_row
+    rows = table.rows
     if settings.rows.shift:
         kept, other = _shifted(run, settings.rows.shift)
         features, signals, raw = features[other], signals[other], raw[other]
@@ -153,20 +166,61 @@ def readings_of(table: Table, settings: Settings, *, behind: bool = False) -> Re
     return made.only(usable)
 
 
+def features_of(raw: Floats, settings: Settings) -> Floats:
+    """Return features (N, F) of readings (N, K) as they stand in a file's columns."""
+    signals = _signals(np.asarray(raw, dtype=np.float64), settings.readings)
+    return features_of_signals(signals, settings)
+
+
+def features_of_signals(signals: Floats, settings: Settings) -> Floats:
+    """Return features (N, F) of signals (N, K): readings less dark over gain."""
+    return _turned(_features(signals, settings.readings), settings)
+
+
+def _directions(stated: Floats, table: Table, settings: Settings) -> tuple[Floats, Floats | None]:
+    """Return unit vectors (N, 3) of a file's columns, and its two angles in degrees if any."""
+    direction = settings.direction
+    if direction.form in ("quaternion", "matrix"):
+        light = _light(table, direction, settings.rows)
+        scalar_first = direction.scalar == "first"
+        to_sensor = direction.attitude == "to-sensor"
+        sun = rotated(stated, light, scalar_first=scalar_first, to_sensor=to_sensor)
+        return (-sun if direction.from_light else sun), None
+    return directions(stated, direction)
+
+
+def _light(table: Table, direction: DirectionSettings, rows: RowSettings) -> Floats:
+    """Return the light's direction (N, 3) in the outer frame of an attitude."""
+    if direction.light_by_date is not None:
+        unit = rows.time_unit if direction.light_by_date == rows.time_s else "s"
+        return sun_by_date(_seconds(table.numbers(direction.light_by_date), unit))
+    if direction.light_columns is not None:
+        return np.column_stack([table.numbers(name) for name in direction.light_columns])
+    return np.broadcast_to(np.asarray(direction.light), (len(table), 3))
+
+
+def _seconds(time: Floats, unit: TimeUnit) -> Floats:
+    scale, zero = SECONDS[unit]
+    return np.asarray(scale * (time - zero))
+
+
 def directions(columns: Floats, settings: DirectionSettings) -> tuple[Floats, Floats | None]:
-    """Return unit vectors (N, 3) of a file's columns, and its angles in degrees if any."""
+    """Return unit vectors (N, 3) of vectors or angles, and two angles in degrees if any."""
     if settings.form == "vector":
         length = np.linalg.norm(columns, axis=1)
         near = (length > 0.5) & (length < 2.0)
         with np.errstate(invalid="ignore", divide="ignore"):
             sun = columns / length[:, None]
         sun[~near] = np.nan
-        return sun, None
-    angles = np.degrees(columns) if settings.unit == "rad" else columns
-    return sun_of_angles(angles, settings.form), angles
+        return (-sun if settings.from_light else sun), None
+    angles = columns * [DEGREES[unit] for unit in settings.units]
+    if settings.form == "one-angle":
+        angle = np.radians(angles[:, 0])
+        return np.column_stack([np.sin(angle), np.zeros(len(angle)), np.cos(angle)]), None
+    return sun_of_angles(angles, cast("AngleForm", settings.form)), angles
 
 
-def sun_of_angles(angles_deg: Floats, form: Form) -> Floats:
+def sun_of_angles(angles_deg: Floats, form: AngleForm) -> Floats:
     """Return unit vectors (N, 3) of two angles (N, 2), degrees, of one of the forms."""
     if form == "projection":
         return sun_from_angles(angles_deg)
@@ -184,6 +238,13 @@ def _signals(raw: Floats, settings: ReadingsSettings) -> Floats:
     return np.asarray(sign * (raw - np.asarray(settings.dark)) / np.asarray(settings.gain))
 
 
+def _turned(features: Floats, settings: Settings) -> Floats:
+    for transform in settings.apply:
+        if features.shape[1] == 2:
+            features = features @ np.asarray(MATRICES[transform]).T
+    return features
+
+
 def _features(signals: Floats, settings: ReadingsSettings) -> Floats:
     if settings.kind == "quadrants":
         return quadrant_balances(signals)
@@ -193,15 +254,14 @@ def _features(signals: Floats, settings: ReadingsSettings) -> Floats:
             balances = (halves[:, :, 0] - halves[:, :, 1]) / halves.sum(axis=2)
         balances[~(halves.sum(axis=2) > 0)] = np.nan
         return np.asarray(balances)
+    if settings.kind == "pair":
+        total = signals.sum(axis=1)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            balance = (signals[:, 0] - signals[:, 1]) / total
+        return np.column_stack([np.where(total > 0, balance, np.nan), np.zeros(len(total))])
+    if signals.shape[1] == 1:  # of a sensor of one axis
+        return np.column_stack([signals, np.zeros(len(signals))])
     return signals
-
-
-def features_of(signals: Floats, settings: Settings) -> Floats:
-    """Return features (N, F) of signals (N, K): readings less dark over gain."""
-    features = _features(signals, settings.readings)
-    for transform in settings.apply if features.shape[1] == 2 else ():
-        features = features @ np.asarray(MATRICES[transform]).T
-    return features
 
 
 def quadrant_balances(signals: Floats) -> Floats:
@@ -221,7 +281,7 @@ def _reasons(  # noqa: PLR0917 - what a row is made of
 ) -> dict[str, NDArray[np.bool_]]:
     zeros = (raw == 0).all(axis=1)
     faint = np.zeros(len(raw), dtype=np.bool_)
-    if settings.readings.kind in ("quadrants", "electrodes"):
+    if settings.readings.kind in ("quadrants", "electrodes", "pair"):
         total = signals.sum(axis=1)
         usual = np.nanpercentile(total, 95) if np.isfinite(total).any() else np.nan
         faint = (usual > 0) & (total > 0) & (total < _FAINT * usual)
@@ -237,7 +297,7 @@ def _reasons(  # noqa: PLR0917 - what a row is made of
         _NO_SUM: ~np.isfinite(features).all(axis=1),
     }
     if settings.readings.kind != "channels":
-        found[BEHIND] = ~(sun[:, 2] > 0)
+        found[BEHIND] = ~(sun[:, 2] > _GRAZING)
     return found
 
 
@@ -252,8 +312,13 @@ def _runs(table: Table, settings: Settings) -> tuple[NDArray[np.int64], tuple[st
 
 
 def _context(table: Table, settings: Settings) -> dict[str, Floats]:
-    stated = {"time_s": settings.rows.time_s, "temperature_K": settings.rows.temperature_K}
-    return {name: table.numbers(column) for name, column in stated.items() if column is not None}
+    rows, found = settings.rows, {}
+    if rows.time_s is not None:
+        found["time_s"] = _seconds(table.numbers(rows.time_s), rows.time_unit)
+    if rows.temperature_K is not None:
+        scale, offset = KELVIN[rows.temperature_unit]
+        found["temperature_K"] = scale * table.numbers(rows.temperature_K) + offset
+    return found
 
 
 def _shifted(run: NDArray[np.int64], shift: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -100,6 +100,16 @@ class Correction:
         """Whether nine in ten poses are answered about as well as the old calibration states."""
         return not self.after.most_deg > _WORSE * self.stated_deg
 
+    def as_data(self) -> dict[str, Any]:
+        """Return all of it as JSON has it, None for what is no number."""
+        held = asdict(self)
+        stated = self.stated_deg if np.isfinite(self.stated_deg) else None
+        errors = {
+            name: {key: value if np.isfinite(value) else None for key, value in held[name].items()}
+            for name in ("before", "after")
+        }
+        return {**held, **errors, "stated_deg": stated}
+
     def sentence(self) -> str:
         """Say what was found."""
         said = f"the old calibration errs {self.before.sentence()} on {self.samples} poses"
@@ -139,7 +149,9 @@ def recalibrate(paths: Sequence[Path], old: Any) -> Correction:
     TableError
         As `api.calibrate.table.read_table`.
     """
-    readings = joined([readings_of(read_table(path), old.settings) for path in paths])
+    readings = joined(
+        [readings_of(read_table(path, old.settings.file), old.settings) for path in paths]
+    )
     known = np.isfinite(old.predict(readings.features, readings.context)).all(axis=1)
     if known.sum() < _FEWEST:
         raise UnusableDataError(

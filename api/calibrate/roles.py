@@ -1,14 +1,21 @@
-"""Guessing what columns are from their names; the reader can correct the guess."""
+"""Guessing what columns are from their names, units and values; the reader can correct it."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import Literal, TypeVar
+from dataclasses import dataclass, field
+from itertools import product
+from typing import Any, cast, get_args
 
+import numpy as np
+
+from api.calibrate.forms import names as words
+from api.calibrate.forms.attitudes import are_matrices, are_quaternions
+from api.calibrate.forms.fits import best_of, looks_like_tilted_cells
+from api.calibrate.forms.units import AngleUnit, TemperatureUnit, TimeUnit, is_angle, named
 from api.calibrate.settings import (
     DirectionSettings,
-    Form,
     Kind,
     ReadingsSettings,
     RowSettings,
@@ -17,147 +24,373 @@ from api.calibrate.settings import (
 )
 from api.calibrate.table import Table, TableError
 
-_Word = TypeVar("_Word", bound=str)
+#: Median of a temperature below which it is taken for degrees Celsius where no unit is said.
+_COLDEST_K = 150.0
+#: Sizes of seconds since 1970 in other units: from so many on.
+_EPOCHS: tuple[tuple[float, TimeUnit], ...] = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"))
+#: Largest size of a balance, noise included.
+_BALANCE = 1.2
+_SAY = "say in a config, which --init writes:"
 
-#: Patterns of names, tried in this order; each list gives one column a pattern.
-_DIRECTIONS: tuple[tuple[Form, tuple[str, ...]], ...] = (
-    (
-        "vector",
-        (
-            r"(sun_?|s_?|u_?|n_?|dir(ection)?_?)x",
-            r"(sun_?|s_?|u_?|n_?|dir(ection)?_?)y",
-            r"(sun_?|s_?|u_?|n_?|dir(ection)?_?)z",
-        ),
-    ),
-    (
-        "azimuth-zenith",
-        (r"(az|azimuth|phi)(_?(deg|rad))?", r"(zenith|polar|off_?axis|theta|cone)(_?(deg|rad))?"),
-    ),
-    ("azimuth-elevation", (r"(az|azimuth)(_?(deg|rad))?", r"(el|elev|elevation)(_?(deg|rad))?")),
-    ("projection", (r"alpha(_?(deg|rad))?", r"beta(_?(deg|rad))?")),
-    (
-        "alpha-inner",
-        (
-            r"(inner|pitch|rot_?x|theta_?x|angle_?x|tilt_?x|x_?(deg|rad))(_?(deg|rad))?",
-            r"(outer|yaw|rot_?y|theta_?y|angle_?y|tilt_?y|y_?(deg|rad))(_?(deg|rad))?",
-        ),
-    ),
-)
-_READINGS: tuple[tuple[Kind, tuple[str, ...]], ...] = (
-    ("frames", (r"(frame|image|picture|photo)(_?(file|name|path))?|file_?name",)),
-    (
-        "balance",
-        (
-            r"(balance_?x|s_?a|sx_?bal|fx|x_?balance|ratio_?x)",
-            r"(balance_?y|s_?b|fy|y_?balance|ratio_?y)",
-        ),
-    ),
-    (
-        "spot",
-        (
-            r"(spot_?|centroid_?|c_?)?x(_?px|_?mm|_?pix(el)?)?|u_px|col(umn)?",
-            r"(spot_?|centroid_?|c_?)?y(_?px|_?mm|_?pix(el)?)?|v_px|row_px",
-        ),
-    ),
-    (
-        "electrodes",
-        (
-            r"(i_?|v_?)?x_?(1|p|plus|pos|\+)",
-            r"(i_?|v_?)?x_?(2|m|minus|neg|n|-)",
-            r"(i_?|v_?)?y_?(1|p|plus|pos|\+)",
-            r"(i_?|v_?)?y_?(2|m|minus|neg|n|-)",
-        ),
-    ),
-    (
-        "quadrants",
-        (
-            r"(q|quad|v|i|ch)_?(1|a)",
-            r"(q|quad|v|i|ch)_?(2|b)",
-            r"(q|quad|v|i|ch)_?(3|c)",
-            r"(q|quad|v|i|ch)_?(4|d)",
-        ),
-    ),
-)
-_RUN, _TIME = r"(run|series|sweep|file)(_?(id|no|number))?", r"(t|time)(_?s)?|seconds"
-_TEMPERATURE = r"(temp|temperature)(_?(k|c|deg_?c|celsius|kelvin))?"
-#: Unit normals of faces by what their channel's name ends in.
-_FACES = {
-    "xp": (1.0, 0.0, 0.0),
-    "xm": (-1.0, 0.0, 0.0),
-    "yp": (0.0, 1.0, 0.0),
-    "ym": (0.0, -1.0, 0.0),
-    "zp": (0.0, 0.0, 1.0),
-    "zm": (0.0, 0.0, -1.0),
-}
-_FACE = re.compile(
-    r"(?:.*_)?(?:([xyz])_?(p|plus|pos|\+|m|minus|neg|n|-)|([+-])([xyz]))$", re.IGNORECASE
-)
-_CHANNEL = re.compile(r"(q|ch|channel|i|v|pd|cell|face|s|adc|p)_?\d+$", re.IGNORECASE)
+
+@dataclass(frozen=True)
+class Understood:
+    """What the columns of a table seem to be.
+
+    Attributes
+    ----------
+    settings : Settings
+    notes : tuple of str
+        What the names alone do not say, in sentences without an end.
+    """
+
+    settings: Settings
+    notes: tuple[str, ...] = ()
+
+
+@dataclass
+class _Columns:
+    """Columns of a table that nothing is known of yet."""
+
+    table: Table
+    keys: dict[str, str]
+    rest: list[str]
+    notes: list[str] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, table: Table) -> _Columns:
+        keys = {}
+        for name in table.columns:
+            read = named(name)
+            unit = table.units.get(name, read.unit)
+            keys[name] = f"{read.bare}_deg" if is_angle(unit) else read.bare
+        return cls(table, keys, list(table.columns))
+
+    def take(self, *columns: str | None) -> None:
+        self.rest = [name for name in self.rest if name not in columns]
+
+    def match(self, pattern: str) -> str | None:
+        return words.match(pattern, self.keys, self.rest)
+
+    def match_all(self, patterns: Sequence[str]) -> tuple[str, ...]:
+        return words.match_all(patterns, self.keys, self.rest)
+
+    def readable(self, name: str) -> bool:
+        return name not in self.table.unread
+
+    def angle(self, name: str) -> bool:
+        return is_angle(self.table.units.get(name))
+
+    def values(self, columns: Sequence[str]) -> np.ndarray[Any, Any]:
+        return np.column_stack([self.table.numbers(name) for name in columns])
 
 
 def guess(table: Table) -> Settings:
-    """Return settings guessed from the names of a table's columns; TableError where none fit."""
-    names = list(table.columns)
-    form, directions = _first(_DIRECTIONS, names)
-    if form is None:
-        raise TableError(
-            f"{table.source}: no columns of the light's direction among {', '.join(names)}; "
-            "expected sun_x, sun_y, sun_z, or alpha, beta, or azimuth, elevation; name them in a "
-            "config (--init writes one)"
+    """Return settings guessed from a table's columns; TableError where none fit."""
+    return understood(table).settings
+
+
+def understood(table: Table) -> Understood:
+    """Return settings guessed from a table's columns, and how.
+
+    Parameters
+    ----------
+    table : Table
+        As `api.calibrate.table.read_table` gives it.
+
+    Raises
+    ------
+    TableError
+        If no columns of the light's direction or of readings are recognised: the message says what
+        to write into a config.
+    """
+    columns = _Columns.of(table)
+    rows = _rows_of(columns)
+    ways = _directions_of(columns)
+    if not ways:
+        raise TableError(_no_direction(columns))
+    for name in {name for way in ways for name in _used(way)}:
+        columns.take(name)
+    one_axis = ways[0].form == "one-angle"
+    readings, normals = _readings_of(columns, one_axis=one_axis)
+    if readings is None:
+        raise TableError(_no_readings(columns, ways[0]))
+    kinds = [readings]
+    if readings.kind == "quadrants" and all(columns.readable(name) for name in readings.columns):
+        kinds.append(readings.model_copy(update={"kind": "channels"}))
+    made = [
+        Settings(
+            readings=kinds[0], direction=way, rows=rows, sensor=SensorSettings(face_normals=normals)
         )
-    rest = [name for name in names if name not in directions]
-    run, time_s, temperature = (_match(p, rest) for p in (_RUN, _TIME, _TEMPERATURE))
-    rest = [name for name in rest if name not in (run, time_s, temperature)]
-    faces = [name for name in rest if _face(name)]
-    channels = [name for name in rest if _CHANNEL.fullmatch(name)]
-    kind, readings = _first(_READINGS, rest)
-    normals = None
-    if len(faces) > 4:
-        kind, readings = "channels", tuple(faces)
-        normals = tuple(normal for name in faces if (normal := _face(name)) is not None)
-    elif len(channels) > 4 and len(channels) > len(readings):
-        kind, readings = "channels", tuple(channels)
-    if kind is None:
-        raise TableError(
-            f"{table.source}: no columns of readings recognised among {', '.join(rest) or 'none'}; "
-            "name them in a config (--init writes one)"
+        for way in ways
+    ]
+    settings = made[0]
+    if len(made) > 1:
+        settings, said = best_of(table, made)
+        columns.notes.append(said)
+    settings = _turned(table, settings, columns.notes)
+    if len(kinds) > 1 and looks_like_tilted_cells(table, settings):
+        settings = settings.model_copy(update={"readings": kinds[1]})
+        columns.notes.append(
+            "the four readings are linear in the light's direction: they are taken as cells that "
+            "look different ways, not as quadrants"
         )
-    unit: Literal["deg", "rad"] = (
-        "rad" if any(name.lower().endswith("rad") for name in directions) else "deg"
+    return Understood(settings, tuple(columns.notes))
+
+
+def _rows_of(columns: _Columns) -> RowSettings:
+    """Take run, time, temperature and indices off the columns."""
+    table = columns.table
+    run = columns.match(words.RUN)
+    temperature = next(
+        (
+            name
+            for name in columns.rest
+            if columns.readable(name)
+            and re.fullmatch(words.TEMPERATURE, columns.keys[name])
+            and (columns.keys[name] != "t" or table.units.get(name) in get_args(TemperatureUnit))
+        ),
+        None,
     )
-    return Settings(
-        readings=ReadingsSettings(kind=kind, columns=readings),
-        direction=DirectionSettings(columns=directions, form=form, unit=unit),
-        rows=RowSettings(run=run, time_s=time_s, temperature_K=temperature),
-        sensor=SensorSettings(face_normals=normals),
+    columns.take(run, temperature)
+    times = [n for n in columns.rest if re.fullmatch(words.TIME, columns.keys[n])]
+    times = [name for name in times if not columns.angle(name)]
+    dated = [name for name in times if table.units.get(name) == "unix"]
+    readable = [*dated, *(name for name in times if columns.readable(name))]
+    columns.notes += [
+        f"column {name} is neither a number nor a date and is not used"
+        for name in times
+        if not columns.readable(name)
+    ]
+    columns.take(*times)
+    columns.take(
+        *(name for name in columns.rest if re.fullmatch(words.INDEX, columns.keys[name])
+          and _counts(columns, name))
+    )  # fmt: skip
+    said: dict[str, Any] = {"run": run}
+    if readable:
+        said |= {"time_s": readable[0], "time_unit": _time_unit(columns, readable[0])}
+    if temperature:
+        said |= {
+            "temperature_K": temperature,
+            "temperature_unit": _temperature_unit(columns, temperature),
+        }
+    return RowSettings(**said)
+
+
+def _counts(columns: _Columns, name: str) -> bool:
+    """Say whether a column counts rows."""
+    if not columns.readable(name):
+        return False
+    values = columns.table.numbers(name)
+    return len(values) > 1 and bool((np.diff(values) == 1.0).all())
+
+
+def _time_unit(columns: _Columns, name: str) -> TimeUnit:
+    unit = columns.table.units.get(name)
+    if unit in get_args(TimeUnit):
+        return unit  # type: ignore[return-value]  # narrowed by what it is one of
+    if unit == "unix":
+        return "s"
+    for word in ("mjd", "jd", "julian"):
+        if columns.keys[name].startswith(word):
+            return "mjd" if word == "mjd" else "jd"
+    size = _median(columns, name)
+    for least, epoch in _EPOCHS:
+        if size > least:
+            columns.notes.append(f"column {name} is taken as {epoch} since 1970 by its size")
+            return epoch
+    return "s"
+
+
+def _median(columns: _Columns, name: str) -> float:
+    values = columns.table.numbers(name)
+    known = np.abs(values[np.isfinite(values)])
+    return float(np.median(known)) if len(known) else 0.0
+
+
+def _temperature_unit(columns: _Columns, name: str) -> TemperatureUnit:
+    unit = columns.table.units.get(name)
+    if unit in get_args(TemperatureUnit):
+        return unit  # type: ignore[return-value]  # narrowed by what it is one of
+    if _median(columns, name) > _COLDEST_K:
+        return "K"
+    columns.notes.append(f"column {name} is taken as degrees Celsius by its size")
+    return "degC"
+
+
+def _directions_of(columns: _Columns) -> list[DirectionSettings]:
+    """Return the ways in which columns may say the direction; several only for attitudes."""
+    vector = columns.match_all(words.VECTOR)
+    ways = [*_attitudes(columns, vector)]
+    if vector:
+        ways.append(DirectionSettings(columns=vector, form="vector"))
+    if ways:
+        return ways
+    rays = columns.match_all(words.FROM_LIGHT)
+    if rays:
+        columns.notes.append("the vectors' names say that they point from the light")
+        return [DirectionSettings(columns=rays, form="vector", from_light=True)]
+    form, pair = words.first_of(words.ANGLES, columns.keys, columns.rest)
+    if form is not None:
+        return [_angles(columns, pair, form)]
+    angles = [name for name in columns.rest if columns.angle(name)]
+    if len(angles) == 2:
+        columns.notes.append(
+            f"columns {angles[0]} and {angles[1]}, which hold angles, are taken as rotations about "
+            "x and y"
+        )
+        return [_angles(columns, tuple(angles), "alpha-inner")]
+    one = angles[0] if len(angles) == 1 else columns.match(words.ONE_ANGLE)
+    return [] if one is None else [_angles(columns, (one,), "one-angle")]
+
+
+def _angles(columns: _Columns, pair: tuple[str, ...], form: Any) -> DirectionSettings:
+    said = [columns.table.units.get(name) for name in pair]
+    units = tuple(cast("AngleUnit", unit if is_angle(unit) else "deg") for unit in said)
+    return DirectionSettings(
+        columns=pair, form=form, unit=units[0] if len(set(units)) == 1 else units
     )
 
 
-def _first(
-    patterns: Sequence[tuple[_Word, tuple[str, ...]]], names: Sequence[str]
-) -> tuple[_Word | None, tuple[str, ...]]:
-    """Return the first entry whose patterns each match another name, with these names."""
-    for word, wanted in patterns:
-        found: list[str] = []
-        for pattern in wanted:
-            match = _match(pattern, [name for name in names if name not in found])
-            if match is None:
+def _attitudes(columns: _Columns, vector: tuple[str, ...]) -> list[DirectionSettings]:
+    """Return every convention of an attitude and of where the light is in its outer frame."""
+    found: list[dict[str, Any]] = []
+    for patterns in words.QUATERNION:
+        if (four := columns.match_all(patterns)) and are_quaternions(columns.values(four)):
+            found = [{"columns": four, "form": "quaternion", "scalar": "last"}]
+    if not found:
+        for patterns, order in zip(
+            words.NUMBERED, (("first", "last"), ("last", "first")), strict=True
+        ):
+            four = columns.match_all(patterns)
+            if four and all(map(columns.readable, four)) and are_quaternions(columns.values(four)):
+                order = ("first", "last") if patterns[0].endswith("0") else ("last", "first")
+                found = [
+                    {"columns": four, "form": "quaternion", "scalar": place} for place in order
+                ]
                 break
-            found.append(match)
-        if len(found) == len(wanted):
-            return word, tuple(found)
-    return None, ()
+    if not found:
+        for patterns in words.MATRICES:
+            nine = columns.match_all(patterns)
+            if nine and all(map(columns.readable, nine)) and are_matrices(columns.values(nine)):
+                found = [{"columns": nine, "form": "matrix"}]
+                break
+    if not found:
+        return []
+    turned = [{**one, "attitude": way} for one, way in product(found, ("to-sensor", "from-sensor"))]
+    lights = _lights(columns, vector)
+    return [DirectionSettings(**{**one, **light}) for light in lights for one in turned]
 
 
-def _match(pattern: str, names: Sequence[str]) -> str | None:
-    whole = re.compile(pattern, re.IGNORECASE)
-    return next((name for name in names if whole.fullmatch(name)), None)
+def _lights(columns: _Columns, vector: tuple[str, ...]) -> list[dict[str, Any]]:
+    outer = columns.match_all(words.OUTER_LIGHT)
+    if outer:
+        return [{"light_columns": outer}]
+    if vector:
+        return [{"light_columns": vector}]
+    dated = _dated(columns)
+    return [{}, *([{"light_by_date": dated}] if dated else [])]
 
 
-def _face(name: str) -> tuple[float, float, float] | None:
-    match = _FACE.fullmatch(name)
-    if match is None:
+def _dated(columns: _Columns) -> str | None:
+    """Return the column of dates, if there is one: its seconds are those since 1970."""
+    for name in columns.table.columns:
+        if not re.fullmatch(words.TIME, columns.keys[name]) or not columns.readable(name):
+            continue
+        if columns.table.units.get(name) == "unix" or _median(columns, name) > 1e8:
+            return name
+        if columns.keys[name].startswith(("jd", "mjd", "julian")):
+            return name
+    return None
+
+
+def _used(way: DirectionSettings) -> tuple[str, ...]:
+    return (*way.columns, *(way.light_columns or ()))
+
+
+def _readings_of(
+    columns: _Columns, *, one_axis: bool
+) -> tuple[ReadingsSettings | None, tuple[tuple[float, float, float], ...] | None]:
+    """Return columns of readings among those that are left, and the normals that names say."""
+    among = [name for name in columns.rest if not columns.angle(name)]
+    bare = {name: columns.keys[name] for name in among}
+    faces = [name for name in among if words.face_normal(bare[name])]
+    channels = [name for name in among if re.fullmatch(words.CHANNEL, bare[name])]
+    kind, found = words.first_of(words.READINGS, columns.keys, among)
+    if len(faces) > 4:
+        normals = tuple(n for name in faces if (n := words.face_normal(bare[name])) is not None)
+        return ReadingsSettings(kind="channels", columns=tuple(faces)), normals
+    if len(channels) > 4 and len(channels) > len(found):
+        return ReadingsSettings(kind="channels", columns=tuple(channels)), None
+    if kind is not None and not (one_axis and len(found) > 2):
+        return ReadingsSettings(kind=kind, columns=found), None
+    numeric = [name for name in among if columns.readable(name)]
+    if one_axis:
+        return _one_axis(columns, numeric), None
+    if len(numeric) >= 3:
+        columns.notes.append(
+            f"columns {', '.join(numeric)} are taken as one reading a photodiode or solar cell each"
+        )
+        return ReadingsSettings(kind="channels", columns=tuple(numeric)), None
+    return None, None
+
+
+def _one_axis(columns: _Columns, numeric: list[str]) -> ReadingsSettings | None:
+    """Return the readings of a sensor of one axis: one, or two photodiodes."""
+    for patterns in words.PAIR:
+        two = words.match_all(patterns, columns.keys, numeric)
+        if len(numeric) == 2 and two:
+            return ReadingsSettings(kind="pair", columns=two)
+    if len(numeric) != 1:
         return None
-    axis = (match[1] or match[4]).lower()
-    sign = "p" if (match[2] or match[3]).lower() in ("p", "plus", "pos", "+") else "m"
-    return _FACES[axis + sign]
+    values = columns.table.numbers(numeric[0])
+    balance = bool(np.nanmax(np.abs(values), initial=0.0) <= _BALANCE)
+    kind: Kind = "balance" if balance else "spot"
+    return ReadingsSettings(kind=kind, columns=tuple(numeric))
+
+
+def _turned(table: Table, settings: Settings, notes: list[str]) -> Settings:
+    """Return settings with vectors that point from the light where the values say so."""
+    from api.calibrate.forms.fits import points_from_light  # noqa: PLC0415 - one use
+
+    if settings.direction.form != "vector" or settings.direction.from_light:
+        return settings
+    if not points_from_light(table, settings):
+        return settings
+    notes.append("the vectors are taken as pointing from the light to the sensor, by their values")
+    direction = settings.direction.model_copy(update={"from_light": True})
+    return settings.model_copy(update={"direction": direction})
+
+
+def _no_direction(columns: _Columns) -> str:
+    names = ", ".join(columns.table.columns)
+    said = _header_note(columns.table)
+    return (
+        f"{columns.table.source}: {said}no columns of the light's direction among {names}; "
+        "expected sun_x, sun_y, sun_z, or alpha, beta, or azimuth, elevation, or qx, qy, qz, qw; "
+        f'{_SAY} [direction] form = "projection", columns = {_two(columns.rest)}'
+    )
+
+
+def _no_readings(columns: _Columns, way: DirectionSettings) -> str:
+    kind = {1: "balance", 2: "spot"}.get(len(columns.rest), "channels")
+    said = _header_note(columns.table)
+    return (
+        f"{columns.table.source}: {said}no columns of readings recognised among "
+        f"{', '.join(columns.rest) or 'none'}; {_SAY} [readings] "
+        f'kind = "{kind}", columns = {_listed(columns.rest)}'
+        f" (direction: {way.form} of {', '.join(way.columns)})"
+    )
+
+
+def _header_note(table: Table) -> str:
+    return "" if table.header_row else "expected a header with names of columns, and found none; "
+
+
+def _two(names: Sequence[str]) -> str:
+    return _listed(names[-2:])
+
+
+def _listed(names: Sequence[str]) -> str:
+    return "[" + ", ".join(f'"{name}"' for name in names) + "]"

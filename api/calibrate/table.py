@@ -1,31 +1,34 @@
-"""A reader's file as named columns of numbers: CSV, Parquet, NumPy or Excel."""
+"""A reader's file as named columns of numbers: text, Parquet, NumPy or Excel."""
 
 from __future__ import annotations
 
-import csv
 import io
 import zipfile
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from api.calibrate.forms.cells import numbers_of
+from api.calibrate.forms.refused import TableError
+from api.calibrate.forms.text import Cells, cells_of_text
+from api.calibrate.forms.units import named, unit_of
+from api.calibrate.forms.workbook import cells_of_workbook
+from api.calibrate.settings import FileSettings
 from files.reading import read_bytes
+
+__all__ = ["SUFFIXES", "Table", "TableError", "read_table"]
 
 #: Largest file, and most rows and columns that are read of one.
 LARGEST, MOST_ROWS, MOST_COLUMNS = 256 * 1024 * 1024, 2_000_000, 500
 #: Bytes that an archive may unpack to, and cells of a table.
 _MOST_UNPACKED, _MOST_CELLS = 1024 * 1024 * 1024, 60_000_000
 #: Endings of the files that are read.
-SUFFIXES = (".csv", ".txt", ".tsv", ".parquet", ".npz", ".npy", ".xlsx")
-_DELIMITERS = ",;\t|"
-
-
-class TableError(ValueError):
-    """A file that is no table of numbers: what was expected, what came, in which row and column."""
+SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".parquet", ".npz", ".npy", ".xlsx")
+_TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc")
 
 
 @dataclass(frozen=True)
@@ -35,19 +38,33 @@ class Table:
     Parameters
     ----------
     columns : mapping of str to ndarray
-        Float columns (n,), or text columns (n,) where a cell is not a number.
+        Float columns (n,), or text columns (n,) where a cell is not a number. Angles of degrees,
+        minutes and seconds are degrees; dates are seconds since 1970.
     first_row : int
         Number of the first row of data as counted in the file; the header is row 1.
     source : str
         Name of the file.
     unread : mapping of str to (int, str)
         Of text columns the first row that is not a number, and what stands there.
+    units : mapping of str to str
+        Of columns whose name, cells or row of units say one, as `api.calibrate.forms.units` spells
+        them; ``unix`` of dates.
+    notes : tuple of str
+        How the file was read, in sentences without an end.
+    row_numbers : ndarray of int, shape (n,), optional
+        Of each row of data in the file, where rows between them were left out.
+    header_row : int
+        Row of the names in the file, 0 where there is none.
     """
 
     columns: Mapping[str, NDArray[np.generic]]
     first_row: int
     source: str
     unread: Mapping[str, tuple[int, str]]
+    units: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+    row_numbers: NDArray[np.int64] | None = None
+    header_row: int = 1
 
     def numbers(self, name: str) -> NDArray[np.float64]:
         """Return a column of numbers; TableError naming row and column otherwise."""
@@ -66,18 +83,27 @@ class Table:
             )
         return np.asarray(self.columns[name], dtype=np.float64)
 
+    @property
+    def rows(self) -> NDArray[np.int64]:
+        """Number of each row of data in the file."""
+        if self.row_numbers is not None:
+            return self.row_numbers
+        return np.arange(len(self), dtype=np.int64) + self.first_row
+
     def __len__(self) -> int:
         return len(next(iter(self.columns.values()), ()))
 
 
-def read_table(path: Path) -> Table:
+def read_table(path: Path, stated: FileSettings | None = None) -> Table:
     """Read a file of readings.
 
     Parameters
     ----------
     path : Path
-        ``.csv``, ``.txt``, ``.tsv`` (comma, semicolon, tab; a header), ``.parquet``, ``.npz`` (by
-        name), ``.npy`` (structured), ``.xlsx``.
+        Text (``.csv``, ``.txt``, ``.tsv``, ``.dat``, ``.asc``) with commas, semicolons, tabs, bars
+        or blanks between cells, ``.parquet``, ``.npz`` (by name), ``.npy`` (structured), ``.xlsx``.
+    stated : FileSettings, optional
+        What is known of the layout of text or a workbook; the rest is found.
 
     Returns
     -------
@@ -90,19 +116,28 @@ def read_table(path: Path) -> Table:
     FileRefusedError
         If it is no regular file, or larger than 256 MiB.
     """
+    layout = stated or FileSettings()
     readers: dict[str, Callable[[bytes, str], Table]] = {
-        **dict.fromkeys((".csv", ".txt", ".tsv"), _read_text),
+        **dict.fromkeys(
+            _TEXT,
+            lambda data, source: _of_cells(cells_of_text(data, source, layout, MOST_ROWS), source),
+        ),
         ".parquet": _read_parquet,
         ".npz": _read_numpy,
         ".npy": _read_numpy,
-        ".xlsx": _read_excel,
+        ".xlsx": lambda data, source: _read_excel(data, source, layout),
     }
     kind = path.suffix.lower()
     if kind not in readers:
         raise TableError(
             f"{path.name}: expected a file of {', '.join(SUFFIXES)}; got {kind or 'none'}"
         )
-    data = read_bytes(path, LARGEST)
+    try:
+        data = read_bytes(path, LARGEST)
+    except OSError as error:  # a link that leads to itself, too
+        if isinstance(error, FileNotFoundError):
+            raise
+        raise TableError(f"{path.name}: expected a file; got {error.strerror}") from None
     if not data:
         raise TableError(f"{path.name}: the file is empty")
     table = readers[kind](data, path.name)
@@ -111,80 +146,100 @@ def read_table(path: Path) -> Table:
     return table
 
 
-def _read_text(data: bytes, source: str) -> Table:
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        row = data.count(b"\n", 0, error.start) + 1
-        raise TableError(f"{source}, row {row}: expected UTF-8 text") from None
-    if "\x00" in text:
-        raise TableError(
-            f"{source}, row {text.count(chr(10), 0, text.index(chr(0))) + 1}: a null character"
-        )
-    header, _, rest = text.partition("\n")
-    delimiter = max(_DELIMITERS, key=header.count)
-    try:
-        names = [name.strip() for name in next(csv.reader([header], delimiter=delimiter), [])]
-    except csv.Error as error:
-        raise TableError(f"{source}, row 1: expected a header ({error})") from None
-    _require_names(names, source)
-    wrong = _ragged(rest, len(names), delimiter)
-    if wrong:
-        raise TableError(f"{source}, row {wrong[0]}: expected {len(names)} cells; got {wrong[1]}")
-    decimal = "," if delimiter != "," and _decimal_commas(rest) else "."
-    frame = (
-        pd.read_csv(
-            io.StringIO(rest),
-            sep=delimiter,
-            header=None,
-            names=names,
-            dtype=str,
-            decimal=".",
-            keep_default_na=False,
-            skip_blank_lines=False,
-            nrows=MOST_ROWS + 1,
-        )
-        if rest.strip()
-        else pd.DataFrame({name: [] for name in names})
+def _read_text(data: bytes, source: str, stated: FileSettings) -> Table:
+    return _of_cells(cells_of_text(data, source, stated, MOST_ROWS), source)
+
+
+def _of_cells(cells: Cells, source: str) -> Table:
+    """Return a table of cells, its columns named and their units said."""
+    names, said, frame = _names(cells, source)
+    units: dict[str, str] = {}
+    for name, cell in zip(names, cells.units or [""] * len(names), strict=False):
+        if name and (unit := unit_of(cell)):
+            units[name] = unit
+    frame.columns = pd.Index(names)
+    frame = frame[[name for name in names if name]]
+    first = int(cells.rows[0]) if len(cells.rows) else 2
+    notes = (*cells.notes, *said)
+    return _of_frame(
+        frame, source, cells.decimal, units, notes, (first, cells.rows, cells.header_row)
     )
-    if len(frame) > MOST_ROWS:
-        raise TableError(f"{source}: expected at most {MOST_ROWS} rows; got more")
-    return _of_frame(frame, source, decimal)
 
 
-def _ragged(text: str, count: int, delimiter: str) -> tuple[int, int] | None:
-    """Return row and number of cells of the first row with another number of cells."""
-    for row, line in enumerate(text.splitlines(), start=2):
-        if line and line.count(delimiter) != count - 1 and '"' not in line:
-            return row, line.count(delimiter) + 1
-    return None
+def _names(cells: Cells, source: str) -> tuple[list[str], list[str], pd.DataFrame]:
+    """Return names of columns, an empty one of those left out, and what was done to them."""
+    frame = cells.frame.copy()
+    given = list(cells.names) or [f"column_{at + 1}" for at in range(frame.shape[1])]
+    if cells.header_row and not any(given):
+        raise TableError(
+            f"{source}, row {cells.header_row}: expected a header with names of columns"
+        )
+    said: list[str] = []
+    for at, name in enumerate(given):
+        if name:
+            continue
+        if len(frame) and not frame.iloc[:, at].str.strip().any():
+            said.append(f"column {at + 1}, which is empty, is left out")
+        else:
+            given[at] = f"column_{at + 1}"
+            said.append(f"column {at + 1} has no name and is called {given[at]}")
+    _require_names([name for name in given if name], source)
+    return given, said, frame
 
 
-def _decimal_commas(text: str) -> bool:
-    sample = text[:20_000]
-    return sample.count(",") > sample.count(".")
+def table_of(frame: pd.DataFrame, source: str) -> Table:
+    """Return a data frame as a table whose rows count from 0."""
+    named = frame.set_axis([str(name) for name in frame.columns], axis=1)
+    _require_names(list(named.columns), source)
+    return _of_frame(named, source, place=(0, None, 0))
 
 
-def _of_frame(frame: pd.DataFrame, source: str, decimal: str = ".") -> Table:
+def _of_frame(  # noqa: PLR0917 - what a table is made of
+    frame: pd.DataFrame,
+    source: str,
+    decimal: str = ".",
+    stated: Mapping[str, str] | None = None,
+    notes: Sequence[str] = (),
+    place: tuple[int, NDArray[np.int64] | None, int] = (2, None, 1),
+) -> Table:
     columns: dict[str, NDArray[np.generic]] = {}
     unread: dict[str, tuple[int, str]] = {}
+    units = dict(stated or {})
+    said = list(notes)
+    first_row, rows, header = place
     for name in frame.columns:
         column = frame[name]
+        read = named(str(name))
+        if read.unit and name not in units:
+            units[name] = read.unit
         if column.dtype.kind in "iufb":
             columns[name] = column.to_numpy(dtype=np.float64)
             continue
-        text = column.fillna("").astype(str).str.strip()
-        spelt = text.str.replace(decimal, ".", regex=False) if decimal != "." else text
-        numbers = pd.to_numeric(spelt, errors="coerce").to_numpy(dtype=np.float64)
-        blank = text.str.lower().isin(["", "nan", "na", "n/a", "null", "-"]).to_numpy()
-        bad = ~np.isfinite(numbers) & ~blank
-        if bad.any():
-            first = int(np.argmax(bad))
-            unread[name] = (first + 2, str(text.iloc[first]))
+        text = _as_text(column)
+        found = numbers_of(text, decimal, of_time="time" in read.bare)
+        if found.wrong.any():
+            at = int(np.argmax(found.wrong))
+            unread[name] = (int(rows[at]) if rows is not None else at + first_row, text.iloc[at])
             columns[name] = text.to_numpy(dtype=str)
-        else:
-            columns[name] = numbers
-    return Table(columns, 2, source, unread)
+            continue
+        columns[name] = found.values
+        if found.unit:
+            units[name] = found.unit
+        if found.note:
+            said.append(f"column {name} holds {found.note}")
+    return Table(columns, first_row, source, unread, units, tuple(said), rows, header)
+
+
+def _as_text(column: pd.Series[str]) -> pd.Series[str]:
+    """Cells as text without blanks around them; bytes as the text that they spell."""
+    if column.dtype.kind == "M":
+        stamps = pd.to_datetime(column, utc=True)
+        return stamps.dt.strftime("%Y-%m-%dT%H:%M:%S.%f").fillna("").astype(str)
+    if column.dtype == object:
+        column = column.map(
+            lambda cell: cell.decode("utf-8", "replace") if isinstance(cell, bytes) else cell
+        )
+    return column.astype(object).fillna("").map(str).str.strip()
 
 
 def _read_parquet(data: bytes, source: str) -> Table:
@@ -203,15 +258,9 @@ def _read_parquet(data: bytes, source: str) -> Table:
     return _of_frame(frame, source)
 
 
-def _read_excel(data: bytes, source: str) -> Table:
+def _read_excel(data: bytes, source: str, stated: FileSettings) -> Table:
     _require_unpacked(data, source)
-    try:
-        frame = pd.read_excel(io.BytesIO(data), nrows=MOST_ROWS)
-    except Exception as error:  # noqa: BLE001 - openpyxl raises many kinds for damaged files
-        raise TableError(f"{source}: expected an Excel workbook ({str(error)[:80]})") from None
-    frame.columns = [str(name) for name in frame.columns]
-    _require_names(list(frame.columns), source)
-    return _of_frame(frame, source)
+    return _of_cells(cells_of_workbook(data, source, stated, MOST_ROWS), source)
 
 
 def _read_numpy(data: bytes, source: str) -> Table:
@@ -229,6 +278,10 @@ def _read_numpy(data: bytes, source: str) -> Table:
         raise TableError(f"{source}: expected NumPy arrays without pickles ({said})") from None
     columns: dict[str, NDArray[np.generic]] = {}
     for name, array in arrays.items():
+        if array.dtype.kind not in "biufSUMm":
+            raise TableError(
+                f"{source}, array {name}: expected numbers or text; got type {array.dtype}"
+            )
         if array.ndim == 1:
             columns[name] = array
         elif array.ndim == 2 and array.shape[1] <= MOST_COLUMNS:
@@ -272,8 +325,3 @@ def _require_names(names: list[str], source: str) -> None:
             raise TableError(f"{source}, row 1: column {at + 1} has no name")
         if name in names[:at]:
             raise TableError(f"{source}, row 1: column {name!r} stands twice")
-    try:
-        [float(name) for name in names]
-    except ValueError:
-        return
-    raise TableError(f"{source}, row 1: expected a header with names of columns; got numbers")

@@ -1,22 +1,29 @@
-"""A commented ``sensor.toml``, guessed from a file's header, for the reader to correct."""
+"""A commented ``sensor.toml`` of every column of a file, for its reader; and a preview."""
 
 from __future__ import annotations
 
 import json
+from pathlib import Path
+from typing import Any
 
 from pydantic import BaseModel
 
+from api.calibrate.forms.units import named
+from api.calibrate.roles import Understood, understood
 from api.calibrate.settings import (
     BenchSettings,
     CertificateSettings,
     DirectionSettings,
+    FileSettings,
     ReadingsSettings,
     RowSettings,
     SensorSettings,
     Settings,
 )
+from api.calibrate.table import Table, TableError, read_table
 
 _TITLES = {
+    "file": "How the file is laid out; what is missing is found.",
     "readings": "What the sensor read.",
     "direction": "Where the light was.",
     "rows": "What else is known of each row.",
@@ -24,27 +31,110 @@ _TITLES = {
     "sensor": "The drawing, as far as it is known; what is missing is estimated from the readings.",
     "certificate": "Who calibrated what for whom, for --certificate.",
 }
+#: Rows that a preview shows, and first values that a template does.
+PREVIEWED, _FIRST = 5, 3
+_PARTS: dict[str, type[BaseModel]] = {
+    "file": FileSettings,
+    "readings": ReadingsSettings,
+    "direction": DirectionSettings,
+    "rows": RowSettings,
+    "bench": BenchSettings,
+    "sensor": SensorSettings,
+    "certificate": CertificateSettings,
+}
 
 
-def template(settings: Settings, names: list[str]) -> str:
+def preview(path: Path) -> dict[str, Any]:
+    """Return what a file seems to hold, as plain data, for a reader to check.
+
+    Parameters
+    ----------
+    path : Path
+        As `api.calibrate.table.read_table` takes it.
+
+    Returns
+    -------
+    dict
+        ``source``, ``rows`` (how many), ``columns`` (a list of ``name``, ``role``, ``unit`` and
+        ``first``, the first five values as text; role and unit are None where not known),
+        ``notes`` (sentences on how the file was read), ``refused`` (why nothing was recognised;
+        empty where it was) and ``config`` (the text that ``--init`` writes).
+
+    Raises
+    ------
+    TableError
+        If the file is no table.
+    """
+    table = read_table(path)
+    found, why = _understood(table)
+    roles = {} if found is None else roles_of(found.settings)
+    return {
+        "source": table.source,
+        "rows": len(table),
+        "columns": [
+            {
+                "name": name,
+                "role": roles.get(name),
+                "unit": table.units.get(name),
+                "first": _first_values(table, name, PREVIEWED),
+            }
+            for name in table.columns
+        ],
+        "notes": [*table.notes, *(() if found is None else found.notes)],
+        "refused": why,
+        "config": template_of(table),
+    }
+
+
+def roles_of(settings: Settings) -> dict[str, str]:
+    """Return what each column that settings name is, in a few words."""
+    readings, direction, rows = settings.readings, settings.direction, settings.rows
+    found = {name: f"reading {at}: {readings.kind}" for at, name in enumerate(readings.columns, 1)}
+    found |= {
+        name: f"direction {at}: {direction.form}" for at, name in enumerate(direction.columns, 1)
+    }
+    for at, name in enumerate(direction.light_columns or (), 1):
+        found[name] = f"light {at} in the outer frame"
+    named_rows: tuple[tuple[str | None, str], ...] = (
+        (rows.run, "run"),
+        (rows.time_s, "time"),
+        (rows.temperature_K, "temperature"),
+    )
+    found |= {name: word for name, word in named_rows if name is not None}
+    if direction.light_by_date is not None:
+        found[direction.light_by_date] = "date of the Sun's place"
+    return found
+
+
+def template_of(table: Table) -> str:
+    """Return a commented config of a table, whether or not its columns are recognised.
+
+    Every column stands in it with its unit and first values. Where nothing is recognised, columns
+    are placed by their order, for the reader to correct.
+    """
+    found, why = _understood(table)
+    lines = ["# Settings of `sunatlas calibrate`. Correct what is wrong."]
+    if found is None:
+        lines += [f"# {part}" for part in _wrapped(f"Not recognised: {why}")]
+        lines += ["# The columns below are placed by their order alone: correct them."]
+    lines += [f"# {part}" for note in table.notes for part in _wrapped(f"Read: {note}.")]
+    if found is not None:
+        lines += [f"# {part}" for note in found.notes for part in _wrapped(f"Guessed: {note}.")]
+    lines += ["#", "# Columns of the file, their units and first values:"]
+    lines += [_described(table, name) for name in table.columns]
+    settings = by_order(table) if found is None else found.settings
+    return "\n".join(lines) + "\n\n" + template(settings)
+
+
+def template(settings: Settings) -> str:
     """Return settings as TOML text with a comment above each; unset ones are commented out."""
     lines = [
-        "# Settings of `sunatlas calibrate`, guessed from the header. Correct what is wrong.",
-        f"# Columns of the file: {', '.join(names)}",
-        "",
         "# Changes of the axes before anything is fitted, in order: swap-xy, mirror-x, mirror-y,",
         "# rotate-90, rotate-180, rotate-270, swap-negated-xy.",
         f"apply = {_value(settings.apply)}",
     ]
-    parts: dict[str, tuple[type[BaseModel], BaseModel]] = {
-        "readings": (ReadingsSettings, settings.readings),
-        "direction": (DirectionSettings, settings.direction),
-        "rows": (RowSettings, settings.rows),
-        "bench": (BenchSettings, settings.bench),
-        "sensor": (SensorSettings, settings.sensor),
-        "certificate": (CertificateSettings, settings.certificate),
-    }
-    for name, (kind, values) in parts.items():
+    for name, kind in _PARTS.items():
+        values = getattr(settings, name)
         lines += ["", f"# {_TITLES[name]}", f"[{name}]"]
         for field, about in kind.model_fields.items():
             if about.description:
@@ -54,10 +144,53 @@ def template(settings: Settings, names: list[str]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def by_order(table: Table) -> Settings:
+    """Return settings of columns by their order: the last two are angles, those before readings.
+
+    Columns that count rows, and text, come last in line.
+    """
+    names = [name for name in table.columns if name not in table.unread] or list(table.columns)
+    names = (names + list(table.columns))[: max(len(names), 2)]
+    if len(names) < 4:
+        return Settings(
+            readings=ReadingsSettings(kind="spot", columns=tuple(names[:1])),
+            direction=DirectionSettings(columns=(names[-1],), form="one-angle"),
+        )
+    readings = tuple(names[-4:-2]) if len(names) == 4 else tuple(names[:-2])
+    return Settings(
+        readings=ReadingsSettings(
+            kind="spot" if len(readings) == 2 else "channels", columns=readings
+        ),
+        direction=DirectionSettings(columns=tuple(names[-2:]), form="alpha-inner"),
+    )
+
+
+def _understood(table: Table) -> tuple[Understood | None, str]:
+    try:
+        return understood(table), ""
+    except TableError as error:
+        return None, str(error)
+
+
+def _described(table: Table, name: str) -> str:
+    unit = table.units.get(name) or named(name).unit
+    first = ", ".join(_first_values(table, name, _FIRST))
+    return (
+        f"#   {json.dumps(name, ensure_ascii=False)}"
+        + (f" in {unit}" if unit else "")
+        + (f": {first}, ...")
+    )
+
+
+def _first_values(table: Table, name: str, count: int) -> list[str]:
+    column = table.columns[name][:count]
+    return [f"{one:.10g}" if column.dtype.kind == "f" else str(one)[:60] for one in column]
+
+
 def _value(value: object) -> str:
     if isinstance(value, tuple):
         return "[" + ", ".join(_value(one) for one in value) + "]"
-    return json.dumps(value)
+    return json.dumps(value, ensure_ascii=False)
 
 
 def _wrapped(text: str) -> list[str]:

@@ -21,6 +21,8 @@ Word = Literal["good", "model misfit", "poses missing", "conventions uncertain"]
 _RATIO, _RATIO_CHANCE = 2.0, 1e-3
 #: Share of the residuals' variance that a pattern explains to be named, and its significance.
 _SHARE, _CHANCE = 0.05, 1e-4
+#: Named beside the others, and no misfit: a bench and a sensor may be worse at the edge.
+GROWING = "the angle off the boresight: the size of errors grows with it"
 _NEXT = 20
 #: Steps between poses from which a hole in the field is said.
 _GAP = 5.0
@@ -35,7 +37,7 @@ class Pattern:
     name : str
         What the residuals go with.
     share : float
-        Of their variance that it explains.
+        Of their variance that it explains; of the variance of their sizes' ranks for `GROWING`.
     chance : float
         That residuals without it would go with it as much.
     """
@@ -100,7 +102,7 @@ def judge(  # noqa: PLR0917 - the numbers it is made of
     """
     floor = np.hypot(noise if np.isfinite(noise) else 0.0, floor_deg)
     apart = split.ratio > _RATIO and split.chance < _RATIO_CHANCE
-    smooth = [one for one in patterns if one.share > 0.25]
+    smooth = [one for one in patterns if one.share > 0.25 and one.name != GROWING]
     if rms_deg > 1.6 * residual_deg and rms_deg > 1.3 * floor:
         word: Word = "poses missing"
         reason = (
@@ -167,6 +169,7 @@ def patterns_in(offsets: Floats, readings: Readings) -> tuple[Pattern, ...]:
         if np.ptp(used.features) > 20.0:
             designs["the fraction of a pixel"] = np.column_stack([np.sin(phase), np.cos(phase)])
     found = [_pattern(name, design, errors) for name, design in designs.items()]
+    found.append(_growth(errors, used.sun))
     named = [one for one in found if one and one.share > _SHARE and one.chance < _CHANCE]
     return tuple(sorted(named, key=lambda one: -one.share))
 
@@ -232,8 +235,20 @@ def _pattern(name: str, design: Floats, errors: Floats) -> Pattern | None:
     share = 1.0 - rest / total
     expected = rank / (count - 1)  # of errors that go with nothing
     ratio = (total - rest) / rank / max(rest / (count - rank - 1), 1e-300)
-    chance = float(fdtrc(2 * rank, 2 * (count - rank - 1), ratio))
+    axes = errors.shape[1]
+    chance = float(fdtrc(axes * rank, axes * (count - rank - 1), ratio))
     return Pattern(name, max(share - expected, 0.0), chance)
+
+
+def _growth(errors: Floats, sun: Floats) -> Pattern | None:
+    """Say whether errors (N, 2) are larger away from the boresight."""
+    from scipy.stats import rankdata  # noqa: PLC0415 - SciPy, at the first use
+
+    off = np.arccos(np.clip(sun[:, 2], -1.0, 1.0))
+    rank = rankdata(np.linalg.norm(errors, axis=1))  # a few large errors decide nothing
+    if np.cov(off, rank)[0, 1] <= 0.0:
+        return None
+    return _pattern(GROWING, _powers(off, 2), rank[:, None])
 
 
 def _powers(column: Floats, degree: int) -> Floats:

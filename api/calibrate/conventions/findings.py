@@ -7,7 +7,7 @@ low-order map with the sensor's own geometry explains the file then. Nothing is 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import get_args
+from typing import cast, get_args
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from api.calibrate.conventions.channels import of_faces, of_light, of_quadrants
 from api.calibrate.conventions.finding import BETTER, MUCH_BETTER, Finding
 from api.calibrate.readings import MATRICES, Readings, sun_of_angles
 from api.calibrate.robust import SmoothMap, normalised, robust_map, terms
-from api.calibrate.settings import Form, Settings
+from api.calibrate.settings import AngleForm, Settings
 
 #: Directions up to this far off the boresight tell about axes.
 _WITHIN_DEG = 60.0
@@ -147,9 +147,9 @@ def _of_axes(readings: Readings) -> Iterator[Finding]:
 
 
 def _of_angles(readings: Readings, settings: Settings) -> Iterator[Finding]:
-    if readings.angles is None or settings.direction.form == "vector":
+    if readings.angles is None or settings.direction.form not in get_args(AngleForm):
         return
-    stated = settings.direction.form
+    stated = cast("AngleForm", settings.direction.form)
     left = {stated: _left_deg(readings, readings.sun)}
     angles = readings.angles
     largest = float(np.nanmax(np.abs(angles)))
@@ -166,8 +166,8 @@ def _of_angles(readings: Readings, settings: Settings) -> Iterator[Finding]:
                     "a sensor of a very narrow field measured in degrees would look alike",
                 )  # fmt: skip
                 return
-    for form in get_args(Form):
-        if form in ("vector", stated):
+    for form in get_args(AngleForm):
+        if form == stated:
             continue
         if form.startswith("azimuth") and np.ptp(angles[:, 0]) < _WIDE_AZIMUTH_DEG:
             continue
@@ -285,6 +285,11 @@ def _left_deg(readings: Readings, sun: Floats) -> float:
         weight = 1.0 / np.maximum(size, max(float(np.median(size)), 1e-15))
     kept = np.sort(size)[: max(int(0.9 * len(size)), 1)]
     return float(np.degrees(np.sqrt(np.mean(kept**2))))
+
+
+def projective_left_deg(readings: Readings) -> float:
+    """Return what a projective map with cubic distortion leaves of directions, degrees RMS."""
+    return _left_deg(readings, readings.sun)
 
 
 def _median_deg(fitted: SmoothMap, features: Floats, sun: Floats) -> float:

@@ -9,7 +9,7 @@ from typing import Any, Literal, Self
 import numpy as np
 
 from algorithms.contract import Floats
-from api.calibrate.readings import Readings, features_of
+from api.calibrate.readings import Readings, features_of_signals
 
 #: A gain of each reading; one gain and the offsets, which scale about a centre; the zero of each
 #: reading; a turn of the sensor.
@@ -67,7 +67,7 @@ class Changes:
 
 def answered(old: Any, readings: Readings, changes: Changes) -> Floats:
     """Return directions (N, 3) by an old calibration of readings that changed."""
-    features = features_of((readings.raw - changes.offset) / changes.gain, old.settings)
+    features = features_of_signals((readings.raw - changes.offset) / changes.gain, old.settings)
     return np.asarray(old.predict(features, readings.context) @ changes.rotation.T)
 
 

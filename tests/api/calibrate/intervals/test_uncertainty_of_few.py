@@ -9,7 +9,6 @@ from samples import samples
 
 from algorithms.contract import SensorGeometry, UnusableDataError
 from algorithms.discovery import discover_models
-from api.calibrate.selection import Candidate
 from api.calibrate.uncertainty import (
     intervals,
     noise_around,
@@ -29,29 +28,18 @@ def offsets(count: int, noise: float = NOISE) -> np.ndarray:
     return np.asarray(drawn - along)
 
 
-def candidate(count: int, stated: float) -> Candidate:
-    """A model whose errors are normal and that states a 1-sigma of its own, degrees."""
-    off = offsets(count)
-    errors = np.degrees(np.linalg.norm(off, axis=1))
-    return Candidate("a", errors=errors, offsets=off, deviation=np.full(count, stated))
-
-
-def test_the_factor_is_what_the_stated_sigma_is_short_of() -> None:
-    found = intervals(candidate(400, stated=NOISE / 2.0), samples(SUN, SUN))
+def test_the_sigma_is_that_of_the_errors() -> None:
+    found = intervals(offsets(400), SUN)
     assert found is not None
-    assert found.factor == pytest.approx(2.0, rel=0.1)
+    assert found.at(SUN) == pytest.approx(np.full((400, 2), NOISE), rel=0.15)
+    assert found.factor == pytest.approx(1.0, rel=0.05)
     assert found.coverage == pytest.approx(0.95, abs=0.02)
     assert found.samples == 400
 
 
 @pytest.mark.parametrize(("count", "known"), [(39, False), (40, True)])
 def test_forty_samples_are_enough_for_intervals(count: int, known: bool) -> None:
-    used = samples(SUN[:count], SUN[:count])
-    assert (intervals(candidate(count, stated=NOISE), used) is not None) is known
-
-
-def test_a_model_that_was_refused_has_no_intervals() -> None:
-    assert intervals(Candidate("a", refused="too few"), samples(SUN, SUN)) is None
+    assert (intervals(offsets(count), SUN[:count]) is not None) is known
 
 
 def test_noise_is_not_known_of_fewer_than_ten_samples() -> None:
