@@ -20,6 +20,7 @@ from api.calibrate.calibration import Calibration, calibrate
 from api.calibrate.certificate.certificate import certificate
 from api.calibrate.documents import load, number, save, versions, with_correction
 from api.calibrate.recalibration import Correction
+from api.calibrate.recalibration import Errors as CorrectionErrors
 from api.calibrate.report import pictures
 from api.calibrate.report.errors import Errors
 from api.calibrate.table import read_table
@@ -169,17 +170,23 @@ def test_a_correction_is_saved_on_top_of_those_before(nine: Calibration, tmp_pat
     turns = [bench.turn("x", 1.0), bench.turn("z", 2.0)]
     for offset, turn in zip((1.0, 0.25), turns, strict=True):
         rotation = tuple(tuple(float(c) for c in row) for row in turn)
-        found = Correction("boresight", (offset, 0.0), rotation, 1.0, 0.1, 1.0, 0.01, 12)
+        errors = CorrectionErrors(1.0, 1.0, 1.0, 1.0)
+        found = Correction(
+            ("offset", "scale"), (2.0, 2.0), (offset, 0.0), rotation, errors, errors, (), 12
+        )
         held = with_correction(load(file), found, [tmp_path / "few.csv"], "sunatlas calibrate")
         file.write_text(json.dumps(held), encoding="utf-8")
     loaded = load(file)
-    assert loaded.offset.tolist() == [1.25, 0.0]
+    # what was read, f, is now 2 f + 1, and later 2 (2 f + 1) + 0.25
+    assert loaded.offset.tolist() == [2.25, 0.0]
+    assert loaded.gain.tolist() == [4.0, 4.0]
     assert loaded.rotation == pytest.approx(turns[1] @ turns[0])
     assert loaded.document["correction"]["files"] == ["few.csv"]
     assert loaded.document["correction"]["onto"] != first
     features = np.array([[520.0, 500.0]])
-    plain = nine.model.predict(features - [1.25, 0.0], {})
-    assert loaded.predict(features) == pytest.approx(plain @ (turns[1] @ turns[0]).T)
+    plain = nine.model.predict(features, {})
+    now = 2.0 * (2.0 * features + [1.0, 0.0]) + [0.25, 0.0]
+    assert loaded.predict(now) == pytest.approx(plain @ (turns[1] @ turns[0]).T)
 
 
 @pytest.mark.parametrize(

@@ -131,7 +131,6 @@ def calibrated(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     )
     written = [Path("out/a.html"), Path("out/a.json")]
     monkeypatch.setattr(calibration, "calibrate", lambda *_, **__: found)
-<<<<<<< HEAD
 
     def write(_found: object, out: Path, _name: str, _command: str, asked: Asked) -> list[Path]:
         if asked.certificate:
@@ -140,10 +139,6 @@ def calibrated(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
         return written
 
     monkeypatch.setattr(products, "write_products", write)
-=======
-    monkeypatch.setattr(products, "write_products", lambda *_, **__: written)
-    monkeypatch.setattr(certificate, "certificate", lambda *_: "<dcc/>\n")
->>>>>>> 329fbbfe49d52ae4fa9d1b13c3e53fb396d77fc1
     return found
 
 
@@ -189,7 +184,7 @@ def test_a_corrected_calibration_is_written_beside_the_old_one(
 
     def recalibrate(files: list[Path], onto: object) -> Any:
         asked.append((files, onto))
-        return SimpleNamespace(sentence=lambda: "turned by 0.7 deg")
+        return SimpleNamespace(sentence=lambda: "turned by 0.7 deg", explained=True)
 
     monkeypatch.setattr(documents, "load", lambda path: f"loaded {path}")
     monkeypatch.setattr(recalibration, "recalibrate", recalibrate)
@@ -197,6 +192,9 @@ def test_a_corrected_calibration_is_written_beside_the_old_one(
     out = tmp_path / "new" / "out"
     shown = sunatlas("calibrate", "few.csv", "--onto", old, "--out", out, "--name", "again")
     assert shown.exit_code == 0, shown.stderr
-    assert shown.stdout == f"turned by 0.7 deg\nwrote {out / 'again.json'}\n"
+    assert shown.stdout == (
+        f"turned by 0.7 deg\nwrote {out / 'again.json'}; C and Python written with old.json lack "
+        "this correction\n"
+    )
     assert asked == [([Path("few.csv")], f"loaded {old}")]
     assert json.loads((out / "again.json").read_text()) == {"corrected": f"loaded {old}"}
