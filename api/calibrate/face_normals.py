@@ -11,15 +11,13 @@ from api.calibrate.readings import Readings
 def face_normals(readings: Readings) -> tuple[Floats, Floats]:
     """Return where each channel looks (K, 3), and how it goes with the light there (K,).
 
-    By least squares of signal over the cosine: on the quarter of the samples with most light on it
-    first, then on all that light it.
+    By least squares of signal over the cosine: on all samples first, then on those that light it.
     """
     sun, signals = readings.sun, readings.features
     normals = np.zeros((signals.shape[1], 3))
     explained = np.zeros(signals.shape[1])
     for at, signal in enumerate(signals.T):
-        normal = np.zeros(3)
-        lit = signal >= np.percentile(signal, 75.0)
+        normal, lit = np.zeros(3), np.ones(len(sun), dtype=np.bool_)
         for _ in range(20):
             if lit.sum() < 6:
                 break
