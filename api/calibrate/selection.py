@@ -210,6 +210,42 @@ def fitted(scored: Scored, readings: Readings, geometry: SensorGeometry) -> Mode
         return made.fit(readings.features, readings.sun, readings.context)
 
 
+@dataclass(frozen=True)
+class Settled:
+    """A model whose settings are those that another fit chose: orders are not chosen again.
+
+    Attributes
+    ----------
+    scored : Model or Chain
+        The model.
+    settings : mapping of str to Any
+        By name.
+    """
+
+    scored: Scored
+    settings: Mapping[str, Any]
+
+    @property
+    def about(self) -> Any:
+        """Of the model."""
+        return self.scored.about
+
+    def for_sensor(self, geometry: SensorGeometry, kind: FeatureKind) -> Any:
+        """Return it unfitted, with the settings."""
+        made = self.scored.for_sensor(geometry, kind)
+        last = getattr(made, "model", made)
+        for name, value in self.settings.items():
+            if getattr(last, name, value) is None:
+                setattr(last, name, value)
+        return made
+
+
+def settled(scored: Scored, model: Model) -> Any:
+    """Return a model with the settings that a fit of it chose."""
+    last = getattr(model, "model", model)
+    return Settled(scored, dict(last.settings())) if hasattr(last, "settings") else scored
+
+
 def unbounded(model: Any) -> Any:
     """Return a copy of a fitted chain that answers beyond its hull."""
     if hasattr(model, "compensations"):
