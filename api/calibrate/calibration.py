@@ -114,6 +114,8 @@ class Calibration:
         Predicted minus true direction of the samples compared on, each when a fit did not see it.
     limits : ReadingLimits
         Of readings that may be used.
+    columns : tuple of str
+        Of the first table, in its order.
     """
 
     settings: Settings
@@ -139,6 +141,7 @@ class Calibration:
     digests: tuple[str, ...] = ()
     left_out: Floats | None = None
     limits: ReadingLimits = field(default_factory=lambda: ReadingLimits((), (), 0.0, np.inf))
+    columns: tuple[str, ...] = ()
 
     def deviation_deg(
         self, features: Floats, context: Mapping[str, Floats] | None = None
@@ -327,7 +330,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     compared = readings.only(np.arange(0, len(readings), _step(readings, chosen)))
     patterns = patterns_in(np.asarray(chosen.offsets), compared)
     removed = sound.only(~kept & ~wrong)
-    left_out = errors_left_out(wanted[chosen.name], chosen, compared, geometry, model, removed)
+    left_out = errors_left_out(same, chosen, compared, geometry, model, removed)
     stated_sigma = intervals(*left_out)
     verdict = judge(
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
@@ -348,6 +351,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         stated_sigma, spread, verdict, "", tuple(table.source for table in tables), tuple(notes),
         left_out=left_out[0][: len(compared)],
         limits=limits_of(readings, stated, joined_levels(file.bad)),
+        columns=tuple(tables[0].columns),
     )  # fmt: skip
 
 

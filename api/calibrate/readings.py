@@ -136,7 +136,7 @@ def readings_of(table: Table, settings: Settings, *, behind: bool = False) -> Re
     stated = np.column_stack([table.numbers(name) for name in settings.direction.columns])
     sun, angles = directions_of(stated, table, settings)
     signals = _signals(raw, settings.readings)
-    features = _turned(_features(signals, settings.readings), settings)
+    features = features_of_signals(signals, settings)
     run, names = runs_of(table, settings)
     context = _context(table, settings)
     rows = table.rows
@@ -171,6 +171,11 @@ def readings_of(table: Table, settings: Settings, *, behind: bool = False) -> Re
 def features_of(raw: Floats, settings: Settings) -> Floats:
     """Return features (N, F) of readings (N, K) as they stand in a file's columns."""
     signals = _signals(np.asarray(raw, dtype=np.float64), settings.readings)
+    return features_of_signals(signals, settings)
+
+
+def features_of_signals(signals: Floats, settings: Settings) -> Floats:
+    """Return features (N, F) of signals (N, K): readings less dark over gain."""
     return _turned(_features(signals, settings.readings), settings)
 
 

@@ -29,6 +29,7 @@ from api.calibrate.conventions.findings import linear_map
 from api.calibrate.face_normals import face_normals
 from api.calibrate.readings import Readings
 from api.calibrate.settings import Settings
+from api.calibrate.terms.temperature import with_temperature
 
 #: Networks, trained for minutes; tried with ``thorough``.
 NETWORKS = frozenset({"ann", "dnn", "dnn-surface"})
@@ -148,6 +149,8 @@ def applicable(
         if not thorough and any(part in NETWORKS for part in name.split(" + ")):
             continue
         found[name] = scored
+    if "temperature_K" in readings.context:
+        found |= with_temperature(found, readings.kind)
     return found
 
 

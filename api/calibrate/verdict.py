@@ -200,6 +200,10 @@ def patterns_in(offsets: Floats, readings: Readings) -> tuple[Pattern, ...]:
     for name, word in (("time_s", "time"), ("temperature_K", "temperature")):
         if name in used.context and np.ptp(used.context[name]) > 0:
             designs[f"{word}: a drift"] = _powers(used.context[name], 1)
+    if (warmer := designs.get("temperature: a drift")) is not None:
+        designs["temperature and direction: a scale or turn"] = warmer * (
+            used.sun - used.sun.mean(axis=0)
+        )
     designs["the order of rows: a drift"] = _powers(np.arange(len(used), dtype=np.float64), 1)
     designs["the direction: a smooth pattern over the field"] = _surface(used.sun)
     if used.features.shape[1] == 2:
