@@ -11,7 +11,7 @@ import numpy as np
 from algorithms.angles import separation_deg
 from algorithms.chain import Scored
 from algorithms.contract import Floats, Model, SensorGeometry, UnusableDataError
-from api.calibrate.causes.applying import applied_to, read_as, require_two_axes, with_cells
+from api.calibrate.causes.applying import applied_to, read_as, require_two_axes
 from api.calibrate.causes.bad_cells import joined_levels
 from api.calibrate.causes.held_out import Part, parts_of
 from api.calibrate.causes.less_light import doubt_of_light
@@ -212,10 +212,9 @@ def calibrate(
         If the samples settle no model; the message says what would.
     """
     read = read_sources(paths, settings, progress)
-    stated = read.settings if settings else with_cells(read.tables, read.settings)
     found = calibrate_tables(
         read.tables,
-        stated,
+        read.settings,
         apply=apply,
         thorough=thorough,
         models=models,

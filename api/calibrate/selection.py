@@ -213,7 +213,7 @@ def _why(refused: Sequence[Candidate]) -> str:
     said = list(dict.fromkeys(one.refused for one in refused))
     apart = [one for one in said if _APART in one]
     if apart:
-        return f"readings and directions {_APART}: no model explains more than chance does"
+        return min(apart, key=len)
     return "; ".join(said[:2]) + (f"; and {len(said) - 2} more" if len(said) > 2 else "") or (
         "no model applies"
     )

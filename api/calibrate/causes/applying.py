@@ -9,7 +9,6 @@ import numpy as np
 
 from algorithms.contract import UnusableDataError
 from api.calibrate.causes.bad_cells import BadCells, without_bad_cells
-from api.calibrate.conventions.channels import of_cells
 from api.calibrate.conventions.finding import Finding, change_of
 from api.calibrate.conventions.findings import findings
 from api.calibrate.readings import BEHIND, EMPTY, Readings, joined, readings_of
@@ -45,15 +44,6 @@ def read_as(tables: Sequence[Table], settings: Settings) -> File:
     if readings.dropped.get(BEHIND, 0) > _MANY_BEHIND * len(readings):
         every = joined([readings_of(table, settings, behind=True) for table, _ in cleaned])
     return File(settings, readings, findings(readings, settings, every), bad)
-
-
-def with_cells(tables: Sequence[Table], guessed: Settings) -> Settings:
-    """Return settings guessed from names, with channels where four readings are plain cells."""
-    if guessed.readings.kind != "quadrants":
-        return guessed
-    readings = joined([readings_of(table, guessed) for table in tables])
-    change = next((one for one in of_cells(readings, guessed)), None)
-    return guessed if change is None else change_of(guessed, change)
 
 
 def applied_to(tables: Sequence[Table], file: File, notes: list[str]) -> tuple[File, list[Finding]]:

@@ -32,6 +32,8 @@ _CERTAIN, _STEP = 6.0, 0.01
 #: What a law leaves without a factor, over that with it, where it is not exact.
 _BETTER = 1.15
 _WITHIN_DEG = 75.0
+#: Stands for what a law leaves of samples that do not tell.
+_NONE = 1e6
 _MOST = 600
 _ROUNDS = 8
 #: Cosine of incidence from which a cell is taken for lit.
@@ -81,7 +83,7 @@ def scale_of_angles(readings: Readings, settings: Settings) -> Scale:
 
     as_stated = law(features, used.sun, noise)
     best = Scale(as_stated, as_stated, 1.0, np.inf, "")
-    if not np.isfinite(as_stated):
+    if as_stated >= _NONE:
         return best
     error = np.inf
     for axis, turned in _scaled(used, settings):
@@ -190,7 +192,7 @@ def _left_of_projection(features: Floats, sun: Floats, noise: Floats) -> float:
     """Return the RMS, over the noise, of what a projection of the directions leaves of readings."""
     front = sun[:, 2] > np.cos(np.radians(_WITHIN_DEG))
     if front.sum() < 20:
-        return np.inf
+        return _NONE
     tangents, seen = sun[front, :2] / sun[front, 2:], features[front]
     middle, width = np.median(seen, axis=0), max(float(np.std(seen)), 1e-300)
     aims = (seen - middle) / width
@@ -223,7 +225,7 @@ def _left_of_cells(features: Floats, sun: Floats, noise: Floats) -> float:
         for _ in range(1 if linear else 10):
             lit = np.ones(len(sun), dtype=np.bool_) if linear else sun @ normal > _LIT
             if lit.sum() < 12:
-                return np.inf
+                return _NONE
             fit = np.linalg.lstsq(sun[lit], signal[lit], rcond=1e-12)[0]
             normal = fit / (np.linalg.norm(fit) or 1.0)
         used = design[lit] if linear else sun[lit]

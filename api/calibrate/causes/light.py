@@ -18,6 +18,8 @@ from api.calibrate.readings import Readings
 from api.calibrate.robust import degree_for, terms
 
 _BLOCKS = 8
+#: What a law leaves, over the noise, to be followed.
+_FOLLOWED = 1.3
 #: Cosine of incidence from behind from which a channel takes no light.
 _UNLIT = 0.15
 #: Spread of a signal without light over that of all, up to which it is one level.
@@ -110,6 +112,8 @@ def level_of_sum(readings: Readings) -> Dark:
     # a law that leaves hardly more than noise is the sensor's, if the other does not
     settled = best[0] < 1.1 * noise < other[0] / 1.1
     error = best[2] if settled else float(np.hypot(best[2], best[1] - other[1]))
+    if best[0] > _FOLLOWED * noise:  # another transmission, which a level without light would mimic
+        error = np.inf
     return Dark(np.full(count, best[1] / count), error / count, "the sum against the cosine")
 
 
@@ -119,6 +123,11 @@ def level_of_products(readings: Readings) -> Dark:
     slope = q[:, 0] + q[:, 2] - q[:, 1] - q[:, 3]
     product = q[:, 0] * q[:, 2] - q[:, 1] * q[:, 3]
     level, error = _by_blocks(slope[:, None], product, readings.sun)
+    noise = reading_noise(q, readings.sun)[[2, 3, 0, 1]]
+    expected = np.sqrt((((q - level) * noise) ** 2).sum(axis=1))
+    left = np.abs(product - level * slope) / np.maximum(expected, 1e-300)
+    if np.median(left) / 0.6745 > _FOLLOWED:  # an opening that is no rectangle
+        error = np.inf
     return Dark(np.full(4, level), error, "the products of opposite quadrants")
 
 

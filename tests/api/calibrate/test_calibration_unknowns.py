@@ -76,12 +76,11 @@ def test_a_certificate_of_nine_poses_has_no_noise_no_rings_and_no_parameters(
     assert left <= names_in(certificate(warm))
 
 
-def test_a_pose_measured_twice_alike_tells_no_noise_and_no_spread(tmp_path: Path) -> None:
+def test_a_pose_measured_twice_alike_is_one_row_that_stands_twice(tmp_path: Path) -> None:
     file = spots(tmp_path / "twice.csv", bench.grid(5, 30.0), repeats=2)
     found = calibrate([file], models=("homography",))
-    assert found.noise_deg == 0.0
-    assert np.isnan(found.spread_deg).all()
-    assert np.isnan(found.verdict.split_ratio)
+    assert len(found.readings) == 25
+    assert [one.reason for one in found.excluded] == ["duplicate of another row"] * 25
 
 
 def test_readings_too_noisy_for_a_refit_leave_the_fits_spread_unknown(tmp_path: Path) -> None:

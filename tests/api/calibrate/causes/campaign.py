@@ -61,7 +61,9 @@ def outcome(kind: str, fault: str, seed: int) -> Outcome:
 
 
 def main(count: int, first: int, faults: list[str], kinds: list[str]) -> None:
-    print(f"{count} files of {COUNT} rows each, seeds {first} to {first + count - 1}")
+    """Print, of each fault and sensor, how many are good and which of these are false."""
+    say = sys.stdout.write
+    say(f"{count} files of {COUNT} rows each, seeds {first} to {first + count - 1}\n")
     for fault in faults:
         for kind in kinds:
             if fault in OF_LIGHT and kind == "spot":
@@ -69,14 +71,15 @@ def main(count: int, first: int, faults: list[str], kinds: list[str]) -> None:
             every = [outcome(kind, fault, seed) for seed in range(first, first + count)]
             good = [one for one in every if one.word == "good"]
             false = [one for one in good if one.false]
-            print(f"{fault or 'clean'} {kind}: {len(good)} good, {len(false)} false", flush=True)
-            for one in false if fault else [one for one in every if one.word != "good"] + false:
-                print(
+            say(f"{fault or 'clean'} {kind}: {len(good)} good, {len(false)} false\n")
+            for one in false if fault else [o for o in every if o.word != "good"] + false:
+                unseen = " cannot be seen" if one.unseen else ""
+                say(
                     f"    {one.seed} {one.said}: {one.word} {one.stated_deg:.3g}, true "
-                    f"{one.true_deg:.3g}, answered {one.answered:.2f}{' UNSEEN' if one.unseen else ''}"
-                    f"{' untested' if one.untested else ''}; {one.reason[:160]}",
-                    flush=True,
+                    f"{one.true_deg:.3g}, answered {one.answered:.2f}{unseen}; "
+                    f"{one.reason[:160]}; untested: {len(one.untested)}\n"
                 )
+            sys.stdout.flush()
 
 
 if __name__ == "__main__":

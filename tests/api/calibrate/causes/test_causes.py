@@ -16,6 +16,7 @@ from api.calibrate.causes.held_out import parts_of, uncovered
 from api.calibrate.causes.lag import fraction_late
 from api.calibrate.causes.light import level_of_products, level_of_sum
 from api.calibrate.causes.removed import unexplained
+from api.calibrate.conventions.findings import findings
 from api.calibrate.exclusions import FOLD, WRONG, Excluded
 from api.calibrate.halves import Halves
 from api.calibrate.readings import readings_of
@@ -119,11 +120,13 @@ def test_one_half_of_an_axis_of_another_scale_is_found():
     assert "theta_x_deg above zero seem to be" in found.found
 
 
-def test_four_tilted_cells_under_the_names_of_quadrants_are_found_as_cells():
+def test_four_tilted_cells_stated_as_quadrants_are_found_as_cells():
+    stated = guess(table(QUADRANTS, LIGHT, NARROW))
+    assert stated.readings.kind == "quadrants"
     made = table(QUADRANTS, cells(bench.sun_of(NARROW), 1), NARROW)
-    assert [one.change for one in found_in(made)] == [{"readings": {"kind": "channels"}}]
-    made = table(QUADRANTS, LIGHT, NARROW)
-    assert "channels" not in [one.about for one in found_in(made)]
+    found = findings(readings_of(made, stated), stated)
+    assert [one.change for one in found] == [{"readings": {"kind": "channels"}}]
+    assert "channels" not in [one.about for one in found_in(table(QUADRANTS, LIGHT, NARROW))]
 
 
 def test_a_part_that_intervals_hold_too_little_is_named():

@@ -82,4 +82,5 @@ def test_a_run_of_nineteen_poses_is_not_judged_by_its_sign() -> None:
         run[order[:few]] = 1.0
         features = np.where((run == 1)[:, None], mirrored, SPOTS)
         names = ("x_px", "y_px", *VECTOR, "run")
-        assert {one.about for one in found_in(table(names, features, SUN, run))} == named
+        found = {one.about for one in found_in(table(names, features, SUN, run))}
+        assert found & {"runs"} == named

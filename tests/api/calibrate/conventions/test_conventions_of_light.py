@@ -24,13 +24,17 @@ def test_runs_of_faces_have_no_sign_of_their_own() -> None:
     assert found_in(table((*FACES, *VECTOR, "run"), SIGNALS, SPHERE, run)) == []
 
 
-def test_quadrants_that_fall_when_light_rises_are_found_without_a_change() -> None:
+def test_quadrants_that_fall_when_light_rises_are_found_with_their_level() -> None:
     light = bench.quadrants(bench.sun_of(ANGLES / 2.0), 2)
     names = ("q1", "q2", "q3", "q4", "theta_x_deg", "theta_y_deg")
     found = found_in(table(names, DARK - light, ANGLES / 2.0))
     (one,) = (one for one in found if one.about == "light")
     assert one.certain
-    assert one.change == {}  # their level without light is not known
+    change = one.change["readings"]
+    assert isinstance(change, dict)
+    assert change["inverted"] is True
+    # the bench's quadrants all see 0.02 beside
+    assert change["dark"] == pytest.approx([DARK - 0.02] * 4, abs=0.002)
 
 
 def test_faces_that_fall_are_found_with_their_level_without_light() -> None:
