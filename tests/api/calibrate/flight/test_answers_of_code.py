@@ -140,7 +140,7 @@ int main() {
     long most = 0, most_calls = 0;
     ss_reading in; double x; int at = 0;
     while (std::scanf("%lf", &x) == 1) {
-        if (at < SS_READINGS) in.value[at] = x; else in.temperature_K = x;
+        if (at < SS_READINGS) in.value[at] = x; else in.temperature = x;
         if (++at == INPUTS) {
             ss_answer out; at = 0; operations = calls = 0;
             ss_solve(&in, &out);
@@ -170,7 +170,7 @@ def test_the_header_bounds_the_operations_that_a_counting_number_counts(
     (tmp_path / "ss.h").write_text(header)
     (tmp_path / "ss.c").write_text(texts["ss.c"])
     (tmp_path / "main.cpp").write_text(MAIN)
-    rows = np.column_stack([sensor.raw(3), *sensor.context(3).values()])
+    rows = sensor.telemetry(3)
     inputs = rows.shape[1]
     compiled(tmp_path, "g++", "-O1", f"-DINPUTS={inputs}", "main.cpp", "-o", "count")
     text = "\n".join(" ".join(f"{value:.17g}" for value in row) for row in rows)
