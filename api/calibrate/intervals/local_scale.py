@@ -88,9 +88,11 @@ def _profile(sizes: Floats, rings: Floats) -> Floats:
     """Return the logarithm (K,) of the mean of sizes (N,) by ring.
 
     A smoothing spline by quasi-likelihood of a scale; Fellner and Schall's step sets how smooth.
+    It is flat at the axis, as anything smooth around a point is.
     """
     found = np.full(rings.shape[1], np.log(max(float(sizes.mean()), 1e-300)))
-    bend = np.diff(np.eye(len(found)), min(2, len(found) - 1), axis=0)
+    flat = np.diff(np.eye(len(found)), axis=0)
+    bend = np.vstack([flat[:1], np.diff(flat, axis=0)])
     penalty, normal, strength = bend.T @ bend, rings.T @ rings, 1.0
     for _ in range(_ROUNDS):
         over = np.clip(sizes / np.exp(rings @ found), 0.0, 20.0)

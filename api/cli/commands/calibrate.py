@@ -196,8 +196,8 @@ def _correct(files: list[Path], onto: Path, out: Path, name: str) -> int:
     stated = with_correction(old, found, files, shlex.join(["sunatlas", *sys.argv[1:]]))
     text = json.dumps(stated, indent=1, allow_nan=False) + "\n"
     (written,) = write_set({f"{name}.json": text}, out, name)
-    typer.echo(f"wrote {written}")
-    return 0
+    typer.echo(f"wrote {written}; C and Python written with {onto.name} lack this correction")
+    return 0 if found.explained else 3
 
 
 def _print(found: Any, code: list[str], written: list[Path], out: Path) -> None:

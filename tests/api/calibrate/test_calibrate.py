@@ -229,7 +229,7 @@ def test_the_command_writes_report_and_code_and_a_template(tmp_path, monkeypatch
     assert status == 0
     assert "verdict: good" in capsys.readouterr().out
     page = (out / "sun_sensor_report.html").read_text()
-    assert page.count("<svg") == 4
+    assert page.count("<svg") == 5
     assert {path.suffix for path in out.iterdir()} == {".html", ".json", ".py", ".c", ".h"}
 
 

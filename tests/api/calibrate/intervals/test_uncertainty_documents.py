@@ -15,7 +15,7 @@ from algorithms.calibration.saving import UnreadableCalibrationError
 from api.calibrate.calibration import Calibration
 from api.calibrate.documents import document, load, save, with_correction
 from api.calibrate.intervals.places import tangent_axes
-from api.calibrate.recalibration import Correction
+from api.calibrate.recalibration import Correction, Errors
 
 FEATURES = bench.spots(bench.sun_of(np.random.default_rng(5).uniform(-40.0, 40.0, (60, 2))), 6)
 OUTSIDE = np.array([[-4000.0, 0.0]])
@@ -59,7 +59,8 @@ def test_a_correction_turns_the_covariance_with_the_direction(
     save(camera, tmp_path / "camera.json")
     turn = bench.turn("z", 90.0)
     rotation = tuple(tuple(float(c) for c in row) for row in turn)
-    found = Correction("boresight", (0.0, 0.0), rotation, 1.0, 0.1, 1.0, 0.01, 12)
+    errors = Errors(1.0, 1.0, 1.0, 1.0)
+    found = Correction(("boresight",), (1.0, 1.0), (0.0, 0.0), rotation, errors, errors, (), 12)
     held = with_correction(load(tmp_path / "camera.json"), found, [])
     (tmp_path / "turned.json").write_text(json.dumps(held), encoding="utf-8")
     turned = load(tmp_path / "turned.json").covariance(FEATURES)
