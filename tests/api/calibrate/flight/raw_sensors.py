@@ -17,6 +17,7 @@ import numpy as np
 from algorithms.contract import FeatureKind
 from algorithms.discovery import discover_chains
 from api.calibrate.calibration import Calibration
+from api.calibrate.causes.limits import limits_of
 from api.calibrate.readings import Readings
 from api.calibrate.selection import Candidate, fitted, geometry_of
 from api.calibrate.settings import parse_settings
@@ -112,6 +113,7 @@ class Sensor:
             model=model,
             chosen=Candidate(self.model, rms_deg=float(np.sqrt(np.nanmean(off**2)))),
             intervals=None,
+            limits=limits_of(made, settings, {}),
             columns=self.columns,
             sources=("bench.csv",),
         )

@@ -6,7 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -15,29 +15,13 @@ import numpy as np
 import pytest
 from raw_sensors import OTHERS, SENSORS, compiled
 
+from api.calibrate.causes.limits import ReadingLimits
 from api.calibrate.flight.code import flight_code
 from api.calibrate.flight.names import c_name, comment
 from api.calibrate.flight.program import run
 from api.calibrate.uncertainty import Intervals
 
 DIGEST = "0123456789abcdef0123456789abcdef"
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What readings may be, by column of the settings, and the light that they add up to."""
-
-    low: tuple[float, ...]
-    high: tuple[float, ...]
-    least_light: float
-    most_light: float
-
-
-def limited(found: Any, limits: Limits) -> Any:
-    """The calibration with limits, as one that looked for them has."""
-    made = replace(found)
-    vars(made)["limits"] = limits
-    return made
 
 
 def answers_of(text: str) -> Any:
@@ -52,8 +36,8 @@ def test_readings_at_their_limits_are_saturated_by_the_column_of_the_settings(ca
     # the first quadrant, which is the file's second column, is clipped below
     raw = sensor.raw(3)
     clipped = float(np.quantile(raw[:, 1], 0.3))
-    limits = Limits((clipped, -np.inf, -np.inf, -np.inf), (np.inf,) * 4, 0.1, 100.0)
-    code = flight_code(limited(found, limits))
+    limits = ReadingLimits((clipped, -np.inf, -np.inf, -np.inf), (np.inf,) * 4, 0.1, 100.0)
+    code = flight_code(replace(found, limits=limits))
     _, _, status = run(code.program.steps, raw)
     assert np.array_equal(status == 3, raw[:, 1] <= clipped)
     assert (status == 3).mean() == pytest.approx(0.3, abs=0.01)
@@ -67,8 +51,8 @@ def test_light_outside_its_limits_is_named(camera: Any) -> None:
     found = sensor.calibrated(camera)
     light = sensor.raw(3).sum(axis=1)
     low, high = np.quantile(light, (0.2, 0.8))
-    none = Limits((-np.inf,) * 6, (np.inf,) * 6, float(low), float(high))
-    code = flight_code(limited(found, none))
+    none = ReadingLimits((-np.inf,) * 6, (np.inf,) * 6, float(low), float(high))
+    code = flight_code(replace(found, limits=none))
     _, _, status = run(code.program.steps, sensor.raw(3))
     assert np.array_equal(status == 2, light < low)
     assert np.array_equal(status == 4, light > high)
