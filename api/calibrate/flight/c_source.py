@@ -158,7 +158,7 @@ def _numbered(text: str, constants: Mapping[str, Any]) -> str:
     for name, value in constants.items():
         if isinstance(value, int):
             text = re.sub(rf"\b{name.upper()}\b", str(value), text)
-    return text
+    return re.sub(r"\[(\d+) \+ 1\]", lambda size: f"[{int(size[1]) + 1}]", text)
 
 
 def _used(text: str) -> str:
