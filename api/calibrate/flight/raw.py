@@ -16,6 +16,8 @@ from api.calibrate.settings import ReadingsSettings, Settings
 
 #: Beyond this a reading is no number; of limits, that there is none.
 LARGEST = 1e30
+#: Of a limit, how far a reading may be rounded in the file and not on board.
+_ROUNDING = 1e-6
 
 
 @dataclass(frozen=True)
@@ -40,9 +42,11 @@ def limits_of(found: Calibration) -> RawLimits:
     """Return the limits that a calibration found, as finite numbers that C can hold."""
     count, known = len(found.settings.readings.columns), found.limits
     of_light = np.isfinite(known.most_light)
+    low = np.maximum(np.array(known.low or (-np.inf,) * count), -LARGEST)
+    high = np.minimum(np.array(known.high or (np.inf,) * count), LARGEST)
     return RawLimits(
-        np.maximum(np.array(known.low or (-np.inf,) * count), -LARGEST),
-        np.minimum(np.array(known.high or (np.inf,) * count), LARGEST),
+        np.where(low > -LARGEST, low + _ROUNDING * np.abs(low), low),
+        np.where(high < LARGEST, high - _ROUNDING * np.abs(high), high),
         float(known.least_light) if of_light else -LARGEST,
         float(known.most_light) if of_light else LARGEST,
     )

@@ -30,13 +30,17 @@ def answers_of(text: str) -> Any:
     return SimpleNamespace(**names)
 
 
-def test_readings_at_their_limits_are_saturated_by_the_column_of_the_settings(camera: Any) -> None:
+@pytest.mark.parametrize("rounded", [0.0, 5e-7])
+def test_readings_at_their_limits_are_saturated_by_the_column_of_the_settings(
+    rounded: float, camera: Any
+) -> None:
     sensor = SENSORS["quadrants"]
     found = sensor.calibrated(camera)
     # the first quadrant, which is the file's second column, is clipped below
     raw = sensor.raw(3)
     clipped = float(np.quantile(raw[:, 1], 0.3))
-    limits = ReadingLimits((clipped, -np.inf, -np.inf, -np.inf), (np.inf,) * 4, 0.1, 100.0)
+    stated = (1.0 - rounded) * clipped  # as a file's last digit has it
+    limits = ReadingLimits((stated, -np.inf, -np.inf, -np.inf), (np.inf,) * 4, 0.1, 100.0)
     code = flight_code(replace(found, limits=limits))
     _, _, status = run(code.program.steps, raw)
     assert np.array_equal(status == 3, raw[:, 1] <= clipped)
