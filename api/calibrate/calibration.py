@@ -329,7 +329,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     compared = readings.only(np.arange(0, len(readings), _step(readings, chosen)))
     patterns = patterns_in(np.asarray(chosen.offsets), compared)
     removed = sound.only(~kept & ~wrong)
-    left_out = errors_left_out(wanted[chosen.name], chosen, compared, geometry, model, removed)
+    left_out = errors_left_out(same, chosen, compared, geometry, model, removed)
     stated_sigma = intervals(*left_out)
     verdict = judge(
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
