@@ -107,14 +107,12 @@ class Calibration:
         Names of the files.
     notes : tuple of str
         On how the files, pictures and cells were read, and changes that did not settle.
-    digests : tuple of str
-        SHA-256 of each file.
+    digests, columns : tuple of str
+        SHA-256 of each file, and columns of the first table in its order.
     left_out : ndarray, shape (M, 3), optional
         Predicted minus true direction of the samples compared on, each when a fit did not see it.
     limits : ReadingLimits
         Of readings that may be used.
-    columns : tuple of str
-        Of the first table, in its order.
     """
 
     settings: Settings

@@ -230,7 +230,8 @@ def test_the_command_writes_report_and_code_and_a_template(tmp_path, monkeypatch
     assert "verdict: good" in capsys.readouterr().out
     page = (out / "sun_sensor_report.html").read_text()
     assert page.count("<svg") == 5
-    assert {path.suffix for path in out.iterdir()} == {".html", ".json", ".py", ".c", ".h"}
+    ends = {path.suffix for path in out.iterdir()}
+    assert ends == {".html", ".json", ".py", ".c", ".h", ".sha256"}
 
 
 def test_an_interrupted_command_leaves_nothing(camera, tmp_path, monkeypatch):
