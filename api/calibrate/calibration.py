@@ -14,6 +14,7 @@ from algorithms.contract import Floats, Model, SensorGeometry, UnusableDataError
 from api.calibrate.causes.applying import applied_to, read_as, require_two_axes, with_cells
 from api.calibrate.causes.bad_cells import joined_levels
 from api.calibrate.causes.held_out import Part, parts_of
+from api.calibrate.causes.less_light import doubt_of_light
 from api.calibrate.causes.limits import ReadingLimits, limits_of
 from api.calibrate.causes.removed import unexplained
 from api.calibrate.causes.untested import untested_in
@@ -335,7 +336,8 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     )  # fmt: skip
     verdict = withheld(
         replace(verdict, untested=untested_in(readings, stated)),
-        unexplained(readings, excluded, wrong_ones, stated.sensor.half_fov_deg, fold),
+        unexplained(readings, excluded, wrong_ones, stated.sensor.half_fov_deg, fold)
+        or doubt_of_light(model, readings, stated, chosen.rms_deg),
         () if stated_sigma is None else _parts(chosen, stated_sigma, compared),
     )
     if uncertain := next((one for one in found if one.certain), None):
