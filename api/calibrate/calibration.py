@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +11,17 @@ import numpy as np
 from algorithms.angles import separation_deg
 from algorithms.chain import Scored
 from algorithms.contract import Floats, Model, SensorGeometry, UnusableDataError
-from api.calibrate.conventions.finding import Finding, change_of
-from api.calibrate.conventions.findings import findings
-from api.calibrate.exclusions import Excluded, excluded_of, kept_by_model, sound_of
+from api.calibrate.causes.applying import applied_to, read_as, require_two_axes, with_cells
+from api.calibrate.causes.bad_cells import joined_levels
+from api.calibrate.causes.held_out import Part, parts_of
+from api.calibrate.causes.limits import ReadingLimits, limits_of
+from api.calibrate.causes.removed import unexplained
+from api.calibrate.causes.untested import untested_in
+from api.calibrate.conventions.finding import Finding
+from api.calibrate.exclusions import WRONG, Excluded, excluded_of, kept_by_model, sound_of
 from api.calibrate.halves import halves
 from api.calibrate.intervals.left_out import errors_left_out
-from api.calibrate.readings import BEHIND, Readings, joined, readings_of
+from api.calibrate.readings import Readings
 from api.calibrate.robust import wrong_poses
 from api.calibrate.runs import RunOffset
 from api.calibrate.selection import (
@@ -27,6 +32,7 @@ from api.calibrate.selection import (
     deviation_of,
     fitted,
     geometry_of,
+    settled,
 )
 from api.calibrate.settings import Settings
 from api.calibrate.sources import read_sources
@@ -39,6 +45,7 @@ from api.calibrate.uncertainty import (
     noise_deg,
     refits,
     spread_deg,
+    tangent_offsets,
 )
 from api.calibrate.verdict import (
     Verdict,
@@ -46,18 +53,14 @@ from api.calibrate.verdict import (
     next_poses,
     patterns_in,
     with_uncertain_conventions,
+    withheld,
 )
+from benchmark.running.threads import one_thread
 
 #: Samples from which wrong poses are looked for.
 _FEWEST_FOR_WRONG = 40
-#: Directions that lie this near to one plane through the sensor are those of one axis.
-_ONE_AXIS = 0.02
 #: RMS over the directions' own spread from which a model explains no more than chance does.
 _CHANCE = 0.5
-#: Share of rows with the light behind the sensor from which the angles' own form is uncertain.
-_MANY_BEHIND = 0.05
-#: Median error over the smallest up to which models are compared again without wrong poses.
-_CONTENDERS = 1.5
 #: Samples a final fit is made of at most; more are thinned evenly.
 MOST_FITTED = 40_000
 
@@ -103,11 +106,15 @@ class Calibration:
     sources : tuple of str
         Names of the files.
     notes : tuple of str
-        On how the files and pictures were read.
+        On how the files, pictures and cells were read, and changes that did not settle.
     digests : tuple of str
         SHA-256 of each file.
     left_out : ndarray, shape (M, 3), optional
         Predicted minus true direction of the samples compared on, each when a fit did not see it.
+    limits : ReadingLimits
+        Of readings that may be used.
+    columns : tuple of str
+        Of the first table, in its order.
     """
 
     settings: Settings
@@ -132,6 +139,8 @@ class Calibration:
     notes: tuple[str, ...] = ()
     digests: tuple[str, ...] = ()
     left_out: Floats | None = None
+    limits: ReadingLimits = field(default_factory=lambda: ReadingLimits((), (), 0.0, np.inf))
+    columns: tuple[str, ...] = ()
 
     def deviation_deg(
         self, features: Floats, context: Mapping[str, Floats] | None = None
@@ -145,7 +154,7 @@ class Calibration:
     def deviations_deg(
         self, features: Floats, context: Mapping[str, Floats] | None = None
     ) -> Floats:
-        """Return the 1-sigma (N, 2) of both axes of `api.calibrate.uncertainty.tangent_axes`.
+        """Return the 1-sigma (N, 2) of both axes of `api.calibrate.intervals.places.tangent_axes`.
 
         In degrees, at features (N, F): by the place of the direction, or as the model states it
         where there were too few samples for intervals. NaN where nothing is answered.
@@ -202,18 +211,20 @@ def calibrate(
         If the samples settle no model; the message says what would.
     """
     read = read_sources(paths, settings, progress)
+    stated = read.settings if settings else with_cells(read.tables, read.settings)
     found = calibrate_tables(
         read.tables,
-        read.settings,
+        stated,
         apply=apply,
         thorough=thorough,
         models=models,
         progress=progress,
     )
-    return replace(found, digest=read.digest, digests=read.digests, notes=read.notes)
+    notes = (*read.notes, *found.notes)
+    return replace(found, digest=read.digest, digests=read.digests, notes=notes)
 
 
-def calibrate_tables(  # noqa: PLR0915 - the steps in their order
+def calibrate_tables(
     tables: Sequence[Table],
     stated: Settings,
     *,
@@ -222,39 +233,34 @@ def calibrate_tables(  # noqa: PLR0915 - the steps in their order
     models: Sequence[str] | None = None,
     progress: Callable[[str, int, int], None] = lambda *_: None,
 ) -> Calibration:
-    """Calibrate a sensor by tables in memory, each a run; else as `calibrate`.
+    """Calibrate a sensor by tables in memory, each a run.
 
-    Parameters
-    ----------
-    tables : sequence of Table
-        With the columns that the settings name.
-    stated : Settings
-        Of any kind but ``frames``.
-    apply, thorough, models, progress
-        As `calibrate` takes them.
-
-    Returns
-    -------
-    Calibration
-        Without notes and digests, which are those of files.
-
-    Raises
-    ------
-    TableError, UnusableDataError
-        As `calibrate`.
+    Parameters and errors are those of `calibrate`, but for settings, which are stated and of any
+    kind but ``frames``; notes and digests, which are those of files, stay empty.
     """
-    readings, found = _read(tables, stated)
+    with one_thread():  # small fits: waiting for each other takes threads most of their time
+        return _calibrated(tables, stated, apply, thorough, models, progress)
+
+
+def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
+    tables: Sequence[Table],
+    stated: Settings,
+    apply: bool,
+    thorough: bool,
+    models: Sequence[str] | None,
+    progress: Callable[[str, int, int], None],
+) -> Calibration:
+    notes: list[str] = []
     progress("conventions", 0, 1)
+    file = read_as(tables, stated)
     applied: list[Finding] = []
-    while apply and len(applied) < 4:
-        certain = next((one for one in found if one.certain and one.change), None)
-        if certain is None:
-            break
-        stated = change_of(stated, certain)
-        applied.append(certain)
-        readings, found = _read(tables, stated)
+    if apply:
+        file, applied = applied_to(tables, file, notes)
+    stated, readings, found = file.settings, file.readings, file.findings
+    notes += [note for part in file.bad for note in part.notes]
     sound, excluded, runs, fold = sound_of(readings)
-    _require_two_axes(sound)
+    excluded = [*(one for part in file.bad for one in part.excluded), *excluded]
+    require_two_axes(sound)
     readings = sound
     wrong = np.zeros(len(sound), dtype=np.bool_)
     if len(sound) >= _FEWEST_FOR_WRONG:
@@ -272,7 +278,7 @@ def calibrate_tables(  # noqa: PLR0915 - the steps in their order
 
     def tick(name: str) -> None:
         nonlocal count
-        progress(name, count, len(wanted) + 3)
+        progress(name, count, 2 * len(wanted) + 4)
         count += 1
 
     candidates = [_explained(one, readings) for one in compare(readings, geometry, wanted, tick)]
@@ -281,16 +287,15 @@ def calibrate_tables(  # noqa: PLR0915 - the steps in their order
     kept = kept_by_model(wanted[chosen.name], chosen, sound, readings, geometry)
     changed = not np.array_equal(sound.rows[kept], readings.rows)
     readings = sound.only(kept)
-    excluded += excluded_of(~kept, "wrong pose", sound)
+    wrong_ones = sound.only(~kept)
+    excluded += excluded_of(~kept, WRONG, sound)
     if changed:  # a wrong pose that was not seen may have misled the choice
-        near = [one.name for one in candidates if _near(one, candidates)]
-        again = {
-            one.name: _explained(one, readings)
-            for one in compare(readings, geometry, {name: wanted[name] for name in near})
-        }
-        candidates = [again.get(one.name, one) for one in candidates]
+        candidates = [
+            _explained(one, readings) for one in compare(readings, geometry, wanted, tick)
+        ]
         candidates.sort(key=_by_error)
-        chosen, why = choose([one for one in candidates if one.name in again])
+        chosen, why = choose(candidates)
+    count = 2 * len(wanted)
     tick("fit")
     thinned = readings.only(np.arange(0, len(readings), max(-(-len(readings) // MOST_FITTED), 1)))
     model = fitted(wanted[chosen.name], thinned, geometry)
@@ -300,8 +305,11 @@ def calibrate_tables(  # noqa: PLR0915 - the steps in their order
     tick("uncertainty")
     sample = readings.only(np.arange(0, len(readings), max(len(readings) // 2000, 1)))
     around = noise_around(model.predict(sample.features, sample.context) - sample.sun, sample.sun)
-    spread = _fit_spread(wanted[chosen.name], sample, geometry, around, readings)
-    split = halves(wanted[chosen.name], sample, geometry, around)
+    same = settled(wanted[chosen.name], model)
+    spread = _fit_spread(same, sample, geometry, around, readings)
+    tick("halves")
+    split = halves(same, sample, geometry, around)
+    tick("verdict")
     compared = readings.only(np.arange(0, len(readings), _step(readings, chosen)))
     patterns = patterns_in(np.asarray(chosen.offsets), compared)
     removed = sound.only(~kept & ~wrong)
@@ -311,35 +319,22 @@ def calibrate_tables(  # noqa: PLR0915 - the steps in their order
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
         *next_poses(readings.sun),
     )  # fmt: skip
-    if uncertain := next((one for one in found if one.certain and one.change), None):
+    verdict = withheld(
+        replace(verdict, untested=untested_in(readings, stated)),
+        unexplained(readings, excluded, wrong_ones, stated.sensor.half_fov_deg, fold),
+        () if stated_sigma is None else _parts(chosen, stated_sigma, compared),
+    )
+    if uncertain := next((one for one in found if one.certain), None):
         verdict = with_uncertain_conventions(verdict, uncertain.found)
-    progress("done", len(wanted) + 3, len(wanted) + 3)
+    progress("done", 2 * len(wanted) + 4, 2 * len(wanted) + 4)
     return Calibration(
         stated, (*applied, *found), tuple(applied), readings, tuple(excluded), tuple(runs), fold,
         geometry, tuple(candidates), chosen, why, model, residual, noise,
-        stated_sigma, spread, verdict, "", tuple(table.source for table in tables),
+        stated_sigma, spread, verdict, "", tuple(table.source for table in tables), tuple(notes),
         left_out=left_out[0][: len(compared)],
+        limits=limits_of(readings, stated, joined_levels(file.bad)),
+        columns=tuple(tables[0].columns),
     )  # fmt: skip
-
-
-def _read(tables: Sequence[Table], settings: Settings) -> tuple[Readings, list[Finding]]:
-    """Return the samples of all tables, and what their conventions seem to be."""
-    readings = joined([readings_of(table, settings) for table in tables])
-    _require_two_axes(readings)
-    every = None
-    if readings.dropped.get(BEHIND, 0) > _MANY_BEHIND * len(readings):
-        every = joined([readings_of(table, settings, behind=True) for table in tables])
-    return readings, findings(readings, settings, every)
-
-
-def _require_two_axes(readings: Readings) -> None:
-    size = np.linalg.svd(readings.sun, compute_uv=False)
-    if len(readings) < 3 or size[2] < _ONE_AXIS * size[1]:
-        raise UnusableDataError(
-            f"the {len(readings)} poses lie along one axis: a second axis would settle the "
-            "calibration (turn the sensor by 90 deg about its boresight, or sweep the other "
-            "gimbal, and add the rows)"
-        )
 
 
 def _explained(candidate: Candidate, readings: Readings) -> Candidate:
@@ -359,15 +354,12 @@ def _by_error(one: Candidate) -> tuple[bool, bool, float]:
     return bool(one.refused), one.missing > 0.05, one.rms_deg
 
 
-def _near(one: Candidate, candidates: Sequence[Candidate]) -> bool:
-    """Say whether a model's usual error is near the best: wrong poses do not move a median."""
-    usual = [_usual(other) for other in candidates if not other.refused]
-    return not one.refused and _usual(one) <= _CONTENDERS * min(usual)
-
-
-def _usual(one: Candidate) -> float:
-    errors = np.asarray(one.errors)
-    return float(np.median(errors[np.isfinite(errors)]))
+def _parts(chosen: Candidate, sigma: Intervals, compared: Readings) -> tuple[Part, ...]:
+    """Return parts of the samples left out, with how far the stated intervals hold there."""
+    offsets = np.asarray(chosen.offsets)
+    along = tangent_offsets(offsets, compared.sun)
+    along[~np.isfinite(np.asarray(chosen.errors))] = np.nan
+    return parts_of(compared, along, sigma.at(compared.sun))
 
 
 def _fit_spread(

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import sys
+import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field, replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, cast
@@ -22,12 +23,22 @@ from algorithms.calibration.saving import (
 from algorithms.contract import Compensation, Floats, Model
 from algorithms.discovery import discover_compensations, discover_models
 from api.calibrate.calibration import Calibration
+from api.calibrate.intervals.places import tangent_axes
 from api.calibrate.readings import readings_of
 from api.calibrate.recalibration import Correction
-from api.calibrate.selection import deviation_of
+from api.calibrate.selection import deviation_of, unbounded
 from api.calibrate.settings import Settings, parse_settings
 from api.calibrate.table import Table
-from api.calibrate.uncertainty import Intervals, covariance_of, tangent_axes
+from api.calibrate.terms.corrections import (
+    Corrected,
+    features_in,
+    numbers,
+    of_features,
+    temperatures,
+    with_changes,
+)
+from api.calibrate.terms.temperature import TERMS
+from api.calibrate.uncertainty import Intervals, covariance_of
 from api.calibrate.verdict import as_text
 from files.atomic import replace_file
 
@@ -40,6 +51,11 @@ _MEMBERS = frozenset(
         *("schema", "schema_version", "conventions", "settings", "compensations", "model", "fit"),
         *("selection", "verdict", "found", "excluded", "made", "correction", DIGEST),
     }
+)
+#: What a damaged document leads to that fits no class here.
+_MISFITS = (
+    *(ValueError, LookupError, TypeError, AttributeError, ImportError),
+    *(ArithmeticError, MemoryError, RecursionError),
 )
 
 
@@ -59,8 +75,9 @@ class SavedCalibration:
         The 1-sigma by place; None of few samples and of a document of version 1.
     temperature_K : tuple of two float, or None
         Lowest and highest that was measured, of a model that reads it; beyond, NaN is answered.
-    offset : ndarray, shape (F,)
-        Subtracted from features since a correction; see `api.calibrate.recalibration`.
+    offset, gain : ndarray, shape (F,) or ()
+        Since a correction features are ``(f - offset) / gain``; see `api.calibrate.recalibration`.
+        Of quadrants and electrodes `settings` have it, whose readings are no features.
     rotation : ndarray, shape (3, 3)
         Of directions since then.
     document : dict
@@ -76,6 +93,23 @@ class SavedCalibration:
     offset: Floats
     rotation: Floats
     document: dict[str, Any]
+    gain: Floats = field(default_factory=lambda: np.ones(()))
+
+    @property
+    def stated_deg(self) -> float:
+        """RMS error of samples left out, by the document."""
+        stated = self.document["fit"].get("rms_left_out_deg")
+        return float("nan") if stated is None else float(stated)
+
+    @property
+    def unbounded(self) -> SavedCalibration:
+        """The same, but answering beyond the field that was calibrated."""
+        return replace(self, model=unbounded(self.model))
+
+    @property
+    def corrected(self) -> Corrected:
+        """What was corrected since; its ``settings`` are those for flight software."""
+        return Corrected(self.offset, self.gain, self.rotation)
 
     def predict(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
         """Return unit vectors (N, 3) of features (N, F); NaN rows outside the hull."""
@@ -104,7 +138,7 @@ class SavedCalibration:
     def deviations_deg(
         self, features: Floats, context: Mapping[str, Floats] | None = None
     ) -> Floats:
-        """Return the 1-sigma (N, 2) of both axes of `api.calibrate.uncertainty.tangent_axes`.
+        """Return the 1-sigma (N, 2) of both axes of `api.calibrate.intervals.places.tangent_axes`.
 
         In degrees, at features (N, F).
         """
@@ -119,7 +153,7 @@ class SavedCalibration:
         return np.asarray(np.sqrt(np.mean(self.deviations_deg(features, context) ** 2, axis=1)))
 
     def _compensated(self, features: Floats, columns: Mapping[str, Floats]) -> Floats:
-        features = np.asarray(features, dtype=np.float64) - self.offset
+        features = (np.asarray(features, dtype=np.float64) - self.offset) / self.gain
         for stage in self.compensations:
             features = stage.transform(features, columns)
         return features
@@ -212,46 +246,70 @@ def load(path: Path) -> SavedCalibration:
     try:
         stored = read_document(path)
         if not isinstance(stored, dict) or stored.get("schema") != SCHEMA:
-            raise UnreadableCalibrationError(  # noqa: TRY301 - one place for all refusals
-                f"{path.name}: expected a document of {SCHEMA}"
-            )
+            raise UnreadableCalibrationError(f"{path.name}: expected a document of {SCHEMA}")
         if stored.get("schema_version") not in _READ:
-            raise UnreadableCalibrationError(  # noqa: TRY301 - as above
+            raise UnreadableCalibrationError(
                 f"{path.name}: expected version {' or '.join(map(str, _READ))}; "
                 f"got {stored.get('schema_version')!r}"
             )
         require_whole(stored, _MEMBERS)
-        temperatures = stored["fit"].get("temperature_K")
-        correction = stored.get("correction", {})
-        return SavedCalibration(
-            parse_settings(stored["settings"], path.name),
-            tuple(
-                cast("Compensation", stage_of(stage, discover_compensations()))
-                for stage in stored["compensations"]
-            ),
-            cast("Model", stage_of(stored["model"], discover_models())),
-            float(stored["fit"].get("interval_factor", 1.0)),
-            _intervals_of(stored["fit"].get("intervals")),
-            None if temperatures is None else (float(temperatures[0]), float(temperatures[1])),
-            np.asarray(correction.get("offset", 0.0), dtype=np.float64),
-            np.asarray(correction.get("rotation", np.eye(3)), dtype=np.float64),
-            stored,
-        )
-    except UnreadableCalibrationError:
-        raise
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise UnreadableCalibrationError(f"{path.name}: {error}") from error
+        found = _loaded(stored, path.name)
+        with warnings.catch_warnings():  # of numbers that no row would have
+            warnings.simplefilter("ignore", RuntimeWarning)
+            columns = {name: np.ones(1) for name in ("temperature_K", "time_s")}
+            found.predict(np.ones((1, features_in(found.settings))), columns)
+    except _MISFITS as error:
+        said = str(error) or type(error).__name__
+        named = said if said.startswith(f"{path.name}: ") else f"{path.name}: {said}"
+        raise UnreadableCalibrationError(named) from error
+    return found
+
+
+def _loaded(stored: dict[str, Any], source: str) -> SavedCalibration:
+    settings, fit = parse_settings(stored["settings"], source), stored["fit"]
+    measured = fit.get("temperature_K")
+    correction = Corrected.of(stored.get("correction", {}), settings)
+    if not isinstance(stored["compensations"], list):
+        raise UnreadableCalibrationError("compensations must be a list")
+    if "rms_left_out_deg" not in fit:
+        raise UnreadableCalibrationError("fit lacks rms_left_out_deg")
+    if (stated := fit["rms_left_out_deg"]) is not None:
+        numbers(stated, (), "fit.rms_left_out_deg")
+    return SavedCalibration(
+        settings,
+        tuple(
+            cast("Compensation", stage_of(stage, {**discover_compensations(), **TERMS}))
+            for stage in stored["compensations"]
+        ),
+        cast("Model", stage_of(stored["model"], discover_models())),
+        numbers(fit.get("interval_factor", 1.0), (), "fit.interval_factor", above=0.0).item(),
+        _intervals_of(fit.get("intervals")),
+        None if measured is None else temperatures(measured),
+        correction.offset,
+        correction.rotation,
+        stored,
+        correction.gain,
+    )
 
 
 def with_correction(
     old: SavedCalibration, found: Correction, files: Sequence[Path], command: str = ""
 ) -> dict[str, Any]:
-    """Return the document of an old calibration with a correction, on top of those it has."""
+    """Return the document of an old calibration with a correction, on top of those it has.
+
+    Of spots, balances and channels the correction has gain and offset of features; of quadrants and
+    electrodes the settings have them as gain and dark level of readings.
+    """
     held = {name: value for name, value in old.document.items() if name != DIGEST}
+    settings, gain, offset = old.settings, np.asarray(found.gain), np.asarray(found.offset)
+    if len(gain) != features_in(settings):
+        held["settings"] = with_changes(settings, offset, gain).model_dump(mode="json")
+        offset, gain = np.zeros(()), np.ones(())
+    offset, gain = of_features(settings, offset, gain) if gain.ndim else (offset, gain)
+    whole = old.corrected.then(offset, gain, np.asarray(found.rotation))
     held["correction"] = {
-        **asdict(found),
-        "offset": (np.asarray(found.offset) + old.offset).tolist(),
-        "rotation": (np.asarray(found.rotation) @ old.rotation).tolist(),
+        **found.as_data(),
+        **{name: value.tolist() for name, value in vars(whole).items()},
         "onto": old.document[DIGEST],
         "files": [path.name for path in files],
         "command": command,

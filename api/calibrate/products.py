@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from algorithms.contract import FeatureKind
+import numpy as np
+
+from algorithms.calibration.documents import DIGEST
 from api.calibrate.calibration import Calibration
 from api.calibrate.certificate.certificate import certificate
-from api.calibrate.documents import document
-from api.calibrate.flight.c_source import c_files, c_name
-from api.calibrate.flight.channels import ChannelTable, channel_table
-from api.calibrate.flight.channels_c import channel_files
-from api.calibrate.flight.python_source import channels_module, python_module
-from api.calibrate.flight.table import FlightTable, NoTableError, flight_table
+from api.calibrate.documents import document, versions
+from api.calibrate.flight.code import flight_code
+from api.calibrate.flight.names import c_name
+from api.calibrate.flight.program import NoCodeError
 from api.calibrate.report.page import Asked, report
 from files.directories import replace_in_directory
 
@@ -27,51 +27,57 @@ _ENDS = (
 
 
 def products(
-    found: Calibration, name: str, command: str = "", asked: Asked | None = None
+    found: Calibration,
+    name: str,
+    command: str = "",
+    asked: Asked | None = None,
+    *,
+    tell: Callable[[str], None] = lambda _: None,
 ) -> dict[str, str]:
     """Return the text of every file by its name.
 
-    C and Python are left out where no table can stand for the model; ``NAME_no_code.txt`` says so.
+    C and Python are left out where no code can stand for the model; ``NAME_no_code.txt`` says so.
     ``NAME.sha256`` lists the others with their digests, as ``sha256sum --check`` reads them.
+    `tell` gets a sentence of what the code adds to the model, or why there is none.
     """
     prefix = c_name(name)
-    made = {
-        f"{prefix}.json": json.dumps(document(found, command), indent=1, allow_nan=False) + "\n"
-    }
+    held = document(found, command)
+    made = {f"{prefix}.json": json.dumps(held, indent=1, allow_nan=False) + "\n"}
     code = ""
-    said = {
-        "Files": ", ".join(found.sources),
-        "Data SHA-256": found.digest,
-        "Model": f"{found.chosen.name}, {found.chosen.rms_deg:.3g} deg RMS on samples left out",
-        "Verdict": f"{found.verdict.word}: {found.verdict.reason}",
-        "Command": command,
-    }
     try:
-        table = _table(found)
-    except NoTableError as error:
+        made_code = flight_code(found)
+    except NoCodeError as error:
         made[f"{prefix}_no_code.txt"] = f"No code was written: {error}.\n"
+        tell(f"none: {error}")
     else:
-        code = said["Code"] = (
-            f"{table.words}, which add {table.added_deg:.2g} deg RMS to the model "
-            f"and at most {table.largest_deg:.2g} deg"
-        )
-        if isinstance(table, ChannelTable):
-            made[f"{prefix}.py"] = channels_module(table, said)
-            made |= channel_files(table, found.readings.features, prefix, said)
-        else:
-            made[f"{prefix}.py"] = python_module(table, said)
-            made |= c_files(table, prefix, said)
+        code = made_code.sentence
+        tell(code)
+        said = {
+            "Files": ", ".join(found.sources),
+            "Data SHA-256": found.digest,
+            "Model": f"{found.chosen.name}, {found.chosen.rms_deg:.3g} deg RMS on samples left out",
+            "Verdict": f"{found.verdict.word}: {found.verdict.reason}",
+            "Readings": _readings(found),
+            "Command": command,
+            "Versions": ", ".join(f"{name} {number}" for name, number in versions().items()),
+        }
+        made |= made_code.files(prefix, said, held[DIGEST])
     if asked is not None and asked.certificate:
         made[asked.certificate] = certificate(found, command)
     made[f"{prefix}_report.html"] = report(found, command, code, asked or Asked())
     return made | {f"{prefix}.sha256": _listed(made)}
 
 
-def _table(found: Calibration) -> FlightTable | ChannelTable:
-    features, context = found.readings.features, found.readings.context
-    if found.readings.kind is FeatureKind.SIGNALS:
-        return channel_table(found.model, features, context, found.chosen.rms_deg)
-    return flight_table(found.model, features, context)
+def _readings(found: Calibration) -> str:
+    """Say what readings are, what is done to them before the model, and the field."""
+    stated, sun = found.settings.readings, found.readings.sun
+    off = np.degrees(np.arctan2(np.hypot(sun[:, 0], sun[:, 1]), sun[:, 2]))
+    turns = ", ".join(found.settings.apply) if stated.kind != "channels" else ""
+    return (
+        f"{stated.kind} of {', '.join(stated.columns)}"
+        f"{', falling when light rises' if stated.inverted else ''}"
+        f"{f'; axes: {turns}' if turns else ''}; calibrated up to {off.max():.1f} deg off +z"
+    )
 
 
 def write_products(
@@ -80,6 +86,8 @@ def write_products(
     name: str,
     command: str = "",
     asked: Asked | None = None,
+    *,
+    tell: Callable[[str], None] = lambda _: None,
 ) -> list[Path]:
     """Write every file, all of them or none; returns their paths.
 
@@ -93,7 +101,7 @@ def write_products(
     OSError
         If it cannot be written.
     """
-    return write_set(products(found, name, command, asked), directory, name)
+    return write_set(products(found, name, command, asked, tell=tell), directory, name)
 
 
 def write_set(texts: Mapping[str, str], directory: Path, name: str) -> list[Path]:

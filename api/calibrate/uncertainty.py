@@ -10,34 +10,22 @@ from numpy.typing import NDArray
 
 from algorithms.chain import Scored
 from algorithms.contract import Floats, SensorGeometry, UnusableDataError
-from api.calibrate.intervals.local_scale import (
-    SECTORS,
-    places,
-    quantile_profile,
-    ring_weights,
-    rings_of,
-    scale_of,
-    sector_weights,
-)
+from api.calibrate.intervals.local_scale import quantile_profile, scale_of
+from api.calibrate.intervals.places import Grid, bilinear, tangent_axes
 from api.calibrate.readings import Readings
 from api.calibrate.selection import fitted
 
 #: 95 % of a normal variable lie within so many standard deviations.
 NORMAL_95 = 1.959964
-#: Standard deviation of a normal variable over the mean of its size.
-_OF_MEAN = 1.253314
 #: Refits with other noise by which a fit's own spread is estimated.
 REFITS = 6
 #: Samples from which intervals are stated.
 FEWEST = 40
 _FOLDS = 5
+#: Smaller errors are rounding, degrees.
+_LEAST = 1e-12
 #: Poses are told apart to so many digits.
 _DIGITS = 6
-#: Length of the mean direction from which a field is one-sided, and angle of the mean to the
-#: boresight from which rings lie about the mean.
-_ONE_SIDED, _ASIDE_DEG = 0.3, 20.0
-#: Off-axis angle of the last ring from which it is a point, as the first is.
-_ALL_AROUND = 170.0
 #: Poses around one that tell its noise.
 _AROUND = 16
 _SEED = 20_260_101
@@ -80,20 +68,8 @@ class Intervals:
 
         Bilinear between centres, periodic in azimuth, constant beyond the last ring; NaN of NaN.
         """
-        off, azimuth = places(sun, self.axis)
-        rings = ring_weights(off, self.rings_deg)
-        sectors = sector_weights(azimuth, self.sectors)
-        return _bilinear(rings, sectors, self.sigma_deg)
-
-
-def tangent_axes(sun: Floats) -> tuple[Floats, Floats]:
-    """Return two unit vectors (N, 3) square to directions (N, 3) and to each other.
-
-    The first is the direction times x, or times y where the direction is within 26 deg of x.
-    """
-    first = np.cross(sun, np.where(np.abs(sun[:, [0]]) < 0.9, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]]))
-    first /= np.linalg.norm(first, axis=1)[:, None]
-    return first, np.cross(sun, first)
+        grid = Grid(self.axis, self.rings_deg, self.sectors)
+        return bilinear(grid.weights(sun), self.sigma_deg)
 
 
 def tangent_offsets(offsets: Floats, sun: Floats) -> Floats:
@@ -120,32 +96,27 @@ def intervals(offsets: Floats, sun: Floats) -> Intervals | None:
     nothing of it: the scale of a fifth of the samples is that of the other four. A fifth is made of
     every fifth pose with all its repeats.
     """
-    along = np.abs(tangent_offsets(offsets, sun))
+    along = tangent_offsets(offsets, sun)
     known = np.isfinite(along).all(axis=1)
     along, sun = along[known], sun[known]
     if len(along) < FEWEST:
         return None
-    axis = axis_of(sun)
-    off, azimuth = places(sun, axis)
-    rings_deg = rings_of(off)
-    rings, sectors = ring_weights(off, rings_deg), sector_weights(azimuth, SECTORS)
-    closed = bool(rings_deg[-1] > _ALL_AROUND)
-    everything = np.ones(len(along), dtype=np.bool_)
-    fold = parts_of(sun, _FOLDS)
-
-    def scale(used: NDArray[np.bool_]) -> Floats:
-        return _OF_MEAN * scale_of(along[used], rings[used], sectors[used], closed)
-
-    over = np.empty_like(along)
-    for test in (fold == number for number in range(_FOLDS)):
-        over[test] = along[test] / _bilinear(rings[test], sectors[test], scale(~test))
-    inside = np.empty(along.shape, dtype=np.bool_)
-    for test in (fold == number for number in range(_FOLDS)):
+    grid = Grid.over(sun)
+    rings, _ = grid.weights(sun)
+    tests = [parts_of(sun, _FOLDS) == number for number in range(_FOLDS)]
+    over, inside = np.empty_like(along), np.empty(along.shape, dtype=np.bool_)
+    for test in tests:
+        table = scale_of(along[~test], sun[~test], grid)
+        over[test] = np.maximum(np.abs(along[test]), _LEAST) / bilinear(
+            grid.weights(sun[test]), table
+        )
+    for test in tests:
         inside[test] = over[test] <= _limits(over[~test], rings[~test], rings[test])
-    limits = _limits(over, rings, np.eye(len(rings_deg))) / NORMAL_95
-    factor = _limit(over) / NORMAL_95
-    sigma = scale(everything) * limits[:, :, None]
-    return Intervals(factor, float(inside.mean()), len(along), axis, rings_deg, SECTORS, sigma)
+    limits = _limits(over, rings, np.eye(len(grid.rings_deg))) / NORMAL_95
+    return Intervals(
+        _limit(over) / NORMAL_95, float(inside.mean()), len(along), grid.axis, grid.rings_deg,
+        grid.sectors, scale_of(along, sun, grid) * limits[:, :, None],
+    )  # fmt: skip
 
 
 def _limits(over: Floats, rings: Floats, at: Floats) -> Floats:
@@ -155,11 +126,6 @@ def _limits(over: Floats, rings: Floats, at: Floats) -> Floats:
     return np.asarray(np.exp(at @ profile)[:, None] * level)
 
 
-def _bilinear(rings: Floats, sectors: Floats, table: Floats) -> Floats:
-    """Return the values (N, 2) of a table (K, M, 2) at weights (N, K) and (N, M)."""
-    return np.asarray(np.einsum("nk,nm,kma->na", rings, sectors, table, optimize=True))
-
-
 def parts_of(sun: Floats, count: int) -> NDArray[np.int64]:
     """Return the part (N,), 0 to count - 1, of directions (N, 3): by chance, repeats in one."""
     if not len(sun):
@@ -167,18 +133,6 @@ def parts_of(sun: Floats, count: int) -> NDArray[np.int64]:
     poses = np.unique(np.round(sun, _DIGITS), axis=0, return_inverse=True)[1].reshape(-1)
     order = np.random.default_rng(_SEED).permutation(int(poses.max()) + 1)
     return np.asarray(order[poses] % count)
-
-
-def axis_of(sun: Floats) -> Floats:
-    """Return the unit vector (3,) that rings lie about: the boresight, or the field's middle.
-
-    The middle of directions (N, 3) is taken where they lie to one side of the boresight.
-    """
-    middle = sun.mean(axis=0)
-    length = float(np.linalg.norm(middle))
-    if length < _ONE_SIDED or middle[2] > np.cos(np.radians(_ASIDE_DEG)) * length:
-        return np.array([0.0, 0.0, 1.0])
-    return np.asarray(middle / length)
 
 
 def _limit(ratio: Floats) -> float:

@@ -1,7 +1,7 @@
 """Scale of errors by place: rings about an axis, sectors of azimuth, two tangent axes.
 
 Places that few samples tell borrow from others: rings from their neighbours by a smoothing spline
-of the logarithm, sectors from their ring and an axis from the other by empirical Bayes shrinkage.
+of the logarithm, an axis from the other and sectors from their ring by empirical Bayes shrinkage.
 """
 
 from __future__ import annotations
@@ -9,73 +9,66 @@ from __future__ import annotations
 import numpy as np
 
 from algorithms.contract import Floats
+from api.calibrate.intervals.places import Grid, bilinear, radial_parts
 
-#: Most rings, and sectors of each: a table that flight code can hold.
-MOST_RINGS, SECTORS = 12, 8
-#: Samples for each ring.
-_A_RING = 40
-#: Share of a 95 % quantile's logarithm: its variance times the count of samples, of normal errors.
+#: Variance of the logarithm of a 95 % quantile of normal errors, times the count of samples.
 _OF_QUANTILE = 0.906
+#: Standard deviation of a normal variable over the mean of its size.
+_OF_MEAN = 1.253314
 #: Samples a cell is worth from which it differs from its ring.
 _FEWEST = 3.0
+#: Smaller errors are rounding, degrees.
+_LEAST = 1e-12
+#: Variances from which a difference of the axes is none of chance.
+_CERTAIN = 4.0
 _ROUNDS = 40
 
 
-def places(sun: Floats, axis: Floats) -> tuple[Floats, Floats]:
-    """Return the angle off an axis (3,) and the azimuth about it, from +x, of directions (N, 3)."""
-    first = np.array([1.0, 0.0, 0.0]) if abs(axis[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
-    first = first - (first @ axis) * axis
-    first /= np.linalg.norm(first)
-    second = np.cross(axis, first)
-    along = sun @ axis
-    x, y = sun @ first, sun @ second
-    return np.degrees(np.arctan2(np.hypot(x, y), along)), np.degrees(np.arctan2(y, x))
+def scale_of(along: Floats, sun: Floats, grid: Grid) -> Floats:
+    """Return the standard deviation of errors (K, M, 2) at a grid's centres, degrees.
 
-
-def rings_of(off_deg: Floats) -> Floats:
-    """Return the off-axis angles (K,) at which the scale is held, degrees, from 0 on."""
-    count = int(np.clip(len(off_deg) // _A_RING, 2, MOST_RINGS))
-    return np.linspace(0.0, max(float(off_deg.max()), 1e-6), count)
-
-
-def ring_weights(off_deg: Floats, rings_deg: Floats) -> Floats:
-    """Return the weights (N, K) of linear interpolation over rings, constant beyond the ends."""
-    at = np.interp(off_deg, rings_deg, np.arange(len(rings_deg), dtype=np.float64))
-    return np.maximum(1.0 - np.abs(at[:, None] - np.arange(len(rings_deg))), 0.0)
-
-
-def sector_weights(azimuth_deg: Floats, sectors: int) -> Floats:
-    """Return the weights (N, M) of linear interpolation over azimuth; sector m is at 360 m / M."""
-    apart = azimuth_deg[:, None] * sectors / 360.0 - np.arange(sectors)
-    apart -= sectors * np.round(apart / sectors)
-    return np.maximum(1.0 - np.abs(apart), 0.0)
-
-
-def scale_of(sizes: Floats, rings: Floats, sectors: Floats, closed: bool) -> Floats:
-    """Return the mean size of errors (K, M, 2) at ring and sector centres.
+    Of normal errors; of others, 1.25 times their mean size.
 
     Parameters
     ----------
-    sizes : ndarray, shape (N, 2)
-        Of errors along two axes, no sign.
-    rings, sectors : ndarray, shapes (N, K) and (N, M)
-        Weights of each sample, as `ring_weights` and `sector_weights` give them.
-    closed : bool
-        Whether the last ring is a point, as the first is: there sectors are the same.
+    along : ndarray, shape (N, 2)
+        Errors along the tangent axes, degrees.
+    sun : ndarray, shape (N, 3)
+        Their directions.
+    grid : Grid
     """
-    profile = _profile(sizes.mean(axis=1), rings)
-    left = sizes / np.exp(rings @ profile)[:, None]
-    contrast = 0.5 * _contrast(left, rings)
+    weights = grid.weights(sun)
+    rings, sectors = weights
+    table = _of_rings(along, sun, grid, rings)
+    sizes = np.maximum(np.abs(along), _LEAST)
+    between = np.exp(_between_axes(sizes / bilinear(weights, table)))
+    table *= [between, 1.0 / between]
     cells = (rings[:, :, None] * sectors[:, None, :]).reshape(len(rings), -1)
-    table = np.empty((rings.shape[1], sectors.shape[1], 2))
-    for axis, sign in enumerate((1.0, -1.0)):
-        of_ring = profile + sign * contrast
-        rest = sizes[:, axis] / np.exp(rings @ of_ring)
-        of_sectors = _shrunk(rest, cells).reshape(table.shape[:2])
+    over = sizes / bilinear(weights, table)
+    for axis in range(2):
+        of_sectors = _shrunk(over[:, axis], cells).reshape(table.shape[:2])
         of_sectors -= of_sectors.mean(axis=1)[:, None]
-        of_sectors[[0, -1] if closed else [0]] = 0.0
-        table[:, :, axis] = np.exp(of_ring[:, None] + of_sectors)
-    return table
+        of_sectors[grid.points] = 0.0
+        table[..., axis] *= np.exp(of_sectors)
+    return _OF_MEAN * table
+
+
+def _of_rings(along: Floats, sun: Floats, grid: Grid, rings: Floats) -> Floats:
+    """Return the mean size of errors (K, M, 2) where those away from the axis differ from others.
+
+    As they do of a spot behind a hole, whose place goes with the tangent of the angle.
+    """
+    parts = radial_parts(sun, grid.axis)
+    away = (along * parts).sum(axis=1)
+    across = (along * parts[:, ::-1] * [1.0, -1.0]).sum(axis=1)
+    sizes = np.maximum(np.abs(np.column_stack([away, across])), _LEAST)
+    profile = _profile(sizes.mean(axis=1), rings)
+    contrast = _contrast(sizes / np.exp(rings @ profile)[:, None], rings)
+    contrast[grid.points] = 0.0
+    centres = grid.centres()
+    share = radial_parts(centres.reshape(-1, 3), grid.axis).reshape(*centres.shape[:2], 2) ** 2
+    away, across = (np.exp(2.0 * (profile + sign * contrast)) for sign in (1.0, -1.0))
+    return np.sqrt(share * away[:, None, None] + (1.0 - share) * across[:, None, None])
 
 
 def quantile_profile(over: Floats, rings: Floats, share: float) -> Floats:
@@ -95,9 +88,11 @@ def _profile(sizes: Floats, rings: Floats) -> Floats:
     """Return the logarithm (K,) of the mean of sizes (N,) by ring.
 
     A smoothing spline by quasi-likelihood of a scale; Fellner and Schall's step sets how smooth.
+    It is flat at the axis, as anything smooth around a point is.
     """
     found = np.full(rings.shape[1], np.log(max(float(sizes.mean()), 1e-300)))
-    bend = np.diff(np.eye(len(found)), min(2, len(found) - 1), axis=0)
+    flat = np.diff(np.eye(len(found)), axis=0)
+    bend = np.vstack([flat[:1], np.diff(flat, axis=0)])
     penalty, normal, strength = bend.T @ bend, rings.T @ rings, 1.0
     for _ in range(_ROUNDS):
         over = np.clip(sizes / np.exp(rings @ found), 0.0, 20.0)
@@ -110,10 +105,19 @@ def _profile(sizes: Floats, rings: Floats) -> Floats:
 
 
 def _contrast(sizes: Floats, rings: Floats) -> Floats:
-    """Return the logarithm (K,) of the first axis' mean size over the second's, by ring."""
+    """Return half the logarithm (K,) of the first axis' mean size over the second's, by ring."""
     means = np.maximum(rings.T @ sizes, 1e-300)
     chance = (sizes.var(axis=0) / np.maximum(sizes.mean(axis=0), 1e-300) ** 2).sum()
-    return _smooth(np.log(means[:, 0] / means[:, 1]), chance / np.maximum(_counts(rings), 1e-3))
+    half = 0.5 * np.log(means[:, 0] / means[:, 1])
+    return _smooth(half, 0.25 * chance / np.maximum(_counts(rings), 1e-3))
+
+
+def _between_axes(over: Floats) -> float:
+    """Return half the logarithm of the first axis' mean size over the second's; 0 by chance."""
+    means = over.mean(axis=0)
+    half = 0.5 * float(np.log(means[0] / means[1]))
+    chance = 0.25 * float((over.var(axis=0) / means**2).sum()) / len(over)
+    return half * max(half**2 - _CERTAIN * chance, 0.0) / max(half**2, 1e-30)
 
 
 def _smooth(values: Floats, variance: Floats) -> Floats:

@@ -101,7 +101,7 @@ def calibrate(
     every requirement is met, otherwise 3.
     """
     from api.calibrate.calibration import calibrate as run  # noqa: PLC0415 - SciPy
-    from api.calibrate.flight.c_source import c_name  # noqa: PLC0415 - as above
+    from api.calibrate.flight.names import c_name  # noqa: PLC0415 - as above
     from api.calibrate.frames import table_in  # noqa: PLC0415 - as above
     from api.calibrate.products import write_products  # noqa: PLC0415 - as above
     from api.calibrate.report.page import Asked, outcomes  # noqa: PLC0415 - as above
@@ -137,10 +137,11 @@ def calibrate(
         if certificate is not None and beside:
             to = certificate.name
         asked = Asked(requirements, _compared(found, files, factory), to)
-        written = write_products(found, out, name, command, asked)
+        code: list[str] = []
+        written = write_products(found, out, name, command, asked, tell=code.append)
         if certificate is not None and not beside:
             replace_file(certificate, (out / to).read_bytes())
-    _print(found, written, out)
+    _print(found, code, written, out)
     met = outcomes(found, asked)
     for one in met:
         typer.echo(f"requirement {one.requirement.text}: {one.word} - {one.sentence}")
@@ -195,11 +196,11 @@ def _correct(files: list[Path], onto: Path, out: Path, name: str) -> int:
     stated = with_correction(old, found, files, shlex.join(["sunatlas", *sys.argv[1:]]))
     text = json.dumps(stated, indent=1, allow_nan=False) + "\n"
     (written,) = write_set({f"{name}.json": text}, out, name)
-    typer.echo(f"wrote {written}")
-    return 0
+    typer.echo(f"wrote {written}; C and Python written with {onto.name} lack this correction")
+    return 0 if found.explained else 3
 
 
-def _print(found: Any, written: list[Path], out: Path) -> None:
+def _print(found: Any, code: list[str], written: list[Path], out: Path) -> None:
     verdict = found.verdict
     typer.echo(f"verdict: {verdict.word} - {verdict.reason}")
     typer.echo(
@@ -217,4 +218,6 @@ def _print(found: Any, written: list[Path], out: Path) -> None:
         counts[one.reason] = counts.get(one.reason, 0) + 1
     for reason, count in {**found.readings.dropped, **counts}.items():
         typer.echo(f"left out: {count} rows: {reason}")
+    for sentence in code:
+        typer.echo(f"code: {sentence}")
     typer.echo(f"wrote {', '.join(path.name for path in written)} in {out}")

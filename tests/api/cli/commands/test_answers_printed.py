@@ -184,7 +184,7 @@ def test_a_corrected_calibration_is_written_beside_the_old_one(
 
     def recalibrate(files: list[Path], onto: object) -> Any:
         asked.append((files, onto))
-        return SimpleNamespace(sentence=lambda: "turned by 0.7 deg")
+        return SimpleNamespace(sentence=lambda: "turned by 0.7 deg", explained=True)
 
     monkeypatch.setattr(documents, "load", lambda path: f"loaded {path}")
     monkeypatch.setattr(recalibration, "recalibrate", recalibrate)
@@ -192,6 +192,9 @@ def test_a_corrected_calibration_is_written_beside_the_old_one(
     out = tmp_path / "new" / "out"
     shown = sunatlas("calibrate", "few.csv", "--onto", old, "--out", out, "--name", "again")
     assert shown.exit_code == 0, shown.stderr
-    assert shown.stdout == f"turned by 0.7 deg\nwrote {out / 'again.json'}\n"
+    assert shown.stdout == (
+        f"turned by 0.7 deg\nwrote {out / 'again.json'}; C and Python written with old.json lack "
+        "this correction\n"
+    )
     assert asked == [([Path("few.csv")], f"loaded {old}")]
     assert json.loads((out / "again.json").read_text()) == {"corrected": f"loaded {old}"}
