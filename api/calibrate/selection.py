@@ -38,6 +38,8 @@ MOST_COMPARED = 6000
 _FEWEST_RUNS = 3
 #: Samples of a run for it to be one that can be left out.
 _FEWEST_OF_RUN = 20
+#: Letters of one model's refusal that are said where all refuse.
+_LONGEST_REFUSAL = 200
 #: Families from the simplest to the most flexible: of two as good, the first is taken.
 _FLEXIBILITY = (
     *("spm", "basic", "linear", "homography", "camera", "lsq", "pinhole", "qpd", "solar-panel"),
@@ -187,8 +189,12 @@ def choose(candidates: Sequence[Candidate]) -> tuple[Candidate, str]:
     """
     usable = [one for one in candidates if not one.refused]
     if not usable:
-        said = "; ".join(dict.fromkeys(one.refused for one in candidates)) or "no model applies"
-        raise UnusableDataError(f"no model can be calibrated on these readings: {said}")
+        said = [one[:_LONGEST_REFUSAL] for one in dict.fromkeys(o.refused for o in candidates)]
+        more = f"; and {len(said) - 3} other reasons" if len(said) > 3 else ""
+        raise UnusableDataError(
+            "no model can be calibrated on these readings: "
+            f"{'; '.join(said[:3]) or 'no model applies'}{more}"
+        )
     answering = [one for one in usable if one.missing <= min(o.missing for o in usable) + 0.02]
     best = min(answering, key=lambda one: one.rms_deg)
     limit = best.rms_deg + best.spread_deg
