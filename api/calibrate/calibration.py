@@ -232,26 +232,10 @@ def calibrate_tables(
     models: Sequence[str] | None = None,
     progress: Callable[[str, int, int], None] = lambda *_: None,
 ) -> Calibration:
-    """Calibrate a sensor by tables in memory, each a run; else as `calibrate`.
+    """Calibrate a sensor by tables in memory, each a run.
 
-    Parameters
-    ----------
-    tables : sequence of Table
-        With the columns that the settings name.
-    stated : Settings
-        Of any kind but ``frames``.
-    apply, thorough, models, progress
-        As `calibrate` takes them.
-
-    Returns
-    -------
-    Calibration
-        Without notes and digests, which are those of files.
-
-    Raises
-    ------
-    TableError, UnusableDataError
-        As `calibrate`.
+    Parameters and errors are those of `calibrate`, but for settings, which are stated and of any
+    kind but ``frames``; notes and digests, which are those of files, stay empty.
     """
     with one_thread():  # small fits: waiting for each other takes threads most of their time
         return _calibrated(tables, stated, apply, thorough, models, progress)

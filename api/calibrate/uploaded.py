@@ -54,7 +54,7 @@ def calibrate_uploads(
     apply: bool = False,
     model: str = "",
     require: str = "",
-    longest_s: float = LONGEST_S,
+    longest_s: float | None = None,
 ) -> dict[str, str]:
     """Calibrate files in a process of its own; returns the text of each product by its name.
 
@@ -70,8 +70,8 @@ def calibrate_uploads(
         The only one tried; all that apply where empty.
     require : str
         A requirement on the error, as `api.calibrate.report.requirement` reads it; none if empty.
-    longest_s : float
-        Seconds after which the process is ended.
+    longest_s : float, optional
+        Seconds after which the process is ended; by default `LONGEST_S`.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def calibrate_uploads(
     return found
 
 
-def preview_uploads(uploads: Sequence[Upload], longest_s: float = LONGEST_S) -> dict[str, Any]:
+def preview_uploads(uploads: Sequence[Upload], longest_s: float | None = None) -> dict[str, Any]:
     """Return what the first file seems to hold, as `api.calibrate.template.preview` says it.
 
     Raises
@@ -95,8 +95,9 @@ def preview_uploads(uploads: Sequence[Upload], longest_s: float = LONGEST_S) -> 
     return found
 
 
-def _answered(uploads: Sequence[Upload], task: dict[str, Any], longest_s: float) -> Any:
+def _answered(uploads: Sequence[Upload], task: dict[str, Any], longest_s: float | None) -> Any:
     """Return what a process of its own answers to a task on files."""
+    longest_s = LONGEST_S if longest_s is None else longest_s
     _require_bounds(uploads, str(task["config"]))
     with temporary_directory() as directory:
         names = [_safe(one.name, number) for number, one in enumerate(uploads)]
