@@ -175,15 +175,13 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     paths = [table_in(path) if path.is_dir() else path for path in paths]
     tables = [read_table(path, settings.file if settings else None) for path in paths]
     stated, notes = _stated(tables, settings)
-    if stated.readings.kind == "frames":
-        for at, path in enumerate(paths):
-            tables[at], said = with_spots(
-                tables[at], path.parent, stated, lambda done, all_: progress("frames", done, all_)
-            )
-            notes += said
-        stated = of_spots(stated)
-    readings, found = _read(tables, stated)
+    tables, stated, said = _with_frames(tables, stated, paths, progress)
+    notes += said
     progress("conventions", 0, 1)
+    swept = joined([readings_of(table, stated) for table in tables])
+    if one_plane(swept):
+        return _of_one_axis(swept, stated, paths, notes)
+    readings, found = _read(tables, stated)
     applied: list[Finding] = []
     while apply and len(applied) < 4:
         certain = next((one for one in found if one.certain and one.change), None)
@@ -193,7 +191,8 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
         applied.append(certain)
         readings, found = _read(tables, stated)
     sound, excluded, runs, fold = sound_of(readings)
-    _require_two_axes(sound)
+    if one_plane(sound):
+        return _of_one_axis(sound, stated, paths, notes)
     readings = sound
     if len(sound) >= _FEWEST_FOR_WRONG:
         wrong = wrong_poses(sound.features, sound.sun, 3.0 * stated.bench.floor_deg)
@@ -266,24 +265,60 @@ def _stated(tables: Sequence[Table], settings: Settings | None) -> tuple[Setting
     return guessed.settings, [*notes, *guessed.notes]
 
 
+def _with_frames(
+    tables: Sequence[Table],
+    settings: Settings,
+    paths: Sequence[Path],
+    progress: Callable[[str, int, int], None],
+) -> tuple[list[Table], Settings, list[str]]:
+    """Return tables with the spots of their pictures, if they name any, and what was done."""
+    if settings.readings.kind != "frames":
+        return list(tables), settings, []
+    made, notes = [], []
+    for table, path in zip(tables, paths, strict=True):
+        measured, said = with_spots(
+            table, path.parent, settings, lambda done, all_: progress("frames", done, all_)
+        )
+        made.append(measured)
+        notes += said
+    return made, of_spots(settings), notes
+
+
 def _read(tables: Sequence[Table], settings: Settings) -> tuple[Readings, list[Finding]]:
     """Return the samples of all tables, and what their conventions seem to be."""
     readings = joined([readings_of(table, settings) for table in tables])
-    _require_two_axes(readings)
     every = None
     if readings.dropped.get(BEHIND, 0) > _MANY_BEHIND * len(readings):
         every = joined([readings_of(table, settings, behind=True) for table in tables])
     return readings, findings(readings, settings, every)
 
 
-def _require_two_axes(readings: Readings) -> None:
+def one_plane(readings: Readings) -> bool:
+    """Say whether the poses lie in one plane through the sensor; UnusableDataError below three."""
+    if len(readings) < 3:
+        raise UnusableDataError(f"expected three poses or more; got {len(readings)}")
     size = np.linalg.svd(readings.sun, compute_uv=False)
-    if len(readings) < 3 or size[2] < _ONE_AXIS * size[1]:
-        raise UnusableDataError(
-            f"the {len(readings)} poses lie along one axis: a second axis would settle the "
-            "calibration (turn the sensor by 90 deg about its boresight, or sweep the other "
-            "gimbal, and add the rows)"
-        )
+    return bool(size[2] < _ONE_AXIS * size[1])
+
+
+def _of_one_axis(
+    readings: Readings, settings: Settings, paths: Sequence[Path], notes: Sequence[str]
+) -> Calibration:
+    """Return the calibration of the one angle that the poses changed."""
+    from api.calibrate.one_axis.calibrated import (  # noqa: PLC0415 - of few files
+        calibrated_axis,
+        plane_note,
+    )
+
+    return Calibration(
+        settings=settings,
+        findings=(),
+        applied=(),
+        digest=_digest(paths),
+        sources=tuple(path.name for path in paths),
+        notes=(*notes, plane_note(readings)),
+        **calibrated_axis(readings, settings.bench.floor_deg),
+    )
 
 
 def _explained(candidate: Candidate, readings: Readings) -> Candidate:

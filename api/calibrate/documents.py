@@ -22,6 +22,7 @@ from algorithms.calibration.saving import (
 from algorithms.contract import Compensation, Floats, Model
 from algorithms.discovery import discover_compensations, discover_models
 from api.calibrate.calibration import Calibration
+from api.calibrate.one_axis.curve import AxisCurve
 from api.calibrate.readings import readings_of
 from api.calibrate.recalibration import Correction
 from api.calibrate.settings import Settings, parse_settings
@@ -189,7 +190,7 @@ def load(path: Path) -> SavedCalibration:
                 cast("Compensation", stage_of(stage, discover_compensations()))
                 for stage in stored["compensations"]
             ),
-            cast("Model", stage_of(stored["model"], discover_models())),
+            cast("Model", stage_of(stored["model"], _models())),
             float(stored["fit"]["interval_factor"]),
             None if temperatures is None else (float(temperatures[0]), float(temperatures[1])),
             np.asarray(correction.get("offset", 0.0), dtype=np.float64),
@@ -200,6 +201,10 @@ def load(path: Path) -> SavedCalibration:
         raise
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise UnreadableCalibrationError(f"{path.name}: {error}") from error
+
+
+def _models() -> dict[str, type[Any]]:
+    return {**discover_models(), AxisCurve.about.name: AxisCurve}
 
 
 def with_correction(

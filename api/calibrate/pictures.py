@@ -56,7 +56,7 @@ def _axes(equal: bool = True) -> tuple[Figure, Any]:
     figure = drawing.Figure(figsize=_SIZE, layout="constrained")
     axes = figure.add_subplot()
     if equal:
-        axes.set_aspect("equal")
+        axes.set_aspect("equal", adjustable="datalim")  # poses may lie on a line
         axes.set_xlabel("off axis along x, deg")
         axes.set_ylabel("off axis along y, deg")
     return figure, axes

@@ -13,6 +13,7 @@ from api.calibrate.flight.channels import ChannelTable, channel_table
 from api.calibrate.flight.channels_c import channel_files
 from api.calibrate.flight.python_source import channels_module, python_module
 from api.calibrate.flight.table import FlightTable, NoTableError, flight_table
+from api.calibrate.one_axis.curve import AxisCurve
 from api.calibrate.report import report
 from files.atomic import replace_file
 
@@ -55,6 +56,11 @@ def products(found: Calibration, name: str, command: str = "") -> dict[str, str]
 
 def _table(found: Calibration) -> FlightTable | ChannelTable:
     features, context = found.readings.features, found.readings.context
+    if isinstance(found.model, AxisCurve):
+        raise NoTableError(
+            "code for flight gives a direction of two angles, and this is a calibration of one "
+            "axis: take the polynomial of the JSON document"
+        )
     if found.readings.kind is FeatureKind.SIGNALS:
         return channel_table(found.model, features, context, found.chosen.rms_deg)
     return flight_table(found.model, features, context)

@@ -260,9 +260,7 @@ def _attitudes(columns: _Columns, vector: tuple[str, ...]) -> list[DirectionSett
         if (four := columns.match_all(patterns)) and are_quaternions(columns.values(four)):
             found = [{"columns": four, "form": "quaternion", "scalar": "last"}]
     if not found:
-        for patterns, order in zip(
-            words.NUMBERED, (("first", "last"), ("last", "first")), strict=True
-        ):
+        for patterns in words.NUMBERED:
             four = columns.match_all(patterns)
             if four and all(map(columns.readable, four)) and are_quaternions(columns.values(four)):
                 order = ("first", "last") if patterns[0].endswith("0") else ("last", "first")
