@@ -125,7 +125,10 @@ def _runs(found: Calibration, along: Floats) -> str:
     axes.bar(np.arange(len(numbers)) - 0.2, means[:, 0], 0.4, label="first axis")
     axes.bar(np.arange(len(numbers)) + 0.2, means[:, 1], 0.4, label="second axis")
     axes.set_xticks(
-        np.arange(len(numbers)), [found.readings.run_names[n] for n in numbers], rotation=30
+        np.arange(len(numbers)),
+        # dollars would be taken for a formula
+        [found.readings.run_names[n].replace("$", r"\$") for n in numbers],
+        rotation=30,
     )
     axes.set_ylabel("mean residual, deg")
     axes.legend()

@@ -40,7 +40,7 @@ BEHIND = "the light is behind the sensor"
 FALLING = "readings fall when light rises"
 _NO_SUM = "the signals have no positive sum"
 #: Cosine of the angle off the axis up to which the light is along the detector's plane.
-_GRAZING = 1e-6
+GRAZING = 1e-6
 #: Share of the usual light below which balances are those of noise.
 _FAINT = 0.1
 _KINDS = {"spot": FeatureKind.SPOT, "channels": FeatureKind.SIGNALS}
@@ -283,7 +283,7 @@ def _reasons(  # noqa: PLR0917 - what a row is made of
         _NO_SUM: ~np.isfinite(features).all(axis=1),
     }
     if settings.readings.kind != "channels":
-        found[BEHIND] = ~(sun[:, 2] > _GRAZING)
+        found[BEHIND] = ~(sun[:, 2] > GRAZING)
     return found
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from api.calibrate.forms import names as words
 from api.calibrate.forms.attitudes import are_matrices, are_quaternions
+from api.calibrate.forms.config_lines import by_order, config_lines
 from api.calibrate.forms.fits import best_of, looks_like_tilted_cells
 from api.calibrate.forms.units import AngleUnit, TemperatureUnit, TimeUnit, is_angle, named
 from api.calibrate.settings import (
@@ -30,7 +31,6 @@ _COLDEST_K = 150.0
 _EPOCHS: tuple[tuple[float, TimeUnit], ...] = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"))
 #: Largest size of a balance, noise included.
 _BALANCE = 1.2
-_SAY = "say in a config, which --init writes:"
 
 
 @dataclass(frozen=True)
@@ -362,33 +362,26 @@ def _turned(table: Table, settings: Settings, notes: list[str]) -> Settings:
 
 
 def _no_direction(columns: _Columns) -> str:
-    names = ", ".join(columns.table.columns)
-    said = _header_note(columns.table)
+    names = [name for name in columns.rest if columns.readable(name)] or columns.rest
+    readings, direction = by_order(names or list(columns.table.columns))
     return (
-        f"{columns.table.source}: {said}no columns of the light's direction among {names}; "
-        "expected sun_x, sun_y, sun_z, or alpha, beta, or azimuth, elevation, or qx, qy, qz, qw; "
-        f'{_SAY} [direction] form = "projection", columns = {_two(columns.rest)}'
+        f"{columns.table.source}: {_header_note(columns.table)}no columns of the light's direction "
+        f"among {', '.join(columns.table.columns)}; expected sun_x, sun_y, sun_z, or alpha, beta, "
+        f"or azimuth, elevation, or qx, qy, qz, qw; {config_lines(readings, direction)}"
     )
 
 
 def _no_readings(columns: _Columns, way: DirectionSettings) -> str:
-    kind = {1: "balance", 2: "spot"}.get(len(columns.rest), "channels")
-    said = _header_note(columns.table)
+    kind: Kind = "channels" if len(columns.rest) > 2 else "spot"
+    if way.form != "one-angle" and len(columns.rest) < 2:
+        said = "there is none to be named"
+    else:
+        said = config_lines(ReadingsSettings(kind=kind, columns=tuple(columns.rest)), way)
     return (
-        f"{columns.table.source}: {said}no columns of readings recognised among "
-        f"{', '.join(columns.rest) or 'none'}; {_SAY} [readings] "
-        f'kind = "{kind}", columns = {_listed(columns.rest)}'
-        f" (direction: {way.form} of {', '.join(way.columns)})"
+        f"{columns.table.source}: {_header_note(columns.table)}no columns of readings recognised "
+        f"among {', '.join(columns.rest) or 'none'}; {said}"
     )
 
 
 def _header_note(table: Table) -> str:
     return "" if table.header_row else "expected a header with names of columns, and found none; "
-
-
-def _two(names: Sequence[str]) -> str:
-    return _listed(names[-2:])
-
-
-def _listed(names: Sequence[str]) -> str:
-    return "[" + ", ".join(f'"{name}"' for name in names) + "]"

@@ -120,12 +120,14 @@ def _safe(name: str, number: int) -> str:
 
 
 def _calibrate(directory: Path) -> dict[str, dict[str, str]]:
-    import tomllib  # noqa: PLC0415 - of the process
-
-    from algorithms.contract import UnusableDataError  # noqa: PLC0415 - as above
+    from algorithms.contract import UnusableDataError  # noqa: PLC0415 - of the process
     from api.calibrate.calibration import calibrate  # noqa: PLC0415 - as above
     from api.calibrate.products import products  # noqa: PLC0415 - as above
-    from api.calibrate.settings import SettingsError, parse_settings  # noqa: PLC0415 - as above
+    from api.calibrate.settings import (  # noqa: PLC0415 - as above
+        SettingsError,
+        parse_settings,
+        parse_toml,
+    )
     from api.calibrate.table import TableError, read_table  # noqa: PLC0415 - as above
 
     task = json.loads((directory / _TASK).read_text("utf-8"))
@@ -133,18 +135,15 @@ def _calibrate(directory: Path) -> dict[str, dict[str, str]]:
     try:
         settings = None
         if task["config"].strip():
-            try:
-                stated = tomllib.loads(task["config"])
-            except RecursionError:
-                return {"refused": {"why": "config: brackets stand too deep in each other"}}
-            settings = parse_settings(stated, "config")
-        rows = sum(len(read_table(path)) for path in paths)
+            settings = parse_settings(parse_toml(task["config"], "config"), "config")
+        layout = None if settings is None else settings.file
+        rows = sum(len(read_table(path, layout)) for path in paths)
         if rows > MOST_ROWS:
             return {"refused": {"why": f"expected at most {MOST_ROWS} rows in all; got {rows}"}}
         models = [task["model"]] if task["model"] else None
         found = calibrate(paths, settings, apply=task["apply"], models=models)
         return {"products": products(found, "sun_sensor", "POST /v1/calibrations")}
-    except (TableError, SettingsError, UnusableDataError, tomllib.TOMLDecodeError) as error:
+    except (TableError, SettingsError, UnusableDataError) as error:
         return {"refused": {"why": str(error)}}
     except (MemoryError, RecursionError):
         return {"refused": {"why": "the files need more memory than a calibration may take"}}

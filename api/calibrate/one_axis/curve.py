@@ -101,21 +101,21 @@ class AxisCurve(CalibratedModel):
         step = float(np.median(np.diff(np.unique(u.round(9)))))
         self.ends_ = np.array([-1.0, 1.0]) * (1.0 + step / 2.0)
         most = min(_MOST, len(u) // _PER_TERM - 1)
-        design = chebyshev.chebvander(u, most)
+        design = _terms(u, most)
         places = np.unique(u.round(9))
-        between = chebyshev.chebvander((places[1:] + places[:-1]) / 2.0, most)
+        between = _terms((places[1:] + places[:-1]) / 2.0, most)
         wanted = angle if self.target == "angle" else np.tan(np.radians(angle))
         if self.target == "tangent" and not np.abs(angle).max() < _MOST_TANGENT_DEG:
             raise UnusableDataError(
-                f"{self.about.name}: tangents of angles up to {np.abs(angle).max():.0f} deg are not "
-                "fitted"
+                f"{self.about.name}: expected angles below {_MOST_TANGENT_DEG:g} deg; got "
+                f"{np.abs(angle).max():.3g}"
             )
         errors = errors_of_orders(
             design, list(range(2, most + 2)), wanted[:, None], folds_along(u), between
         )
         choice = choose_order(errors, self.about.name)
         design = design[:, : choice.order + 2]
-        self.coefficients_ = np.linalg.lstsq(design, wanted, rcond=None)[0]
+        self.coefficients_ = np.asarray(np.linalg.lstsq(design, wanted, rcond=None)[0])
         self.whitening_ = np.asarray(np.linalg.inv(np.linalg.qr(design, mode="r")))
         self.validated_deg_ = in_degrees(choice.rms, self.target)
 
@@ -137,11 +137,16 @@ class AxisCurve(CalibratedModel):
     def deviation_deg(self, features: Floats, context: Columns | None = None) -> Floats:  # type: ignore[override]
         """1-sigma (N,) of the angle in the plane, degrees: of residuals and of coefficients."""
         u = (np.asarray(features, dtype=np.float64) - self.middle_) @ self.along_
-        terms = chebyshev.chebvander(u, len(self.coefficients_) - 1)
+        terms = _terms(u, len(self.coefficients_) - 1)
         share = ((terms @ self.whitening_) ** 2).sum(axis=1)
         found = self.validated_deg_**2 + share * self.quality_.residual_rms_deg**2
         known = np.isfinite(self.predict(features, context)[:, 0])
         return np.asarray(np.sqrt(np.where(known, found, np.nan)))
+
+
+def _terms(u: Floats, degree: int) -> Floats:
+    """``T_k(u)`` for k = 0..degree, (N, degree + 1)."""
+    return np.asarray(chebyshev.chebvander(u, degree), dtype=np.float64)
 
 
 def plane_of(sun: Floats) -> tuple[Floats, Floats]:
