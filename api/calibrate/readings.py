@@ -265,7 +265,8 @@ def quadrant_balances(signals: Floats) -> Floats:
 def _reasons(  # noqa: PLR0917 - what a row is made of
     raw: Floats, signals: Floats, stated: Floats, sun: Floats, features: Floats, settings: Settings
 ) -> dict[str, NDArray[np.bool_]]:
-    zeros = (raw == 0).all(axis=1)
+    # a single reading may well be zero
+    zeros = (raw == 0).all(axis=1) & (raw.shape[1] > 1)
     faint = np.zeros(len(raw), dtype=np.bool_)
     if settings.readings.kind in ("quadrants", "electrodes", "pair"):
         total = signals.sum(axis=1)

@@ -54,17 +54,19 @@ class _Columns:
 
     table: Table
     keys: dict[str, str]
+    units: dict[str, str]
     rest: list[str]
     notes: list[str] = field(default_factory=list)
 
     @classmethod
     def of(cls, table: Table) -> _Columns:
-        keys = {}
+        keys, units = {}, dict(table.units)
         for name in table.columns:
             read = named(name)
-            unit = table.units.get(name, read.unit)
-            keys[name] = f"{read.bare}_deg" if is_angle(unit) else read.bare
-        return cls(table, keys, list(table.columns))
+            if read.unit is not None:
+                units.setdefault(name, read.unit)
+            keys[name] = f"{read.bare}_deg" if is_angle(units.get(name)) else read.bare
+        return cls(table, keys, units, list(table.columns))
 
     def take(self, *columns: str | None) -> None:
         self.rest = [name for name in self.rest if name not in columns]
@@ -79,7 +81,7 @@ class _Columns:
         return name not in self.table.unread
 
     def angle(self, name: str) -> bool:
-        return is_angle(self.table.units.get(name))
+        return is_angle(self.units.get(name))
 
     def values(self, columns: Sequence[str]) -> np.ndarray[Any, Any]:
         return np.column_stack([self.table.numbers(name) for name in columns])
@@ -140,7 +142,6 @@ def understood(table: Table) -> Understood:
 
 def _rows_of(columns: _Columns) -> RowSettings:
     """Take run, time, temperature and indices off the columns."""
-    table = columns.table
     run = columns.match(words.RUN)
     temperature = next(
         (
@@ -148,14 +149,14 @@ def _rows_of(columns: _Columns) -> RowSettings:
             for name in columns.rest
             if columns.readable(name)
             and re.fullmatch(words.TEMPERATURE, columns.keys[name])
-            and (columns.keys[name] != "t" or table.units.get(name) in get_args(TemperatureUnit))
+            and (columns.keys[name] != "t" or columns.units.get(name) in get_args(TemperatureUnit))
         ),
         None,
     )
     columns.take(run, temperature)
     times = [n for n in columns.rest if re.fullmatch(words.TIME, columns.keys[n])]
     times = [name for name in times if not columns.angle(name)]
-    dated = [name for name in times if table.units.get(name) == "unix"]
+    dated = [name for name in times if columns.units.get(name) == "unix"]
     readable = [*dated, *(name for name in times if columns.readable(name))]
     columns.notes += [
         f"column {name} is neither a number nor a date and is not used"
@@ -187,7 +188,7 @@ def _counts(columns: _Columns, name: str) -> bool:
 
 
 def _time_unit(columns: _Columns, name: str) -> TimeUnit:
-    unit = columns.table.units.get(name)
+    unit = columns.units.get(name)
     if unit in get_args(TimeUnit):
         return unit  # type: ignore[return-value]  # narrowed by what it is one of
     if unit == "unix":
@@ -210,7 +211,7 @@ def _median(columns: _Columns, name: str) -> float:
 
 
 def _temperature_unit(columns: _Columns, name: str) -> TemperatureUnit:
-    unit = columns.table.units.get(name)
+    unit = columns.units.get(name)
     if unit in get_args(TemperatureUnit):
         return unit  # type: ignore[return-value]  # narrowed by what it is one of
     if _median(columns, name) > _COLDEST_K:
@@ -246,7 +247,7 @@ def _directions_of(columns: _Columns) -> list[DirectionSettings]:
 
 
 def _angles(columns: _Columns, pair: tuple[str, ...], form: Any) -> DirectionSettings:
-    said = [columns.table.units.get(name) for name in pair]
+    said = [columns.units.get(name) for name in pair]
     units = tuple(cast("AngleUnit", unit if is_angle(unit) else "deg") for unit in said)
     return DirectionSettings(
         columns=pair, form=form, unit=units[0] if len(set(units)) == 1 else units
@@ -296,7 +297,7 @@ def _dated(columns: _Columns) -> str | None:
     for name in columns.table.columns:
         if not re.fullmatch(words.TIME, columns.keys[name]) or not columns.readable(name):
             continue
-        if columns.table.units.get(name) == "unix" or _median(columns, name) > 1e8:
+        if columns.units.get(name) == "unix" or _median(columns, name) > 1e8:
             return name
         if columns.keys[name].startswith(("jd", "mjd", "julian")):
             return name
