@@ -158,8 +158,9 @@ def _frame(directory: Path, name: str, place: str) -> tuple[NDArray[np.generic],
     if picture.ndim == 2:
         return picture, False
     colours = picture[:, :, :3]
-    coloured = bool((colours != colours[:, :, :1]).any())
-    return (_luminance(colours) if coloured else colours[:, :, 0]), coloured
+    # of three equal colours each is the luminance
+    grey = bool((colours == colours[:, :, :1]).all())
+    return (colours[:, :, 0] if grey else _luminance(colours)), True
 
 
 def _clipped(frame: NDArray[np.generic]) -> bool:

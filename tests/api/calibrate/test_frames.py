@@ -149,7 +149,7 @@ def one_picture(directory: Path, *pictures: Path | np.ndarray) -> tuple[Table, l
 def test_a_picture_of_another_size_is_refused_by_its_row(tmp_path: Path) -> None:
     sun = sun_of(np.array([[0.0, 0.0]]))[0]
     usual = picture(sun, np.random.default_rng(1))
-    with pytest.raises(TableError, match="row 3: expected a picture of 80 x 60 .*; got 80 x 50"):
+    with pytest.raises(TableError, match=r"row 3: expected a picture of 80 x 60 .*; got 80 x 50"):
         one_picture(tmp_path / "run", usual, usual[:50])
 
 
@@ -185,6 +185,6 @@ def test_links_in_a_circle_are_no_picture(tmp_path: Path) -> None:
 def test_colour_is_said_and_a_saturated_disc_flagged(tmp_path: Path) -> None:
     table, said = one_picture(tmp_path / "colour", CASES / "colour-disc.png")
     assert len(table.columns[SPOT[0]]) == 1
-    assert any("1 frames in colour" in note for note in said)
+    assert any("1 frames in colour" in note for note in said), said
     table, said = one_picture(tmp_path / "clipped", CASES / "half-saturated-disc.png")
     assert any("1 frames may be saturated" in note for note in said)

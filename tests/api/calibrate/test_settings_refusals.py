@@ -81,7 +81,7 @@ def test_toml_that_nobody_can_read_is_refused_in_a_sentence(text: str) -> None:
 
 
 def test_one_reading_is_of_one_axis() -> None:
-    with pytest.raises(SettingsError, match='with direction.form = "one-angle"; got vector'):
+    with pytest.raises(SettingsError, match=r'with direction\.form = "one-angle"; got vector'):
         parse_settings({"readings": {"kind": "spot", "columns": ["x"]}, "direction": VECTOR}, "a")
 
 
