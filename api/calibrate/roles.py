@@ -118,7 +118,11 @@ def understood(table: Table) -> Understood:
     if readings is None:
         raise TableError(_no_readings(columns, ways[0]))
     kinds = [readings]
-    if readings.kind == "quadrants" and all(columns.readable(name) for name in readings.columns):
+    if (
+        readings.kind == "quadrants"
+        and not one_axis
+        and all(columns.readable(name) for name in readings.columns)
+    ):
         kinds.append(readings.model_copy(update={"kind": "channels"}))
     made = [
         Settings(
@@ -322,7 +326,7 @@ def _readings_of(
         return ReadingsSettings(kind="channels", columns=tuple(faces)), normals
     if len(channels) > 4 and len(channels) > len(found):
         return ReadingsSettings(kind="channels", columns=tuple(channels)), None
-    if kind is not None and not (one_axis and len(found) > 2):
+    if kind is not None:
         return ReadingsSettings(kind=kind, columns=found), None
     numeric = [name for name in among if columns.readable(name)]
     if one_axis:

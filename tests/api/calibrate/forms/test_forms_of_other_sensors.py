@@ -116,6 +116,7 @@ def test_the_almanac_is_that_of_astropy_to_some_thousandths_of_a_degree() -> Non
 
 LINE = np.linspace(-40.0, 40.0, 41)
 ONE = np.column_stack([np.sin(np.radians(LINE)), 0.0 * LINE, np.cos(np.radians(LINE))])
+QUARTERS = np.column_stack([1 - ONE[:, 0], 1 + ONE[:, 0], 1 + ONE[:, 0], 1 - ONE[:, 0]])
 
 
 @pytest.mark.parametrize(
@@ -124,6 +125,7 @@ ONE = np.column_stack([np.sin(np.radians(LINE)), 0.0 * LINE, np.cos(np.radians(L
         (("x_px", "theta_deg"), (300.0 * np.tan(np.radians(LINE)), LINE), "spot"),
         (("balance", "angle"), (np.sin(np.radians(LINE)), LINE), "balance"),
         (("pd_a", "pd_b", "sun_angle [mrad]"), (1 + ONE[:, 0], 1 - ONE[:, 0], None), "pair"),
+        (("UL", "UR", "LR", "LL", "theta [deg]"), (*QUARTERS.T, LINE), "quadrants"),
         (("right", "left", "table [deg]"), (1 + ONE[:, 0], 1 - ONE[:, 0], LINE), "pair"),
     ],
 )
@@ -137,7 +139,7 @@ def test_one_reading_or_two_photodiodes_of_one_angle(
     assert settings.readings.kind == kind
     found = readings_of(made, settings)
     assert found.sun == pytest.approx(ONE, abs=1e-12)
-    if kind == "pair":
+    if kind in ("pair", "quadrants"):
         assert found.features[:, 0] == pytest.approx(ONE[:, 0], abs=1e-12)
 
 
