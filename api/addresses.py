@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from urllib.parse import quote, urlencode
 
 NAVIGATION = (
+    ("/calibrate", "Calibrate"),
     ("/", "Answer"),
     ("/studies", "Studies"),
     ("/algorithms", "Algorithms"),

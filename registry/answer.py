@@ -9,11 +9,10 @@ from functools import cached_property
 
 import numpy as np
 
+from registry.calibration import Calibration, calibration
 from registry.design_table import Flags, Numbers, Positions
-from registry.designs import Design, Place
-from registry.draws import unit_errors
-from registry.judging import MEETS, MISSES, Question, States
-from registry.measured_pipelines import MeasuredPipeline, PipelineJudgement
+from registry.designs import Place
+from registry.judging import MEETS, MISSES, PARTS, Question, States
 from registry.ranking import ALIKE, Sort, TaskMeasure, in_words, joint_order, task_measure
 from registry.relaxation import Explanation, explain
 from registry.reports import Report
@@ -23,60 +22,56 @@ from survey_data.processors import factor
 STATE_NAMES = {MEETS: "meets", 0: "unknown", MISSES: "misses"}
 
 
-@dataclass(frozen=True)
-class Calibration:
-    """A calibration of an architecture that meets the requirements, or comes nearest.
-
-    Attributes
-    ----------
-    design, pipeline : labels and studies; the measured pipeline, None where none is measured
-    own : own error over the required field and conditions, with the condition it is largest under
-    judged_deg : error that the stated share of units (and benches, if stated) stays within
-    interval_deg : own error times and over the standard error of its log over units
-    needs_bench_deg : bench error up to which the limit is kept; None without a limit, 0 for none
-    units_within : of ten units, how many keep the limit; None without one
-    """
-
-    design: Design
-    pipeline: MeasuredPipeline | None
-    own: PipelineJudgement | None = None
-    judged_deg: float | None = None
-    interval_deg: tuple[float, float] | None = None
-    needs_bench_deg: float | None = None
-    units_within: int | None = None
-    latency_us: float | None = None
-    availability: float | None = None
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RankedArchitecture:
     """An architecture of the answer.
 
     Attributes
     ----------
+    question, number : what it is an answer to; its position in the table
     rank, tied : None and False where nothing is asked; equal errors share a rank
-    number, place : its position in the table
     meets : kinds of evidence that meet all requirements: "reported", "measured"
-    evidence : for each requirement the state of reports, measurements and the survey's advice;
-        None where that kind of evidence says nothing about such a requirement
-    reports : best first; those that meet all requirements, or else the one that comes nearest
-    best : the most accurate calibration that meets all, or else the one that comes nearest
+    listed : positions of `reports`
+    row : position of the pipeline of `best`; -1 for none
     shown_deg : the error that it is ordered by; infinite where there is none
     calibrations : how many meet the requirements
     measures : the own measures of the tasks asked for
     """
 
+    question: Question
+    number: int
     rank: int | None
     tied: bool
-    number: int
-    place: Place
     meets: tuple[str, ...]
-    evidence: Mapping[str, tuple[str | None, str | None, str | None]]
-    reports: tuple[Report, ...]
-    best: Calibration | None
+    listed: Sequence[int]
+    row: int
     shown_deg: float
     calibrations: int
     measures: tuple[TaskMeasure, ...]
+
+    @property
+    def place(self) -> Place:
+        """Its studies, products, designs and advice."""
+        return self.question.table.places[self.number]
+
+    @property
+    def reports(self) -> tuple[Report, ...]:
+        """Reports that meet all requirements, best first, or else the one that comes nearest."""
+        return tuple(self.question.table.reports[at] for at in self.listed)
+
+    @cached_property
+    def best(self) -> Calibration | None:
+        """The most accurate calibration that meets all, or else the one that comes nearest."""
+        return None if self.row < 0 else calibration(self.question, self.row)
+
+    @cached_property
+    def evidence(self) -> Mapping[str, tuple[str | None, str | None, str | None]]:
+        """For each requirement the state of reports, measurements and the survey's advice.
+
+        None where that kind of evidence says nothing about such a requirement.
+        """
+        report = self.listed[0] if self.listed else -1
+        return dict(_evidence(self.question, self.number, report, self.row))
 
     @property
     def backing(self) -> int:
@@ -141,8 +136,8 @@ class Answer:
         place = question.table.row_place
         more = without.measured & ~question.measured_places[place]
         found = _nearest(more, {}, without.shown_deg, place)
-        benches = [without.bench_for(row) or 0.0 for row in found.values()]
-        return (len(benches), max(benches)) if benches else None
+        bench = without.bench_for(list(found.values()))
+        return None if bench is None else (len(found), bench)
 
     def calibrations(self, one: RankedArchitecture) -> Iterator[Calibration]:
         """Yield the calibrations of an architecture that meet the requirements, best first."""
@@ -159,7 +154,7 @@ class Answer:
         for at in order.tolist():
             design = table.designs[int(designs[at])]
             row = int(rows[at])
-            yield self._calibration(design, row) if row >= 0 else Calibration(design, None)
+            yield calibration(self.question, row) if row >= 0 else Calibration(design, None)
 
     @cached_property
     def _best_row(self) -> Positions:
@@ -189,39 +184,40 @@ class Answer:
         rms = table.report_numbers["rms_deg"]
         return _nearest(among, question.by_report, rms, table.report_place)
 
+    @cached_property
+    def _reporting(self) -> Mapping[int, list[int]]:
+        """Of each architecture the reports that meet all requirements, best first."""
+        question, table = self.question, self.question.table
+        found: dict[int, list[int]] = {}
+        by_rms = np.argsort(table.report_numbers["rms_deg"], kind="stable")
+        for at in by_rms[question.reported[by_rms]].tolist():
+            found.setdefault(int(table.report_place[at]), []).append(at)
+        return found
+
     def _architecture(self, number: int) -> RankedArchitecture:
         question, table = self.question, self.question.table
-        place = table.places[number]
-        reporting = np.flatnonzero(question.reported & (table.report_place == number)).tolist()
-        rms = table.report_numbers["rms_deg"]
-        reporting.sort(key=lambda at: (math.isnan(rms[at]), rms[at]))
-        nearest_report = self._nearest_report.get(number, -1)
+        asked, place = question.requirements, table.places[number]
+        listed = self._reporting.get(number, [])
         row = self._nearest_row.get(number, -1)
-        meets = (("reported",) * bool(reporting)) + (
-            ("measured",) * bool(row >= 0 and question.measured[row])
-        )
-        shown = float(question.shown_deg[row]) if "measured" in meets else math.inf
-        if math.isinf(shown) and reporting and not math.isnan(rms[reporting[0]]):
-            shown = float(rms[reporting[0]])
-        best = None
-        if row >= 0:
-            best = self._calibration(table.designs[int(table.row_design[row])], row)
-        listed = reporting or [nearest_report] * (nearest_report >= 0)
-        asked = question.requirements
-        time = factor(asked.processor)
+        is_measured = bool(row >= 0 and question.measured[row])
+        shown = float(question.shown_deg[row]) if is_measured else math.inf
+        if math.isinf(shown) and listed:
+            rms = float(table.report_numbers["rms_deg"][listed[0]])
+            shown = shown if math.isnan(rms) else rms
+        pipeline = None if row < 0 else table.rows[row]
+        nearest = [self._nearest_report[number]] if number in self._nearest_report else []
         return RankedArchitecture(
+            question=question,
+            number=number,
             rank=None,
             tied=False,
-            number=number,
-            place=place,
-            meets=meets,
-            evidence=dict(self._evidence(number, listed[0] if listed else -1, row)),
-            reports=tuple(table.reports[at] for at in listed),
-            best=best,
+            meets=("reported",) * bool(listed) + ("measured",) * is_measured,
+            listed=listed or nearest,
+            row=row,
             shown_deg=shown,
             calibrations=int(self._design_counts[number]),
             measures=tuple(
-                task_measure(task, place, None if best is None else best.pipeline, shown, time)
+                task_measure(task, place, pipeline, shown, factor(asked.processor))
                 for task in asked.include.get("task", ())
             ),
         )
@@ -230,58 +226,6 @@ class Answer:
     def _design_counts(self) -> Positions:
         of = self.question.table.design_place[self.question.matching_designs]
         return np.bincount(of, minlength=len(self.question.table.places))
-
-    def _evidence(
-        self, number: int, report: int, row: int
-    ) -> Iterator[tuple[str, tuple[str | None, str | None, str | None]]]:
-        """Yield for each requirement but detector and mask the states of the kinds of evidence."""
-        question, table = self.question, self.question.table
-        asked = question.requirements
-        for name in asked.names:
-            if name.removeprefix("exclude_") in {"detector", "mask"}:
-                continue
-            reported = _name_of(question.by_report, name, report)
-            measured = _name_of(question.by_pipeline, name, row)
-            if measured is None and row >= 0 and name in question.of_parts:
-                measured = "meets"  # only pipelines of the required parts are candidates
-            advised = None
-            if name in {*OF_STUDIES, "accuracy"}:
-                advised = "unknown"
-                if table.places[number].is_advised_for(name, asked.include[name]):
-                    advised = "meets"
-            yield name, (reported, measured, advised)
-
-    def _calibration(self, design: Design, row: int) -> Calibration:
-        question, table = self.question, self.question.table
-        asked, pipeline = question.requirements, table.rows[row]
-        own = pipeline.judge(asked.hazards, asked.half_field_deg)
-        judged = question.judged_alone_deg(row)
-        limit = asked.largest_deg
-        interval, within, needed = None, None, None
-        if math.isfinite(own.error_deg):
-            spread = math.exp(2.0 * float(table.log_error[row]))
-            interval = own.error_deg / spread, own.error_deg * spread
-            if limit is not None:
-                found = unit_errors(
-                    np.array([own.error_deg]),
-                    table.unit_ratios[[row]],
-                    np.array([asked.bench_deg or 0.0]),
-                    asked.share,
-                )
-                within = int(np.count_nonzero(found <= limit))
-                needed = question.bench_for(row)
-        time = pipeline.latency_us
-        return Calibration(
-            design=design,
-            pipeline=pipeline,
-            own=own,
-            judged_deg=judged if math.isfinite(judged) else None,
-            interval_deg=interval,
-            needs_bench_deg=needed,
-            units_within=within,
-            latency_us=None if time is None else time * factor(asked.processor),
-            availability=pipeline.availability(asked.hazards),
-        )
 
     def _keys(self, found: Sequence[RankedArchitecture]) -> list[tuple[float, ...]]:
         """Return what each architecture is ordered by; equal numbers keep the taxonomy's order."""
@@ -318,8 +262,10 @@ class Answer:
 
     def _by_task(self, one: RankedArchitecture, at: int) -> tuple[float, ...]:
         measure = one.measures[at]
+        if math.isfinite(measure.cost):
+            return (measure.cost, 0.0)
         studies = sum(measure.task in study.of("task") for study in one.place.studies.values())
-        return (measure.cost, -studies if math.isinf(measure.cost) else 0.0)
+        return (measure.cost, -studies)
 
     def _ranked(
         self, ordered: Sequence[RankedArchitecture], keys: Sequence[tuple[float, ...]]
@@ -363,16 +309,33 @@ class Answer:
         return two.shown_deg <= one.shown_deg * max(ALIKE, math.exp(2.0 * spread))
 
 
+def _evidence(
+    question: Question, number: int, report: int, row: int
+) -> Iterator[tuple[str, tuple[str | None, str | None, str | None]]]:
+    """Yield for each requirement but detector and mask the states of the kinds of evidence."""
+    table, asked = question.table, question.requirements
+    for name in asked.names:
+        if name.removeprefix("exclude_") in {"detector", "mask"}:
+            continue
+        reported = _name_of(question.by_report, name, report)
+        measured = _name_of(question.by_pipeline, name, row)
+        if measured is None and row >= 0 and name in PARTS:
+            measured = "meets"  # only pipelines of the required parts are candidates
+        advised = None
+        if name in {*OF_STUDIES, "accuracy"}:
+            advised = "unknown"
+            if table.places[number].is_advised_for(name, asked.include[name]):
+                advised = "meets"
+        yield name, (reported, measured, advised)
+
+
 def _tier(one: RankedArchitecture) -> int:
     return {("reported", "measured"): 0, ("reported",): 1, ("measured",): 2}[one.meets]
 
 
 def _log_error(one: RankedArchitecture) -> float:
     """Return the standard error of the log of the error shown; 0 for a reported one."""
-    if "measured" not in one.meets or one.best is None or one.best.interval_deg is None:
-        return 0.0
-    low, high = one.best.interval_deg
-    return math.log(high / low) / 4.0
+    return float(one.question.table.log_error[one.row]) if "measured" in one.meets else 0.0
 
 
 def _nearest(

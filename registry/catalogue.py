@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from algorithms.display_names import display_name
 from registry import studies as registered
@@ -114,8 +114,8 @@ class Catalogue:
     def implementations(self, role: Role | None = None) -> tuple[Implementation, ...]:
         """Every implementation, extractors first, each by taxonomy order and name."""
         found = [
-            *(self._describe_extractor(c) for c in self.extractors.values()),
-            *(self._describe_model(c) for c in self.models.values()),
+            *(self._describe("extractor", c) for c in self.extractors.values()),
+            *(self._describe("model", c) for c in self.models.values()),
         ]
         order = {
             r: {v: i for i, v in enumerate(self.taxonomy.values(r))} for r in ("extractor", "model")
@@ -139,38 +139,22 @@ class Catalogue:
             and not any(kind in known for kind in self.taxonomy.kinds(attribute, value))
         )
 
-    def _describe_extractor(self, cls: type[Extractor]) -> Implementation:
-        about = cls.about
+    def _describe(self, role: Role, one: type[Extractor] | Scored) -> Implementation:
+        about: Any = one.about
+        reads = role == "extractor"
         return Implementation(
             name=about.name,
-            role="extractor",
+            role=role,
             taxonomy=about.taxonomy,
-            category=self.taxonomy.category("extractor", about.taxonomy),
-            observation=str(about.observation),
-            kind=str(about.kind),
-            accepts=None,
+            category=self.taxonomy.category(role, about.taxonomy),
+            observation=str(about.observation) if reads else None,
+            kind=str(about.kind) if reads else None,
+            accepts=None if reads else tuple(sorted(str(kind) for kind in about.accepts)),
             labels=tuple(about.labels),
             studies=tuple(about.studies),
             origin=about.origin,
             version=about.version,
-            summary=_summary(cls),
-        )
-
-    def _describe_model(self, cls: Scored) -> Implementation:
-        about = cls.about
-        return Implementation(
-            name=about.name,
-            role="model",
-            taxonomy=about.taxonomy,
-            category=self.taxonomy.category("model", about.taxonomy),
-            observation=None,
-            kind=None,
-            accepts=tuple(sorted(str(kind) for kind in about.accepts)),
-            labels=tuple(about.labels),
-            studies=tuple(about.studies),
-            origin=about.origin,
-            version=about.version,
-            summary=_summary(cls),
+            summary=_summary(one),
         )
 
 

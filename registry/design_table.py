@@ -78,6 +78,7 @@ class DesignTable:
         self.report_study = np.array([-1 if k is None else self._at[k] for k in keys], int)
         self.is_built = np.array([place.is_built for place in self.places], bool)
         self.is_specified = np.array([d.is_specified for d in self.designs], bool)
+        self.is_measured = np.array([bool(d.rows) for d in self.designs], bool)
         self.is_advised = np.array([bool(d.advice) for d in self.designs], bool)
 
     def _sets(self, of: Iterable[Iterable[str]]) -> Flags:
@@ -193,7 +194,11 @@ class DesignTable:
         return PipelineErrors(own, first, share, covers)
 
     def within(
-        self, own_deg: Numbers, among: Flags | list[int], bench_deg: float | None, share: float
+        self,
+        own_deg: Numbers,
+        among: Flags | list[int] | slice,
+        bench_deg: float | None,
+        share: float,
     ) -> Numbers:
         """Return the errors that a share of units (and benches) stays within, of some pipelines.
 
@@ -204,10 +209,10 @@ class DesignTable:
         bench_deg : error of the bench; None or 0 for true directions
         share : of units and benches
         """
-        own, ratios = own_deg[among], self.unit_ratios[among]
         if bench_deg:
-            return at_confidence(own, ratios, np.full(len(own), bench_deg), share)
-        return np.asarray(own * ratios[:, math.ceil(share * UNITS - 1e-9) - 1])
+            return at_confidence(own_deg[among], self.unit_ratios[among], bench_deg, share)
+        unit = math.ceil(share * UNITS - 1e-9) - 1
+        return np.asarray(own_deg[among] * self.unit_ratios[among, unit])
 
     @cached_property
     def report_numbers(self) -> Mapping[str, Numbers]:

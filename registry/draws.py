@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from registry.requirements import UNITS
 
 Numbers = NDArray[np.float64]
+Positions = NDArray[np.int64]
 
 #: Fixed error of the standard bench over its root mean square over benches: the middles of twenty
 #: equal shares of 3,000 drawn benches (a test draws them anew).
@@ -27,6 +28,9 @@ BENCHES: tuple[float, ...] = (
 #: Measured units from which on their own spread counts.
 FEWEST_UNITS = 5
 
+_BENCHES = np.array(BENCHES)
+#: Draws, itself among them, in which neither the unit's nor the bench's error is smaller.
+_AS_LARGE = np.outer(np.arange(UNITS, 0, -1), np.arange(len(BENCHES), 0, -1))
 _SHARES = [(at + 0.5) / UNITS for at in range(UNITS)]
 
 
@@ -49,53 +53,34 @@ def unit_ratios(errors_deg: Sequence[float], spread: float) -> tuple[float, ...]
     return tuple(math.exp(logs[int(share * len(logs))] - middle) for share in _SHARES)
 
 
-def drawn_squares(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers) -> Numbers:
-    """Return squared errors (R, units, benches) of R pipelines by draw.
-
-    Squares are in the order of the errors, so that the root of one is all it takes.
+def at_confidence(own_deg: Numbers, ratios: Numbers, bench_deg: float, share: float) -> Numbers:
+    """Return the errors (R,) that a share of the draws keeps within, of R pipelines.
 
     Parameters
     ----------
     own_deg
         Own errors (R,); infinite where there is none.
     ratios
-        Of units (R, units) over these.
+        Of units (R, units) over these, ascending.
     bench_deg
-        Root mean square (R,) of the fixed errors of the benches.
+        Root mean square of the fixed errors of the benches.
+    share
+        Of the draws.
     """
-    unit = own_deg[:, None] * ratios
-    bench = bench_deg[:, None] * np.array(BENCHES)
-    return np.asarray(unit[:, :, None] ** 2 + bench[:, None, :] ** 2)
+    reach, unit, bench = _largest_draws(share)
+    squares = ((own_deg[:, None] * ratios) ** 2)[:, unit] + ((bench_deg * _BENCHES) ** 2)[bench]
+    place = len(unit) - reach
+    squares.partition(place, axis=1)
+    return np.asarray(np.sqrt(squares[:, place]))
 
 
-def at_confidence(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers, share: float) -> Numbers:
-    """Return the errors (R,) that a share of the draws keeps within.
-
-    Parameters as `drawn_squares`.
-    """
-    found = np.array(own_deg, dtype=np.float64)
-    known = np.isfinite(found)
-    size = UNITS * len(BENCHES)
-    draws = drawn_squares(found[known], ratios[known], bench_deg[known]).reshape(-1, size)
-    place = _fewest(share, size) - 1
-    draws.partition(place, axis=1)
-    found[known] = np.sqrt(draws[:, place])
-    return found
-
-
-def unit_errors(own_deg: Numbers, ratios: Numbers, bench_deg: Numbers, share: float) -> Numbers:
+def unit_errors(own_deg: Numbers, ratios: Numbers, bench_deg: float, share: float) -> Numbers:
     """Return the error (R, units) that each unit keeps on a share of the benches.
 
-    Parameters as `drawn_squares`. Infinite where a pipeline has no own error.
+    Parameters as `at_confidence`. Infinite where a pipeline has no own error.
     """
-    shares = np.arange(len(BENCHES) + 1) / len(BENCHES)
-    fewest = int(np.argmax(shares >= share - 1e-9))
-    found = np.full(ratios.shape, np.inf)
-    known = np.isfinite(own_deg)
-    draws = drawn_squares(own_deg[known], ratios[known], bench_deg[known])
-    draws.partition(fewest - 1, axis=2)
-    found[known] = np.sqrt(draws[:, :, fewest - 1])
-    return found
+    bench = bench_deg * BENCHES[_fewest(share, len(BENCHES)) - 1]
+    return np.asarray(np.sqrt((own_deg[:, None] * ratios) ** 2 + bench**2))
 
 
 def bench_for(own_deg: Numbers, ratios: Numbers, limit_deg: float, share: float) -> Numbers:
@@ -107,16 +92,27 @@ def bench_for(own_deg: Numbers, ratios: Numbers, limit_deg: float, share: float)
     Parameters
     ----------
     own_deg, ratios
-        As `drawn_squares`.
+        As `at_confidence`.
     limit_deg, share
         What is asked for.
     """
-    left = np.maximum(limit_deg**2 - (own_deg[:, None] * ratios) ** 2, -1.0)
-    most = np.where(left < 0.0, -1.0, np.sqrt(np.maximum(left, 0.0)))
-    draws = (most[:, :, None] / np.array(BENCHES)).reshape(len(own_deg), -1)
-    place = draws.shape[1] - _fewest(share, draws.shape[1])
-    found = np.partition(draws, place, axis=1)[:, place]
-    return np.asarray(np.clip(found, 0.0, limit_deg))
+    reach, unit, bench = _largest_draws(share)
+    most = np.sqrt(np.maximum(limit_deg**2 - (own_deg[:, None] * ratios) ** 2, 0.0))
+    draws = most[:, unit] / _BENCHES[bench]
+    draws.partition(reach - 1, axis=1)
+    return np.asarray(np.minimum(draws[:, reach - 1], limit_deg))
+
+
+def _largest_draws(share: float) -> tuple[int, Positions, Positions]:
+    """Return the draws among which the error kept by a share of all is, as units and benches.
+
+    It is the n-th largest, and n is returned first. Errors of units and benches ascend, so a draw
+    that n others equal or exceed in both is not it.
+    """
+    size = UNITS * len(BENCHES)
+    reach = size - _fewest(share, size) + 1
+    unit, bench = np.nonzero(reach >= _AS_LARGE)
+    return reach, unit, bench
 
 
 def _fewest(share: float, draws: int) -> int:

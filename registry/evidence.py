@@ -141,17 +141,8 @@ class Evidence:
         tried = [self._measured[run] for run in both if run in self._measured]
         done = [one for one in tried if one.nominal.rms_deg is not None]
         reason = self._possibility.why_not(row, column)
-        state: State = (
-            "measured"
-            if done
-            else "studied"
-            if studied
-            else "impossible"
-            if reason
-            else "unknown"
-            if unknown
-            else "unstudied"
-        )
+        holds = {"measured": done, "studied": studied, "impossible": reason, "unknown": unknown}
+        state = next(one for one in STATES if holds.get(one, True))
         judged = [one for one in done if one.nominal.is_available]
         # names decide between equal errors: the order of a set is another in each process
         best = min(

@@ -13,7 +13,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from types import MappingProxyType
-from typing import Literal
+from typing import Any, Literal
 
 from files.json_data import JsonData
 from registry import studies as registered
@@ -176,10 +176,8 @@ def _flows(
     allowed = allowed_values(where, taxonomy)
     met = [study for study in facts.studies.values() if _meets(study, allowed)]
 
-    node_weight: dict[tuple[int, str], Fraction | int] = {}
-    link_weight: dict[tuple[int, str, str], Fraction | int] = {}
-    node_studies: dict[tuple[int, str], dict[str, None]] = {}
-    link_studies: dict[tuple[int, str, str], dict[str, None]] = {}
+    on_node: dict[tuple[int, str], dict[str, Fraction]] = {}
+    on_link: dict[tuple[int, str, str], dict[str, Fraction]] = {}
     left_out: dict[str, list[str]] = {}
     for study in met:
         combinations = _combinations(study, levels, allowed, taxonomy)
@@ -188,50 +186,16 @@ def _flows(
             left_out.setdefault(levels[at], []).append(study.key)
         if missing and mode == "fractional":
             continue
-        share = Fraction(1, len(combinations)) if mode == "fractional" else 0
+        share = Fraction(1, len(combinations))
         for combination in combinations:
-            for at, value in enumerate(combination):
-                if value is None:
-                    continue
-                node = (at, value)
-                node_weight[node] = node_weight.get(node, 0) + share
-                node_studies.setdefault(node, {})[study.key] = None
-                following = combination[at + 1] if at + 1 < len(levels) else None
-                if following is not None:
-                    link = (at, value, following)
-                    link_weight[link] = link_weight.get(link, 0) + share
-                    link_studies.setdefault(link, {})[study.key] = None
-
-    order = [{v: i for i, v in enumerate(taxonomy.values(level))} for level in levels]
-    nodes = tuple(
-        Node(
-            id=f"{levels[at]}:{value}",
-            level=levels[at],
-            value=value,
-            name=taxonomy.name(levels[at], value),
-            count=float(node_weight[at, value]) if mode == "fractional" else len(keys),
-            studies=tuple(keys),
-        )
-        for (at, value), keys in sorted(
-            node_studies.items(), key=lambda item: (item[0][0], order[item[0][0]][item[0][1]])
-        )
-    )
-    links = tuple(
-        Link(
-            source=f"{levels[at]}:{source}",
-            target=f"{levels[at + 1]}:{target}",
-            value=float(link_weight[at, source, target]) if mode == "fractional" else len(keys),
-            studies=tuple(keys),
-        )
-        for (at, source, target), keys in sorted(
-            link_studies.items(),
-            key=lambda item: (
-                item[0][0],
-                order[item[0][0]][item[0][1]],
-                order[item[0][0] + 1][item[0][2]],
-            ),
-        )
-    )
+            for at, (value, following) in enumerate(itertools.pairwise((*combination, None))):
+                if value is not None:
+                    weights = on_node.setdefault((at, value), {})
+                    weights[study.key] = weights.get(study.key, 0) + share
+                if value is not None and following is not None:
+                    weights = on_link.setdefault((at, value, following), {})
+                    weights[study.key] = weights.get(study.key, 0) + share
+    nodes, links = drawn(levels, on_node, on_link, taxonomy, mode)
     return Flows(
         chart=name,
         levels=levels,
@@ -243,6 +207,43 @@ def _flows(
             LeftOut(level, tuple(left_out[level])) for level in levels if level in left_out
         ),
     )
+
+
+def drawn(
+    levels: Sequence[str],
+    on_node: Mapping[tuple[int, str], Mapping[str, Fraction]],
+    on_link: Mapping[tuple[int, str, str], Mapping[str, Fraction]],
+    taxonomy: Taxonomy,
+    counting: Counting = "studies",
+) -> tuple[tuple[Node, ...], tuple[Link, ...]]:
+    """Return the nodes and links of a chart, in its order.
+
+    Parameters
+    ----------
+    levels : of the chart
+    on_node, on_link : weights by study of a value at the level of a position, and of such a value
+        and one at the next level
+    taxonomy, counting : order and names of the values; what a node and a link count
+    """
+    order = [{v: i for i, v in enumerate(taxonomy.values(level))} for level in levels]
+
+    def count(weights: Mapping[str, Fraction]) -> float:
+        return float(sum(weights.values())) if counting == "fractional" else len(weights)
+
+    def place(key: tuple[Any, ...]) -> tuple[int, ...]:
+        return key[0], *(order[key[0] + i][value] for i, value in enumerate(key[1:]))
+
+    nodes = (
+        Node(f"{level}:{value}", level, value, taxonomy.name(level, value), count(on), tuple(on))
+        for at, value in sorted(on_node, key=place)
+        for level, on in [(levels[at], on_node[at, value])]
+    )
+    links = (
+        Link(f"{levels[at]}:{one}", f"{levels[at + 1]}:{other}", count(on), tuple(on))
+        for at, one, other in sorted(on_link, key=place)
+        for on in [on_link[at, one, other]]
+    )
+    return tuple(nodes), tuple(links)
 
 
 def _check_levels(levels: tuple[str, ...], taxonomy: Taxonomy) -> None:

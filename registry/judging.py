@@ -7,14 +7,15 @@ of evidence are judged apart, and neither stands in for the other.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from decimal import ROUND_FLOOR, Context
 from functools import cached_property
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from registry.design_table import DesignTable, Flags, Numbers, PipelineErrors
+from registry.design_table import DesignTable, Flags, Numbers, PipelineErrors, Positions
 from registry.draws import bench_for
 from registry.requirements import CLASSES_DEG, EXCLUDE, OF_PRODUCTS, OF_STUDIES, Requirements
 from survey_data.processors import factor
@@ -35,67 +36,84 @@ REPORTED = {
 }
 
 
+#: Names of the requirements on what a question finds.
+_ARCHITECTURE = ("detector", "mask", "exclude_detector", "exclude_mask")
+PARTS = ("model", "extractor", "exclude_model", "exclude_extractor", "properties")
+_DESIGNS = (*_ARCHITECTURE, *PARTS)
+_STUDIES = ("task", "error", "exclude_task", "exclude_error", "exclude_accuracy")
+_CANDIDATES = (*_DESIGNS, *_STUDIES)
+_ERRORS = ("min_fov_deg", "survive", "sun_distance_au")
+_JUDGED = (*_CANDIDATES, *_ERRORS, "max_error_deg", "accuracy", "bench_deg", "confidence")
+#: Those that a measured pipeline can meet or miss.
+_MEASURED = (
+    *("max_error_deg", "accuracy", "exclude_accuracy", *_ERRORS),
+    *("min_availability", "max_latency_us", "exclude_needs"),
+)
+
+Found = TypeVar("Found")
+
+
+def _shared(*names: str) -> Callable[[Callable[[Question], Found]], cached_property[Found]]:
+    """Return a decorator for what is the same for questions that ask the same by some names."""
+    return lambda find: cached_property(lambda question: question.once(find, of=names))
+
+
 class Question:
     """Requirements applied to a table of designs.
 
     Attributes
     ----------
     table, requirements : what is asked of what
-    like : a question of the same table whose errors may be the same
-    designs : designs that have the required parts
-    studies : studies with the required tasks and errors, none of which is excluded
-    places : architectures that one of these has, or that the survey advises for them
     """
 
-    def __init__(
-        self, table: DesignTable, requirements: Requirements, like: Question | None = None
-    ) -> None:
+    def __init__(self, table: DesignTable, requirements: Requirements) -> None:
         self.table = table
         self.requirements = requirements
-        self.designs = self._find_designs()
-        self.studies = self._find_studies()
-        self.places = self._find_places()
-        self._like = like
+        self._found: dict[tuple[object, ...], Any] = {}
 
     def relaxed(self, requirements: Requirements) -> Question:
-        """Return other requirements put to the same table; errors are shared where they can be."""
-        return Question(self.table, requirements, self)
+        """Return other requirements put to the same table; what they leave as it is, is shared."""
+        found = Question(self.table, requirements)
+        found._found = self._found
+        return found
 
-    @cached_property
+    def once(self, find: Callable[..., Found], *of_what: str, of: Iterable[str]) -> Found:
+        """Return what a method finds, once for relaxed questions that ask the same by names."""
+        key = (find, *of_what, *map(self.requirements.value_of, of))
+        if key not in self._found:
+            self._found[key] = find(self, *of_what)
+        return self._found[key]  # type: ignore[no-any-return]  # what this method found
+
+    @_shared(*_ERRORS)
     def errors(self) -> PipelineErrors:
         """Own errors of all pipelines under the required hazards and field."""
-        like, asked = self._like, self.requirements
-        if like is not None and (
-            (like.requirements.hazards, like.requirements.half_field_deg)
-            == (asked.hazards, asked.half_field_deg)
-        ):
-            return like.errors
         return self.table.errors(self.requirements.hazards, self.requirements.half_field_deg)
 
-    @cached_property
+    @_shared(*_CANDIDATES)
     def candidates(self) -> Flags:
         """Pipelines of the required designs on the required architectures."""
         return self.designs[self.table.row_design] & self.places[self.table.row_place]
 
-    @cached_property
+    @_shared(*_JUDGED)
     def judged_deg(self) -> Numbers:
         """Error that a limit is compared with: kept by the share of units (and stated benches)."""
-        own, asked = self.errors.own_deg, self.requirements
-        among = self.candidates & np.isfinite(own)
-        found = np.full(len(own), np.inf)
-        found[among] = self.table.within(own, among, None, asked.share)
+        table, asked, own = self.table, self.requirements, self.errors.own_deg
+        found = np.where(self.candidates, table.within(own, slice(None), None, asked.share), np.inf)
         if not asked.bench_deg:
             return found
+        among = np.isfinite(found)
         if asked.largest_deg is not None:  # what misses without a bench misses with one
             among &= found <= asked.largest_deg
         known = self.errors.on_bench.setdefault((asked.bench_deg, asked.share), found * np.nan)
         new = among & np.isnan(known)
-        known[new] = self.table.within(own, new, asked.bench_deg, asked.share)
+        known[new] = table.within(own, new, asked.bench_deg, asked.share)
         return np.where(among, known, np.inf)
 
     def judged_alone_deg(self, row: int) -> float:
         """Return the same of one pipeline, also where it misses without a bench."""
         own, asked = self.errors.own_deg, self.requirements
+        if math.isfinite(self.judged_deg[row]):
+            return float(self.judged_deg[row])
         return float(self.table.within(own, [row], asked.bench_deg, asked.share)[0])
 
     @cached_property
@@ -107,78 +125,87 @@ class Question:
     @cached_property
     def by_pipeline(self) -> Mapping[str, States]:
         """State of each measured pipeline for every requirement that measurement can judge."""
-        table, asked, errors = self.table, self.requirements, self.errors
+        find, of_error = Question._by_pipeline, ("max_error_deg", "accuracy", "exclude_accuracy")
+        return {
+            name: self.once(find, name, of=(name, *(_JUDGED if name in of_error else _ERRORS)))
+            for name in self._judged_names
+            if name in _MEASURED
+        }
+
+    def _by_pipeline(self, name: str) -> States:
+        errors, limit = self.errors, self.requirements.value_of(name)
         answered = np.isfinite(errors.own_deg)
-        found: dict[str, States] = {}
-        if asked.max_error_deg is not None:
-            found["max_error_deg"] = _states(self.judged_deg <= asked.max_error_deg, answered)
-            found["max_error_deg"][~answered & errors.covers] = MISSES
-        if "accuracy" in asked.include:
-            found["accuracy"] = _states(self._in_classes(asked.include["accuracy"]), answered)
-        if "accuracy" in asked.exclude:
-            left = CLASSES_DEG.keys() - {*asked.exclude["accuracy"]}
-            found[EXCLUDE + "accuracy"] = _states(self._in_classes(left), answered)
-        if asked.min_fov_deg is not None:
-            found["min_fov_deg"] = _states(np.isfinite(errors.nominal_deg))
-        for name in ("survive", "sun_distance_au"):
-            if asked.survive if name == "survive" else asked.light and asked.light.hazard:
-                found[name] = _states(answered, errors.covers)
-        if asked.min_availability is not None:
-            known = ~np.isnan(errors.availability)
-            found["min_availability"] = _states(
-                errors.availability >= asked.min_availability, known
-            )
-        if asked.max_latency_us is not None:
-            time = table.latency_us * factor(asked.processor)
-            found["max_latency_us"] = _states(time <= asked.max_latency_us, ~np.isnan(time))
-        if asked.exclude_needs:
-            needs = [table.needs_input[need] for need in asked.exclude_needs]
-            found["exclude_needs"] = _states(~np.logical_or.reduce(needs))
-        return found
+        known: Flags | bool = True
+        if name == "max_error_deg":
+            meets, known = self.judged_deg <= limit, answered | errors.covers
+        elif name == "accuracy":
+            meets, known = self._in_classes(limit), answered
+        elif name == EXCLUDE + "accuracy":
+            meets, known = self._in_classes(CLASSES_DEG.keys() - {*limit}), answered
+        elif name == "min_fov_deg":
+            meets = np.isfinite(errors.nominal_deg)
+        elif name == "min_availability":
+            meets, known = errors.availability >= limit, ~np.isnan(errors.availability)
+        elif name == "max_latency_us":
+            time = self.table.latency_us * factor(self.requirements.processor)
+            meets, known = time <= limit, ~np.isnan(time)
+        elif name == "exclude_needs":
+            meets = ~np.logical_or.reduce([self.table.needs_input[need] for need in limit])
+        else:
+            meets, known = answered, errors.covers
+        return _states(meets, known)
 
     @cached_property
     def by_report(self) -> Mapping[str, States]:
         """State of each report for every requirement but detector and mask."""
-        table, asked = self.table, self.requirements
-        is_study, study = table.report_study >= 0, table.report_study
-        found: dict[str, States] = {}
-        for side, prefix in ((asked.include, ""), (asked.exclude, EXCLUDE)):
-            for name in (one for one in OF_STUDIES if one in side):
-                meets = self._studies_alone(prefix + name)
-                found[prefix + name] = _states(meets[study], is_study)
-        classes = table.report_classes
-        if "accuracy" in asked.include:
-            named = np.logical_or.reduce([classes[name] for name in asked.include["accuracy"]])
-            found["accuracy"] = _states(named, np.logical_or.reduce([*classes.values()]))
-        if "accuracy" in asked.exclude:
-            named = np.logical_or.reduce([classes[name] for name in asked.exclude["accuracy"]])
-            found[EXCLUDE + "accuracy"] = _states(~named)
-        if names := self.of_parts:
-            design, user = table.uses
-            kept = self.designs[design]
-            meets = np.zeros((len(table.places), len(table.keys)), bool)
-            meets[table.design_place[design[kept]], user[kept]] = True
-            states = _states(meets[table.report_place, study], is_study)
-            found |= dict.fromkeys(names, states)
-        found |= {n: self._reports_within(n) for n in REPORTED if asked.value_of(n) is not None}
-        untold = ("min_availability", "max_latency_us", "survive", "exclude_needs")
-        silent = [name for name in untold if asked.value_of(name) is not None]
-        if asked.light and asked.light.hazard:
-            silent.append("sun_distance_au")
-        return found | {name: np.zeros(len(table.reports), np.int8) for name in silent}
+        find = Question._by_report
+        return {
+            name: self.once(find, name, of=(name, *(_DESIGNS if name in PARTS else ("task",))))
+            for name in self._judged_names
+        }
 
-    def _reports_within(self, name: str) -> States:
-        """Return the state of each report for a limit; products tell of studies without one."""
+    def _by_report(self, name: str) -> States:
+        table, attribute = self.table, name.removeprefix(EXCLUDE)
+        if attribute in OF_STUDIES:
+            return _states(self._studies_alone(name)[table.report_study], table.report_study >= 0)
+        if attribute == "accuracy":
+            classes = table.report_classes
+            named = np.logical_or.reduce([classes[one] for one in self.requirements.value_of(name)])
+            known = np.logical_or.reduce([*classes.values()])
+            return _states(named, known) if name == attribute else _states(~named)
+        if name in PARTS:
+            return self._with_parts
+        if name not in REPORTED:
+            return np.zeros(len(table.reports), np.int8)
         found = _states(*self._within(name))
-        if name not in OF_PRODUCTS:
-            return found
-        return np.where(found == UNKNOWN, self.by_place[name][self.table.report_place], found)
+        if name in OF_PRODUCTS:  # what is built tells of studies on the same that state nothing
+            found = np.where(found == UNKNOWN, self.by_place[name][table.report_place], found)
+        return found
+
+    @cached_property
+    def _judged_names(self) -> list[str]:
+        """Requirements on reports or pipelines: all but those on detector and mask.
+
+        Nor a distance from the Sun whose light is nearest to that of 1 au.
+        """
+        light, names = self.requirements.light, self.requirements.names
+        passed = () if light is None or light.hazard else ("sun_distance_au",)
+        return [name for name in names if name not in (*_ARCHITECTURE, *passed)]
+
+    @_shared(*_DESIGNS)
+    def _with_parts(self) -> States:
+        """State of each report for model, extractor and properties: those that its study uses."""
+        table, study = self.table, self.table.report_study
+        design, user = table.uses
+        kept = self.designs[design]
+        meets = np.zeros((len(table.places), len(table.keys)), bool)
+        meets[table.design_place[design[kept]], user[kept]] = True
+        return _states(meets[table.report_place, study], study >= 0)
 
     def _within(self, name: str) -> tuple[Flags, Flags]:
         """Return which reports keep a limit on a number, and which state the number."""
         column, at_most = REPORTED[name]
         values, limit = self.table.report_numbers[column], self.requirements.value_of(name)
-        assert isinstance(limit, float | int)  # noqa: S101 - only limits asked for are looked at
         known = ~np.isnan(values)
         return (values <= limit if at_most else values >= limit) & known, known
 
@@ -186,11 +213,12 @@ class Question:
     def by_place(self) -> Mapping[str, States]:
         """State of each architecture for mass, power and rate, by all that is built of it."""
         asked = [name for name in OF_PRODUCTS if self.requirements.value_of(name) is not None]
-        found = {}
-        for name in asked:
-            kept, known = self._within(name)
-            found[name] = _states(self._any_report(kept), self._any_report(known))
-        return found
+        return {name: self.once(Question._by_place, name, of=(name,)) for name in asked}
+
+    def _by_place(self, name: str) -> States:
+        kept, known = self._within(name)
+        place = self.table.report_place
+        return _states(self._places_with(place[kept]), self._places_with(place[known]))
 
     @cached_property
     def reported(self) -> Flags:
@@ -214,14 +242,13 @@ class Question:
     @cached_property
     def measured_places(self) -> Flags:
         """Architectures with a measured pipeline that meets all requirements."""
-        found = np.zeros(len(self.table.places), bool)
-        found[self.table.row_place[self.measured]] = True
-        return found
+        return self._places_with(self.table.row_place[self.measured])
 
     @cached_property
     def matching_places(self) -> Flags:
         """Architectures that the evidence asked for brings into the answer."""
-        reported, measured = self._any_report(self.reported), self.measured_places
+        table, measured = self.table, self.measured_places
+        reported = self._places_with(table.report_place[self.reported])
         kinds = {"reported": reported, "measured": measured, "both": reported & measured}
         return kinds.get(self.requirements.evidence or "any", reported | measured)
 
@@ -234,34 +261,27 @@ class Question:
         counting = np.zeros((len(table.places), len(table.keys)), bool)
         of_studies = self.reported & (table.report_study >= 0)
         counting[table.report_place[of_studies], table.report_study[of_studies]] = True
-        found |= self.unmeasured & (table.used & counting[table.design_place]).any(axis=1)
+        found |= ~table.is_measured & (table.used & counting[table.design_place]).any(axis=1)
         return found & self.designs & self.matching_places[table.design_place]
 
-    @cached_property
-    def unmeasured(self) -> Flags:
-        """Designs without any measured pipeline."""
-        found = np.ones(len(self.table.designs), bool)
-        found[self.table.row_design] = False
-        return found
+    def bench_for(self, rows: Sequence[int]) -> float | None:
+        """Return the bench error up to which one of some pipelines keeps the limit.
 
-    def bench_for(self, row: int) -> float | None:
-        """Return the bench error up to which a pipeline keeps the limit; None without a limit.
-
-        Rounded down to two digits, so that a bench of that error does.
+        Rounded down to two digits, so that a bench of that error does. None without a limit, or
+        where none of them has an error.
         """
-        limit, own = self.requirements.largest_deg, self.errors.own_deg[[row]]
-        if limit is None or not math.isfinite(own[0]):
+        limit, own = self.requirements.largest_deg, self.errors.own_deg[rows]
+        if limit is None or not np.isfinite(own).any():
             return None
-        ratios, share = self.table.unit_ratios[[row]], self.requirements.share
-        needed = float(bench_for(own, ratios, limit, share)[0])
-        return float(_TWO_DIGITS.create_decimal(needed))
+        needed = bench_for(own, self.table.unit_ratios[rows], limit, self.requirements.share)
+        return float(_TWO_DIGITS.create_decimal(float(needed.max())))
 
-    def _any_report(self, among: Flags) -> Flags:
+    def _places_with(self, place: Positions) -> Flags:
         found = np.zeros(len(self.table.places), bool)
-        found[self.table.report_place[among]] = True
+        found[place] = True
         return found
 
-    @cached_property
+    @_shared(*_ARCHITECTURE)
     def _architectures(self) -> Flags:
         """Architectures with the required detector and mask."""
         table, asked = self.table, self.requirements
@@ -272,12 +292,6 @@ class Question:
                     has = [(one.architecture[at] in side[name]) == wanted for one in table.places]
                     found &= np.array(has, bool)
         return found
-
-    @property
-    def of_parts(self) -> tuple[str, ...]:
-        """Names of the requirements on model, extractor and its properties."""
-        names = ("model", "extractor", "exclude_model", "exclude_extractor", "properties")
-        return tuple(name for name in names if self.requirements.value_of(name) is not None)
 
     def _in_classes(self, classes: Iterable[str]) -> Flags:
         """Say of each pipeline whether it and the best one of its sensor are of a class."""
@@ -291,7 +305,9 @@ class Question:
             found |= is_class[table.row_place] & (judged < most)
         return found
 
-    def _find_designs(self) -> Flags:
+    @_shared(*_DESIGNS)
+    def designs(self) -> Flags:
+        """Designs that have the required parts."""
         table, asked = self.table, self.requirements
         found = np.ones(len(table.designs), bool)
         for side, wanted in ((asked.include, True), (asked.exclude, False)):
@@ -305,7 +321,9 @@ class Question:
             )
         return found
 
-    def _find_studies(self) -> Flags:
+    @_shared(*_STUDIES)
+    def studies(self) -> Flags:
+        """Studies with the required tasks and errors, none of which is excluded."""
         found = np.ones(len(self.table.keys), bool)
         for prefix, side in (("", self.requirements.include), (EXCLUDE, self.requirements.exclude)):
             for name in (one for one in OF_STUDIES if one in side):
@@ -327,8 +345,9 @@ class Question:
         wanted = set(asked.include.get("task", tasks)) - {*excluded}
         return table.studies_with("task", wanted) | ~table.studies_with("task", tasks)
 
-    def _find_places(self) -> Flags:
-        """Return the architectures that a study with the tasks and errors has, or advice means."""
+    @_shared(*_ARCHITECTURE, *_STUDIES)
+    def places(self) -> Flags:
+        """Architectures that a study with the tasks and errors has, or advice means."""
         table, asked = self.table, self.requirements
         include = [name for name in OF_STUDIES if name in asked.include]
         if not include and not any(name in asked.exclude for name in OF_STUDIES):
@@ -343,9 +362,6 @@ class Question:
         return found & self._architectures
 
 
-def _states(meets: Flags, known: Flags | None = None) -> States:
+def _states(meets: Flags, known: Flags | bool = True) -> States:
     """Return states of what meets, misses or (where not known) leaves unknown."""
-    found = np.where(meets, MEETS, MISSES).astype(np.int8)
-    if known is not None:
-        found[~known] = UNKNOWN
-    return found
+    return np.subtract(meets & known, ~meets & known, dtype=np.int8)

@@ -5,11 +5,12 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import lru_cache
 
 from registry.answer import Answer
 from registry.design_table import DesignTable
-from registry.flows import LeftOut, Link, Node
+from registry.flows import LeftOut, Link, Node, drawn
 from registry.studies import Facts, Study
 
 PATH_LEVELS = ("task", "detector", "mask", "model", "extractor")
@@ -86,37 +87,15 @@ def _drawn(
     paths: Mapping[Path, tuple[str, ...]], facts: Facts
 ) -> tuple[tuple[Node, ...], tuple[Link, ...]]:
     """Return nodes and links of paths in chart order, each with its distinct studies."""
-    on_node: dict[tuple[int, str], set[str]] = {}
-    on_link: dict[tuple[int, str, str], set[str]] = {}
-    for path, studies in paths.items():
+    on_node: dict[tuple[int, str], dict[str, Fraction]] = {}
+    on_link: dict[tuple[int, str, str], dict[str, Fraction]] = {}
+    by_study = sorted((study, path) for path, studies in paths.items() for study in studies)
+    for study, path in by_study:
         for level, value in enumerate(path):
-            on_node.setdefault((level, value), set()).update(studies)
+            on_node.setdefault((level, value), {})[study] = Fraction(1)
         for level, (one, next_one) in enumerate(itertools.pairwise(path)):
-            on_link.setdefault((level, one, next_one), set()).update(studies)
-    order = _order(facts)
-    nodes = sorted(on_node, key=lambda node: (node[0], order[node[0]][node[1]]))
-    links = sorted(
-        on_link, key=lambda one: (one[0], order[one[0]][one[1]], order[one[0] + 1][one[2]])
-    )
-    return tuple(
-        Node(
-            f"{PATH_LEVELS[level]}:{value}",
-            PATH_LEVELS[level],
-            value,
-            facts.taxonomy.name(PATH_LEVELS[level], value),
-            len(on_node[level, value]),
-            tuple(sorted(on_node[level, value])),
-        )
-        for level, value in nodes
-    ), tuple(
-        Link(
-            f"{PATH_LEVELS[level]}:{one}",
-            f"{PATH_LEVELS[level + 1]}:{next_one}",
-            len(on_link[level, one, next_one]),
-            tuple(sorted(on_link[level, one, next_one])),
-        )
-        for level, one, next_one in links
-    )
+            on_link.setdefault((level, one, next_one), {})[study] = Fraction(1)
+    return drawn(PATH_LEVELS, on_node, on_link, facts.taxonomy)
 
 
 def _left_out(facts: Facts) -> tuple[LeftOut, ...]:

@@ -61,7 +61,7 @@ def explain(question: Question) -> Explanation:
     first = tuple(drops[0].drop)
     changes = [one for drop in drops for one in _changes(question, drop)] if len(first) == 1 else []
     changes.sort(key=lambda one: -one.architectures)
-    words = " and ".join(in_words(name, _value(asked, name)) for name in first)
+    words = " and ".join(in_words(name, asked.value_of(name)) for name in first)
     beside = " beside the other requirements" if len(asked.names) > len(first) else ""
     count = drops[0].architectures
     detail = (
@@ -102,7 +102,7 @@ def _drops(question: Question, size: int) -> list[Relaxation]:
     """Return every set of so many requirements whose removal helps, best first."""
     asked = question.requirements
     found = [
-        Relaxation({name: _value(asked, name) for name in names}, {}, count)
+        Relaxation({name: asked.value_of(name) for name in names}, {}, count)
         for names in itertools.combinations(asked.names, size)
         if (count := _count(question, asked.without(*names)))
     ]
@@ -163,8 +163,7 @@ def _bench(question: Question) -> str:
     if asked.bench_deg is None or asked.largest_deg is None:
         return ""
     without = question.relaxed(replace(asked, bench_deg=None))
-    rows = np.flatnonzero(without.measured).tolist()
-    needed = max((without.bench_for(row) or 0.0 for row in rows), default=0.0)
+    needed = without.bench_for(np.flatnonzero(without.measured).tolist())
     if not needed:
         return ""
     return (
@@ -175,11 +174,3 @@ def _bench(question: Question) -> str:
 
 def _count(question: Question, requirements: Requirements) -> int:
     return int(np.count_nonzero(question.relaxed(requirements).matching_places))
-
-
-def _value(requirements: Requirements, name: str) -> Value:
-    """Return what is asked of one of the requirements' own names."""
-    asked = requirements.value_of(name)
-    if asked is None:
-        raise KeyError(name)
-    return asked

@@ -296,16 +296,22 @@ class Requirements:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """Names of the requirements that are set, in the order of `PARAMETERS`."""
-        found = tuple(name for name in PARAMETERS if self.value_of(name) is not None)
+        found = tuple(name for name in PARAMETERS if name in self._values)
         return (*found, "sun_distance_au") if self.sun_distance_au is not None else found
 
-    def value_of(self, name: str) -> tuple[str, ...] | float | None:
-        """Return the value of a requirement; None if it is not set."""
-        if name in self.__dataclass_fields__:
-            value: tuple[str, ...] | float | None = getattr(self, name)
-            return None if value == () else value
-        side = self.exclude if name.startswith(EXCLUDE) else self.include
-        return side.get(name.removeprefix(EXCLUDE)) or None
+    def value_of(self, name: str) -> Any:
+        """Return the value of a requirement, texts or a number; None if it is not set."""
+        return self._values.get(name)
+
+    @cached_property
+    def _values(self) -> Mapping[str, Any]:
+        """Values of all requirements and settings that are set."""
+        found: dict[str, Any] = {
+            name: getattr(self, name) for name in (*LIMITS, *_SEVERAL, *SETTINGS, "mission")
+        }
+        found |= {EXCLUDE + name: values for name, values in self.exclude.items()}
+        found |= self.include
+        return {name: value for name, value in found.items() if value not in (None, ())}
 
     def without(self, *names: str) -> Requirements:
         """Return these requirements without some parameters."""

@@ -125,7 +125,8 @@ def _relatives(
         ranked += [
             ((-runs(pair), -alike, years, other.key), pair)
             for pair in other.architectures
-            if pair in simulated and all(not f or v in f for f, v in _beside(filled, pair))
+            if pair in simulated
+            and all(v in (filled[a] or (v,)) for a, v in zip(SENSOR, pair, strict=True))
         ]
     if not ranked:
         return None
@@ -141,13 +142,6 @@ def _relatives(
             for attribute, value in (("detector", detector), ("mask", mask))
         )
     )
-
-
-def _beside(
-    filled: dict[str, dict[str, Part]], pair: Architecture
-) -> tuple[tuple[dict[str, Part], str], ...]:
-    """Give the values that an attribute is known to have beside the one of a relative."""
-    return tuple((filled[attribute], value) for attribute, value in zip(SENSOR, pair, strict=True))
 
 
 def _share(study: Study, other: Study) -> float:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,14 +11,18 @@ import numpy as np
 from algorithms.angles import separation_deg
 from algorithms.chain import Scored
 from algorithms.contract import Floats, Model, SensorGeometry, UnusableDataError
-from api.calibrate.conventions.finding import Finding, change_of
-from api.calibrate.conventions.findings import findings
-from api.calibrate.exclusions import Excluded, excluded_of, kept_by_model, sound_of
-from api.calibrate.frames import of_spots, table_in, with_spots
+from api.calibrate.causes.applying import File, applied_to, one_plane, read_as, with_cells
+from api.calibrate.causes.bad_cells import joined_levels
+from api.calibrate.causes.held_out import Part, parts_of
+from api.calibrate.causes.limits import ReadingLimits, limits_of
+from api.calibrate.causes.removed import unexplained
+from api.calibrate.causes.untested import untested_in
+from api.calibrate.conventions.finding import Finding
+from api.calibrate.exclusions import WRONG, Excluded, excluded_of, kept_by_model, sound_of
 from api.calibrate.halves import halves
-from api.calibrate.readings import BEHIND, Readings, joined, readings_of
+from api.calibrate.intervals.left_out import errors_left_out
+from api.calibrate.readings import Readings
 from api.calibrate.robust import wrong_poses
-from api.calibrate.roles import understood
 from api.calibrate.runs import RunOffset
 from api.calibrate.selection import (
     Candidate,
@@ -29,16 +32,20 @@ from api.calibrate.selection import (
     deviation_of,
     fitted,
     geometry_of,
+    settled,
 )
 from api.calibrate.settings import Settings
-from api.calibrate.table import Table, read_table
+from api.calibrate.sources import read_sources
+from api.calibrate.table import Table
 from api.calibrate.uncertainty import (
     Intervals,
+    covariance_of,
     intervals,
     noise_around,
     noise_deg,
     refits,
     spread_deg,
+    tangent_offsets,
 )
 from api.calibrate.verdict import (
     Verdict,
@@ -46,19 +53,14 @@ from api.calibrate.verdict import (
     next_poses,
     patterns_in,
     with_uncertain_conventions,
+    withheld,
 )
-from files.reading import read_bytes
+from benchmark.running.threads import one_thread
 
 #: Samples from which wrong poses are looked for.
 _FEWEST_FOR_WRONG = 40
-#: Directions that lie this near to one plane through the sensor are those of one axis.
-_ONE_AXIS = 0.02
 #: RMS over the directions' own spread from which a model explains no more than chance does.
 _CHANCE = 0.5
-#: Share of rows with the light behind the sensor from which the angles' own form is uncertain.
-_MANY_BEHIND = 0.05
-#: Median error over the smallest up to which models are compared again without wrong poses.
-_CONTENDERS = 1.5
 #: Samples a final fit is made of at most; more are thinned evenly.
 MOST_FITTED = 40_000
 
@@ -104,7 +106,15 @@ class Calibration:
     sources : tuple of str
         Names of the files.
     notes : tuple of str
-        On how the files and pictures were read.
+        On how the files, pictures and cells were read, and changes that did not settle.
+    digests : tuple of str
+        SHA-256 of each file.
+    left_out : ndarray, shape (M, 3), optional
+        Predicted minus true direction of the samples compared on, each when a fit did not see it.
+    limits : ReadingLimits
+        Of readings that may be used.
+    columns : tuple of str
+        Of the first table, in its order.
     """
 
     settings: Settings
@@ -127,14 +137,42 @@ class Calibration:
     digest: str
     sources: tuple[str, ...]
     notes: tuple[str, ...] = ()
+    digests: tuple[str, ...] = ()
+    left_out: Floats | None = None
+    limits: ReadingLimits = field(default_factory=lambda: ReadingLimits((), (), 0.0, np.inf))
+    columns: tuple[str, ...] = ()
 
-    def deviation_deg(self, features: Floats, context: dict[str, Floats] | None = None) -> Floats:
-        """Return the 1-sigma (N,) of a tangent axis at features (N, F), degrees."""
-        stated = deviation_of(self.model, features, context or {})
-        return stated * (1.0 if self.intervals is None else self.intervals.factor)
+    def deviation_deg(
+        self, features: Floats, context: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """Return the 1-sigma (N,) of a tangent axis at features (N, F), degrees.
+
+        RMS of the two axes of `deviations_deg`.
+        """
+        return np.asarray(np.sqrt(np.mean(self.deviations_deg(features, context) ** 2, axis=1)))
+
+    def deviations_deg(
+        self, features: Floats, context: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """Return the 1-sigma (N, 2) of both axes of `api.calibrate.intervals.places.tangent_axes`.
+
+        In degrees, at features (N, F): by the place of the direction, or as the model states it
+        where there were too few samples for intervals. NaN where nothing is answered.
+        """
+        if self.intervals is None:
+            return np.repeat(deviation_of(self.model, features, context or {})[:, None], 2, axis=1)
+        return self.intervals.at(self.model.predict(features, context or {}))
+
+    def covariance(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
+        """Return the covariance (N, 3, 3) of the unit vectors at features (N, F), radians squared.
+
+        Errors along the two tangent axes are taken for uncorrelated; along the direction, zero.
+        """
+        sun = self.model.predict(features, context or {})
+        return covariance_of(self.deviations_deg(features, context), sun)
 
 
-def calibrate(  # noqa: PLR0915 - the steps in their order
+def calibrate(
     paths: Sequence[Path],
     settings: Settings | None = None,
     *,
@@ -172,28 +210,78 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     UnusableDataError
         If the samples settle no model; the message says what would.
     """
-    paths = [table_in(path) if path.is_dir() else path for path in paths]
-    tables = [read_table(path, settings.file if settings else None) for path in paths]
-    stated, notes = _stated(tables, settings)
-    tables, stated, said = _with_frames(tables, stated, paths, progress)
-    notes += said
+    read = read_sources(paths, settings, progress)
+    stated = read.settings if settings else with_cells(read.tables, read.settings)
+    found = calibrate_tables(
+        read.tables,
+        stated,
+        apply=apply,
+        thorough=thorough,
+        models=models,
+        progress=progress,
+    )
+    notes = (*read.notes, *found.notes)
+    return replace(found, digest=read.digest, digests=read.digests, notes=notes)
+
+
+def calibrate_tables(
+    tables: Sequence[Table],
+    stated: Settings,
+    *,
+    apply: bool = False,
+    thorough: bool = False,
+    models: Sequence[str] | None = None,
+    progress: Callable[[str, int, int], None] = lambda *_: None,
+) -> Calibration:
+    """Calibrate a sensor by tables in memory, each a run; else as `calibrate`.
+
+    Parameters
+    ----------
+    tables : sequence of Table
+        With the columns that the settings name.
+    stated : Settings
+        Of any kind but ``frames``.
+    apply, thorough, models, progress
+        As `calibrate` takes them.
+
+    Returns
+    -------
+    Calibration
+        Without notes and digests, which are those of files.
+
+    Raises
+    ------
+    TableError, UnusableDataError
+        As `calibrate`.
+    """
+    with one_thread():  # small fits: waiting for each other takes threads most of their time
+        return _calibrated(tables, stated, apply, thorough, models, progress)
+
+
+def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
+    tables: Sequence[Table],
+    stated: Settings,
+    apply: bool,
+    thorough: bool,
+    models: Sequence[str] | None,
+    progress: Callable[[str, int, int], None],
+) -> Calibration:
+    notes: list[str] = []
     progress("conventions", 0, 1)
-    swept = joined([readings_of(table, stated) for table in tables])
-    if one_plane(swept):
-        return _of_one_axis(swept, stated, paths, notes)
-    readings, found = _read(tables, stated)
+    file = read_as(tables, stated)
     applied: list[Finding] = []
-    while apply and len(applied) < 4:
-        certain = next((one for one in found if one.certain and one.change), None)
-        if certain is None:
-            break
-        stated = change_of(stated, certain)
-        applied.append(certain)
-        readings, found = _read(tables, stated)
+    if apply:
+        file, applied = applied_to(tables, file, notes)
+    stated, readings, found = file.settings, file.readings, file.findings
+    notes += [note for part in file.bad for note in part.notes]
+    if one_plane(readings):
+        return _of_one_axis(readings, file, tables, notes)
     sound, excluded, runs, fold = sound_of(readings)
+    excluded = [*(one for part in file.bad for one in part.excluded), *excluded]
     if one_plane(sound):
-        return _of_one_axis(sound, stated, paths, notes)
+        return _of_one_axis(sound, file, tables, notes, excluded)
     readings = sound
+    wrong = np.zeros(len(sound), dtype=np.bool_)
     if len(sound) >= _FEWEST_FOR_WRONG:
         wrong = wrong_poses(sound.features, sound.sun, 3.0 * stated.bench.floor_deg)
         readings = sound.only(~wrong)
@@ -209,7 +297,7 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
 
     def tick(name: str) -> None:
         nonlocal count
-        progress(name, count, len(wanted) + 3)
+        progress(name, count, 2 * len(wanted) + 4)
         count += 1
 
     candidates = [_explained(one, readings) for one in compare(readings, geometry, wanted, tick)]
@@ -218,16 +306,15 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     kept = kept_by_model(wanted[chosen.name], chosen, sound, readings, geometry)
     changed = not np.array_equal(sound.rows[kept], readings.rows)
     readings = sound.only(kept)
-    excluded += excluded_of(~kept, "wrong pose", sound)
+    wrong_ones = sound.only(~kept)
+    excluded += excluded_of(~kept, WRONG, sound)
     if changed:  # a wrong pose that was not seen may have misled the choice
-        near = [one.name for one in candidates if _near(one, candidates)]
-        again = {
-            one.name: _explained(one, readings)
-            for one in compare(readings, geometry, {name: wanted[name] for name in near})
-        }
-        candidates = [again.get(one.name, one) for one in candidates]
+        candidates = [
+            _explained(one, readings) for one in compare(readings, geometry, wanted, tick)
+        ]
         candidates.sort(key=_by_error)
-        chosen, why = choose([one for one in candidates if one.name in again])
+        chosen, why = choose(candidates)
+    count = 2 * len(wanted)
     tick("fit")
     thinned = readings.only(np.arange(0, len(readings), max(-(-len(readings) // MOST_FITTED), 1)))
     model = fitted(wanted[chosen.name], thinned, geometry)
@@ -237,72 +324,44 @@ def calibrate(  # noqa: PLR0915 - the steps in their order
     tick("uncertainty")
     sample = readings.only(np.arange(0, len(readings), max(len(readings) // 2000, 1)))
     around = noise_around(model.predict(sample.features, sample.context) - sample.sun, sample.sun)
-    spread = _fit_spread(wanted[chosen.name], sample, geometry, around, readings)
-    split = halves(wanted[chosen.name], sample, geometry, around)
+    same = settled(wanted[chosen.name], model)
+    spread = _fit_spread(same, sample, geometry, around, readings)
+    tick("halves")
+    split = halves(same, sample, geometry, around)
+    tick("verdict")
     compared = readings.only(np.arange(0, len(readings), _step(readings, chosen)))
     patterns = patterns_in(np.asarray(chosen.offsets), compared)
+    removed = sound.only(~kept & ~wrong)
+    left_out = errors_left_out(wanted[chosen.name], chosen, compared, geometry, model, removed)
+    stated_sigma = intervals(*left_out)
     verdict = judge(
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
         *next_poses(readings.sun),
     )  # fmt: skip
-    if uncertain := next((one for one in found if one.certain and one.change), None):
+    verdict = withheld(
+        replace(verdict, untested=untested_in(readings, stated)),
+        unexplained(readings, excluded, wrong_ones, stated.sensor.half_fov_deg, fold),
+        () if stated_sigma is None else _parts(chosen, stated_sigma, compared),
+    )
+    if uncertain := next((one for one in found if one.certain), None):
         verdict = with_uncertain_conventions(verdict, uncertain.found)
-    progress("done", len(wanted) + 3, len(wanted) + 3)
+    progress("done", 2 * len(wanted) + 4, 2 * len(wanted) + 4)
     return Calibration(
         stated, (*applied, *found), tuple(applied), readings, tuple(excluded), tuple(runs), fold,
         geometry, tuple(candidates), chosen, why, model, residual, noise,
-        intervals(chosen, readings), spread, verdict, _digest(paths), tuple(p.name for p in paths),
-        tuple(notes),
+        stated_sigma, spread, verdict, "", tuple(table.source for table in tables), tuple(notes),
+        left_out=left_out[0][: len(compared)],
+        limits=limits_of(readings, stated, joined_levels(file.bad)),
+        columns=tuple(tables[0].columns),
     )  # fmt: skip
 
 
-def _stated(tables: Sequence[Table], settings: Settings | None) -> tuple[Settings, list[str]]:
-    """Return settings, guessed where none are stated, and how files and columns were read."""
-    notes = list(dict.fromkeys(note for table in tables for note in table.notes))
-    if settings is not None:
-        return settings, notes
-    guessed = understood(tables[0])
-    return guessed.settings, [*notes, *guessed.notes]
-
-
-def _with_frames(
-    tables: Sequence[Table],
-    settings: Settings,
-    paths: Sequence[Path],
-    progress: Callable[[str, int, int], None],
-) -> tuple[list[Table], Settings, list[str]]:
-    """Return tables with the spots of their pictures, if they name any, and what was done."""
-    if settings.readings.kind != "frames":
-        return list(tables), settings, []
-    made, notes = [], []
-    for table, path in zip(tables, paths, strict=True):
-        measured, said = with_spots(
-            table, path.parent, settings, lambda done, all_: progress("frames", done, all_)
-        )
-        made.append(measured)
-        notes += said
-    return made, of_spots(settings), notes
-
-
-def _read(tables: Sequence[Table], settings: Settings) -> tuple[Readings, list[Finding]]:
-    """Return the samples of all tables, and what their conventions seem to be."""
-    readings = joined([readings_of(table, settings) for table in tables])
-    every = None
-    if readings.dropped.get(BEHIND, 0) > _MANY_BEHIND * len(readings):
-        every = joined([readings_of(table, settings, behind=True) for table in tables])
-    return readings, findings(readings, settings, every)
-
-
-def one_plane(readings: Readings) -> bool:
-    """Say whether the poses lie in one plane through the sensor; UnusableDataError below three."""
-    if len(readings) < 3:
-        raise UnusableDataError(f"expected three poses or more; got {len(readings)}")
-    size = np.linalg.svd(readings.sun, compute_uv=False)
-    return bool(size[2] < _ONE_AXIS * size[1])
-
-
 def _of_one_axis(
-    readings: Readings, settings: Settings, paths: Sequence[Path], notes: Sequence[str]
+    readings: Readings,
+    file: File,
+    tables: Sequence[Table],
+    notes: Sequence[str],
+    excluded: Sequence[Excluded] = (),
 ) -> Calibration:
     """Return the calibration of the one angle that the poses changed."""
     from api.calibrate.one_axis.calibrated import (  # noqa: PLC0415 - of few files
@@ -310,14 +369,19 @@ def _of_one_axis(
         plane_note,
     )
 
+    settings = file.settings
+    found = calibrated_axis(readings, settings.bench.floor_deg)
+    found["excluded"] = (*excluded, *found["excluded"])
     return Calibration(
         settings=settings,
         findings=(),
         applied=(),
-        digest=_digest(paths),
-        sources=tuple(path.name for path in paths),
+        digest="",
+        sources=tuple(table.source for table in tables),
         notes=(*notes, plane_note(readings)),
-        **calibrated_axis(readings, settings.bench.floor_deg),
+        limits=limits_of(found["readings"], settings, joined_levels(file.bad)),
+        columns=tuple(tables[0].columns),
+        **found,
     )
 
 
@@ -338,15 +402,12 @@ def _by_error(one: Candidate) -> tuple[bool, bool, float]:
     return bool(one.refused), one.missing > 0.05, one.rms_deg
 
 
-def _near(one: Candidate, candidates: Sequence[Candidate]) -> bool:
-    """Say whether a model's usual error is near the best: wrong poses do not move a median."""
-    usual = [_usual(other) for other in candidates if not other.refused]
-    return not one.refused and _usual(one) <= _CONTENDERS * min(usual)
-
-
-def _usual(one: Candidate) -> float:
-    errors = np.asarray(one.errors)
-    return float(np.median(errors[np.isfinite(errors)]))
+def _parts(chosen: Candidate, sigma: Intervals, compared: Readings) -> tuple[Part, ...]:
+    """Return parts of the samples left out, with how far the stated intervals hold there."""
+    offsets = np.asarray(chosen.offsets)
+    along = tangent_offsets(offsets, compared.sun)
+    along[~np.isfinite(np.asarray(chosen.errors))] = np.nan
+    return parts_of(compared, along, sigma.at(compared.sun))
 
 
 def _fit_spread(
@@ -370,10 +431,3 @@ def _step(readings: Readings, chosen: Candidate) -> int:
 def _rms(errors: Floats) -> float:
     known = errors[np.isfinite(errors)]
     return float(np.sqrt(np.mean(known**2))) if len(known) else float("nan")
-
-
-def _digest(paths: Sequence[Path]) -> str:
-    state = hashlib.sha256()
-    for path in paths:
-        state.update(read_bytes(path, 512 * 1024 * 1024))
-    return state.hexdigest()[:32]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import sys
+import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field, replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, cast
@@ -22,21 +23,40 @@ from algorithms.calibration.saving import (
 from algorithms.contract import Compensation, Floats, Model
 from algorithms.discovery import discover_compensations, discover_models
 from api.calibrate.calibration import Calibration
+from api.calibrate.intervals.places import tangent_axes
 from api.calibrate.one_axis.curve import AxisCurve
 from api.calibrate.readings import readings_of
 from api.calibrate.recalibration import Correction
+from api.calibrate.selection import deviation_of, unbounded
 from api.calibrate.settings import Settings, parse_settings
 from api.calibrate.table import Table
+from api.calibrate.terms.corrections import (
+    Corrected,
+    features_in,
+    numbers,
+    of_features,
+    temperatures,
+    with_changes,
+)
+from api.calibrate.terms.temperature import TERMS
+from api.calibrate.uncertainty import Intervals, covariance_of
 from api.calibrate.verdict import as_text
 from files.atomic import replace_file
 
 SCHEMA = "sun-sensor-atlas/sensor-calibration"
-SCHEMA_VERSION = 1
+#: Of documents written; those of version 1 have a factor and no table of intervals.
+SCHEMA_VERSION = 2
+_READ = (1, 2)
 _MEMBERS = frozenset(
     {
         *("schema", "schema_version", "conventions", "settings", "compensations", "model", "fit"),
         *("selection", "verdict", "found", "excluded", "made", "correction", DIGEST),
     }
+)
+#: What a damaged document leads to that fits no class here.
+_MISFITS = (
+    *(ValueError, LookupError, TypeError, AttributeError, ImportError),
+    *(ArithmeticError, MemoryError, RecursionError),
 )
 
 
@@ -51,11 +71,14 @@ class SavedCalibration:
     compensations : tuple of Compensation
     model : Model
     factor : float
-        Of the model's stated 1-sigma, so that intervals hold.
+        Of the model's stated 1-sigma, where there are no intervals.
+    intervals : Intervals or None
+        The 1-sigma by place; None of few samples and of a document of version 1.
     temperature_K : tuple of two float, or None
         Lowest and highest that was measured, of a model that reads it; beyond, NaN is answered.
-    offset : ndarray, shape (F,)
-        Subtracted from features since a correction; see `api.calibrate.recalibration`.
+    offset, gain : ndarray, shape (F,) or ()
+        Since a correction features are ``(f - offset) / gain``; see `api.calibrate.recalibration`.
+        Of quadrants and electrodes `settings` have it, whose readings are no features.
     rotation : ndarray, shape (3, 3)
         Of directions since then.
     document : dict
@@ -66,23 +89,75 @@ class SavedCalibration:
     compensations: tuple[Compensation, ...]
     model: Model
     factor: float
+    intervals: Intervals | None
     temperature_K: tuple[float, float] | None  # noqa: N815 - the unit's symbol
     offset: Floats
     rotation: Floats
     document: dict[str, Any]
+    gain: Floats = field(default_factory=lambda: np.ones(()))
+
+    @property
+    def stated_deg(self) -> float:
+        """RMS error of samples left out, by the document."""
+        stated = self.document["fit"].get("rms_left_out_deg")
+        return float("nan") if stated is None else float(stated)
+
+    @property
+    def unbounded(self) -> SavedCalibration:
+        """The same, but answering beyond the field that was calibrated."""
+        return replace(self, model=unbounded(self.model))
+
+    @property
+    def corrected(self) -> Corrected:
+        """What was corrected since; its ``settings`` are those for flight software."""
+        return Corrected(self.offset, self.gain, self.rotation)
 
     def predict(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
         """Return unit vectors (N, 3) of features (N, F); NaN rows outside the hull."""
         columns = context or {}
-        features = np.asarray(features, dtype=np.float64) - self.offset
-        for stage in self.compensations:
-            features = stage.transform(features, columns)
-        sun = self.model.predict(features, columns) @ self.rotation.T
+        sun = self.model.predict(self._compensated(features, columns), columns) @ self.rotation.T
         if self.temperature_K is not None:
             low, high = self.temperature_K
             measured = np.asarray(columns["temperature_K"], dtype=np.float64)
             sun[~((measured >= low) & (measured <= high))] = np.nan
         return np.asarray(sun)
+
+    def covariance(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
+        """Return the covariance (N, 3, 3) of the unit vectors at features (N, F), radians squared.
+
+        A correction turns it with the directions; NaN where nothing is answered.
+        """
+        before = self.predict(features, context) @ self.rotation
+        if self.intervals is None:
+            columns = context or {}
+            stated = deviation_of(self.model, self._compensated(features, columns), columns)
+            sigma = np.repeat(self.factor * stated[:, None], 2, axis=1)
+        else:
+            sigma = self.intervals.at(before)
+        return np.asarray(self.rotation @ covariance_of(sigma, before) @ self.rotation.T)
+
+    def deviations_deg(
+        self, features: Floats, context: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """Return the 1-sigma (N, 2) of both axes of `api.calibrate.intervals.places.tangent_axes`.
+
+        In degrees, at features (N, F).
+        """
+        axes = np.stack(tangent_axes(self.predict(features, context)), axis=1)
+        variance = np.einsum("nai,nij,naj->na", axes, self.covariance(features, context), axes)
+        return np.asarray(np.degrees(np.sqrt(variance)))
+
+    def deviation_deg(
+        self, features: Floats, context: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """Return the 1-sigma (N,) of a tangent axis, degrees: RMS of both of `deviations_deg`."""
+        return np.asarray(np.sqrt(np.mean(self.deviations_deg(features, context) ** 2, axis=1)))
+
+    def _compensated(self, features: Floats, columns: Mapping[str, Floats]) -> Floats:
+        features = (np.asarray(features, dtype=np.float64) - self.offset) / self.gain
+        for stage in self.compensations:
+            features = stage.transform(features, columns)
+        return features
 
     def predict_table(self, table: Table) -> Floats:
         """Return unit vectors of the usable rows of a file with the calibration's columns."""
@@ -106,8 +181,7 @@ def document(found: Calibration, command: str = "") -> dict[str, Any]:
             "rms_left_out_deg": number(found.chosen.rms_deg),
             "rms_fitted_deg": number(found.residual_deg),
             "noise_deg": number(found.noise_deg),
-            "interval_factor": 1.0 if found.intervals is None else found.intervals.factor,
-            "interval_coverage": None if found.intervals is None else found.intervals.coverage,
+            "intervals": None if found.intervals is None else _plain(found.intervals),
             "temperature_K": _temperatures(found),
             "fit_spread_deg": number(_rms(found.spread_deg)),
             "sensor": {k: v for k, v in asdict(found.geometry).items() if v is not None},
@@ -173,34 +247,50 @@ def load(path: Path) -> SavedCalibration:
     try:
         stored = read_document(path)
         if not isinstance(stored, dict) or stored.get("schema") != SCHEMA:
-            raise UnreadableCalibrationError(  # noqa: TRY301 - one place for all refusals
-                f"{path.name}: expected a document of {SCHEMA}"
-            )
-        if stored.get("schema_version") != SCHEMA_VERSION:
-            raise UnreadableCalibrationError(  # noqa: TRY301 - as above
-                f"{path.name}: expected version {SCHEMA_VERSION}; "
+            raise UnreadableCalibrationError(f"{path.name}: expected a document of {SCHEMA}")
+        if stored.get("schema_version") not in _READ:
+            raise UnreadableCalibrationError(
+                f"{path.name}: expected version {' or '.join(map(str, _READ))}; "
                 f"got {stored.get('schema_version')!r}"
             )
         require_whole(stored, _MEMBERS)
-        temperatures = stored["fit"].get("temperature_K")
-        correction = stored.get("correction", {})
-        return SavedCalibration(
-            parse_settings(stored["settings"], path.name),
-            tuple(
-                cast("Compensation", stage_of(stage, discover_compensations()))
-                for stage in stored["compensations"]
-            ),
-            cast("Model", stage_of(stored["model"], _models())),
-            float(stored["fit"]["interval_factor"]),
-            None if temperatures is None else (float(temperatures[0]), float(temperatures[1])),
-            np.asarray(correction.get("offset", 0.0), dtype=np.float64),
-            np.asarray(correction.get("rotation", np.eye(3)), dtype=np.float64),
-            stored,
-        )
-    except UnreadableCalibrationError:
-        raise
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise UnreadableCalibrationError(f"{path.name}: {error}") from error
+        found = _loaded(stored, path.name)
+        with warnings.catch_warnings():  # of numbers that no row would have
+            warnings.simplefilter("ignore", RuntimeWarning)
+            columns = {name: np.ones(1) for name in ("temperature_K", "time_s")}
+            found.predict(np.ones((1, features_in(found.settings))), columns)
+    except _MISFITS as error:
+        said = str(error) or type(error).__name__
+        named = said if said.startswith(f"{path.name}: ") else f"{path.name}: {said}"
+        raise UnreadableCalibrationError(named) from error
+    return found
+
+
+def _loaded(stored: dict[str, Any], source: str) -> SavedCalibration:
+    settings, fit = parse_settings(stored["settings"], source), stored["fit"]
+    measured = fit.get("temperature_K")
+    correction = Corrected.of(stored.get("correction", {}), settings)
+    if not isinstance(stored["compensations"], list):
+        raise UnreadableCalibrationError("compensations must be a list")
+    if "rms_left_out_deg" not in fit:
+        raise UnreadableCalibrationError("fit lacks rms_left_out_deg")
+    if (stated := fit["rms_left_out_deg"]) is not None:
+        numbers(stated, (), "fit.rms_left_out_deg")
+    return SavedCalibration(
+        settings,
+        tuple(
+            cast("Compensation", stage_of(stage, {**discover_compensations(), **TERMS}))
+            for stage in stored["compensations"]
+        ),
+        cast("Model", stage_of(stored["model"], _models())),
+        numbers(fit.get("interval_factor", 1.0), (), "fit.interval_factor", above=0.0).item(),
+        _intervals_of(fit.get("intervals")),
+        None if measured is None else temperatures(measured),
+        correction.offset,
+        correction.rotation,
+        stored,
+        correction.gain,
+    )
 
 
 def _models() -> dict[str, type[Any]]:
@@ -210,17 +300,53 @@ def _models() -> dict[str, type[Any]]:
 def with_correction(
     old: SavedCalibration, found: Correction, files: Sequence[Path], command: str = ""
 ) -> dict[str, Any]:
-    """Return the document of an old calibration with a correction, on top of those it has."""
+    """Return the document of an old calibration with a correction, on top of those it has.
+
+    Of spots, balances and channels the correction has gain and offset of features; of quadrants and
+    electrodes the settings have them as gain and dark level of readings.
+    """
     held = {name: value for name, value in old.document.items() if name != DIGEST}
+    settings, gain, offset = old.settings, np.asarray(found.gain), np.asarray(found.offset)
+    if len(gain) != features_in(settings):
+        held["settings"] = with_changes(settings, offset, gain).model_dump(mode="json")
+        offset, gain = np.zeros(()), np.ones(())
+    offset, gain = of_features(settings, offset, gain) if gain.ndim else (offset, gain)
+    whole = old.corrected.then(offset, gain, np.asarray(found.rotation))
     held["correction"] = {
-        **asdict(found),
-        "offset": (np.asarray(found.offset) + old.offset).tolist(),
-        "rotation": (np.asarray(found.rotation) @ old.rotation).tolist(),
+        **found.as_data(),
+        **{name: value.tolist() for name, value in vars(whole).items()},
         "onto": old.document[DIGEST],
         "files": [path.name for path in files],
         "command": command,
     }
     return {**held, DIGEST: digest_of(held)}
+
+
+def _plain(found: Intervals) -> dict[str, Any]:
+    return {
+        name: value.tolist() if isinstance(value, np.ndarray) else value
+        for name, value in vars(found).items()
+    }
+
+
+def _intervals_of(stored: Mapping[str, Any] | None) -> Intervals | None:
+    """Return the intervals that a document holds; ValueError where they are none."""
+    if stored is None:
+        return None
+    axis, rings_deg, sigma_deg = (
+        np.asarray(stored[name], dtype=np.float64) for name in ("axis", "rings_deg", "sigma_deg")
+    )
+    found = Intervals(
+        float(stored["factor"]), float(stored["coverage"]), int(stored["samples"]), axis, rings_deg,
+        int(stored["sectors"]), sigma_deg,
+    )  # fmt: skip
+    shape = (len(found.rings_deg), found.sectors, 2)
+    if found.axis.shape != (3,) or found.sigma_deg.shape != shape:
+        raise ValueError(
+            f"expected intervals of shape {shape} about an axis of 3; got {found.sigma_deg.shape} "
+            f"about {found.axis.shape}"
+        )
+    return found
 
 
 def _temperatures(found: Calibration) -> list[float] | None:

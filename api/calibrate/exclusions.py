@@ -16,6 +16,8 @@ from api.calibrate.robust import normalised
 from api.calibrate.runs import RunOffset, off_runs
 from api.calibrate.selection import Candidate, fitted, unbounded
 
+#: Why samples are left out.
+WRONG, FOLD = "wrong pose", "reading that another direction gives too"
 #: Residuals of samples left out, over their robust scale, that list a sample as wrong after all.
 _WRONG_OF_MODEL = 5.0
 #: And below which a sample that no smooth map explains is taken back.
@@ -54,7 +56,7 @@ def sound_of(readings: Readings) -> tuple[Readings, list[Excluded], list[RunOffs
     fold = None
     if bad.any():
         fold = float(np.degrees(np.arccos(np.clip(readings.sun[bad, 2], -1.0, 1.0)).min()))
-        excluded += excluded_of(bad, "reading that another direction gives too", readings)
+        excluded += excluded_of(bad, FOLD, readings)
         readings = readings.only(~bad)
     return readings, excluded, runs, fold
 

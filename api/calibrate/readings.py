@@ -38,11 +38,13 @@ MATRICES: dict[Transform, tuple[tuple[float, float], tuple[float, float]]] = {
 #: Why rows of a sensor that looks one way are left out.
 BEHIND = "the light is behind the sensor"
 FALLING = "readings fall when light rises"
-_NO_SUM = "the signals have no positive sum"
+NO_SUM = "the signals have no positive sum"
+EMPTY = "a cell is empty or not a finite number"
+FAINT_ROWS = "there is hardly any light"
 #: Cosine of the angle off the axis up to which the light is along the detector's plane.
 GRAZING = 1e-6
 #: Share of the usual light below which balances are those of noise.
-_FAINT = 0.1
+FAINT = 0.1
 _KINDS = {"spot": FeatureKind.SPOT, "channels": FeatureKind.SIGNALS}
 
 
@@ -132,14 +134,10 @@ def readings_of(table: Table, settings: Settings, *, behind: bool = False) -> Re
     """
     raw = np.column_stack([table.numbers(name) for name in settings.readings.columns])
     stated = np.column_stack([table.numbers(name) for name in settings.direction.columns])
-    sun, angles = _directions(stated, table, settings)
+    sun, angles = directions_of(stated, table, settings)
     signals = _signals(raw, settings.readings)
-    features = _features(signals, settings.readings)
-    for transform in settings.apply:
-        features = (
-            features @ np.asarray(MATRICES[transform]).T if features.shape[1] == 2 else features
-        )
-    run, names = _runs(table, settings)
+    features = features_of_signals(signals, settings)
+    run, names = runs_of(table, settings)
     context = _context(table, settings)
     rows = table.rows
     if settings.rows.shift:
@@ -160,7 +158,7 @@ def readings_of(table: Table, settings: Settings, *, behind: bool = False) -> Re
     if not usable.any():
         counts = ", ".join(f"{count} {reason}" for reason, count in dropped.items() if count)
         # Readings that fall when light rises have negative sums where nothing is taken off them.
-        falling = dropped[_NO_SUM] and np.nanmedian(raw.sum(axis=1)) < 0
+        falling = dropped[NO_SUM] and np.nanmedian(raw.sum(axis=1)) < 0
         hint = f"; {FALLING}: say inverted = true" if falling else ""
         raise TableError(f"{table.source}: no row can be used ({counts}){hint}")
     made = Readings(
@@ -170,7 +168,18 @@ def readings_of(table: Table, settings: Settings, *, behind: bool = False) -> Re
     return made.only(usable)
 
 
-def _directions(stated: Floats, table: Table, settings: Settings) -> tuple[Floats, Floats | None]:
+def features_of(raw: Floats, settings: Settings) -> Floats:
+    """Return features (N, F) of readings (N, K) as they stand in a file's columns."""
+    signals = _signals(np.asarray(raw, dtype=np.float64), settings.readings)
+    return features_of_signals(signals, settings)
+
+
+def features_of_signals(signals: Floats, settings: Settings) -> Floats:
+    """Return features (N, F) of signals (N, K): readings less dark over gain."""
+    return _turned(_features(signals, settings.readings), settings)
+
+
+def directions_of(stated: Floats, table: Table, settings: Settings) -> tuple[Floats, Floats | None]:
     """Return unit vectors (N, 3) of a file's columns, and its two angles in degrees if any."""
     direction = settings.direction
     if direction.form in ("quaternion", "matrix"):
@@ -231,6 +240,13 @@ def _signals(raw: Floats, settings: ReadingsSettings) -> Floats:
     return np.asarray(sign * (raw - np.asarray(settings.dark)) / np.asarray(settings.gain))
 
 
+def _turned(features: Floats, settings: Settings) -> Floats:
+    for transform in settings.apply:
+        if features.shape[1] == 2:
+            features = features @ np.asarray(MATRICES[transform]).T
+    return features
+
+
 def _features(signals: Floats, settings: ReadingsSettings) -> Floats:
     if settings.kind == "quadrants":
         return quadrant_balances(signals)
@@ -271,24 +287,23 @@ def _reasons(  # noqa: PLR0917 - what a row is made of
     if settings.readings.kind in ("quadrants", "electrodes", "pair"):
         total = signals.sum(axis=1)
         usual = np.nanpercentile(total, 95) if np.isfinite(total).any() else np.nan
-        faint = (usual > 0) & (total > 0) & (total < _FAINT * usual)
+        faint = (usual > 0) & (total > 0) & (total < FAINT * usual)
     if settings.direction.form == "vector":
         zeros |= (stated == 0).all(axis=1)
     found = {
-        "a cell is empty or not a finite number": ~(
-            np.isfinite(raw).all(axis=1) & np.isfinite(stated).all(axis=1)
-        ),
+        EMPTY: ~(np.isfinite(raw).all(axis=1) & np.isfinite(stated).all(axis=1)),
         "all readings, or the direction, are zero": zeros,
         "the direction is no unit vector, or 90 deg or more off": ~np.isfinite(sun).all(axis=1),
-        "there is hardly any light": faint,
-        _NO_SUM: ~np.isfinite(features).all(axis=1),
+        FAINT_ROWS: faint,
+        NO_SUM: ~np.isfinite(features).all(axis=1),
     }
     if settings.readings.kind != "channels":
         found[BEHIND] = ~(sun[:, 2] > GRAZING)
     return found
 
 
-def _runs(table: Table, settings: Settings) -> tuple[NDArray[np.int64], tuple[str, ...]]:
+def runs_of(table: Table, settings: Settings) -> tuple[NDArray[np.int64], tuple[str, ...]]:
+    """Return the run (N,) of each row of a table, from 0, and the names of the runs."""
     if settings.rows.run is None:
         return np.zeros(len(table), dtype=np.int64), (table.source,)
     if settings.rows.run not in table.columns:

@@ -1,11 +1,11 @@
-"""An old calibration corrected by a few new poses: a turned boresight, or moved readings."""
+"""An old calibration corrected by a few new poses: gains, offsets, scale and turn that changed."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -13,21 +13,52 @@ from algorithms.angles import separation_deg
 from algorithms.contract import FeatureKind, Floats, UnusableDataError
 from api.calibrate.readings import Readings, joined, readings_of
 from api.calibrate.table import read_table
+from api.calibrate.terms.age import Changes, Kind, answered, fit
 
-Kind = Literal["none", "boresight", "offset"]
-#: Poses that a correction needs.
-_FEWEST = 4
-#: Error on poses left out, over the old one's, up to which a correction is taken.
-_BETTER = 0.9
-#: Size of a correction over its 1-sigma from which it is one.
-_CLEAR = 8.0
-_ROUNDS = 20
-#: Steps to an offset, of which the first is at most a tenth of the readings' range.
-_MOST_STEPS = 40
-#: Residuals over their median up to which poses count in full.
-_USUAL = 2.0
-#: RMS over median of the length of two normal errors.
-_RMS_OF_MEDIAN = 1.2011
+#: Poses that a correction needs, and in how many parts they are left out.
+_FEWEST, _PARTS = 4, 10
+#: How many times likelier poses left out must be by a correction than without.
+_LIKELIER = 200.0
+#: Kinds of changes that one correction has at most.
+_MOST_KINDS = 2
+#: RMS of new poses over that of the calibration from which no correction is not all well.
+_WORSE = 2.0
+#: Median of the length of two normal errors over their 1-sigma.
+_MEDIAN = 1.1774
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Angles between answers and poses, degrees; NaN where there is no answer.
+
+    Attributes
+    ----------
+    rms_deg, median_deg, largest_deg : float
+    most_deg : float
+        RMS without the largest tenth, and at least one, which may be a wrong pose.
+    """
+
+    rms_deg: float
+    median_deg: float
+    largest_deg: float
+    most_deg: float
+
+    @classmethod
+    def of(cls, errors: Floats) -> Errors:
+        """Return those of errors (N,), of which NaN are left out."""
+        known = np.sort(errors[np.isfinite(errors)])
+        if not len(known):
+            return cls(*4 * (float("nan"),))
+        most = known[: max(len(known) - max(len(known) // 10, 1), 1)]
+        rms, of_most = (float(np.sqrt(np.mean(some**2))) for some in (known, most))
+        return cls(rms, float(np.median(known)), float(known[-1]), of_most)
+
+    def sentence(self) -> str:
+        """Say them."""
+        return (
+            f"{self.rms_deg:.3g} deg RMS (median {self.median_deg:.3g}, "
+            f"largest {self.largest_deg:.3g})"
+        )
 
 
 @dataclass(frozen=True)
@@ -36,45 +67,73 @@ class Correction:
 
     Attributes
     ----------
-    kind : {"none", "boresight", "offset"}
-        Nothing that shows; the sensor turned; its readings moved.
-    offset : tuple of float
-        Subtracted from readings; zeros unless of kind ``offset``.
+    kinds : tuple of {"gain", "scale", "offset", "boresight"}
+        That changed; none where nothing explains the poses better than the old calibration.
+    gain, offset : tuple of float
+        A reading, less dark over gain, is now ``gain`` times what it was, plus ``offset``.
     rotation : tuple of three tuples of three float
         That takes the old directions to the new ones.
-    before_deg, after_deg : float
-        RMS error of the old calibration on the new poses, and of the corrected one on each pose
-        while it was left out, both from the median, which wrong poses do not move.
-    size, uncertainty : float
-        Of the turn, degrees, or of the move, in the readings' unit, and its 1-sigma.
-    samples : int
-        Poses that were answered.
+    before, after : Errors
+        Of the old calibration on the new poses, and of the corrected one on each pose while it was
+        left out.
+    changes : tuple of str
+        Each change with its 1-sigma, in words.
+    samples, unanswered : int
+        Poses that the old calibration answers, and that the corrected one does not.
+    stated_deg : float
+        RMS error of the old calibration by its own document; NaN where it states none.
     """
 
-    kind: Kind
+    kinds: tuple[Kind, ...]
+    gain: tuple[float, ...]
     offset: tuple[float, ...]
     rotation: tuple[tuple[float, ...], ...]
-    before_deg: float
-    after_deg: float
-    size: float
-    uncertainty: float
+    before: Errors
+    after: Errors
+    changes: tuple[str, ...]
     samples: int
+    unanswered: int = 0
+    stated_deg: float = float("nan")
+
+    @property
+    def explained(self) -> bool:
+        """Whether nine in ten poses are answered about as well as the old calibration states."""
+        return not self.after.most_deg > _WORSE * self.stated_deg
+
+    def as_data(self) -> dict[str, Any]:
+        """Return all of it as JSON has it, None for what is no number."""
+        held = asdict(self)
+        stated = self.stated_deg if np.isfinite(self.stated_deg) else None
+        errors = {
+            name: {key: value if np.isfinite(value) else None for key, value in held[name].items()}
+            for name in ("before", "after")
+        }
+        return {**held, **errors, "stated_deg": stated}
 
     def sentence(self) -> str:
         """Say what was found."""
-        sentence = f"the old calibration errs {self.before_deg:.3g} deg on {self.samples} poses"
-        if self.kind == "none":
-            return f"{sentence}; neither a turn nor an offset explains that better: it stays"
-        what = "a turn by {} deg" if self.kind == "boresight" else "readings moved by {}"
-        size = what.format(f"{self.size:.3g} +- {self.uncertainty:.1g}")
-        return f"{sentence}; {size} leaves {self.after_deg:.3g} deg on poses left out"
+        said = f"the old calibration errs {self.before.sentence()} on {self.samples} poses"
+        if self.kinds:
+            said += f"; {', '.join(self.changes)}: that leaves {self.after.sentence()}"
+            said += " on poses left out"
+        else:
+            said += "; no gain, offset, scale or turn explains that better: it stays"
+        if self.unanswered:
+            said += f"; {self.unanswered} are not answered"
+        if not self.explained:
+            said += (
+                f". It stated {self.stated_deg:.3g} deg: wrong poses, or what no correction "
+                "explains; calibrate anew if there are more poses"
+            )
+        return said
 
 
 def recalibrate(paths: Sequence[Path], old: Any) -> Correction:
     """Return what a few new poses say of an old calibration.
 
-    A turn of the sensor (three angles) and an offset of its two readings are each fitted, weighted
-    so that wrong poses do not count, and judged by the poses left out of it.
+    Gains and offsets of readings, a scale and a turn are each fitted, weighted so that wrong poses
+    hardly count, and judged by poses left out of the fit; the best, and then a second one if it
+    makes that better still.
 
     Parameters
     ----------
@@ -99,113 +158,99 @@ def recalibrate(paths: Sequence[Path], old: Any) -> Correction:
             f"the old calibration answers {int(known.sum())} of the {len(readings)} poses; a "
             f"correction needs {_FEWEST}: take some inside the field that it was calibrated on"
         )
-    readings = readings.only(known)
-    before = separation_deg(old.predict(readings.features, readings.context), readings.sun)
-    found = Correction(
-        "none", (0.0,) * readings.features.shape[1], _plain(np.eye(3)), _rms(before), _rms(before),
-        0.0, 0.0, len(readings),
-    )  # fmt: skip
-    makers: dict[Kind, Callable[[Readings, Any], tuple[Floats, Floats]]] = {"boresight": _turn}
-    if readings.kind is not FeatureKind.SIGNALS:
-        makers["offset"] = _move
-    for kind, fit in makers.items():
-        one = _judged(kind, fit, readings, old)
-        clear = one.size > _CLEAR * one.uncertainty
-        if clear and one.after_deg < _BETTER * found.after_deg:
-            found = one
-    return found
-
-
-def _judged(
-    kind: Kind,
-    fit: Callable[[Readings, Any], tuple[Floats, Floats]],
-    readings: Readings,
-    old: Any,
-) -> Correction:
-    offset, rotation = fit(readings, old)
-    places = np.arange(len(readings))
-    step = max(len(readings) // 20, 1)
-    errors, sizes = np.full(len(readings), np.nan), []
-    for start in range(0, len(readings), step):
-        out = (places >= start) & (places < start + step)
-        moved, turned = fit(readings.only(~out), old)
-        test = readings.only(out)
-        errors[out] = separation_deg(
-            old.predict(test.features - moved, test.context) @ turned.T, test.sun
-        )
-        sizes.append(_size(kind, moved, turned))
-    # the jackknife: how much the answer hangs on each block of poses
-    blocks = np.array(sizes)
-    spread = float(np.sqrt((len(blocks) - 1) * np.mean((blocks - blocks.mean()) ** 2)))
-    before = separation_deg(old.predict(readings.features, readings.context), readings.sun)
+    # what left the old field, as readings of a dimmed cell do, tells most
+    beyond = getattr(old, "unbounded", old)
+    none = Changes.none(readings.raw.shape[1])
+    errors = separation_deg(answered(beyond, readings, none), readings.sun)
+    before = Errors.of(errors[known])
+    kinds: tuple[Kind, ...] = ()
+    while len(kinds) < _MOST_KINDS:
+        more = _better(beyond, readings, kinds, errors)
+        if more is None:
+            break
+        kinds, errors = more
+    changes = fit(beyond, readings, kinds) if kinds else none
+    held = np.isfinite(answered(old, readings, changes)).all(axis=1)
     return Correction(
-        kind, tuple(float(v) for v in offset), _plain(rotation), _rms(before), _rms(errors),
-        _size(kind, offset, rotation), spread, len(readings),
-    )  # fmt: skip
+        kinds,
+        tuple(float(v) for v in changes.gain),
+        tuple(float(v) for v in changes.offset),
+        tuple(tuple(float(v) for v in row) for row in changes.rotation),
+        before,
+        Errors.of(errors[held]),
+        tuple(_said(changes, kinds, old.settings.readings.columns)),
+        int(known.sum()),
+        int((~held).sum()),
+        float(getattr(old, "stated_deg", "nan")),
+    )
 
 
-def _turn(readings: Readings, old: Any) -> tuple[Floats, Floats]:
-    """Zero offset, and the rotation from old directions to those of the poses."""
-    predicted = old.predict(readings.features, readings.context)
-    weight = np.ones(len(predicted))
-    rotation = np.eye(3)
-    for _ in range(_ROUNDS):
-        u, _, vt = np.linalg.svd((readings.sun * weight[:, None]).T @ predicted)
-        rotation = u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt
-        left = np.linalg.norm(readings.sun - predicted @ rotation.T, axis=1)
-        weight = 1.0 / np.maximum(left, max(_USUAL * float(np.median(left)), 1e-12))
-    return np.zeros(readings.features.shape[1]), rotation
+def _kinds(readings: Readings) -> tuple[Kind, ...]:
+    """Return what may have changed: two readings are a place, more are light on parts."""
+    if readings.kind is FeatureKind.SIGNALS or readings.raw.shape[1] > 2:
+        return ("boresight", "gain", "offset")
+    return ("boresight", "offset", "scale")
 
 
-def _move(readings: Readings, old: Any) -> tuple[Floats, Floats]:
-    """Offset of two readings by Gauss and Newton, and no rotation."""
-    offset = np.zeros(2)
-    width = np.maximum(np.ptp(readings.features, axis=0), 1e-12)
-    weight = np.ones(len(readings))
-    rounds, largest = 0, 0.1 * width
-    for _ in range(_MOST_STEPS):
-        at = old.predict(readings.features - offset, readings.context)
-        slopes = [
-            old.predict(readings.features - offset - axis, readings.context) - at
-            for axis in np.diag(width * 1e-4)
+def _better(
+    old: Any, readings: Readings, kinds: tuple[Kind, ...], errors: Floats
+) -> tuple[tuple[Kind, ...], Floats] | None:
+    """Return the kind of change that explains poses left out best, if it does better than now."""
+    tried = {}
+    for one in _kinds(readings):
+        if one not in kinds and not {"scale", "offset"} <= {one, *kinds}:
+            tried[*kinds, one] = _left_out(old, readings, (*kinds, one))
+    if not tried:
+        return None
+    usual = [Errors.of(found).median_deg for found in (errors, *tried.values())]
+    # no smaller than the old calibration's own: few poses may lie near their answers by chance
+    stated = np.nan_to_num(float(getattr(old, "stated_deg", 0.0))) / np.sqrt(2.0)
+    scale = max(float(np.nanmin(usual)) / _MEDIAN, float(stated), 1e-12)
+    # a scale comes with offsets: it has to be as much likelier than they alone
+    best = max(
+        tried,
+        key=lambda names: _likelihood(tried[names], scale) - np.log(_LIKELIER) * ("scale" in names),
+    )
+    gained = _likelihood(tried[best], scale) - _likelihood(errors, scale)
+    return (best, tried[best]) if gained > np.log(_LIKELIER) else None
+
+
+def _left_out(old: Any, readings: Readings, kinds: tuple[Kind, ...]) -> Floats:
+    """Error (N,) of each pose by a correction that was fitted to the others, degrees."""
+    errors = np.full(len(readings), np.nan)
+    for out in np.array_split(np.arange(len(readings)), min(len(readings), _PARTS)):
+        rest = np.ones(len(readings), dtype=np.bool_)
+        rest[out] = False
+        test = readings.only(out)
+        changes = fit(old, readings.only(rest), kinds)
+        errors[out] = separation_deg(answered(old, test, changes), test.sun)
+    return errors
+
+
+def _likelihood(errors: Floats, scale: float) -> float:
+    """Logarithm of the likelihood of errors (N,): Student's t of two freedoms, in the plane.
+
+    Its tails are those of wrong poses, so that one of them decides nothing.
+    """
+    sizes = np.where(np.isfinite(errors), errors, 180.0) / scale
+    return float(-2.0 * np.log1p(sizes**2 / 2.0).sum())
+
+
+def _said(changes: Changes, kinds: tuple[Kind, ...], columns: Sequence[str]) -> list[str]:
+    said = []
+    if "gain" in kinds:
+        said += [
+            f"gain of channel {at + 1} ({columns[at]}) is {changes.gain[at]:.4g} "
+            f"+- {changes.gain_sigma[at]:.1g}"
+            for at in np.flatnonzero(changes.gain_sigma)
         ]
-        left = readings.sun - at
-        usable = np.isfinite(left).all(axis=1) & np.isfinite(np.hstack(slopes)).all(axis=1)
-        if usable.sum() < 3:
-            break
-        root = np.sqrt(weight[usable])
-        design = np.column_stack(
-            [
-                (slope[usable] * root[:, None]).reshape(-1) / (1e-4 * size)
-                for slope, size in zip(slopes, width, strict=True)
-            ]
-        )
-        aim = (left[usable] * root[:, None]).reshape(-1)
-        step = np.linalg.lstsq(design, aim, rcond=1e-8)[0]
-        cut = np.clip(step, -largest, largest)
-        offset = offset + cut
-        if (cut == step).all():
-            rounds += 1
-        else:  # a long way, which few poses close together do not tell
-            largest = 2.0 * largest
-        size = np.linalg.norm(left, axis=1)
-        middle = max(_USUAL * float(np.nanmedian(size)), 1e-12)
-        weight = 1.0 / np.maximum(np.nan_to_num(size, nan=np.inf), middle)
-        if rounds >= _ROUNDS or (np.abs(step) < 1e-9 * width).all():
-            break
-    return offset, np.eye(3)
-
-
-def _size(kind: Kind, offset: Floats, rotation: Floats) -> float:
-    if kind == "offset":
-        return float(np.linalg.norm(offset))
-    return float(np.degrees(np.arccos(np.clip((np.trace(rotation) - 1.0) / 2.0, -1.0, 1.0))))
-
-
-def _plain(matrix: Floats) -> tuple[tuple[float, ...], ...]:
-    return tuple(tuple(float(v) for v in row) for row in matrix)
-
-
-def _rms(errors: Floats) -> float:
-    known = errors[np.isfinite(errors)]
-    return _RMS_OF_MEDIAN * float(np.median(known)) if len(known) else float("inf")
+    if "scale" in kinds:
+        said.append(f"readings grew {changes.gain[0]:.5g} +- {changes.gain_sigma[0]:.1g} times")
+    if {"offset", "scale"} & set(kinds):
+        said += [
+            f"{columns[at]} moved by {changes.offset[at]:.3g} +- {changes.offset_sigma[at]:.1g}"
+            for at in np.flatnonzero(changes.offset_sigma)
+        ]
+    if "boresight" in kinds:
+        said.append(f"a turn by {changes.turn_deg:.3g} +- {changes.turn_sigma_deg:.1g} deg")
+    return said

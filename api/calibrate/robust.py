@@ -134,6 +134,19 @@ def residuals(fitted: SmoothMap, features: Floats, sun: Floats) -> Floats:
     return np.asarray(sun - terms(scaled, fitted.degree) @ fitted.coefficients)
 
 
+def answer_noise_deg(features: Floats, sun: Floats) -> float:
+    """Return the RMS noise of single answers, degrees: what nearest poses leave of a smooth map.
+
+    The map errs alike on neighbours. The median of their differences is that of two normal errors.
+    """
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
+
+    left = residuals(robust_map(features, sun)[0], features, sun)
+    near = np.asarray(cKDTree(sun).query(sun, k=2)[1])[:, 1]
+    square = ((left - left[near]) ** 2).sum(axis=1)
+    return float(np.degrees(np.sqrt(np.median(square) / (2.0 * np.log(2.0)))))
+
+
 def bisquare(over_scale: Floats) -> Floats:
     """Return Tukey's weights of residuals over their scale."""
     share = np.minimum(np.abs(over_scale) / TUNING, 1.0)

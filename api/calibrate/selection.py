@@ -28,6 +28,7 @@ from api.calibrate.conventions.findings import linear_map
 from api.calibrate.face_normals import face_normals
 from api.calibrate.readings import Readings
 from api.calibrate.settings import Settings
+from api.calibrate.terms.temperature import with_temperature
 
 #: Networks, trained for minutes; tried with ``thorough``.
 NETWORKS = frozenset({"ann", "dnn", "dnn-surface"})
@@ -142,6 +143,8 @@ def applicable(
         if not thorough and any(part in NETWORKS for part in name.split(" + ")):
             continue
         found[name] = scored
+    if "temperature_K" in readings.context:
+        found |= with_temperature(found, readings.kind)
     return found
 
 
@@ -205,6 +208,42 @@ def fitted(scored: Scored, readings: Readings, geometry: SensorGeometry) -> Mode
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         return made.fit(readings.features, readings.sun, readings.context)
+
+
+@dataclass(frozen=True)
+class Settled:
+    """A model whose settings are those that another fit chose: orders are not chosen again.
+
+    Attributes
+    ----------
+    scored : Model or Chain
+        The model.
+    settings : mapping of str to Any
+        By name.
+    """
+
+    scored: Scored
+    settings: Mapping[str, Any]
+
+    @property
+    def about(self) -> Any:
+        """Of the model."""
+        return self.scored.about
+
+    def for_sensor(self, geometry: SensorGeometry, kind: FeatureKind) -> Any:
+        """Return it unfitted, with the settings."""
+        made = self.scored.for_sensor(geometry, kind)
+        last = getattr(made, "model", made)
+        for name, value in self.settings.items():
+            if getattr(last, name, value) is None:
+                setattr(last, name, value)
+        return made
+
+
+def settled(scored: Scored, model: Model) -> Any:
+    """Return a model with the settings that a fit of it chose."""
+    last = getattr(model, "model", model)
+    return Settled(scored, dict(last.settings())) if hasattr(last, "settings") else scored
 
 
 def unbounded(model: Any) -> Any:

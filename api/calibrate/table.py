@@ -182,6 +182,13 @@ def _names(cells: Cells, source: str) -> tuple[list[str], list[str], pd.DataFram
     return given, said, frame
 
 
+def table_of(frame: pd.DataFrame, source: str) -> Table:
+    """Return a data frame as a table whose rows count from 0."""
+    named = frame.set_axis([str(name) for name in frame.columns], axis=1)
+    _require_names(list(named.columns), source)
+    return _of_frame(named, source, place=(0, None, 0))
+
+
 def _of_frame(  # noqa: PLR0917 - what a table is made of
     frame: pd.DataFrame,
     source: str,

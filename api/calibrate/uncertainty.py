@@ -6,16 +6,26 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from algorithms.chain import Scored
 from algorithms.contract import Floats, SensorGeometry, UnusableDataError
+from api.calibrate.intervals.local_scale import quantile_profile, scale_of
+from api.calibrate.intervals.places import Grid, bilinear, tangent_axes
 from api.calibrate.readings import Readings
-from api.calibrate.selection import Candidate, fitted
+from api.calibrate.selection import fitted
 
 #: 95 % of a normal variable lie within so many standard deviations.
 NORMAL_95 = 1.959964
 #: Refits with other noise by which a fit's own spread is estimated.
 REFITS = 6
+#: Samples from which intervals are stated.
+FEWEST = 40
+_FOLDS = 5
+#: Smaller errors are rounding, degrees.
+_LEAST = 1e-12
+#: Poses are told apart to so many digits.
+_DIGITS = 6
 #: Poses around one that tell its noise.
 _AROUND = 16
 _SEED = 20_260_101
@@ -23,58 +33,112 @@ _SEED = 20_260_101
 
 @dataclass(frozen=True)
 class Intervals:
-    """What the stated 1-sigma is multiplied by so that 95 % intervals hold 95 %.
+    """The 1-sigma of a direction by its place, so that 95 % intervals hold 95 % everywhere.
 
     Attributes
     ----------
     factor : float
-        Of the model's own 1-sigma.
+        95 % quantile of errors over their local scale (that of normal errors is 1), from samples
+        that told nothing of the scale; part of `sigma_deg` already.
     coverage : float
-        Share of samples left out within the 95 % interval, with a factor from other samples.
+        Share of samples left out within the 95 % interval, by a table of other samples.
     samples : int
         Of them.
+    axis : ndarray, shape (3,)
+        Unit vector that rings lie about.
+    rings_deg : ndarray, shape (K,)
+        Off-axis angles of the ring centres, from 0.
+    sectors : int
+        Of each ring: sector m is at the azimuth 360 m / M about the axis, from +x towards +y.
+    sigma_deg : ndarray, shape (K, M, 2)
+        Half width of the 95 % interval over 1.96, of the two axes of `tangent_axes`. In the first
+        ring, a point, all sectors are the same.
     """
 
     factor: float
     coverage: float
     samples: int
+    axis: Floats
+    rings_deg: Floats
+    sectors: int
+    sigma_deg: Floats
+
+    def at(self, sun: Floats) -> Floats:
+        """Return the 1-sigma (N, 2) of two tangent axes at directions (N, 3), degrees.
+
+        Bilinear between centres, periodic in azimuth, constant beyond the last ring; NaN of NaN.
+        """
+        grid = Grid(self.axis, self.rings_deg, self.sectors)
+        return bilinear(grid.weights(sun), self.sigma_deg)
 
 
 def tangent_offsets(offsets: Floats, sun: Floats) -> Floats:
-    """Return errors (N, 2) along two axes square to the direction, degrees."""
-    first = np.cross(sun, np.where(np.abs(sun[:, [0]]) < 0.9, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]]))
-    first /= np.linalg.norm(first, axis=1)[:, None]
-    second = np.cross(sun, first)
+    """Return errors (N, 2) along the two axes of `tangent_axes`, degrees."""
+    first, second = tangent_axes(sun)
     along = np.column_stack([(offsets * first).sum(axis=1), (offsets * second).sum(axis=1)])
     return np.asarray(np.degrees(along))
 
 
-def intervals(candidate: Candidate, readings: Readings) -> Intervals | None:
-    """Return the factor for a model's stated 1-sigma, by the samples left out; None for too few."""
-    if candidate.offsets is None or candidate.deviation is None:
+def covariance_of(sigma_deg: Floats, sun: Floats) -> Floats:
+    """Return the covariance (N, 3, 3) of unit vectors (N, 3) with a 1-sigma (N, 2) of their axes.
+
+    In radians squared, which those of a unit vector's components are.
+    """
+    radians = np.radians(sigma_deg)
+    axes = np.stack(tangent_axes(sun), axis=1) * radians[:, :, None]
+    return np.asarray(np.einsum("nai,naj->nij", axes, axes))
+
+
+def intervals(offsets: Floats, sun: Floats) -> Intervals | None:
+    """Return the 1-sigma by place from errors (N, 3) of samples left out; None for too few.
+
+    The scale of errors is estimated by place; what it is multiplied by, from samples that told
+    nothing of it: the scale of a fifth of the samples is that of the other four. A fifth is made of
+    every fifth pose with all its repeats.
+    """
+    along = tangent_offsets(offsets, sun)
+    known = np.isfinite(along).all(axis=1)
+    along, sun = along[known], sun[known]
+    if len(along) < FEWEST:
         return None
-    used = _compared(readings, len(candidate.offsets))
-    along = np.abs(tangent_offsets(candidate.offsets, used.sun))
-    errors = np.asarray(candidate.errors)
-    ratio = along / candidate.deviation[:, None]
-    usable = np.isfinite(ratio).all(axis=1) & np.isfinite(errors)
-    ratio = ratio[usable]
-    if len(ratio) < 40:
-        return None
-    half = np.arange(len(ratio)) % 2 == 0
-    within = [float((ratio[test] <= _limit(ratio[~test])).mean()) for test in (half, ~half)]
-    return Intervals(_limit(ratio) / NORMAL_95, float(np.mean(within)), len(ratio))
+    grid = Grid.over(sun)
+    rings, _ = grid.weights(sun)
+    tests = [parts_of(sun, _FOLDS) == number for number in range(_FOLDS)]
+    over, inside = np.empty_like(along), np.empty(along.shape, dtype=np.bool_)
+    for test in tests:
+        table = scale_of(along[~test], sun[~test], grid)
+        over[test] = np.maximum(np.abs(along[test]), _LEAST) / bilinear(
+            grid.weights(sun[test]), table
+        )
+    for test in tests:
+        inside[test] = over[test] <= _limits(over[~test], rings[~test], rings[test])
+    limits = _limits(over, rings, np.eye(len(grid.rings_deg))) / NORMAL_95
+    return Intervals(
+        _limit(over) / NORMAL_95, float(inside.mean()), len(along), grid.axis, grid.rings_deg,
+        grid.sectors, scale_of(along, sun, grid) * limits[:, :, None],
+    )  # fmt: skip
+
+
+def _limits(over: Floats, rings: Floats, at: Floats) -> Floats:
+    """Return the limits (M, 1) that hold 95 % of errors over their scale (N, 2) at weights `at`."""
+    profile = quantile_profile(over, rings, 0.95)
+    level = _limit(over / np.exp(rings @ profile)[:, None])
+    return np.asarray(np.exp(at @ profile)[:, None] * level)
+
+
+def parts_of(sun: Floats, count: int) -> NDArray[np.int64]:
+    """Return the part (N,), 0 to count - 1, of directions (N, 3): by chance, repeats in one."""
+    if not len(sun):
+        return np.zeros(0, dtype=np.int64)
+    poses = np.unique(np.round(sun, _DIGITS), axis=0, return_inverse=True)[1].reshape(-1)
+    order = np.random.default_rng(_SEED).permutation(int(poses.max()) + 1)
+    return np.asarray(order[poses] % count)
 
 
 def _limit(ratio: Floats) -> float:
     flat = np.sort(ratio.reshape(-1))
     # as conformal prediction has it: the place that holds 95 % of the next ones too
     return float(flat[min(int(np.ceil(0.95 * (len(flat) + 1))) - 1, len(flat) - 1)])
-
-
-def _compared(readings: Readings, count: int) -> Readings:
-    step = max(-(-len(readings) // count), 1)
-    return readings.only(np.arange(0, len(readings), step))
 
 
 def noise_deg(offsets: Floats, sun: Floats) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 from algorithms.angles import separation_deg
 from algorithms.calibration.hull import Hull
 from algorithms.contract import Floats, UnusableDataError
+from api.calibrate.causes.held_out import Part, uncovered
 from api.calibrate.halves import Halves
 from api.calibrate.readings import Readings
 from api.calibrate.uncertainty import tangent_offsets
@@ -21,6 +22,10 @@ Word = Literal["good", "model misfit", "poses missing", "conventions uncertain"]
 _RATIO, _RATIO_CHANCE = 2.0, 1e-3
 #: Share of the residuals' variance that a pattern explains to be named, and its significance.
 _SHARE, _CHANCE = 0.05, 1e-4
+#: Error of samples fitted over that of samples left out, or their noise, that no sound fit has.
+_BEYOND = 2.0
+#: Named beside the others, and no misfit: a bench and a sensor may be worse at the edge.
+GROWING = "the angle off the boresight: the size of errors grows with it"
 _NEXT = 20
 #: Steps between poses from which a hole in the field is said.
 _GAP = 5.0
@@ -35,7 +40,7 @@ class Pattern:
     name : str
         What the residuals go with.
     share : float
-        Of their variance that it explains.
+        Of their variance that it explains; of the variance of their sizes' ranks for `GROWING`.
     chance : float
         That residuals without it would go with it as much.
     """
@@ -60,6 +65,10 @@ class Verdict:
         Left in the errors of samples left out, the largest first.
     next_poses : ndarray, shape (20, 3)
         Directions that would add most.
+    untested : tuple of str
+        Causes of a wrong calibration that the file cannot show, each with what would.
+    parts : tuple of Part
+        Of the samples left out, with how many errors lie within the intervals, the fewest first.
     """
 
     word: Word
@@ -67,6 +76,8 @@ class Verdict:
     split_ratio: float
     patterns: tuple[Pattern, ...]
     next_poses: Floats
+    untested: tuple[str, ...] = ()
+    parts: tuple[Part, ...] = ()
 
 
 def judge(  # noqa: PLR0917 - the numbers it is made of
@@ -100,9 +111,15 @@ def judge(  # noqa: PLR0917 - the numbers it is made of
     """
     floor = np.hypot(noise if np.isfinite(noise) else 0.0, floor_deg)
     apart = split.ratio > _RATIO and split.chance < _RATIO_CHANCE
-    smooth = [one for one in patterns if one.share > 0.25]
-    if rms_deg > 1.6 * residual_deg and rms_deg > 1.3 * floor:
-        word: Word = "poses missing"
+    smooth = [one for one in patterns if one.share > 0.25 and one.name != GROWING]
+    if not residual_deg <= _BEYOND * max(rms_deg, floor):
+        word: Word = "model misfit"
+        reason = (
+            f"samples fitted err {residual_deg:.3g} deg, more than those left out, which err "
+            f"{rms_deg:.3g} deg: the fit does not answer its own samples"
+        )
+    elif rms_deg > 1.6 * residual_deg and rms_deg > 1.3 * floor:
+        word = "poses missing"
         reason = (
             f"samples left out err {rms_deg:.3g} deg, those fitted {residual_deg:.3g} deg: "
             "there are too few poses for this model, or too far apart"
@@ -143,6 +160,33 @@ def with_uncertain_conventions(verdict: Verdict, found: str) -> Verdict:
     return replace(verdict, word="conventions uncertain", reason=reason)
 
 
+def withheld(verdict: Verdict, removed: str, parts: tuple[Part, ...]) -> Verdict:
+    """Return a verdict that is not good where rows are missing for no cause, or intervals fail.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        On the fit.
+    removed : str
+        Which rows were left out without a known cause, in a sentence; empty where few were.
+    parts : tuple of Part
+        Of the samples left out.
+    """
+    bad = uncovered(parts)
+    said = removed or (
+        f"95 % intervals hold {100 * bad.coverage:.0f} % of the errors at {bad.name} "
+        f"({bad.samples} samples)"
+        if bad
+        else ""
+    )
+    known = replace(verdict, parts=parts)
+    if not said or verdict.word == "conventions uncertain":
+        return known
+    if verdict.word == "good":
+        return replace(known, word="model misfit", reason=f"{said}; {verdict.reason}")
+    return replace(known, reason=f"{verdict.reason}; {said}")
+
+
 def patterns_in(offsets: Floats, readings: Readings) -> tuple[Pattern, ...]:
     """Return what errors (N, 3) of samples go with, the largest share first."""
     known = np.asarray(np.isfinite(offsets).all(axis=1))
@@ -156,6 +200,10 @@ def patterns_in(offsets: Floats, readings: Readings) -> tuple[Pattern, ...]:
     for name, word in (("time_s", "time"), ("temperature_K", "temperature")):
         if name in used.context and np.ptp(used.context[name]) > 0:
             designs[f"{word}: a drift"] = _powers(used.context[name], 1)
+    if (warmer := designs.get("temperature: a drift")) is not None:
+        designs["temperature and direction: a scale or turn"] = warmer * (
+            used.sun - used.sun.mean(axis=0)
+        )
     designs["the order of rows: a drift"] = _powers(np.arange(len(used), dtype=np.float64), 1)
     designs["the direction: a smooth pattern over the field"] = _surface(used.sun)
     if used.features.shape[1] == 2:
@@ -163,6 +211,7 @@ def patterns_in(offsets: Floats, readings: Readings) -> tuple[Pattern, ...]:
         if np.ptp(used.features) > 20.0:
             designs["the fraction of a pixel"] = np.column_stack([np.sin(phase), np.cos(phase)])
     found = [_pattern(name, design, errors) for name, design in designs.items()]
+    found.append(_growth(errors, used.sun))
     named = [one for one in found if one and one.share > _SHARE and one.chance < _CHANCE]
     return tuple(sorted(named, key=lambda one: -one.share))
 
@@ -228,8 +277,20 @@ def _pattern(name: str, design: Floats, errors: Floats) -> Pattern | None:
     share = 1.0 - rest / total
     expected = rank / (count - 1)  # of errors that go with nothing
     ratio = (total - rest) / rank / max(rest / (count - rank - 1), 1e-300)
-    chance = float(fdtrc(2 * rank, 2 * (count - rank - 1), ratio))
+    axes = errors.shape[1]
+    chance = float(fdtrc(axes * rank, axes * (count - rank - 1), ratio))
     return Pattern(name, max(share - expected, 0.0), chance)
+
+
+def _growth(errors: Floats, sun: Floats) -> Pattern | None:
+    """Say whether errors (N, 2) are larger away from the boresight."""
+    from scipy.stats import rankdata  # noqa: PLC0415 - SciPy, at the first use
+
+    off = np.arccos(np.clip(sun[:, 2], -1.0, 1.0))
+    rank = rankdata(np.linalg.norm(errors, axis=1))  # a few large errors decide nothing
+    if np.cov(off, rank)[0, 1] <= 0.0:
+        return None
+    return _pattern(GROWING, _powers(off, 2), rank[:, None])
 
 
 def _powers(column: Floats, degree: int) -> Floats:
@@ -251,5 +312,7 @@ def as_text(verdict: Verdict) -> Mapping[str, object]:
         if not np.isfinite(verdict.split_ratio)
         else round(verdict.split_ratio, 3),
         "patterns": [vars(one) for one in verdict.patterns],
+        "untested": list(verdict.untested),
+        "parts": [vars(one) for one in verdict.parts],
         "next_poses": [[round(float(c), 4) for c in pose] for pose in verdict.next_poses],
     }

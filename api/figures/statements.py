@@ -17,7 +17,7 @@ _WORDS = {
     "reproduced": "shown here too",
     "partly": "shown here in part",
     "contradicted": "not shown here",
-    "undecidable": "too few studies to say",
+    "undecidable": "open: too few cells are known to say",
 }
 
 

@@ -1,39 +1,139 @@
-"""/calibrate: a form that takes a turntable file, and the report that comes of it."""
+"""/calibrate: a form that takes a turntable file, with the report that comes of it below."""
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Request, Response
+from base64 import b64encode
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, get_args
 
-from api.calibrate.uploaded import LARGEST, LONGEST_S, MOST_ROWS
+from fastapi import APIRouter, Request, Response
+from markupsafe import Markup
+
+from api.calibrate.forms.units import AngleUnit, TemperatureUnit, TimeUnit
+from api.calibrate.sample import NAME, sample
+from api.calibrate.settings import Form as DirectionForm
+from api.calibrate.settings import Kind
+from api.calibrate.uploaded import LARGEST, LONGEST_S, MOST_ROWS, Upload
 from api.pages.rendering import render
-from api.pages.serving import page_bytes, refusal_page
+from api.pages.serving import page_bytes
 from api.service.problems import Problem
 from api.web.answers import StrictRoute
-from api.web.calibrations import HTML, calibrated
+from api.web.calibrations import HTML, archive_of, as_response, checked, made_of
+from api.web.representations import Representation
+from api.web.uploads import Form, read_form
 
+#: Kinds of readings and forms of directions as the form calls them.
+_KINDS = {
+    "spot": "x and y of a spot",
+    "balance": "two balances, -1 to 1",
+    "pair": "two readings of one axis",
+    "quadrants": "four quadrants: -x +y, +x +y, +x -y, -x -y",
+    "electrodes": "four electrodes: x+, x-, y+, y-",
+    "channels": "a channel per photodiode",
+}
+_FORMS = {
+    "vector": "unit vector x, y, z",
+    "projection": "projection angles alpha, beta",
+    "alpha-inner": "turntable: axis 1 next to the sensor",
+    "beta-inner": "turntable: axis 2 next to the sensor",
+    "azimuth-elevation": "azimuth, elevation",
+    "azimuth-zenith": "azimuth, off-axis angle",
+    "one-angle": "one angle",
+    "quaternion": "attitude as a quaternion",
+    "matrix": "attitude as a matrix, nine columns",
+}
 router = APIRouter(route_class=StrictRoute, include_in_schema=False)
+
+#: Fields that a form keeps.
+_KEPT = ("config", "model", "require", "apply")
+#: The field that a button sends instead of files.
+_SAMPLE = "sample"
 
 
 @router.get("/calibrate")
 async def form(request: Request) -> Response:
     """Give the form; `model` in the query is filled in."""
-    context = {"path": "/calibrate", "query": "", "megabytes": LARGEST // 1_000_000}
-    page = render(
-        "calibrate/form.html",
-        {
-            **context,
-            "rows": MOST_ROWS,
-            "seconds": int(LONGEST_S),
-            "model": request.query_params.get("model", ""),
-        },
-    )
-    return page_bytes(page).respond(request)
+    return _page({"model": request.query_params.get("model", "")}).respond(request)
+
+
+@router.get(f"/calibrate/{NAME}")
+async def sample_file(request: Request) -> Response:
+    """Give the sample file."""
+    return Representation(sample(), "text/csv; charset=utf-8").respond(request)
 
 
 @router.post("/calibrate")
 async def report(request: Request) -> Response:
-    """Give the report of a calibration, or a page that says why there is none."""
+    """Give the form with the report below it, or beside it why there is none."""
+    fields: Mapping[str, str] = {}
     try:
-        return await calibrated(request, HTML)
+        sent = await read_form(request)
+        fields = sent.fields
+        sent = _with_sample(sent)
+        wanted = checked(sent) or HTML
+        made = await made_of(sent)
+        if wanted != HTML:
+            return as_response(made, wanted)
+        shown, status = _page(fields, made=made), 200
     except Problem as problem:
-        return refusal_page(request, problem)
+        shown, status = _page(fields, problem=problem.document("/calibrate")), problem.status_code
+    answer = shown.respond(request, conditional=False)
+    answer.status_code = status
+    answer.headers["Cache-Control"] = "no-store"
+    return answer
+
+
+def _with_sample(sent: Form) -> Form:
+    """Return a form with the sample in the place of files where its button was pressed."""
+    if _SAMPLE not in sent.fields:
+        return sent
+    fields = {name: value for name, value in sent.fields.items() if name != _SAMPLE}
+    # what was set up for another file does not fit this one
+    return replace(sent, fields={**fields, "config": ""}, files=(Upload(NAME, sample()),))
+
+
+def _page(
+    fields: Mapping[str, str],
+    *,
+    made: Mapping[str, str] | None = None,
+    problem: Mapping[str, Any] | None = None,
+) -> Representation:
+    choices = {
+        "kinds": [(kind, _KINDS.get(kind, kind)) for kind in get_args(Kind) if kind != "frames"],
+        "forms": [(form, _FORMS.get(form, form)) for form in get_args(DirectionForm)],
+        "angle_units": [(unit, unit) for unit in get_args(AngleUnit)],
+        "time_units": [(unit, unit) for unit in get_args(TimeUnit)],
+        "temperature_units": [(unit, unit) for unit in get_args(TemperatureUnit)],
+    }
+    return page_bytes(
+        render(
+            "calibrate/form.html",
+            {
+                "path": "/calibrate",
+                "query": "",
+                "megabytes": LARGEST // 1_000_000,
+                "rows": MOST_ROWS,
+                "seconds": int(LONGEST_S),
+                "fields": {name: fields.get(name, "") for name in _KEPT},
+                "sample": NAME,
+                "choices": choices,
+                "problem": problem,
+                "report": None if made is None else _shown(made),
+            },
+        )
+    )
+
+
+def _shown(made: Mapping[str, str]) -> dict[str, Any]:
+    """Return a report in parts that a page takes up, and all files as an archive."""
+    whole = next(text for name, text in made.items() if name.endswith("_report.html"))
+    style = whole.partition("<style>")[2].partition("</style>")[0]
+    article = whole.partition("<body>")[2].rpartition("</body>")[0]
+    return {
+        "style": Markup(style),  # noqa: S704 - of our own template
+        "article": Markup(article),  # noqa: S704 - escaped by it
+        "archive": "data:application/zip;base64," + b64encode(archive_of(made)).decode(),
+        "page": "data:text/html;charset=utf-8;base64," + b64encode(whole.encode()).decode(),
+        "files": list(made),
+    }

@@ -51,7 +51,7 @@ def render(template: str, context: Mapping[str, Any]) -> str:
     context : by name; `path` and `query` are what was asked for
     """
     part = next(
-        (at for at, _ in addresses.NAVIGATION[1:] if context["path"].startswith(at)),
+        (at for at, _ in addresses.NAVIGATION if at != "/" and context["path"].startswith(at)),
         "/" if context["path"] == "/" else "",
     )
     return environment().get_template(template).render(part=part, **context)

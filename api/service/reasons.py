@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from registry.answer import Answer, Calibration, RankedArchitecture
+from registry.answer import Answer, RankedArchitecture
+from registry.calibration import Calibration
 from registry.relaxation import in_words
 
 _FEWEST_TIED = 3

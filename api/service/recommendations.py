@@ -34,7 +34,7 @@ from api.service.knowledge import Knowledge
 from api.service.pagination import Page, page
 from api.service.problems import Problem, Violation
 from api.service.reasons import notes, reason
-from registry import answer as found_by
+from registry import calibration as found_by
 from registry.answer import Answer, RankedArchitecture
 from registry.comparison import calibration_name, contradictions
 from registry.measured_pipelines import Measurements

@@ -67,9 +67,19 @@ class Tally:
         return min(steps, key=lambda step: step[0][1] - step[1][1], default=None)
 
 
-def settled_by(tally: Tally) -> str:
-    """Say on which counts the verdict rests, and which evidence would turn or decide it."""
+def settled_by(tally: Tally, turning: int | None = None) -> str:
+    """Say on which counts the verdict rests, and which evidence would turn or decide it.
+
+    Parameters
+    ----------
+    tally : Tally
+    turning : int, optional
+        Of how few studies the unknown cells could make a clause hold that does not by the known.
+    """
     unknown = tally.matching - tally.counted
+    if turning is not None:
+        counts, _, _ = _margin(tally).partition(":")
+        return f"{counts}; the unknown cells of {_studies(turning)} could make it hold"
     if not tally.is_decided:
         wanted = LEAST_COUNTED - tally.counted
         known = f"with a known {_in_words(tally.ranked)}"
@@ -92,7 +102,7 @@ def _margin(tally: Tally) -> str:
         value, count = min(tally.named.items(), key=_most)
         return f"{value} {count} of {tally.counted}, the most of those named"
     if tally.absent:
-        return f"no study with {' or '.join(tally.absent)}"
+        return f"no study with {' or '.join(tally.absent)} is known"
     if tally.kind in OCCURRING:
         rarest, count = min(tally.named.items(), key=_rarest)
         return f"each occurs, {rarest} in {_studies(count)}"

@@ -18,11 +18,11 @@ from survey_data.findings.checks import (
     VERDICTS,
     ClauseVerdict,
     FindingVerdict,
-    Vocabulary,
     evaluate,
     finding_verdict,
     study_values,
 )
+from survey_data.findings.grammar import Vocabulary
 from survey_data.tables import SurveyTables
 from survey_data.validation.rules import count_rows
 
@@ -124,7 +124,9 @@ def fidelity(tables: SurveyTables, problems: Sequence[Problem] = ()) -> Fidelity
     stated = by_id["studies"].stated
     if stated is None:
         raise LookupError("counts.csv states no number of studies")
-    vocabulary = Vocabulary(tables.taxonomy)
+    attributes = tables.attribute_definitions
+    single = attributes.loc[~attributes["multiple"].astype(bool), "attribute"]
+    vocabulary = Vocabulary(tables.taxonomy, set(single))
     values = study_values(tables.studies, tables.attributes, tables.architectures, vocabulary)
     clauses: dict[str, list[ClauseVerdict]] = {}
     for record in tables.finding_clauses.to_dict("records"):

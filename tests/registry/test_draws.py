@@ -19,7 +19,7 @@ ALIKE = (1.0,) * 10
 
 
 def one_at_confidence(own, ratios, bench, share):
-    return at_confidence(np.array([own]), np.array([ratios]), np.array([bench]), share)[0]
+    return at_confidence(np.array([own]), np.array([ratios]), bench, share)[0]
 
 
 @settings(deadline=None, derandomize=True)
@@ -46,12 +46,12 @@ def test_the_error_is_the_smallest_that_so_many_draws_keep_within(own, bench, sp
 
 @pytest.mark.parametrize("share", [0.5, 0.9, 0.93, 0.999])
 def test_each_unit_keeps_the_smallest_error_on_so_many_of_the_benches(share):
-    own, bench = np.array([0.01, np.inf]), np.array([0.03, 0.03])
+    own, bench = np.array([0.01, np.inf]), 0.03
     ratios = np.array([unit_ratios((1.0,), 0.3)] * 2)
     found, nothing = unit_errors(own, ratios, bench, share)
     assert np.isinf(nothing).all()
     for error, ratio in zip(found, ratios[0], strict=True):
-        draws = np.hypot(own[0] * ratio, bench[0] * np.array(BENCHES))
+        draws = np.hypot(own[0] * ratio, bench * np.array(BENCHES))
         enough = [draw for draw in draws if np.mean(draws <= draw) >= share - 1e-9]
         assert error == pytest.approx(min(enough), rel=1e-12)
 

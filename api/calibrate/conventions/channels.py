@@ -3,47 +3,111 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import permutations
 
 import numpy as np
 
 from algorithms.contract import FeatureKind
+from api.calibrate.causes.light import (
+    CERTAIN,
+    Dark,
+    changes_answers,
+    falling,
+    level_of_channels,
+    level_of_products,
+    level_of_sum,
+    plane_of,
+)
 from api.calibrate.conventions.finding import MUCH_BETTER, Finding
 from api.calibrate.face_normals import face_normals
 from api.calibrate.readings import FALLING, Readings, quadrant_balances
 from api.calibrate.robust import robust_map
 from api.calibrate.settings import Settings
 
-#: Correlation of all readings' sum with the cosine of incidence that says they are inverted.
+#: Correlation of a face's readings with the light on its other side that says they are inverted.
 _FALLING = 0.5
 #: By how much a face's readings go better with the light on the one side than on the other.
 _SURER = 0.1
-#: Poses without light on a face that tell its level then.
-_FEWEST_UNLIT = 6
+#: Share of the spread of four readings that planes of the direction leave of plain cells, and of
+#: the product of their slopes, which quadrants under one opening would show.
+_PLAIN, _OF_PRODUCT = 0.05, 0.2
 
 
-def of_light(readings: Readings, settings: Settings) -> Iterator[Finding]:
-    """Yield readings of quadrants, electrodes or faces that fall when light rises."""
+def of_light(readings: Readings, settings: Settings, noise_deg: float) -> Iterator[Finding]:
+    """Yield readings that fall when light rises, and a level without light that is not stated.
+
+    Parameters
+    ----------
+    readings : Readings
+        Of quadrants, electrodes or channels; of others nothing is said.
+    settings : Settings
+    noise_deg : float
+        Of single answers, degrees: levels that move answers less, at other light, are not certain.
+    """
     if readings.kind is FeatureKind.SIGNALS:
-        yield from _falling_faces(readings, settings)
+        falls = _falling_faces(readings)
+        dark = level_of_channels(readings, falls)
+    elif settings.readings.kind in ("quadrants", "electrodes"):
+        falls, dark = falling(readings), level_of(readings, settings)
+    else:
         return
-    if settings.readings.kind not in ("quadrants", "electrodes"):
-        return
-    total = readings.raw.sum(axis=1)
-    if np.corrcoef(total, readings.sun[:, 2])[0, 1] < -_FALLING:
+    unsure = replace(dark, level=np.full(len(dark.level), dark.error))
+    settled = np.isfinite(dark.error) and not changes_answers(unsure, readings, noise_deg)
+    if falls:
+        change: dict[str, object] = {"inverted": not settings.readings.inverted}
+        if settled:
+            change["dark"] = _stated_as(dark, settings)
         yield Finding(
             "light", f"{FALLING}: say inverted = true, and dark = their level without light",
-            np.nan, np.nan, {}, True,
+            np.nan, np.nan, {"readings": change} if settled else {}, True,
+        )  # fmt: skip
+    elif np.max(np.abs(dark.level)) > CERTAIN * dark.error:
+        levels = _stated_as(dark, settings)
+        yield Finding(
+            "light",
+            "the level without light seems to be "
+            f"{', '.join(f'{level:.4g}' for level in levels)}, by {dark.by}",
+            np.nan, np.nan, {"readings": {"dark": levels}},
+            bool(settled and changes_answers(dark, readings, noise_deg)),
+            "light that all channels see alike, as stray light, looks the same",
         )  # fmt: skip
 
 
-def _falling_faces(readings: Readings, settings: Settings) -> Iterator[Finding]:
-    """Yield faces whose readings, flat over the dark part of the field, fall over the lit one."""
-    sun, signals, stated = readings.sun, readings.features, settings.readings
-    dark = np.broadcast_to(np.asarray(stated.dark, dtype=np.float64), signals.shape[1])
-    gain = np.broadcast_to(np.asarray(stated.gain, dtype=np.float64), signals.shape[1])
-    levels, falling = [], []
-    for signal in signals.T:
+def level_of(readings: Readings, settings: Settings) -> Dark:
+    """Return the level without light of quadrants or electrodes, by the law that tells it best."""
+    found = level_of_sum(readings)
+    if settings.readings.kind != "quadrants":
+        return found
+    other = level_of_products(readings)
+    best, worse = sorted((found, other), key=lambda one: one.error)
+    apart = float(np.abs(best.level - worse.level).max())
+    if apart > CERTAIN * float(np.hypot(best.error, worse.error)):
+        return replace(best, error=apart)
+    return best
+
+
+def _stated_as(dark: Dark, settings: Settings) -> tuple[float, ...]:
+    """Return the level of each column as settings have it: in the file's own units."""
+    stated = settings.readings
+    sign = -1.0 if stated.inverted else 1.0
+    level = np.asarray(stated.dark) + sign * np.asarray(stated.gain) * dark.level
+    return tuple(float(f"{value:.6g}") for value in level)
+
+
+def _falling_faces(readings: Readings) -> bool:
+    """Say whether all channels' readings, flat over the dark part of the field, fall over the lit.
+
+    Of a cell that is lit everywhere, whose signal is a plane of the direction, the part that goes
+    with the direction is negative.
+    """
+    sun = readings.sun
+    for signal in readings.features.T:
+        _, slope, linear = plane_of(signal, sun)
+        if linear:
+            if not np.median(sun @ slope) < 0:
+                return False
+            continue
         mean = ((signal - np.median(signal))[:, None] * sun).mean(axis=0)
         towards = sun @ (mean / (np.linalg.norm(mean) or 1.0))
         with np.errstate(invalid="ignore"):
@@ -51,19 +115,9 @@ def _falling_faces(readings: Readings, settings: Settings) -> Iterator[Finding]:
                 abs(np.corrcoef(signal, np.maximum(side, 0.0))[0, 1])
                 for side in (towards, -towards)
             )
-        falling.append(falls > max(rises + _SURER, _FALLING))
-        unlit = towards > 0.1
-        levels.append(float(np.median(signal[unlit])) if unlit.sum() >= _FEWEST_UNLIT else np.nan)
-    if not all(falling):
-        return
-    sign = -1.0 if stated.inverted else 1.0
-    change: dict[str, object] = {"inverted": not stated.inverted}
-    if np.isfinite(levels).all():
-        change["dark"] = tuple(float(value) for value in dark + sign * gain * np.asarray(levels))
-    yield Finding(
-        "light", f"{FALLING}: say inverted = true, and dark = their level without light",
-        np.nan, np.nan, {"readings": change} if "dark" in change else {}, True,
-    )  # fmt: skip
+        if not falls > max(rises + _SURER, _FALLING):
+            return False
+    return True
 
 
 def of_quadrants(readings: Readings, settings: Settings) -> Iterator[Finding]:
@@ -108,3 +162,33 @@ def of_faces(readings: Readings, settings: Settings) -> Iterator[Finding]:
                 float(np.degrees(np.arccos(np.clip(cosine[at, at], -1, 1)))),
                 float(np.degrees(np.arccos(np.clip(cosine[at, nearest], -1, 1)))), {}, True,
             )  # fmt: skip
+
+
+def of_cells(readings: Readings, settings: Settings) -> Iterator[Finding]:
+    """Yield four readings that are no quadrants of one detector but plain cells, each tilted."""
+    if settings.readings.kind == "quadrants" and plain_cells(readings):
+        yield Finding(
+            "channels",
+            "the four readings go with the cosine of incidence on four tilted cells, not with a "
+            "spot on quadrants",
+            np.nan, np.nan, {"readings": {"kind": "channels"}}, True,
+        )  # fmt: skip
+
+
+def plain_cells(readings: Readings) -> bool:
+    """Say whether four readings are planes of the direction, each of another slope.
+
+    Quadrants under one opening are products ``(1 + a x) (1 + b y)`` times a cosine: beside planes
+    they leave the product of both slopes.
+    """
+    tangents = readings.sun[:, :2] / readings.sun[:, [2]]
+    for signal in readings.raw.T:
+        design = np.column_stack([np.ones(len(signal)), readings.sun])
+        fit = np.linalg.lstsq(design, signal, rcond=1e-12)[0]
+        left = float(np.std(signal - design @ fit))
+        if left > _PLAIN * float(np.std(signal)) or fit[3] == 0:
+            return False
+        product = fit[1] * fit[2] / fit[3] * tangents.prod(axis=1) * readings.sun[:, 2]
+        if left > _OF_PRODUCT * float(np.std(product)):
+            return False
+    return True

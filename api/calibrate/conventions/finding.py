@@ -19,7 +19,7 @@ class Finding:
     ----------
     about : str
         ``axes``, ``boresight``, ``angles``, ``unit``, ``rows``, ``runs``, ``quadrants``, ``faces``,
-        ``light``.
+        ``channels``, ``light``, ``scale``, ``kink``.
     found : str
         What was found, in a sentence.
     before_deg, after_deg : float

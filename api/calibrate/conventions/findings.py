@@ -6,17 +6,20 @@ low-order map with the sensor's own geometry explains the file then. Nothing is 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import cast, get_args
 
 import numpy as np
 
 from algorithms.angles import tangents_from_sun
 from algorithms.contract import FeatureKind, Floats
-from api.calibrate.conventions.channels import of_faces, of_light, of_quadrants
+from api.calibrate.causes.kinks import of_kinks
+from api.calibrate.causes.lag import of_rows
+from api.calibrate.causes.laws import of_scale, scale_of_angles
+from api.calibrate.conventions.channels import of_cells, of_faces, of_light, of_quadrants
 from api.calibrate.conventions.finding import BETTER, MUCH_BETTER, Finding
 from api.calibrate.readings import GRAZING, MATRICES, Readings, sun_of_angles
-from api.calibrate.robust import SmoothMap, normalised, robust_map, terms
+from api.calibrate.robust import SmoothMap, answer_noise_deg, normalised, robust_map, terms
 from api.calibrate.settings import AngleForm, Settings
 
 #: Directions up to this far off the boresight tell about axes.
@@ -25,7 +28,13 @@ _WITHIN_DEG = 60.0
 _WIDE_AZIMUTH_DEG = 200.0
 #: Samples that hypotheses are judged by; more are thinned evenly.
 _MOST_JUDGED = 20_000
-_SHIFTS = (-3, -2, -1, 1, 2, 3)
+#: Samples by which noise is told.
+_MOST_FOR_NOISE = 2000
+#: What is applied first: under rows or angles of others nothing else can be judged.
+_ORDER = (
+    *("rows", "unit", "angles", "runs", "channels", "light", "quadrants", "faces", "axes"),
+    *("boresight", "scale", "kink"),
+)
 _AMBIGUOUS = {
     "rotate-180": "two inverted outputs, a turn by 180 deg and angles of the other sign look alike",
     "mirror-x": "an inverted x output and an angle of the other sign look the same in the file",
@@ -56,24 +65,42 @@ def findings(
     list of Finding
         The most certain first; empty where nothing speaks against the settings.
     """
-    found = list(_of_rows(readings))
+    sample = readings.thinned(_MOST_FOR_NOISE)
+    noise = answer_noise_deg(sample.features, sample.sun)
+    found = list(of_rows(readings, settings, noise))
+    if any(one.certain and one.change for one in found):
+        return found  # readings of other poses tell nothing else
     readings = readings.thinned(_MOST_JUDGED)
     if readings.kind is FeatureKind.SIGNALS:
         found += _of_runs(readings)
-        light = list(of_light(readings, settings))
-        found += light or list(of_faces(readings, settings))
+        light = list(of_light(readings, settings, noise))
+        found += light if _certain(light) else [*light, *of_faces(readings, settings)]
     else:
         angles = list(_of_angles((every or readings).thinned(_MOST_JUDGED), settings))
         found += angles
         # axes and light follow from directions, which are others under other angles
         if not any(one.certain and _moves_axes(one, settings) for one in angles):
             found += _of_runs(readings)
-            light = list(of_light(readings, settings))
-            found += light or list(of_quadrants(readings, settings))
-            found += _of_axes(readings)
-    return sorted(
-        found, key=lambda one: (not one.certain, one.after_deg / max(one.before_deg, 1e-12))
-    )
+            found += _of_sensor(readings, settings, noise)
+    if not any(one.certain for one in found):
+        found += of_scale(readings, settings, scale_of_angles(readings, settings))
+        found += of_kinks(readings, settings, noise)
+    return sorted(found, key=lambda one: (not one.certain, _ORDER.index(one.about)))
+
+
+def _certain(found: Sequence[Finding]) -> bool:
+    return any(one.certain for one in found)
+
+
+def _of_sensor(readings: Readings, settings: Settings, noise: float) -> Iterator[Finding]:
+    """Yield what the sensor's readings are, each only where those before it are settled."""
+    found = list(of_cells(readings, settings))
+    found = found or list(of_light(readings, settings, noise))
+    if not _certain(found):
+        found += of_quadrants(readings, settings)
+    yield from found
+    if not _certain(found):
+        yield from _of_axes(readings)
 
 
 def _moves_axes(found: Finding, settings: Settings) -> bool:
@@ -141,7 +168,7 @@ def _of_axes(readings: Readings) -> Iterator[Finding]:
             spread * abs(float(np.radians(turn))),
             0.0,
             {},
-            abs(turn) > 10.0,
+            False,
             "models with a free rotation take it up; nothing needs to be changed",
         )
 
@@ -184,44 +211,6 @@ def _of_angles(readings: Readings, settings: Settings) -> Iterator[Finding]:
             left[best] < MUCH_BETTER * left[stated],
             "only sensors that image tangents (pinholes, slits, quadrants) can tell forms apart",
         )  # fmt: skip
-
-
-def _of_rows(readings: Readings) -> Iterator[Finding]:
-    found = {
-        shift: left for shift in _SHIFTS if (left := _shifted_left(readings, shift)) is not None
-    }
-    if not found:
-        return
-    best = min(found, key=lambda shift: found[shift][1] / max(found[shift][0], 1e-12))
-    before, after = found[best]
-    if after < MUCH_BETTER * before:
-        yield Finding(
-            "rows",
-            f"readings belong to poses {abs(best)} row{'s' if abs(best) > 1 else ''} "
-            f"{'before' if best > 0 else 'after'} their own",
-            before, after, {"rows": {"shift": best}}, after < 0.4 * before,
-        )  # fmt: skip
-
-
-def _shifted_left(readings: Readings, shift: int) -> tuple[float, float] | None:
-    """Residuals, degrees, of smooth maps of the same poses: own readings, and `shift` rows later.
-
-    None where fewer than half of the poses have such a row in their run.
-    """
-    keys = readings.run * (int(readings.rows.max()) + 100) + readings.rows
-    order = np.argsort(keys)
-    at = np.searchsorted(keys[order], keys + shift).clip(max=len(keys) - 1)
-    there = keys[order][at] == keys + shift
-    pose, reading = np.flatnonzero(there), order[at[there]]
-    if len(pose) < max(40, len(readings) // 2):
-        return None
-    step = max(len(pose) // 4000, 1)
-    sun, features = readings.sun[pose][::step], readings.features
-    own, other = (robust_map(features[at][::step], sun)[1] for at in (pose, reading))
-    # along a row of a grid a shifted reading is a smooth function too: its ends tell
-    by_median = float(np.median(own)), float(np.median(other))
-    by_rms = float(np.sqrt(np.mean(own**2))), float(np.sqrt(np.mean(other**2)))
-    return min(by_median, by_rms, key=lambda pair: pair[1] / max(pair[0], 1e-12))
 
 
 def _of_runs(readings: Readings) -> Iterator[Finding]:

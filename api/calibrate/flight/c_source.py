@@ -1,170 +1,211 @@
-"""A flight table as C99: float and fixed point, hull check, test vectors, a self-test, an example.
+"""A program as C99 that a C++ compiler takes too: header, source, self-test and example.
 
-The code allocates nothing, calls nothing of the mathematics library but ``sqrtf`` (fixed point:
-nothing), has no global that changes, and answers a flag outside the hull.
+The code allocates nothing, has no variable that outlives a call and no loop without a bound.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from algorithms.contract import Floats
-from api.calibrate.flight.table import FlightTable
+from api.calibrate.flight.answers import Answers
+from api.calibrate.flight.names import comment, comment_lines
+from api.calibrate.flight.program import Program, Step
+from api.calibrate.flight.runtime import STATUSES
+from api.calibrate.flight.vectors import Vectors
 
-#: Test vectors inside the hull; eight outside follow them.
-_VECTORS = 64
-_PER_LINE = 4
 _TEMPLATES = Path(__file__).parent / "c"
+_PARTS = ("readings.c", "plane.c", "faces.c", "assembled.c")
+_PER_LINE = 4
+#: Difference from the model that the self-test allows beside the one that was measured, degrees.
+_ROUNDING, _ROUNDING_FLOAT = 1e-9, 0.02
 
 
-def c_name(text: str) -> str:
-    """Return a C identifier made of a name."""
-    word = re.sub(r"[^a-z0-9]+", "_", text.lower()).strip("_") or "sensor"
-    return word if word[0].isalpha() else f"sensor_{word}"
+@dataclass(frozen=True)
+class _Part:
+    """A function of the templates: a step or what steps call."""
+
+    kind: str
+    text: str
 
 
-def c_files(table: FlightTable, name: str, said: Mapping[str, str]) -> dict[str, str]:
+def c_files(  # noqa: PLR0917 - what the files are made of
+    program: Program,
+    answers: Answers,
+    vectors: Vectors,
+    name: str,
+    said: Mapping[str, str],
+    digest: str,
+) -> dict[str, str]:
     """Return the text of each C file by its name.
 
     Parameters
     ----------
-    table : FlightTable
+    program : Program
+    answers : Answers
+        Form of the angles, and the 1-sigma by place.
+    vectors : Vectors
+        Of the self-test.
     name : str
-        A C identifier, the prefix of all names.
+        An identifier, the prefix of all names.
     said : mapping of str to str
-        What the header's comment says: sensor, model, digest, versions, command.
+        What the header's comment says; a key starting with a space goes on without one.
+    digest : str
+        SHA-256 of the calibration, hexadecimal digits.
 
     Returns
     -------
     dict of str to str
-        ``NAME.h``, ``NAME.c``, ``NAME_vectors.h``, ``NAME_selftest.c``, ``NAME_example.c``,
-        ``NAME_table.c`` (the numbers alone, as a cFS table image's source).
+        ``NAME.h``, ``NAME.c``, ``NAME_selftest.c``, ``NAME_example.c``.
     """
-    rows, columns = table.nodes.shape[:2]
-    numbers = {
+    readings = len(program.columns)
+    inputs = [*program.columns, *(["temperature_K"] if program.warm else [])]
+    first, second = answers.form.c
+    texts = {
         "name": name,
         "NAME": name.upper(),
-        "rows": str(rows),
-        "columns": str(columns),
-        "sides": str(len(table.sides)),
-        "flash": str(rows * columns * 2 * 8 + len(table.sides) * 3 * 12 + 2048),
-        "said": c_said(said),
-        "low_x": c_float(table.low[0]), "low_y": c_float(table.low[1]),
-        "per_x": c_float(1.0 / table.step[0]), "per_y": c_float(1.0 / table.step[1]),
-        "last_x": f"{columns - 1}.0F", "last_y": f"{rows - 1}.0F",
-        "vectors": str(_VECTORS + 8),
-    }  # fmt: skip
+        "digest": digest,
+        "run": digest[:16],
+        "said": comment_lines(said, " * "),
+        "raw": str(readings),
+        "width": str(max(readings, 3)),
+        "temperature": "kelvin" if program.warm else "not read",
+        "kelvin": "in->temperature_K" if program.warm else "R(0.0)",
+        "angles": answers.form.words,
+        "first_angle": first,
+        "second_angle": second,
+        "functions": _functions(program, name),
+        "calls": "\n".join(_call(at, step) for at, step in enumerate(program.steps, 1)),
+        "sigma": _constants(answers.constants()),
+        "vectors": str(len(vectors)),
+        "vector_data": _vectors(vectors, name),
+        "most": repr(_ROUNDING + 1.5 * vectors.largest_deg),
+        "most_float": repr(_ROUNDING_FLOAT + 1.5 * vectors.largest_deg),
+        "columns": str(len(inputs)),
+        "columns_said": comment(", ".join(inputs)),
+    }
 
-    def fill(text: str) -> str:
-        return filled(text, numbers)
+    def fill(template: str) -> str:
+        return filled((_TEMPLATES / template).read_text(encoding="utf-8"), texts)
 
     return {
-        f"{name}.h": fill(c_template("sensor.h")),
-        f"{name}.c": fill(c_template("sensor.c").replace("@ROOT@", c_template("root.c"))),
-        f"{name}_table.c": fill(c_template("table.c").replace("@DATA@", _data(table))),
-        f"{name}_vectors.h": fill(c_template("vectors.h").replace("@DATA@", _vectors(table))),
-        f"{name}_selftest.c": fill(selftest("spot")),
-        f"{name}_example.c": fill(c_template("example.c")),
+        f"{name}.h": fill("header.h"),
+        f"{name}.c": _used(_numbered(fill("source.c"), answers.constants())),
+        f"{name}_selftest.c": fill("selftest.c"),
+        f"{name}_example.c": fill("example.c"),
     }
 
 
-def vectors_of(table: FlightTable) -> tuple[Floats, Floats]:
-    """Return features (72, 2) inside and outside the hull, and the directions (72, 3) they give."""
-    rows, columns = table.nodes.shape[:2]
-    low = np.asarray(table.low) + np.asarray(table.step)
-    high = low + np.asarray(table.step) * (np.array([columns, rows]) - 3)
-    turns = np.arange(1, 4001)
-    places = low + (high - low) * np.column_stack(
-        [(turns * 0.754877666) % 1, (turns * 0.569840296) % 1]
-    )
-    inside = (places @ table.sides[:, :2].T + table.sides[:, 2]).max(axis=1) < -1e-3 * float(
-        np.min(table.step)
-    )
-    chosen = places[inside][:_VECTORS]
-    around = np.array(
-        [[-1, -1], [2, 2], [-1, 0.5], [0.5, -1], [2, 0.5], [0.5, 2], [-1, 2], [2, -1]]
-    )
-    chosen = np.vstack([chosen, low + (high - low) * around])
-    chosen = chosen.astype(np.float32).astype(np.float64)
-    return chosen, table.predict(chosen)
+def filled(text: str, texts: Mapping[str, str]) -> str:
+    """Return a template with each ``%key%`` replaced, twice: texts hold keys, too."""
+    for _ in range(2):
+        text = re.sub(r"%(\w+)%", lambda found: texts.get(found[1], found[0]), text)
+    return text
 
 
-def _vectors(table: FlightTable) -> str:
-    features, sun = vectors_of(table)
+@cache
+def _parts() -> dict[str, _Part]:
+    """Return every function of the templates by its name, in the order they have to stand."""
+    found = {}
+    for file in _PARTS:
+        text = (_TEMPLATES / file).read_text(encoding="utf-8")
+        pieces = re.split(r"/\* (step|helper): (\w+) \*/\n", text)
+        for kind, name, body in zip(pieces[1::3], pieces[2::3], pieces[3::3], strict=True):
+            found[name] = _Part(kind, body)
+    return found
+
+
+def _functions(program: Program, name: str) -> str:
+    """Return what the steps call, and the steps, as functions."""
+    bodies = {f"step_{at}_{step.name}": step for at, step in enumerate(program.steps, 1)}
+    texts = [_function(function, step) for function, step in bodies.items()]
+    called: dict[str, str] = {}
+    waiting = list(texts)
+    while waiting:
+        text = waiting.pop()
+        for helper, part in _parts().items():
+            if part.kind == "helper" and helper not in called and f"{helper}(" in text:
+                called[helper] = part.text
+                waiting.append(part.text)
+    helpers = [called[helper] for helper in _parts() if helper in called]
+    return "\n".join([*helpers, *texts]).replace("%name%", name)
+
+
+def _function(function: str, step: Step) -> str:
+    body = _numbered(_parts()[step.name].text, step.constants)
+    unread = [name for name in ("v", "sun", "kelvin") if not re.search(rf"\b{name}\b", body)]
+    head = (
+        f"static %name%_status {function}(real v[WIDTH], real sun[3], real kelvin)\n{{\n"
+        f"{_constants(step.constants)}    %name%_status status = %NAME%_OK;\n"
+    )
+    end = "".join(f"    (void){name};\n" for name in unread)
+    return f"{head}{body}{end}    return status;\n}}\n"
+
+
+def _numbered(text: str, constants: Mapping[str, Any]) -> str:
+    """Return a template with integers in place of their names in capitals."""
+    for name, value in constants.items():
+        if isinstance(value, int):
+            text = re.sub(rf"\b{name.upper()}\b", str(value), text)
+    return text
+
+
+def _used(text: str) -> str:
+    """Return a source without macros that it does not use."""
+    for name in re.findall(r"#define (\w+)", text):
+        if len(re.findall(rf"\b{name}\b", text)) == len(re.findall(rf"#define {name}\b", text)):
+            text = re.sub(rf"#define {name}\b.*\n", "", text)
+    return text
+
+
+def _call(at: int, step: Step) -> str:
+    call = f"status = step_{at}_{step.name}(v, sun, kelvin);"
+    if at == 1:
+        return f"    {call}"
+    return f"    if (status == %NAME%_OK)\n    {{\n        {call}\n    }}"
+
+
+def _constants(constants: Mapping[str, Any]) -> str:
+    """Return the definitions of constants in a function; integers stand in its text."""
     lines = []
-    for place, direction in zip(features, sun, strict=True):
-        valid = int(np.isfinite(direction).all())
-        cosines = direction if valid else np.zeros(3)
-        numbers = ", ".join(c_float(value) for value in (*place, *cosines))
-        lines.append(f"    {{ {numbers}, {valid} }}")
+    for name, value in constants.items():
+        if np.ndim(value):
+            whole = np.issubdtype(np.asarray(value).dtype, np.integer)
+            flat = np.asarray(value).reshape(-1).tolist()
+            numbers = [str(one) if whole else c_real(one) for one in flat]
+            kind = "int" if whole else "real"
+            rows = [
+                "        " + ", ".join(numbers[at : at + _PER_LINE])
+                for at in range(0, len(numbers), _PER_LINE)
+            ]
+            lines.append(f"    static const {kind} {name}[{len(flat)}] =\n    {{")
+            lines.append(",\n".join(rows) + "\n    };")
+        elif isinstance(value, float):
+            lines.append(f"    const real {name} = {c_real(value)};")
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _vectors(vectors: Vectors, name: str) -> str:
+    lines = []
+    for values, kelvin, sun, status in zip(
+        vectors.values, vectors.kelvin, vectors.sun, vectors.status, strict=True
+    ):
+        reading = ", ".join(c_real(one) for one in values)
+        direction = ", ".join(c_real(one) for one in np.nan_to_num(sun))
+        said = f"{name.upper()}_{STATUSES[status]}"
+        lines.append(
+            f"    {{ {{ {{ {reading} }}, {c_real(kelvin)} }}, {{ {direction} }}, {said} }}"
+        )
     return ",\n".join(lines)
 
 
-def _data(table: FlightTable) -> str:
-    flat = table.nodes.reshape(-1)
-    scaled = np.round(flat * 2.0**30).astype(np.int64).clip(-(2**31) + 1, 2**31 - 1)
-    low, step = np.asarray(table.low), np.asarray(table.step)
-    # in cells from the first node, so that fixed point needs no other scale: a x' + b y' + c' <= 0
-    sides = np.column_stack(
-        [table.sides[:, :2] * step, table.sides[:, 2] + table.sides[:, :2] @ low]
-    )
-    sides /= np.linalg.norm(sides[:, :2], axis=1)[:, None]
-    fixed = np.column_stack(
-        [np.round(sides[:, :2] * 2.0**16), np.round(sides[:, 2] * 2.0**16)]
-    ).astype(np.int64)
-    nodes, numbers = "[%NAME%_NODES]", "[%NAME%_SIDE_NUMBERS]"
-    return "\n\n".join(
-        [
-            c_array("const float", "nodes_f", [c_float(v) for v in flat], nodes),
-            c_array("const int32_t", "nodes_q30", [str(int(v)) for v in scaled], nodes),
-            c_array("const float", "sides_f", [c_float(v) for v in sides.flat], numbers),
-            c_array("const int32_t", "sides_q16", [f"{v:d}" for v in fixed.flat], numbers),
-        ]
-    )  # fmt: skip
-
-
-def c_said(said: Mapping[str, str]) -> str:
-    """Return lines of a comment that name what a header is of."""
-    return "\n".join(f" * {key}: {c_comment(value)}" for key, value in said.items())
-
-
-def selftest(what: str) -> str:
-    """Return the template of a self-test of spots or of channels."""
-    fixed, asked = c_template(f"selftest_{what}.c").split("@@\n")
-    text = c_template("selftest.c").replace("@FIXED@\n", fixed + "\n")
-    return text.replace("@ASKED@\n", asked)
-
-
-def c_array(kind: str, name: str, values: list[str], size: str) -> str:
-    """Return the definition of an array."""
-    lines = [
-        "    " + ", ".join(values[at : at + _PER_LINE]) for at in range(0, len(values), _PER_LINE)
-    ]
-    return f"{kind} %name%_{name}{size} =\n{{\n" + ",\n".join(lines) + "\n};"
-
-
-def c_float(value: float) -> str:
-    """Return a number as C has it, of type float."""
-    text = f"{np.float32(value):.9g}"
-    return f"{text}F" if any(c in text for c in ".e") else f"{text}.0F"
-
-
-def c_comment(text: str) -> str:
-    """Return text that ends no comment."""
-    return text.replace("*/", "* /").replace("/*", "/ *").replace("\n", " ")
-
-
-def c_template(name: str) -> str:
-    """Return a template's text."""
-    return (_TEMPLATES / name).read_text(encoding="utf-8")
-
-
-def filled(text: str, numbers: Mapping[str, str]) -> str:
-    """Return a template with each ``%key%`` replaced."""
-    for key, value in numbers.items():
-        text = text.replace(f"%{key}%", value)
-    return text
+def c_real(value: float) -> str:
+    """Return a number as C has it, in the precision of the computation."""
+    text = repr(float(value))
+    return f"R({text})" if any(c in text for c in ".e") else f"R({text}.0)"

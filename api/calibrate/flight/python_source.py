@@ -1,121 +1,163 @@
-"""A flight table as one Python module that needs NumPy alone."""
+"""A program as one Python module that needs NumPy alone: the same steps, copied from `runtime`."""
 
 from __future__ import annotations
 
+import inspect
+import re
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
-from api.calibrate.flight.channels import ChannelTable
-from api.calibrate.flight.table import FlightTable
+from api.calibrate.flight.answers import Answers
+from api.calibrate.flight.names import comment, comment_lines
+from api.calibrate.flight.program import Program, step_functions
+from api.calibrate.flight.runtime import STATUSES
+from api.calibrate.flight.vectors import Vectors
 
 
-def python_module(table: FlightTable, said: Mapping[str, str]) -> str:
-    """Return the text of a module with ``sun(x, y)``, the same table as the C code reads."""
-    comment = "\n".join(f"{key}: {value}" for key, value in said.items()).replace('"""', "'''")
+def python_module(
+    program: Program, answers: Answers, vectors: Vectors, said: Mapping[str, str], digest: str
+) -> str:
+    """Return the text of a module with ``solve``, ``sun`` and ``selftest``.
+
+    Parameters
+    ----------
+    program : Program
+    answers : Answers
+    vectors : Vectors
+        Of the self-test.
+    said : mapping of str to str
+        What comments at the top say.
+    digest : str
+        SHA-256 of the calibration, hexadecimal digits.
+    """
+    steps = ",\n    ".join(f"({step.name}, {_mapping(step.constants)})" for step in program.steps)
     return _MODULE.format(
-        said=comment,
-        low=table.low,
-        step=table.step,
-        nodes=[[[float(v) for v in node] for node in row] for row in table.nodes],
-        sides=[[float(v) for v in side] for side in table.sides],
+        said=comment_lines(said, "# "),
+        digest=digest,
+        statuses=STATUSES,
+        columns=repr([comment(name) for name in program.columns]),
+        warm=program.warm,
+        first=answers.form.python[0],
+        second=answers.form.python[1],
+        form=answers.form.words,
+        functions="\n\n\n".join(_sources(program)),
+        steps=steps,
+        sigma=_mapping(answers.constants()),
+        values=_array(vectors.values),
+        kelvin=_array(vectors.kelvin),
+        directions=_array(vectors.sun),
+        expected=vectors.status.tolist(),
+        most=1e-9 + 1.5 * vectors.largest_deg,
     )
 
 
-def channels_module(table: ChannelTable, said: Mapping[str, str]) -> str:
-    """Return the text of a module with ``sun(signals)``, the same numbers as the C code reads."""
-    comment = "\n".join(f"{key}: {value}" for key, value in said.items()).replace('"""', "'''")
-    return _CHANNELS.format(
-        said=comment,
-        first=table.first.tolist(),
-        squared=table.squared,
-        coefficients=table.coefficients.tolist(),
-        expected=table.expected.tolist(),
-        tolerance=np.where(table.used, table.tolerance, -1.0).tolist(),
-        reach=(table.weakest, table.strongest),
+def _sources(program: Program) -> list[str]:
+    """Return the source of the steps and of what they call, as they stand in the runtime."""
+    texts = {name: inspect.getsource(one).rstrip() for name, one in step_functions().items()}
+    wanted = [step.name for step in program.steps] + ["tangent_sigma"]
+    for name in wanted:
+        called = re.findall(r"\b(\w+)\(", texts[name])
+        wanted += [other for other in called if other in texts and other not in wanted]
+    return [text for name, text in texts.items() if name in wanted]
+
+
+def _mapping(constants: Mapping[str, Any]) -> str:
+    items = (
+        f"{name!r}: {_array(value) if np.ndim(value) else repr(value)}"
+        for name, value in constants.items()
     )
+    return "{" + ", ".join(items) + "}"
 
 
-_CHANNELS = '''"""Sun direction of a calibrated Sun sensor. Written by sunatlas calibrate.
+def _array(values: Any) -> str:
+    text = repr(np.asarray(values).tolist()).replace("nan", "np.nan")
+    return f"np.array({text})"
+
+
+_MODULE = '''"""From raw readings of a Sun sensor to the Sun. Written by sunatlas calibrate."""
 
 {said}
-"""
+# Calibration SHA-256, first 32 digits: {digest}
 
-from itertools import combinations_with_replacement
+from __future__ import annotations
 
 import numpy as np
 
-FIRST = np.array({first})
-SQUARED = {squared}
-COEFFICIENTS = np.array({coefficients})
-EXPECTED = np.array({expected})
-TOLERANCE = np.array({tolerance})
-WEAKEST, STRONGEST = {reach}
+DIGEST = "{digest}"
+STATUSES = {statuses}
+COLUMNS = {columns}
+NEEDS_TEMPERATURE = {warm}
 
 
-def sun(signals):
-    """Unit vectors (N, 3) to the Sun of signals (N, n); NaN outside what was measured."""
-    signals = np.atleast_2d(np.asarray(signals, dtype=float))
-    finite = np.isfinite(signals).all(axis=1)
-    signals = np.nan_to_num(signals)
-    length = np.linalg.norm(signals, axis=1)
-    unit = signals / np.maximum(length, 1e-300)[:, None]
-    octant = (unit @ FIRST.T >= 0.0) @ np.array([1, 2, 4])
-    terms = [np.ones(len(unit)), *unit.T]
-    if SQUARED:
-        pairs = combinations_with_replacement(range(unit.shape[1]), 2)
-        terms += [unit[:, i] * unit[:, j] for i, j in pairs]
-    found = np.einsum("nt,ntk->nk", np.column_stack(terms), COEFFICIENTS[octant])
-    found /= np.maximum(np.linalg.norm(found, axis=1), 1e-300)[:, None]
-    of = EXPECTED[octant]
-    away = unit - of[:, :, 0] - np.einsum("nik,nk->ni", of[:, :, 1:], found)
-    known = finite & (length >= WEAKEST) & (length <= STRONGEST)
-    known &= np.linalg.norm(away, axis=1) <= TOLERANCE[octant]
-    found[~known] = np.nan
-    return found
-'''
-
-_MODULE = '''"""Sun direction of a calibrated Sun sensor. Written by sunatlas calibrate.
-
-{said}
-"""
-
-import numpy as np
-
-LOW = {low}
-STEP = {step}
-NODES = np.array({nodes})
-SIDES = np.array({sides})
+{functions}
 
 
-def _weights(t):
-    return np.stack(
-        [
-            ((-0.5 * t + 1.0) * t - 0.5) * t,
-            (1.5 * t - 2.5) * t * t + 1.0,
-            ((-1.5 * t + 2.0) * t + 0.5) * t,
-            (0.5 * t - 0.5) * t * t,
-        ]
-    )
+STEPS = [
+    {steps},
+]
+SIGMA = {sigma}
 
 
-def sun(x, y):
-    """Unit vectors (N, 3) to the Sun of readings x (N,) and y (N,); NaN outside the hull."""
-    place = np.stack([np.atleast_1d(x), np.atleast_1d(y)], axis=1).astype(float)
-    cells = (place - LOW) / STEP
-    rows, columns = NODES.shape[:2]
-    corner = np.floor(np.nan_to_num(cells)).astype(int)
-    corner[:, 0] = np.clip(corner[:, 0], 1, columns - 3)
-    corner[:, 1] = np.clip(corner[:, 1], 1, rows - 3)
-    wx, wy = _weights(cells[:, 0] - corner[:, 0]), _weights(cells[:, 1] - corner[:, 1])
-    cosines = np.zeros((len(place), 2))
-    for j in range(4):
-        for i in range(4):
-            node = NODES[corner[:, 1] + j - 1, corner[:, 0] + i - 1]
-            cosines += (wy[j] * wx[i])[:, None] * node
-    square = (cosines**2).sum(axis=1)
-    found = np.column_stack([cosines, np.sqrt(np.maximum(1.0 - square, 0.0))])
-    outside = (place @ SIDES[:, :2].T + SIDES[:, 2]).max(axis=1) > 0.0
-    found[outside | ~np.isfinite(place).all(axis=1) | (square >= 1.0)] = np.nan
-    return found
+def solve(readings, temperature_K=None):
+    """Directions of raw readings, and what is known of them.
+
+    Parameters
+    ----------
+    readings : array_like, shape (N, K)
+        As the sensor gives them, in the order of COLUMNS.
+    temperature_K : array_like, shape (N,), optional
+        Kelvin, where NEEDS_TEMPERATURE.
+
+    Returns
+    -------
+    dict of str to ndarray
+        ``sun`` (N, 3), unit vectors; ``angle_deg`` (N, 2), {form};
+        ``sigma_deg`` (N, 2), one sigma along two axes square to the direction s, the first along
+        s cross x (s cross y where |s_x| >= 0.9), the second s cross it;
+        ``status`` (N,), places in STATUSES. Numbers are NaN unless the status is 0.
+    """
+    values = np.array(np.atleast_2d(readings), dtype=float)
+    if values.shape[1] != len(COLUMNS):
+        raise ValueError(f"expected readings of {{COLUMNS}}; got {{values.shape[1]}} a row")
+    if NEEDS_TEMPERATURE and temperature_K is None:
+        raise ValueError("expected a temperature of each row, kelvin; got none")
+    given = 0.0 if temperature_K is None else temperature_K
+    kelvin = np.array(np.broadcast_to(np.asarray(given, dtype=float), len(values)))
+    found = np.full((len(values), 3), np.nan)
+    status = np.zeros(len(values), dtype=int)
+    with np.errstate(all="ignore"):
+        for step, constants in STEPS:
+            values, found, said = step(values, found, kelvin, constants)
+            status = np.where(status == 0, said, status)
+        found = np.where((status == 0)[:, None], found, np.nan)
+        x, y, z = found.T
+        angles_deg = np.degrees(np.column_stack([{first}, {second}]))
+        sigma = tangent_sigma(found, SIGMA)
+    sigma[status != 0] = np.nan
+    return {{"sun": found, "angle_deg": angles_deg, "sigma_deg": sigma, "status": status}}
+
+
+def sun(readings, temperature_K=None):
+    """Unit vectors (N, 3) to the Sun of raw readings (N, K); NaN rows where there is no answer."""
+    return solve(readings, temperature_K)["sun"]
+
+
+def selftest():
+    """Readings that differ from what the model says of them, and the largest difference, deg."""
+    readings = {values}
+    kelvin = {kelvin}
+    model = {directions}
+    expected = np.array({expected})
+    made = solve(readings, kelvin)
+    off = np.degrees(np.linalg.norm(np.cross(made["sun"], model), axis=1))
+    good = (made["status"] == expected) & ((expected != 0) | (off <= {most!r}))
+    return int((~good).sum()), float(np.nanmax(off))
+
+
+if __name__ == "__main__":
+    wrong, largest = selftest()
+    print(f"{{wrong}} readings differ from the model, largest difference {{largest:.2e}} deg")
+    raise SystemExit(int(wrong > 0))
 '''

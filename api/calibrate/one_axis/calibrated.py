@@ -84,6 +84,7 @@ def calibrated_axis(readings: Readings, floor_deg: float) -> dict[str, Any]:
         "residual_deg": residual,
         "noise_deg": noise,
         "intervals": _intervals(candidate, angle, start, across, sound),
+        "left_out": candidate.offsets,
         "spread_deg": _spread(sound, noise, target),
         "verdict": Verdict(word, reason, float("nan"), (), np.empty((0, 3))),
     }
@@ -224,17 +225,28 @@ def _noise(left: Floats, angle: Floats) -> float:
 def _intervals(
     candidate: Candidate, angle: Floats, start: Floats, across: Floats, readings: Readings
 ) -> Intervals | None:
-    """Return the factor for the curve's 1-sigma, by samples left out, and what it then covers."""
-    if candidate.offsets is None or candidate.deviation is None:
+    """Return one 1-sigma for the whole sweep, by samples left out, and what it then covers.
+
+    It is that of the angle; across the plane, where nothing was measured, it stands as well.
+    """
+    if candidate.offsets is None:
         return None
-    answered = angles_in(candidate.offsets + readings.sun, start, across)
-    ratio = np.abs(answered - angle) / candidate.deviation
-    ratio = ratio[np.isfinite(ratio)]
-    if len(ratio) < _FEWEST_FOR_INTERVALS:
+    off = np.abs(angles_in(candidate.offsets + readings.sun, start, across) - angle)
+    off = off[np.isfinite(off)]
+    if len(off) < _FEWEST_FOR_INTERVALS:
         return None
-    half = np.arange(len(ratio)) % 2 == 0
-    within = [float((ratio[test] <= _limit(ratio[~test])).mean()) for test in (half, ~half)]
-    return Intervals(_limit(ratio) / NORMAL_95, float(np.mean(within)), len(ratio))
+    half = np.arange(len(off)) % 2 == 0
+    within = [float((off[test] <= _limit(off[~test])).mean()) for test in (half, ~half)]
+    sigma = _limit(off) / NORMAL_95
+    return Intervals(
+        sigma / candidate.rms_deg,
+        float(np.mean(within)),
+        len(off),
+        np.array([0.0, 0.0, 1.0]),
+        np.array([0.0, 180.0]),
+        4,
+        np.full((2, 4, 2), sigma),
+    )
 
 
 def _limit(ratio: Floats) -> float:

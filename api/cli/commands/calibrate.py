@@ -9,6 +9,8 @@ from typing import Annotated, Any
 
 import typer
 
+from api.cli.wrong_call import WrongCallError
+
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 
@@ -58,8 +60,23 @@ def calibrate(
     certificate: Annotated[
         Path | None,
         typer.Option(
-            help="Write a digital calibration certificate (DCC, PTB's XML schema 3.1.2) to this "
-            "file; the configuration's section [certificate] says who calibrated what."
+            help="Also write a digital calibration certificate (DCC, PTB's XML schema 3.1.2), to "
+            "this file; the configuration's section [certificate] says who calibrated what."
+        ),
+    ] = None,
+    require: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Largest error allowed, such as 0.1deg@3sigma,60deg: limit in deg, arcmin, arcsec "
+            "or mrad; share of directions (1sigma, 2sigma, 3sigma, a percentage, or rms); largest "
+            "off-axis angle, half of the field of view (all poses without it). May be repeated."
+        ),
+    ] = None,
+    factory: Annotated[
+        Path | None,
+        typer.Option(
+            help="Compare with the factory's calibration: a table of readings and directions, or a "
+            "JSON of an earlier run."
         ),
     ] = None,
     apply: Annotated[
@@ -80,14 +97,14 @@ def calibrate(
 
     Reads the file, detects its conventions and wrong poses, compares all applicable models by
     cross-validation, and writes a report (HTML), the calibration (JSON), a Python module and C99
-    code. The exit code is 0 for the verdict "good", otherwise 3.
+    code: all files or none, even if it is killed. The exit code is 0 if the verdict is "good" and
+    every requirement is met, otherwise 3.
     """
     from api.calibrate.calibration import calibrate as run  # noqa: PLC0415 - SciPy
-    from api.calibrate.certificate.certificate import (  # noqa: PLC0415 - as above
-        certificate as xml_of,
-    )
+    from api.calibrate.flight.names import c_name  # noqa: PLC0415 - as above
     from api.calibrate.frames import table_in  # noqa: PLC0415 - as above
     from api.calibrate.products import write_products  # noqa: PLC0415 - as above
+    from api.calibrate.report.page import Asked, outcomes  # noqa: PLC0415 - as above
     from api.calibrate.settings import read_settings  # noqa: PLC0415 - as above
     from api.calibrate.table import read_table  # noqa: PLC0415 - as above
     from api.calibrate.template import template_of  # noqa: PLC0415 - as above
@@ -101,8 +118,9 @@ def calibrate(
             f"wrote {init}; correct it and run: sunatlas calibrate {files[0]} --config {init}"
         )
         return 0
+    requirements = _checked(require or [], out)
     if onto is not None:
-        return _correct(files, onto, out / f"{name}.json")
+        return _correct(files, onto, out, name)
     settings = None if config is None else read_settings(config)
     command = shlex.join(["sunatlas", *sys.argv[1:]])
     with terminal_progress("calibrating") as report:
@@ -114,34 +132,75 @@ def calibrate(
             models=model,
             progress=lambda step, done, total: report(done, total, step),
         )
-        written = write_products(found, out, name, command)
-        if certificate is not None:
-            replace_file(certificate, xml_of(found, command))
-    _print(found, written, out)
+        to = f"{c_name(name)}_certificate.xml" if certificate is not None else ""
+        beside = certificate is not None and certificate.resolve().parent == out.resolve()
+        if certificate is not None and beside:
+            to = certificate.name
+        asked = Asked(requirements, _compared(found, files, factory), to)
+        code: list[str] = []
+        written = write_products(found, out, name, command, asked, tell=code.append)
+        if certificate is not None and not beside:
+            replace_file(certificate, (out / to).read_bytes())
+    _print(found, code, written, out)
+    met = outcomes(found, asked)
+    for one in met:
+        typer.echo(f"requirement {one.requirement.text}: {one.word} - {one.sentence}")
     if certificate is not None:
         typer.echo(f"wrote {certificate}")
-    return 0 if found.verdict.word == "good" else 3
+    good = found.verdict.word == "good" and all(one.word == "met" for one in met)
+    return 0 if good else 3
 
 
-def _correct(files: list[Path], onto: Path, written: Path) -> int:
+def _checked(stated: list[str], out: Path) -> tuple[Any, ...]:
+    """Return requirements; one that is none, and a place that cannot be written, end the call."""
+    from api.calibrate.report.requirement import (  # noqa: PLC0415 - SciPy
+        RequirementError,
+        requirement,
+    )
+    from files.directories import (  # noqa: PLC0415 - as above
+        UnreplaceableDirectoryError,
+        require_replaceable_directory,
+    )
+
+    try:
+        require_replaceable_directory(out)
+    except UnreplaceableDirectoryError as error:
+        raise WrongCallError(f"--out: {error}") from None
+    try:
+        return tuple(requirement(text) for text in stated)
+    except RequirementError as error:
+        raise WrongCallError(f"--require: {error}") from None
+
+
+def _compared(found: Any, files: list[Path], factory: Path | None) -> Any:
+    """Return the comparison with a factory's calibration; None without one."""
+    from api.calibrate.report.factory import compared_with  # noqa: PLC0415 - SciPy
+    from api.calibrate.sources import read_sources  # noqa: PLC0415 - as above
+
+    if factory is None:
+        return None
+    return compared_with(factory, found, read_sources(files, found.settings).tables)
+
+
+def _correct(files: list[Path], onto: Path, out: Path, name: str) -> int:
     """Write an old calibration with the correction that a few new poses show."""
     import json  # noqa: PLC0415 - one use
 
     from api.calibrate.documents import load, with_correction  # noqa: PLC0415 - SciPy
+    from api.calibrate.products import write_set  # noqa: PLC0415 - as above
     from api.calibrate.recalibration import recalibrate  # noqa: PLC0415 - as above
-    from files.atomic import replace_file  # noqa: PLC0415 - as above
 
     old = load(onto)
     found = recalibrate(files, old)
     typer.echo(found.sentence())
     stated = with_correction(old, found, files, shlex.join(["sunatlas", *sys.argv[1:]]))
-    written.parent.mkdir(parents=True, exist_ok=True)
-    replace_file(written, json.dumps(stated, indent=1, allow_nan=False) + "\n")
-    typer.echo(f"wrote {written}")
-    return 0
+    text = json.dumps(stated, indent=1, allow_nan=False) + "\n"
+    (written,) = write_set({f"{name}.json": text}, out, name)
+    typer.echo(f"wrote {written}; C and Python written with {onto.name} lack this correction")
+    return 0 if found.explained else 3
 
 
-def _print(found: Any, written: list[Path], out: Path) -> None:
+def _print(found: Any, code: list[str], written: list[Path], out: Path) -> None:
     verdict = found.verdict
     typer.echo(f"verdict: {verdict.word} - {verdict.reason}")
     typer.echo(
@@ -159,4 +218,6 @@ def _print(found: Any, written: list[Path], out: Path) -> None:
         counts[one.reason] = counts.get(one.reason, 0) + 1
     for reason, count in {**found.readings.dropped, **counts}.items():
         typer.echo(f"left out: {count} rows: {reason}")
+    for sentence in code:
+        typer.echo(f"code: {sentence}")
     typer.echo(f"wrote {', '.join(path.name for path in written)} in {out}")

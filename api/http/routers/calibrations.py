@@ -7,7 +7,7 @@ from typing import Any
 from fastapi import APIRouter, Request, Response
 
 from api.web.answers import StrictRoute
-from api.web.calibrations import ANSWERS, HTML, OFFERED, ZIP, calibrated
+from api.web.calibrations import ANSWERS, HTML, OFFERED, ZIP, calibrated, previewed
 from api.web.dependencies import NO_PARAMETERS
 from api.web.negotiation import JSON, media_type
 
@@ -39,6 +39,10 @@ _BODY: dict[str, Any] = {
                         "enum": ["true", "false"],
                         "description": "Whether conventions found with certainty are applied.",
                     },
+                    "require": {
+                        **_TEXT,
+                        "description": "Largest error allowed, such as `0.1deg@3sigma,60deg`.",
+                    },
                     "answer": {
                         **_TEXT,
                         "enum": list(ANSWERS),
@@ -56,6 +60,14 @@ _BODY: dict[str, Any] = {
 }
 _PROBLEM = {
     "application/problem+json": {"schema": {"$ref": "#/components/schemas/ProblemDocument"}}
+}
+_PREVIEWED: dict[str, Any] = {
+    "required": True,
+    "content": {
+        "multipart/form-data": {
+            "schema": {"type": "object", "required": ["file"], "properties": {"file": _TEXT}}
+        }
+    },
 }
 _RESPONSES: dict[int | str, dict[str, Any]] = {
     200: {
@@ -96,3 +108,21 @@ async def calibrations(request: Request) -> Response:
     """
     wanted = media_type(request.headers.get("accept"), OFFERED)
     return await calibrated(request, wanted)
+
+
+@router.post(
+    "/calibrations/preview",
+    summary="Preview a turntable file",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "Columns with role, unit and first values, notes, and a config.",
+            "content": {JSON: {"schema": {"type": "object"}}},
+        },
+        **{status: said for status, said in _RESPONSES.items() if status not in {200, 406}},
+    },
+    openapi_extra={"requestBody": _PREVIEWED},
+)
+async def preview(request: Request) -> Response:
+    """Guess the columns of a file from names and first rows. The file is deleted afterwards."""
+    return await previewed(request)

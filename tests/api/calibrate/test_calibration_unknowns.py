@@ -15,11 +15,14 @@ import pytest
 from algorithms.calibration.documents import DIGEST
 from algorithms.calibration.saving import UnreadableCalibrationError
 from algorithms.contract import UnusableDataError
-from api.calibrate import documents, pictures, products
+from api.calibrate import documents, products
 from api.calibrate.calibration import Calibration, calibrate
 from api.calibrate.certificate.certificate import certificate
 from api.calibrate.documents import load, number, save, versions, with_correction
 from api.calibrate.recalibration import Correction
+from api.calibrate.recalibration import Errors as CorrectionErrors
+from api.calibrate.report import pictures
+from api.calibrate.report.errors import Errors
 from api.calibrate.table import read_table
 
 VECTOR = ["sun_x", "sun_y", "sun_z"]
@@ -109,29 +112,46 @@ def test_azimuths_named_as_rotations_are_found_among_rows_that_seem_behind(tmp_p
     assert found.chosen.rms_deg < 0.02
 
 
-def test_no_code_is_written_of_a_model_that_reads_a_temperature(
+def test_code_is_written_of_a_model_that_reads_a_temperature(
     warm: Calibration, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(products, "report", lambda *_: "")
     made = products.products(warm, "box")
-    assert set(made) == {"box.json", "box_no_code.txt", "box_report.html"}
+    assert set(made) == {"box.json", "box_no_code.txt", "box_report.html", "box.sha256"}
     assert made["box_no_code.txt"] == (
         "No code was written: code for flight knows no temperature_K.\n"
     )
+    ends = (".json", ".py", ".h", ".c", "_selftest.c", "_example.c", "_report.html", ".sha256")
+    assert set(made) == {f"box{end}" for end in ends}
     low, high = json.loads(made["box.json"])["fit"]["temperature_K"]
     assert 270.0 <= low < high <= 320.0
+    assert f"const real low = R({low!r});" in made["box.c"]
+
+
+def test_no_code_says_why(warm: Calibration, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(products, "report", lambda *_: "")
+    about = replace(warm.model.about, context=("nadir",))
+    made = products.products(replace(warm, model=replace(warm.model, about=about)), "box")
+    assert set(made) == {"box.json", "box_no_code.txt", "box_report.html", "box.sha256"}
+    assert made["box_no_code.txt"] == "No code was written: code for flight knows no nadir.\n"
 
 
 def test_runs_are_drawn_where_there_are_some_and_poses_without_next_ones(
     nine: Calibration, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for other in ("_residuals", "_histogram", "_uncertainty"):  # each takes a tenth of a second
+    for other in (
+        "_map",
+        "_against_angle",
+        "_histogram",
+        "_uncertainty",
+    ):  # each takes a tenth of a second
         monkeypatch.setattr(pictures, other, lambda *_: "")
     readings = replace(nine.readings, run=np.arange(9) % 3, run_names=("first", "second", "third"))
     verdict = replace(nine.verdict, next_poses=np.empty((0, 3)))
-    drawn = pictures.pictures(replace(nine, readings=readings, verdict=verdict))
-    assert drawn["Each run's mean residual"].startswith("<svg")
-    assert drawn["Poses, and the next twenty to take"].startswith("<svg")
+    found = replace(nine, readings=readings, verdict=verdict)
+    drawn = pictures.pictures(found, Errors.of(found))
+    assert drawn["Mean error of each run"].startswith("<svg")
+    assert drawn["Poses, their hull, and the next to take"].startswith("<svg")
 
 
 def test_a_loaded_calibration_answers_a_table_of_its_columns(
@@ -150,24 +170,30 @@ def test_a_correction_is_saved_on_top_of_those_before(nine: Calibration, tmp_pat
     turns = [bench.turn("x", 1.0), bench.turn("z", 2.0)]
     for offset, turn in zip((1.0, 0.25), turns, strict=True):
         rotation = tuple(tuple(float(c) for c in row) for row in turn)
-        found = Correction("boresight", (offset, 0.0), rotation, 1.0, 0.1, 1.0, 0.01, 12)
+        errors = CorrectionErrors(1.0, 1.0, 1.0, 1.0)
+        found = Correction(
+            ("offset", "scale"), (2.0, 2.0), (offset, 0.0), rotation, errors, errors, (), 12
+        )
         held = with_correction(load(file), found, [tmp_path / "few.csv"], "sunatlas calibrate")
         file.write_text(json.dumps(held), encoding="utf-8")
     loaded = load(file)
-    assert loaded.offset.tolist() == [1.25, 0.0]
+    # what was read, f, is now 2 f + 1, and later 2 (2 f + 1) + 0.25
+    assert loaded.offset.tolist() == [2.25, 0.0]
+    assert loaded.gain.tolist() == [4.0, 4.0]
     assert loaded.rotation == pytest.approx(turns[1] @ turns[0])
     assert loaded.document["correction"]["files"] == ["few.csv"]
     assert loaded.document["correction"]["onto"] != first
     features = np.array([[520.0, 500.0]])
-    plain = nine.model.predict(features - [1.25, 0.0], {})
-    assert loaded.predict(features) == pytest.approx(plain @ (turns[1] @ turns[0]).T)
+    plain = nine.model.predict(features, {})
+    now = 2.0 * (2.0 * features + [1.0, 0.0]) + [0.25, 0.0]
+    assert loaded.predict(now) == pytest.approx(plain @ (turns[1] @ turns[0]).T)
 
 
 @pytest.mark.parametrize(
     ("change", "said"),
     [
         ({"schema": "another"}, "expected a document of sun-sensor-atlas/sensor-calibration"),
-        ({"schema_version": 99}, "expected version 1; got 99"),
+        ({"schema_version": 99}, "expected version 1 or 2; got 99"),
     ],
 )
 def test_a_document_of_another_kind_is_refused(

@@ -40,8 +40,9 @@ def test_a_turned_sensor_is_corrected_by_twelve_poses_one_of_them_wrong(old, tmp
     stated[3] = bench.sun_of(np.array([[0.0, 10.0]]))[0]
     path = few(tmp_path / "few.csv", bench.spots(SUN, 2), stated)
     found = recalibrate([path], load(old))
-    assert found.kind == "boresight"
-    assert found.size == pytest.approx(np.hypot(0.7, 0.4), abs=0.03)
+    assert found.kinds == ("boresight",)
+    angle = np.degrees(np.arccos((np.trace(np.asarray(found.rotation)) - 1.0) / 2.0))
+    assert angle == pytest.approx(np.hypot(0.7, 0.4), abs=0.03)
     out = tmp_path / "out"
     command = typer.main.get_command(app)
     status = command.main(
@@ -64,15 +65,15 @@ def test_a_turned_sensor_is_corrected_by_twelve_poses_one_of_them_wrong(old, tmp
 def test_moved_readings_are_told_from_a_turn(old, tmp_path):
     moved = bench.spots(SUN, 2) + np.array([3.0, -4.0])
     found = recalibrate([few(tmp_path / "few.csv", moved)], load(old))
-    assert found.kind == "offset"
-    assert found.size == pytest.approx(5.0, abs=0.1)
-    assert found.uncertainty < 0.1
-    assert found.after_deg < 0.02
+    assert found.kinds == ("offset",)
+    assert found.offset == pytest.approx((3.0, -4.0), abs=0.1)
+    assert found.after.rms_deg < 0.02
 
 
 def test_a_sensor_as_it_was_stays_as_it_is(old, tmp_path):
     found = recalibrate([few(tmp_path / "few.csv", bench.spots(SUN, 2))], load(old))
-    assert found.kind == "none"
+    assert found.kinds == ()
+    assert found.explained
     assert found.rotation == ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import bench
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from api.calibrate.recalibration import Correction, recalibrate
+from api.calibrate.recalibration import Correction, Errors, recalibrate
 from api.calibrate.roles import guess
 from api.calibrate.table import read_table
 
@@ -57,12 +58,13 @@ def test_moved_readings_are_an_offset_that_a_wrong_pose_does_not_move(tmp_path: 
     sun[3] = [0.0, 0.0, 1.0]
     path = spots(tmp_path / "few.csv", SPOTS + np.array([3.0, -4.0]), sun)
     found = recalibrate([path], Pinhole(path))
-    assert found.kind == "offset"
+    assert found.kinds == ("offset",)
     assert found.offset == pytest.approx((3.0, -4.0), abs=0.1)
     assert found.rotation == NOT_TURNED
-    assert found.size == pytest.approx(5.0, abs=0.1)
-    assert found.after_deg < 0.03
-    assert found.before_deg > 0.5
+    assert found.gain == (1.0, 1.0)
+    assert found.after.median_deg < 0.03
+    assert found.before.median_deg > 0.5
+    assert found.after.largest_deg > 10.0  # the wrong pose is not hidden
 
 
 def test_turned_faces_are_a_turn(tmp_path: Path) -> None:
@@ -72,10 +74,11 @@ def test_turned_faces_are_a_turn(tmp_path: Path) -> None:
     signals = np.maximum(sun @ axes.T, 0.0) + np.random.default_rng(2).normal(0.0, 1e-4, (20, 6))
     path = bench.write(tmp_path / "few.csv", [*FACES, *VECTOR], signals, sun @ turn.T)
     found = recalibrate([path], Box(path))
-    assert found.kind == "boresight"
+    assert found.kinds == ("boresight",)
     assert found.offset == (0.0,) * 6
+    assert found.gain == (1.0,) * 6
     assert np.asarray(found.rotation) == pytest.approx(turn, abs=1e-3)
-    assert found.size == pytest.approx(2.0, abs=0.02)
+    assert found.changes[0].startswith("a turn by 2 +- ")
 
 
 def test_poses_at_the_edge_of_the_old_field_settle_no_offset(tmp_path: Path) -> None:
@@ -86,17 +89,29 @@ def test_poses_at_the_edge_of_the_old_field_settle_no_offset(tmp_path: Path) -> 
     assert found.samples == 12
 
 
-@pytest.mark.parametrize(
-    ("kind", "said"),
-    [
-        ("none", "neither a turn nor an offset explains that better: it stays"),
-        ("boresight", "a turn by 0.71 +- 0.02 deg leaves 0.1 deg on poses left out"),
-        ("offset", "readings moved by 0.71 +- 0.02 leaves 0.1 deg on poses left out"),
-    ],
-)
-def test_a_correction_is_told_with_its_size_and_what_it_leaves(kind: str, said: str) -> None:
-    found = Correction(kind, (0.0, 0.0), NOT_TURNED, 0.8, 0.1, 0.71, 0.02, 12)  # type: ignore[arg-type]
-    assert found.sentence() == f"the old calibration errs 0.8 deg on 12 poses; {said}"
+def correction(kinds: tuple[Any, ...], changes: tuple[str, ...], stated: float) -> Correction:
+    before, after = Errors(0.8, 0.2, 3.0, 0.5), Errors(0.1, 0.08, 0.2, 0.09)
+    return Correction(
+        kinds, (1.0, 1.0), (0.0, 0.0), NOT_TURNED, before, after if kinds else before,
+        changes, 12, 0, stated,
+    )  # fmt: skip
+
+
+def test_a_correction_is_told_with_rms_median_and_largest_before_and_after() -> None:
+    found = correction(("boresight",), ("a turn by 0.71 +- 0.02 deg",), 0.1)
+    assert found.explained
+    assert found.sentence() == (
+        "the old calibration errs 0.8 deg RMS (median 0.2, largest 3) on 12 poses; a turn by "
+        "0.71 +- 0.02 deg: that leaves 0.1 deg RMS (median 0.08, largest 0.2) on poses left out"
+    )
+
+
+def test_an_error_that_nothing_explains_is_said_beside_what_was_stated() -> None:
+    found = correction((), (), 0.1)
+    assert not found.explained
+    assert "no gain, offset, scale or turn explains that better: it stays" in found.sentence()
+    assert "It stated 0.1 deg" in found.sentence()
+    assert correction((), (), 0.7).explained
 
 
 @pytest.mark.parametrize("moved", [60.0, 200.0])
@@ -107,6 +122,6 @@ def test_an_offset_far_beyond_the_spread_of_few_poses_is_found_whole(
     seen = bench.CENTRE + bench.FOCAL * sun[:, :2] / sun[:, 2:] + RNG.normal(0.0, 0.05, (12, 2))
     path = spots(tmp_path / "few.csv", seen + np.array([moved, 0.0]), sun)
     found = recalibrate([path], Pinhole(path))
-    assert found.kind == "offset"
+    assert found.kinds == ("offset",)
     assert found.offset == pytest.approx([moved, 0.0], abs=0.2)
-    assert found.after_deg < 0.05
+    assert found.after.rms_deg < 0.05

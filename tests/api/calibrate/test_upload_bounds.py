@@ -33,15 +33,22 @@ def test_what_is_beyond_the_bounds_is_refused_before_a_process_starts(
         calibrate_uploads(uploads, config)
 
 
-@pytest.mark.parametrize("status", [-9, 0], ids=["killed", "nothing said"])
-def test_a_process_that_leaves_no_answer_is_a_refusal(
-    status: int, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("status", "said"),
+    [
+        (-9, "killed, most likely for want of memory"),
+        (-11, "ended by SIGSEGV"),
+        (0, "ended without an answer"),
+    ],
+)
+def test_a_process_that_leaves_no_answer_is_a_refusal_with_its_cause(
+    status: int, said: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def ended(command: list[str], **_: Any) -> subprocess.CompletedProcess[bytes]:
         return subprocess.CompletedProcess(command, status)
 
     monkeypatch.setattr(subprocess, "run", ended)
-    with pytest.raises(UploadRefusedError, match="the calibration ended early"):
+    with pytest.raises(UploadRefusedError, match=said):
         calibrate_uploads([FILE])
 
 
@@ -60,7 +67,7 @@ def refusal(directory: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     monkeypatch.setattr("resource.setrlimit", lambda *_: None)
     assert uploaded.main([str(directory)]) == 0
     said = json.loads((directory / "said.json").read_text(encoding="utf-8"))
-    return str(said["refused"]["why"])
+    return str(said["refused"])
 
 
 def test_rows_beyond_the_bound_are_refused_by_their_number(
@@ -87,3 +94,21 @@ def test_a_config_nested_too_deep_is_said_to_be_at_fault(
     stated = {"names": ["0/bench.csv"], "config": "a = " + "[" * depth, "apply": False}
     (task / "task.json").write_text(json.dumps(stated), encoding="utf-8")
     assert refusal(task, monkeypatch).startswith("config: ")
+
+
+def test_an_error_of_the_program_is_called_one(task: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is no want of memory; the server's log has the traceback."""
+    monkeypatch.setattr("resource.setrlimit", lambda *_: None)
+    monkeypatch.setattr("api.calibrate.calibration.calibrate", lambda *_, **__: 1 / 0)
+    assert uploaded.main([str(task)]) == 0
+    said = json.loads((task / "said.json").read_text(encoding="utf-8"))
+    assert said["fault"] == "ZeroDivisionError: division by zero"
+    assert "Traceback" in said["trace"]
+
+    def answered(command: list[str], **_: Any) -> subprocess.CompletedProcess[bytes]:
+        (Path(command[-1]) / "said.json").write_text(json.dumps(said), encoding="utf-8")
+        return subprocess.CompletedProcess(command, 0)
+
+    monkeypatch.setattr(subprocess, "run", answered)
+    with pytest.raises(UploadRefusedError, match=r"division by zero\); this is a fault of the pro"):
+        calibrate_uploads([FILE])

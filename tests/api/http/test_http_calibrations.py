@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import base64
 import gzip
+import hashlib
 import io
 import json
+import re
 import subprocess
 import sys
 import tempfile
@@ -49,11 +52,18 @@ def zipped(atlas):
 
 
 def test_a_file_becomes_report_json_and_code(zipped):
-    assert {name.rpartition(".")[2] for name in zipped} == {"json", "html", "py", "c", "h"}
+    assert {name.rpartition(".")[2] for name in zipped} == {
+        "json",
+        "html",
+        "py",
+        "c",
+        "h",
+        "sha256",
+    }
     document = json.loads(zipped["sun_sensor.json"])
     assert document["verdict"]["verdict"] == "good"
     assert document["made"]["files"] == ["bench.csv"]
-    assert zipped["sun_sensor_report.html"].count("<svg") == 4
+    assert zipped["sun_sensor_report.html"].count("<svg") == 5
 
 
 def test_the_page_takes_a_form_without_a_script(atlas):
@@ -66,6 +76,62 @@ def test_the_page_takes_a_form_without_a_script(atlas):
     assert refused.status_code == 422
     assert "2, column y_px" in refused.text
     assert refused.headers["content-type"].startswith("text/html")
+
+
+def test_the_page_keeps_its_fields_beside_an_error(atlas):
+    fields = {"model": "homography", "config": "# <mine>", "require": "0.1deg@rms"}
+    refused = atlas.post("/calibrate", files={"file": ("b.csv", BAD)}, data=fields)
+    assert refused.status_code == 422
+    assert 'value="homography"' in refused.text
+    assert "# &lt;mine&gt;</textarea>" in refused.text
+    assert 'value="0.1deg@rms"' in refused.text
+    wrong = atlas.post(
+        "/calibrate", files={"file": ("b.csv", turntable())}, data={"require": "0.1 furlong"}
+    )
+    assert wrong.status_code == 422
+    assert "expected a limit, a level" in wrong.text
+
+
+def test_the_page_has_the_report_and_every_file_in_one_archive(atlas):
+    made = atlas.post("/calibrate", data={"sample": "yes", "model": "homography"}, files={"x": ""})
+    assert made.status_code == 200, made.text[:2000]
+    assert made.headers["cache-control"] == "no-store"
+    assert "Models compared" in made.text
+    archive = re.search(r"data:application/zip;base64,([^\"]+)", made.text)
+    assert archive is not None
+    with zipfile.ZipFile(io.BytesIO(base64.b64decode(archive[1]))) as packed:
+        names = packed.namelist()
+        listed = packed.read("sun_sensor.sha256").decode().splitlines()
+        for digest, _, name in (line.partition("  ") for line in listed):
+            assert hashlib.sha256(packed.read(name)).hexdigest() == digest
+    assert {line.partition("  ")[2] for line in listed} == {*names} - {"sun_sensor.sha256"}
+
+
+def test_the_sample_is_a_file_of_its_own(atlas):
+    sample = atlas.get("/calibrate/sample.csv")
+    assert sample.headers["content-type"].startswith("text/csv")
+    rows = np.loadtxt(io.StringIO(sample.text), delimiter=",", skiprows=1)
+    assert rows.shape == (225, 4)
+    assert "/calibrate/sample.csv" in atlas.get("/calibrate").text
+
+
+def test_columns_are_previewed_with_role_unit_and_first_values(atlas):
+    found = atlas.post(ADDRESS + "/preview", files={"file": ("b.csv", turntable())}).json()
+    assert [one["name"] for one in found["columns"]] == [
+        *("x_px", "y_px", "theta_x_deg", "theta_y_deg")
+    ]
+    assert found["columns"][2]["unit"] == "deg"
+    assert found["rows"] == 81
+    refused = atlas.post(ADDRESS + "/preview", files={"file": ("b.csv", b"")})
+    assert refused.status_code == 422
+    assert "empty" in refused.json()["detail"]
+
+
+def test_a_requirement_stands_in_the_report(atlas):
+    files = {"file": ("b.csv", turntable())}
+    asked = {"model": "homography", "answer": "report", "require": "2deg@95%,30deg"}
+    made = atlas.post(ADDRESS, files=files, data=asked)
+    assert "Requirement 2deg@95%,30deg: met." in made.text
 
 
 def test_a_model_is_filled_in_by_the_address_and_is_the_only_one_tried(atlas):

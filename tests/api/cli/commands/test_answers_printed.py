@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 import survey_data
 from api.calibrate import calibration, documents, products, recalibration
-from api.calibrate.certificate import certificate
+from api.calibrate.report.page import Asked
 from api.cli.boards import overview_text
 from api.cli.command_line import app
 from api.cli.commands.get import fetch_answer
@@ -131,8 +131,14 @@ def calibrated(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     )
     written = [Path("out/a.html"), Path("out/a.json")]
     monkeypatch.setattr(calibration, "calibrate", lambda *_, **__: found)
-    monkeypatch.setattr(products, "write_products", lambda *_: written)
-    monkeypatch.setattr(certificate, "certificate", lambda *_: "<dcc/>\n")
+
+    def write(_found: object, out: Path, _name: str, _command: str, asked: Asked) -> list[Path]:
+        if asked.certificate:
+            out.mkdir()
+            (out / asked.certificate).write_text("<dcc/>\n", encoding="utf-8")
+        return written
+
+    monkeypatch.setattr(products, "write_products", write)
     return found
 
 
@@ -140,7 +146,7 @@ def test_a_calibration_says_what_was_found_read_and_left_out(
     calibrated: SimpleNamespace, tmp_path: Path
 ) -> None:
     to = tmp_path / "dcc.xml"
-    shown = sunatlas("calibrate", "a.csv", "--out", "out", "--certificate", to)
+    shown = sunatlas("calibrate", "a.csv", "--out", tmp_path / "out", "--certificate", to)
     assert shown.exit_code == 0, shown.stderr
     assert shown.stdout.splitlines() == [
         "verdict: good - errors are noise",
@@ -149,7 +155,7 @@ def test_a_calibration_says_what_was_found_read_and_left_out(
         "read: semicolons divide the columns",
         "left out: 3 rows: no reading",
         "left out: 2 rows: far off",
-        "wrote a.html, a.json in out",
+        f"wrote a.html, a.json in {tmp_path / 'out'}",
         f"wrote {to}",
     ]
     assert to.read_text() == "<dcc/>\n"
@@ -178,7 +184,7 @@ def test_a_corrected_calibration_is_written_beside_the_old_one(
 
     def recalibrate(files: list[Path], onto: object) -> Any:
         asked.append((files, onto))
-        return SimpleNamespace(sentence=lambda: "turned by 0.7 deg")
+        return SimpleNamespace(sentence=lambda: "turned by 0.7 deg", explained=True)
 
     monkeypatch.setattr(documents, "load", lambda path: f"loaded {path}")
     monkeypatch.setattr(recalibration, "recalibrate", recalibrate)
@@ -186,6 +192,9 @@ def test_a_corrected_calibration_is_written_beside_the_old_one(
     out = tmp_path / "new" / "out"
     shown = sunatlas("calibrate", "few.csv", "--onto", old, "--out", out, "--name", "again")
     assert shown.exit_code == 0, shown.stderr
-    assert shown.stdout == f"turned by 0.7 deg\nwrote {out / 'again.json'}\n"
+    assert shown.stdout == (
+        f"turned by 0.7 deg\nwrote {out / 'again.json'}; C and Python written with old.json lack "
+        "this correction\n"
+    )
     assert asked == [([Path("few.csv")], f"loaded {old}")]
     assert json.loads((out / "again.json").read_text()) == {"corrected": f"loaded {old}"}

@@ -1,0 +1,46 @@
+"""What a file does not tell of its sensor, and what would."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from algorithms.contract import FeatureKind
+from api.calibrate.causes.laws import UNTESTED, scale_of_angles, settles_scale
+from api.calibrate.causes.light import Dark, changes_answers, level_of_channels
+from api.calibrate.conventions.channels import level_of
+from api.calibrate.readings import Readings
+from api.calibrate.robust import answer_noise_deg
+from api.calibrate.settings import Settings
+
+_MOST = 2000
+_DARK = (
+    "the level without light: {}; readings with the sensor covered, or at another light level, "
+    "would test it"
+)
+_LAG = (
+    "readings that come late by a part of a row: all sweeps go one way, or none is smooth; sweeps "
+    "to and fro would test it"
+)
+
+
+def untested_in(readings: Readings, settings: Settings) -> tuple[str, ...]:
+    """Return which causes of a wrong calibration a file cannot show, each with what would."""
+    from api.calibrate.causes.lag import fraction_late  # noqa: PLC0415 - one use
+
+    used = readings.thinned(_MOST)
+    found = []
+    noise = answer_noise_deg(used.features, used.sun)
+    if not settles_scale(scale_of_angles(used, settings), used, noise):
+        found.append(UNTESTED)
+    kind = settings.readings.kind
+    if kind == "balance":
+        found.append(_DARK.format("the file has balances, not the signals that they are made of"))
+    elif kind in ("quadrants", "electrodes", "channels"):
+        signals = used.kind is FeatureKind.SIGNALS
+        dark = level_of_channels(used, falls=False) if signals else level_of(used, settings)
+        unsure = Dark(np.full(len(dark.level), dark.error), dark.error, dark.by)
+        if not np.isfinite(dark.error) or changes_answers(unsure, used, noise):
+            found.append(_DARK.format("the signals follow no law by which they tell it"))
+    if not np.isfinite(fraction_late(readings)[1]):
+        found.append(_LAG)
+    return tuple(found)

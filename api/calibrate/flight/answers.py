@@ -1,0 +1,132 @@
+"""What an answer says beside the direction: two angles in the file's form, and a 1-sigma."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from algorithms.contract import Floats
+from api.calibrate.calibration import Calibration
+
+
+@dataclass(frozen=True)
+class AngleForm:
+    """Two angles of a direction.
+
+    Attributes
+    ----------
+    words : str
+        What they are.
+    c, python : tuple of two str
+        Both in radians, of x, y and z.
+    """
+
+    words: str
+    c: tuple[str, str]
+    python: tuple[str, str]
+
+
+def _form(words: str, first: str, second: str) -> AngleForm:
+    """Return a form whose expressions have ``atan2`` and ``root`` for both languages."""
+
+    def of(atan2: str, root: str) -> tuple[str, str]:
+        one, two = (text.replace("atan2", atan2).replace("root", root) for text in (first, second))
+        return one, two
+
+    return AngleForm(words, of("ATAN2", "SQRT"), of("np.arctan2", "np.sqrt"))
+
+
+_POLAR = _form(
+    "azimuth from +x to +y and angle off the boresight",
+    "atan2(y, x)",
+    "atan2(root((x * x) + (y * y)), z)",
+)
+#: By the form of the file's directions; vectors, and forms not named here, get azimuth and angle
+#: off the boresight.
+_FORMS = {
+    "projection": _form(
+        "alpha = atan(s_y / s_z) and beta = atan(s_x / s_z)", "atan2(y, z)", "atan2(x, z)"
+    ),
+    "alpha-inner": _form(
+        "rotations alpha = asin(s_y) and beta = atan2(s_x, s_z)",
+        "atan2(y, root((x * x) + (z * z)))",
+        "atan2(x, z)",
+    ),
+    "beta-inner": _form(
+        "rotations alpha = atan2(s_y, s_z) and beta = asin(s_x)",
+        "atan2(y, z)",
+        "atan2(x, root((y * y) + (z * z)))",
+    ),
+    "azimuth-elevation": _form(
+        "azimuth from +x to +y and elevation above the detector's plane",
+        "atan2(y, x)",
+        "atan2(z, root((x * x) + (y * y)))",
+    ),
+    "azimuth-zenith": _POLAR,
+}
+
+
+@dataclass(frozen=True)
+class Answers:
+    """Form of the angles, and the 1-sigma by place.
+
+    Attributes
+    ----------
+    form : AngleForm
+    axis : ndarray, shape (3,)
+        Unit vector that rings lie about.
+    rings_deg : ndarray, shape (K,)
+        Off-axis angles of the ring centres, K at least 2.
+    sectors : int
+        Of each ring: sector m is at the azimuth 360 m / M about the axis, from +x towards +y.
+    sigma_deg : ndarray, shape (K, M, 2)
+        Of the two axes of `api.calibrate.intervals.places.tangent_axes`.
+    """
+
+    form: AngleForm
+    axis: Floats
+    rings_deg: Floats
+    sectors: int
+    sigma_deg: Floats
+
+    @property
+    def bytes(self) -> int:
+        """Size of the constants in double precision."""
+        return 8 * sum(np.size(value) for value in self.constants().values())
+
+    def constants(self) -> dict[str, Any]:
+        """Return what C and Python read: the axes about which places are counted, and the table."""
+        start = np.array([1.0, 0.0, 0.0] if abs(self.axis[0]) < 0.9 else [0.0, 1.0, 0.0])
+        first = start - (start @ self.axis) * self.axis
+        first /= np.linalg.norm(first)
+        return {
+            "rings": np.asarray(self.rings_deg, dtype=np.float64),
+            "basis": np.stack([first, np.cross(self.axis, first), self.axis]),
+            "table": np.asarray(self.sigma_deg, dtype=np.float64),
+            "RINGS": len(self.rings_deg),
+            "SECTORS": int(self.sectors),
+        }
+
+
+def answers_of(found: Calibration) -> Answers:
+    """Return the form and the 1-sigma of a calibration; one number where it knows no places."""
+    form = _FORMS.get(found.settings.direction.form, _POLAR)
+    known = found.intervals
+    if known is not None:
+        return Answers(form, known.axis, known.rings_deg, known.sectors, known.sigma_deg)
+    constant = _constant_deg(found)
+    return Answers(
+        form, np.array([0.0, 0.0, 1.0]), np.array([0.0, 180.0]), 1, np.full((2, 1, 2), constant)
+    )
+
+
+def _constant_deg(found: Calibration) -> float:
+    """Return the root mean square of what the calibration states, of one tangent axis."""
+    used = found.readings.thinned(2000)
+    stated = found.deviation_deg(used.features, dict(used.context))
+    stated = stated[np.isfinite(stated)]
+    if not len(stated):
+        return float(found.chosen.rms_deg / np.sqrt(2.0))
+    return float(np.sqrt(np.mean(stated**2)))

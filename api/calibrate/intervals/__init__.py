@@ -1,0 +1,1 @@
+"""Errors of samples left out, and their scale by place."""
