@@ -11,7 +11,7 @@ import numpy as np
 from algorithms.angles import separation_deg
 from algorithms.chain import Scored
 from algorithms.contract import Floats, Model, SensorGeometry, UnusableDataError
-from api.calibrate.causes.applying import File, applied_to, one_plane, read_as, with_cells
+from api.calibrate.causes.applying import applied_to, one_plane, read_as, with_cells
 from api.calibrate.causes.bad_cells import joined_levels
 from api.calibrate.causes.held_out import Part, parts_of
 from api.calibrate.causes.limits import ReadingLimits, limits_of
@@ -266,6 +266,8 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     models: Sequence[str] | None,
     progress: Callable[[str, int, int], None],
 ) -> Calibration:
+    from api.calibrate.one_axis.calibrated import calibration_of_axis  # noqa: PLC0415 - it imports this
+
     notes: list[str] = []
     progress("conventions", 0, 1)
     file = read_as(tables, stated)
@@ -275,11 +277,11 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     stated, readings, found = file.settings, file.readings, file.findings
     notes += [note for part in file.bad for note in part.notes]
     if one_plane(readings):
-        return _of_one_axis(readings, file, tables, notes)
+        return calibration_of_axis(readings, file, tables, notes)
     sound, excluded, runs, fold = sound_of(readings)
     excluded = [*(one for part in file.bad for one in part.excluded), *excluded]
     if one_plane(sound):
-        return _of_one_axis(sound, file, tables, notes, excluded)
+        return calibration_of_axis(sound, file, tables, notes, excluded)
     readings = sound
     wrong = np.zeros(len(sound), dtype=np.bool_)
     if len(sound) >= _FEWEST_FOR_WRONG:
@@ -354,35 +356,6 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         limits=limits_of(readings, stated, joined_levels(file.bad)),
         columns=tuple(tables[0].columns),
     )  # fmt: skip
-
-
-def _of_one_axis(
-    readings: Readings,
-    file: File,
-    tables: Sequence[Table],
-    notes: Sequence[str],
-    excluded: Sequence[Excluded] = (),
-) -> Calibration:
-    """Return the calibration of the one angle that the poses changed."""
-    from api.calibrate.one_axis.calibrated import (  # noqa: PLC0415 - of few files
-        calibrated_axis,
-        plane_note,
-    )
-
-    settings = file.settings
-    found = calibrated_axis(readings, settings.bench.floor_deg)
-    found["excluded"] = (*excluded, *found["excluded"])
-    return Calibration(
-        settings=settings,
-        findings=(),
-        applied=(),
-        digest="",
-        sources=tuple(table.source for table in tables),
-        notes=(*notes, plane_note(readings)),
-        limits=limits_of(found["readings"], settings, joined_levels(file.bad)),
-        columns=tuple(tables[0].columns),
-        **found,
-    )
 
 
 def _explained(candidate: Candidate, readings: Readings) -> Candidate:

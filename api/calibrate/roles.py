@@ -13,7 +13,7 @@ import numpy as np
 from api.calibrate.forms import names as words
 from api.calibrate.forms.attitudes import are_matrices, are_quaternions
 from api.calibrate.forms.config_lines import by_order, config_lines
-from api.calibrate.forms.fits import best_of, looks_like_tilted_cells
+from api.calibrate.forms.fits import best_of
 from api.calibrate.forms.units import AngleUnit, TemperatureUnit, TimeUnit, is_angle, named
 from api.calibrate.settings import (
     DirectionSettings,
@@ -117,16 +117,9 @@ def understood(table: Table) -> Understood:
     readings, normals = _readings_of(columns, one_axis=one_axis)
     if readings is None:
         raise TableError(_no_readings(columns, ways[0]))
-    kinds = [readings]
-    if (
-        readings.kind == "quadrants"
-        and not one_axis
-        and all(columns.readable(name) for name in readings.columns)
-    ):
-        kinds.append(readings.model_copy(update={"kind": "channels"}))
     made = [
         Settings(
-            readings=kinds[0], direction=way, rows=rows, sensor=SensorSettings(face_normals=normals)
+            readings=readings, direction=way, rows=rows, sensor=SensorSettings(face_normals=normals)
         )
         for way in ways
     ]
@@ -135,12 +128,7 @@ def understood(table: Table) -> Understood:
         settings, said = best_of(table, made)
         columns.notes.append(said)
     settings = _turned(table, settings, columns.notes)
-    if len(kinds) > 1 and looks_like_tilted_cells(table, settings):
-        settings = settings.model_copy(update={"readings": kinds[1]})
-        columns.notes.append(
-            "the four readings are linear in the light's direction: they are taken as cells that "
-            "look different ways, not as quadrants"
-        )
+    settings = _as_cells(table, settings, columns.notes)
     return Understood(settings, tuple(columns.notes))
 
 
@@ -351,6 +339,24 @@ def _one_axis(columns: _Columns, numeric: list[str]) -> ReadingsSettings | None:
     balance = bool(np.nanmax(np.abs(values), initial=0.0) <= _BALANCE)
     kind: Kind = "balance" if balance else "spot"
     return ReadingsSettings(kind=kind, columns=tuple(numeric))
+
+
+def _as_cells(table: Table, settings: Settings, notes: list[str]) -> Settings:
+    """Return settings with channels where four readings are plain cells, not quadrants."""
+    from api.calibrate.causes.applying import with_cells  # noqa: PLC0415 - it reads tables, too
+
+    if settings.direction.form == "one-angle" or settings.readings.kind != "quadrants":
+        return settings
+    try:
+        changed = with_cells([table], settings)
+    except TableError:  # which is told when the table is read
+        return settings
+    if changed != settings:
+        notes.append(
+            "the four readings are linear in the light's direction: they are taken as cells that "
+            "look different ways, not as quadrants"
+        )
+    return changed
 
 
 def _turned(table: Table, settings: Settings, notes: list[str]) -> Settings:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,10 +10,15 @@ from numpy.typing import NDArray
 
 from algorithms.contract import FeatureKind, Floats, SensorGeometry, UnusableDataError
 from algorithms.models.non_physical.regression_axes import Target
+from api.calibrate.calibration import Calibration
+from api.calibrate.causes.applying import File
+from api.calibrate.causes.bad_cells import joined_levels
+from api.calibrate.causes.limits import limits_of
 from api.calibrate.exclusions import Excluded, excluded_of
 from api.calibrate.one_axis.curve import AxisCurve, angles_in, plane_of
 from api.calibrate.readings import Readings
 from api.calibrate.selection import Candidate
+from api.calibrate.table import Table
 from api.calibrate.uncertainty import NORMAL_95, Intervals
 from api.calibrate.verdict import Verdict, Word
 
@@ -31,6 +37,48 @@ _REFITS, _SEED = 6, 20_261_128
 NAME = AxisCurve.about.name
 #: Curves that are compared, by their name.
 TARGETS: dict[str, Target] = {NAME: "angle", f"{NAME} of the tangent": "tangent"}
+
+
+def calibration_of_axis(
+    readings: Readings,
+    file: File,
+    tables: Sequence[Table],
+    notes: Sequence[str],
+    excluded: Sequence[Excluded] = (),
+) -> Calibration:
+    """Return the calibration of the one angle that the poses of tables changed.
+
+    Parameters
+    ----------
+    readings : Readings
+        Samples whose directions lie in one plane.
+    file : File
+        That they are of.
+    tables : sequence of Table
+    notes : sequence of str
+        On how the tables were read.
+    excluded : sequence of Excluded
+        Samples left out before.
+
+    Raises
+    ------
+    UnusableDataError
+        As `calibrated_axis`.
+    """
+    settings = file.settings
+    found = calibrated_axis(readings, settings.bench.floor_deg)
+    found["excluded"] = (*excluded, *found["excluded"])
+    return Calibration(
+        settings=settings,
+        findings=(),
+        applied=(),
+        digest="",
+        sources=tuple(table.source for table in tables),
+        notes=(*notes, plane_note(readings)),
+        limits=limits_of(found["readings"], settings, joined_levels(file.bad)),
+        columns=tuple(tables[0].columns),
+        **found,
+    )
 
 
 def calibrated_axis(readings: Readings, floor_deg: float) -> dict[str, Any]:

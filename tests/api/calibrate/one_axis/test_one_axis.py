@@ -93,7 +93,9 @@ def test_files_of_one_axis_end_with_a_report_and_a_document(
     assert "one-axis calibration" in found.verdict.reason
     assert found.chosen.rms_deg < most_deg
     written = {path.name for path in write_products(found, tmp_path, "axis")}
-    assert written == {"axis.json", "axis_report.html", "axis_no_code.txt"}
+    assert written == {
+        *("axis.json", "axis_report.html", "axis_no_code.txt", "axis.sha256"),
+    }
     stated = json.loads((tmp_path / "axis.json").read_text())
     assert stated["model"]["name"] == "polynomial-one-axis"
     assert "one-axis calibration" in stated["verdict"]["reason"]
