@@ -30,6 +30,7 @@ from api.calibrate.selection import (
     choose,
     compare,
     deviation_of,
+    explained,
     fitted,
     geometry_of,
     settled,
@@ -59,8 +60,6 @@ from benchmark.running.threads import one_thread
 
 #: Samples from which wrong poses are looked for.
 _FEWEST_FOR_WRONG = 40
-#: RMS over the directions' own spread from which a model explains no more than chance does.
-_CHANCE = 0.5
 #: Samples a final fit is made of at most; more are thinned evenly.
 MOST_FITTED = 40_000
 
@@ -302,7 +301,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         progress(name, count, 2 * len(wanted) + 4)
         count += 1
 
-    candidates = [_explained(one, readings) for one in compare(readings, geometry, wanted, tick)]
+    candidates = [explained(one, readings) for one in compare(readings, geometry, wanted, tick)]
     candidates.sort(key=_by_error)
     chosen, why = choose(candidates)
     kept = kept_by_model(wanted[chosen.name], chosen, sound, readings, geometry)
@@ -311,9 +310,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     wrong_ones = sound.only(~kept)
     excluded += excluded_of(~kept, WRONG, sound)
     if changed:  # a wrong pose that was not seen may have misled the choice
-        candidates = [
-            _explained(one, readings) for one in compare(readings, geometry, wanted, tick)
-        ]
+        candidates = [explained(one, readings) for one in compare(readings, geometry, wanted, tick)]
         candidates.sort(key=_by_error)
         chosen, why = choose(candidates)
     count = 2 * len(wanted)
@@ -334,7 +331,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     compared = readings.only(np.arange(0, len(readings), _step(readings, chosen)))
     patterns = patterns_in(np.asarray(chosen.offsets), compared)
     removed = sound.only(~kept & ~wrong)
-    left_out = errors_left_out(wanted[chosen.name], chosen, compared, geometry, model, removed)
+    left_out = errors_left_out(same, chosen, compared, geometry, model, removed)
     stated_sigma = intervals(*left_out)
     verdict = judge(
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
@@ -356,19 +353,6 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         limits=limits_of(readings, stated, joined_levels(file.bad)),
         columns=tuple(tables[0].columns),
     )  # fmt: skip
-
-
-def _explained(candidate: Candidate, readings: Readings) -> Candidate:
-    """Refuse a candidate that explains no more of where the light was than chance does."""
-    middle = readings.sun.mean(axis=0)
-    spread = float(np.degrees(np.sqrt(np.mean(((readings.sun - middle) ** 2).sum(axis=1)))))
-    if candidate.refused or candidate.rms_deg <= _CHANCE * spread:
-        return candidate
-    return Candidate(
-        candidate.name,
-        refused=f"errs {candidate.rms_deg:.3g} deg where directions spread over {spread:.3g} deg: "
-        "readings and directions do not belong together",
-    )
 
 
 def _by_error(one: Candidate) -> tuple[bool, bool, float]:

@@ -11,17 +11,14 @@ from api.calibrate.readings import Readings
 def face_normals(readings: Readings) -> tuple[Floats, Floats]:
     """Return where each channel looks (K, 3), and how it goes with the light there (K,).
 
-    By least squares of signal over the cosine, on the samples that light it most.
+    By least squares of signal over the cosine: on all samples first, then on those that light it.
     """
     sun, signals = readings.sun, readings.features
     normals = np.zeros((signals.shape[1], 3))
     explained = np.zeros(signals.shape[1])
     for at, signal in enumerate(signals.T):
-        centred = signal - np.median(signal)
-        start = (centred[:, None] * sun).mean(axis=0)
-        normal = start / (np.linalg.norm(start) or 1.0)
+        normal, lit = np.zeros(3), np.ones(len(sun), dtype=np.bool_)
         for _ in range(20):
-            lit = sun @ normal > 0.2
             if lit.sum() < 6:
                 break
             found = np.linalg.lstsq(sun[lit], signal[lit], rcond=None)[0]
@@ -29,6 +26,7 @@ def face_normals(readings: Readings) -> tuple[Floats, Floats]:
             if not length > 0:
                 break
             normal = found / length
+            lit = sun @ normal > 0.2
         normals[at] = normal
         with np.errstate(invalid="ignore"):
             share = np.corrcoef(signal, np.maximum(sun @ normal, 0.0))[0, 1]

@@ -242,14 +242,14 @@ def _said(changes: Changes, kinds: tuple[Kind, ...], columns: Sequence[str]) -> 
         said += [
             f"gain of channel {at + 1} ({columns[at]}) is {changes.gain[at]:.4g} "
             f"+- {changes.gain_sigma[at]:.1g}"
-            for at in np.flatnonzero(changes.gain_sigma)
+            for at in map(int, np.flatnonzero(changes.gain_sigma))
         ]
     if "scale" in kinds:
         said.append(f"readings grew {changes.gain[0]:.5g} +- {changes.gain_sigma[0]:.1g} times")
     if {"offset", "scale"} & set(kinds):
         said += [
             f"{columns[at]} moved by {changes.offset[at]:.3g} +- {changes.offset_sigma[at]:.1g}"
-            for at in np.flatnonzero(changes.offset_sigma)
+            for at in map(int, np.flatnonzero(changes.offset_sigma))
         ]
     if "boresight" in kinds:
         said.append(f"a turn by {changes.turn_deg:.3g} +- {changes.turn_sigma_deg:.1g} deg")
