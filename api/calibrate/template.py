@@ -183,4 +183,4 @@ def _value(value: object) -> str:
 def _wrapped(text: str) -> list[str]:
     import textwrap  # noqa: PLC0415 - one use
 
-    return textwrap.wrap(text, 96)
+    return textwrap.wrap(text, 96, break_on_hyphens=False, break_long_words=False)
