@@ -11,7 +11,7 @@ import numpy as np
 from algorithms.angles import separation_deg
 from algorithms.chain import Scored
 from algorithms.contract import Floats, Model, SensorGeometry, UnusableDataError
-from api.calibrate.causes.applying import applied_to, read_as, require_two_axes
+from api.calibrate.causes.applying import applied_to, one_plane, read_as
 from api.calibrate.causes.bad_cells import joined_levels
 from api.calibrate.causes.held_out import Part, parts_of
 from api.calibrate.causes.less_light import doubt_of_light
@@ -31,6 +31,7 @@ from api.calibrate.selection import (
     choose,
     compare,
     deviation_of,
+    explained,
     fitted,
     geometry_of,
     settled,
@@ -60,8 +61,6 @@ from benchmark.running.threads import one_thread
 
 #: Samples from which wrong poses are looked for.
 _FEWEST_FOR_WRONG = 40
-#: RMS over the directions' own spread from which a model explains no more than chance does.
-_CHANCE = 0.5
 #: Samples a final fit is made of at most; more are thinned evenly.
 MOST_FITTED = 40_000
 
@@ -108,14 +107,12 @@ class Calibration:
         Names of the files.
     notes : tuple of str
         On how the files, pictures and cells were read, and changes that did not settle.
-    digests : tuple of str
-        SHA-256 of each file.
+    digests, columns : tuple of str
+        SHA-256 of each file, and columns of the first table in its order.
     left_out : ndarray, shape (M, 3), optional
         Predicted minus true direction of the samples compared on, each when a fit did not see it.
     limits : ReadingLimits
         Of readings that may be used.
-    columns : tuple of str
-        Of the first table, in its order.
     """
 
     settings: Settings
@@ -233,26 +230,10 @@ def calibrate_tables(
     models: Sequence[str] | None = None,
     progress: Callable[[str, int, int], None] = lambda *_: None,
 ) -> Calibration:
-    """Calibrate a sensor by tables in memory, each a run; else as `calibrate`.
+    """Calibrate a sensor by tables in memory, each a run.
 
-    Parameters
-    ----------
-    tables : sequence of Table
-        With the columns that the settings name.
-    stated : Settings
-        Of any kind but ``frames``.
-    apply, thorough, models, progress
-        As `calibrate` takes them.
-
-    Returns
-    -------
-    Calibration
-        Without notes and digests, which are those of files.
-
-    Raises
-    ------
-    TableError, UnusableDataError
-        As `calibrate`.
+    Parameters and errors are those of `calibrate`, but for settings, which are stated and of any
+    kind but ``frames``; notes and digests, which are those of files, stay empty.
     """
     with one_thread():  # small fits: waiting for each other takes threads most of their time
         return _calibrated(tables, stated, apply, thorough, models, progress)
@@ -266,6 +247,8 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     models: Sequence[str] | None,
     progress: Callable[[str, int, int], None],
 ) -> Calibration:
+    from api.calibrate.one_axis.calibrated import calibration_of_axis  # noqa: PLC0415 - it imports this
+
     notes: list[str] = []
     progress("conventions", 0, 1)
     file = read_as(tables, stated)
@@ -274,9 +257,12 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         file, applied = applied_to(tables, file, notes)
     stated, readings, found = file.settings, file.readings, file.findings
     notes += [note for part in file.bad for note in part.notes]
+    if one_plane(readings):
+        return calibration_of_axis(readings, file, tables, notes)
     sound, excluded, runs, fold = sound_of(readings)
     excluded = [*(one for part in file.bad for one in part.excluded), *excluded]
-    require_two_axes(sound)
+    if one_plane(sound):
+        return calibration_of_axis(sound, file, tables, notes, excluded)
     readings = sound
     wrong = np.zeros(len(sound), dtype=np.bool_)
     if len(sound) >= _FEWEST_FOR_WRONG:
@@ -297,7 +283,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         progress(name, count, 2 * len(wanted) + 4)
         count += 1
 
-    candidates = [_explained(one, readings) for one in compare(readings, geometry, wanted, tick)]
+    candidates = [explained(one, readings) for one in compare(readings, geometry, wanted, tick)]
     candidates.sort(key=_by_error)
     chosen, why = choose(candidates)
     kept = kept_by_model(wanted[chosen.name], chosen, sound, readings, geometry)
@@ -306,9 +292,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     wrong_ones = sound.only(~kept)
     excluded += excluded_of(~kept, WRONG, sound)
     if changed:  # a wrong pose that was not seen may have misled the choice
-        candidates = [
-            _explained(one, readings) for one in compare(readings, geometry, wanted, tick)
-        ]
+        candidates = [explained(one, readings) for one in compare(readings, geometry, wanted, tick)]
         candidates.sort(key=_by_error)
         chosen, why = choose(candidates)
     count = 2 * len(wanted)
@@ -352,19 +336,6 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         limits=limits_of(readings, stated, joined_levels(file.bad)),
         columns=tuple(tables[0].columns),
     )  # fmt: skip
-
-
-def _explained(candidate: Candidate, readings: Readings) -> Candidate:
-    """Refuse a candidate that explains no more of where the light was than chance does."""
-    middle = readings.sun.mean(axis=0)
-    spread = float(np.degrees(np.sqrt(np.mean(((readings.sun - middle) ** 2).sum(axis=1)))))
-    if candidate.refused or candidate.rms_deg <= _CHANCE * spread:
-        return candidate
-    return Candidate(
-        candidate.name,
-        refused=f"errs {candidate.rms_deg:.3g} deg where directions spread over {spread:.3g} deg: "
-        "readings and directions do not belong together",
-    )
 
 
 def _by_error(one: Candidate) -> tuple[bool, bool, float]:

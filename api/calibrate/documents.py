@@ -24,6 +24,7 @@ from algorithms.contract import Compensation, Floats, Model
 from algorithms.discovery import discover_compensations, discover_models
 from api.calibrate.calibration import Calibration
 from api.calibrate.intervals.places import tangent_axes
+from api.calibrate.one_axis.curve import AxisCurve
 from api.calibrate.readings import readings_of
 from api.calibrate.recalibration import Correction
 from api.calibrate.selection import deviation_of, unbounded
@@ -275,7 +276,7 @@ def _loaded(stored: dict[str, Any], source: str) -> SavedCalibration:
         raise UnreadableCalibrationError("fit lacks rms_left_out_deg")
     if (stated := fit["rms_left_out_deg"]) is not None:
         numbers(stated, (), "fit.rms_left_out_deg")
-    model = cast("Model", stage_of(stored["model"], discover_models()))
+    model = cast("Model", stage_of(stored["model"], _models()))
     _require_vector(model)
     return SavedCalibration(
         settings,
@@ -292,6 +293,10 @@ def _loaded(stored: dict[str, Any], source: str) -> SavedCalibration:
         stored,
         correction.gain,
     )
+
+
+def _models() -> dict[str, type[Any]]:
+    return {**discover_models(), AxisCurve.about.name: AxisCurve}
 
 
 def _require_vector(model: Any) -> None:

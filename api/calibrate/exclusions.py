@@ -50,7 +50,7 @@ def sound_of(readings: Readings) -> tuple[Readings, list[Excluded], list[RunOffs
     runs = off_runs(readings)
     for one in runs:
         bad = readings.run == one.run
-        excluded += excluded_of(bad, f"run off by {one.offset_deg:.2f} deg", readings)
+        excluded += excluded_of(bad, _off_by(one.offset_deg), readings)
         readings = readings.only(~bad)
     bad = folded(readings.features, readings.sun)
     fold = None
@@ -59,6 +59,11 @@ def sound_of(readings: Readings) -> tuple[Readings, list[Excluded], list[RunOffs
         excluded += excluded_of(bad, FOLD, readings)
         readings = readings.only(~bad)
     return readings, excluded, runs, fold
+
+
+def _off_by(offset_deg: float) -> str:
+    """Say how far a run is off; a rotation found by small angles says no more beyond 30 deg."""
+    return f"run off by {offset_deg:.2f} deg" if offset_deg < 30.0 else "run off by over 30 deg"
 
 
 def excluded_of(bad: NDArray[np.bool_], reason: str, among: Readings) -> list[Excluded]:

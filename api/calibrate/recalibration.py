@@ -11,6 +11,7 @@ import numpy as np
 
 from algorithms.angles import separation_deg
 from algorithms.contract import FeatureKind, Floats, UnusableDataError
+from api.calibrate.one_axis.curve import AxisCurve
 from api.calibrate.readings import Readings, joined, readings_of
 from api.calibrate.table import read_table
 from api.calibrate.terms.age import Changes, Kind, answered, fit
@@ -145,10 +146,14 @@ def recalibrate(paths: Sequence[Path], old: Any) -> Correction:
     Raises
     ------
     UnusableDataError
-        If the old calibration answers fewer than four of the poses.
+        If the old calibration answers fewer than four of the poses, or is one of a single axis.
     TableError
         As `api.calibrate.table.read_table`.
     """
+    if isinstance(old.model, AxisCurve):
+        raise UnusableDataError(
+            "the old calibration is one of a single axis, which is not corrected: calibrate anew"
+        )
     readings = joined(
         [readings_of(read_table(path, old.settings.file), old.settings) for path in paths]
     )

@@ -35,6 +35,8 @@ from api.calibrate.terms.temperature import with_temperature
 NETWORKS = frozenset({"ann", "dnn", "dnn-surface"})
 #: Samples that models are compared on; more are thinned evenly for the comparison alone.
 MOST_COMPARED = 6000
+#: RMS over the directions' own spread from which a model explains no more than chance does.
+_CHANCE = 0.5
 #: Fewest runs that are left out one by one; with fewer, blocks of poses are.
 _FEWEST_RUNS = 3
 #: Samples of a run for it to be one that can be left out.
@@ -216,6 +218,19 @@ def _why(refused: Sequence[Candidate]) -> str:
         return min(apart, key=len)
     return "; ".join(said[:2]) + (f"; and {len(said) - 2} more" if len(said) > 2 else "") or (
         "no model applies"
+    )
+
+
+def explained(candidate: Candidate, readings: Readings) -> Candidate:
+    """Refuse a candidate that explains no more of where the light was than chance does."""
+    middle = readings.sun.mean(axis=0)
+    spread = float(np.degrees(np.sqrt(np.mean(((readings.sun - middle) ** 2).sum(axis=1)))))
+    if candidate.refused or candidate.rms_deg <= _CHANCE * spread:
+        return candidate
+    return Candidate(
+        candidate.name,
+        refused=f"errs {candidate.rms_deg:.3g} deg where directions spread over {spread:.3g} deg: "
+        "readings and directions do not belong together",
     )
 
 

@@ -54,7 +54,7 @@ def calibrate_uploads(
     apply: bool = False,
     model: str = "",
     require: str = "",
-    longest_s: float = LONGEST_S,
+    longest_s: float | None = None,
 ) -> dict[str, str]:
     """Calibrate files in a process of its own; returns the text of each product by its name.
 
@@ -70,8 +70,8 @@ def calibrate_uploads(
         The only one tried; all that apply where empty.
     require : str
         A requirement on the error, as `api.calibrate.report.requirement` reads it; none if empty.
-    longest_s : float
-        Seconds after which the process is ended.
+    longest_s : float, optional
+        Seconds after which the process is ended; by default `LONGEST_S`.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def calibrate_uploads(
     return found
 
 
-def preview_uploads(uploads: Sequence[Upload], longest_s: float = LONGEST_S) -> dict[str, Any]:
+def preview_uploads(uploads: Sequence[Upload], longest_s: float | None = None) -> dict[str, Any]:
     """Return what the first file seems to hold, as `api.calibrate.template.preview` says it.
 
     Raises
@@ -95,8 +95,9 @@ def preview_uploads(uploads: Sequence[Upload], longest_s: float = LONGEST_S) -> 
     return found
 
 
-def _answered(uploads: Sequence[Upload], task: dict[str, Any], longest_s: float) -> Any:
+def _answered(uploads: Sequence[Upload], task: dict[str, Any], longest_s: float | None) -> Any:
     """Return what a process of its own answers to a task on files."""
+    longest_s = LONGEST_S if longest_s is None else longest_s
     _require_bounds(uploads, str(task["config"]))
     with temporary_directory() as directory:
         names = [_safe(one.name, number) for number, one in enumerate(uploads)]
@@ -159,8 +160,7 @@ def _safe(name: str, number: int) -> str:
 
 def _answer(directory: Path) -> dict[str, Any]:
     """Return the answer, why there is none, or the program's fault."""
-    import tomllib  # noqa: PLC0415 - of the process
-    import traceback  # noqa: PLC0415 - as above
+    import traceback  # noqa: PLC0415 - of the process
 
     from algorithms.contract import UnusableDataError  # noqa: PLC0415 - as above
     from api.calibrate.report.requirement import RequirementError  # noqa: PLC0415 - as above
@@ -172,7 +172,7 @@ def _answer(directory: Path) -> dict[str, Any]:
     refusals = (TableError, SettingsError, RequirementError, UnusableDataError)
     try:
         return {"answer": _previewed(paths[0]) if task.get("preview") else _made(paths, task)}
-    except (*refusals, tomllib.TOMLDecodeError) as error:
+    except refusals as error:
         return {"refused": str(error)}
     except MemoryError:
         return {"refused": "the files need more memory than a calibration may take"}
@@ -188,22 +188,16 @@ def _previewed(path: Path) -> dict[str, Any]:
 
 
 def _made(paths: Sequence[Path], task: dict[str, Any]) -> dict[str, str]:
-    import tomllib  # noqa: PLC0415 - of the process
-
-    from api.calibrate.calibration import calibrate  # noqa: PLC0415 - as above
+    from api.calibrate.calibration import calibrate  # noqa: PLC0415 - of the process
     from api.calibrate.products import products  # noqa: PLC0415 - as above
     from api.calibrate.report.page import Asked  # noqa: PLC0415 - as above
     from api.calibrate.report.requirement import requirement  # noqa: PLC0415 - as above
-    from api.calibrate.settings import SettingsError, parse_settings  # noqa: PLC0415 - as above
+    from api.calibrate.settings import parse_settings, parse_toml  # noqa: PLC0415 - as above
     from api.calibrate.table import TableError, read_table  # noqa: PLC0415 - as above
 
     settings = None
     if task["config"].strip():
-        try:
-            stated = tomllib.loads(task["config"])
-        except RecursionError:
-            raise SettingsError("config: brackets stand too deep in each other") from None
-        settings = parse_settings(stated, "config")
+        settings = parse_settings(parse_toml(task["config"], "config"), "config")
     asked = (requirement(task["require"]),) if task.get("require", "").strip() else ()
     layout = settings.file if settings else None
     rows = sum(len(read_table(path, layout)) for path in paths)

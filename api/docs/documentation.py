@@ -111,7 +111,7 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
 RUN = tuple(
     f"guide/{page}.md"
     for page in (
-        *("tutorial", "calibrate", "scores"),
+        *("tutorial", "calibrate", "scores", "python"),
         *("add-an-algorithm", "add-a-data-set", "add-a-study"),
     )
 )

@@ -114,11 +114,8 @@ def _form(method: str, path: str, operation: Mapping[str, Any], form: Mapping[st
     answers = ", ".join(f"`{kind}`" for kind in operation["responses"]["200"]["content"])
     lines += ["", f"Answers: {answers}.", ""]
     lines += ["<!-- not run: needs a file; tests/api/http/test_http_calibrations.py sends one -->"]
-    lines += [
-        "```sh",
-        f"curl -F file=@bench.csv -F answer=zip -o sensor.zip {_SERVED}{path}",
-        "```",
-    ]
+    asked = "-F answer=zip -o sensor.zip " if "answer" in dict(fields) else ""
+    lines += ["```sh", f"curl -F file=@bench.csv {asked}{_SERVED}{path}", "```"]
     return "\n".join(lines)
 
 

@@ -65,7 +65,12 @@ _PREVIEWED: dict[str, Any] = {
     "required": True,
     "content": {
         "multipart/form-data": {
-            "schema": {"type": "object", "required": ["file"], "properties": {"file": _TEXT}}
+            "schema": {
+                "type": "object",
+                "required": ["file"],
+                "properties": {"file": {**_TEXT, "description": "As for a calibration."}},
+            },
+            "example": {"file": "x_px,y_px,alpha,beta\n1,2,3,4\n"},
         }
     },
 }

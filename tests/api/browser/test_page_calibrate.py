@@ -8,9 +8,10 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Browser, Page, expect
 
-from tests.api.browser.visiting import Visit
+from api.calibrate import uploaded
+from tests.api.browser.visiting import PATIENCE_MS, Visit, follow
 from tests.api.calibrate.bench import HEADER, grid, spots, sun_of, write
 
 pytestmark = pytest.mark.slow
@@ -31,29 +32,37 @@ def require_fits(page: Page) -> None:
 
 
 @pytest.mark.parametrize("visit", ["wide", "narrow"])
-def test_a_file_becomes_a_verdict_and_code(
-    visit: str, turntable: Path, tmp_path: Path, request: pytest.FixtureRequest
+def test_four_actions_lead_from_home_to_a_verdict_and_code(
+    visit: str,
+    turntable: Path,
+    tmp_path: Path,
+    request: pytest.FixtureRequest,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.setattr(uploaded, "LONGEST_S", PATIENCE_MS / 1e3)  # every model is tried
     visited: Visit = request.getfixturevalue(visit)
     page = visited.page
-    page.goto(visited.address + "/calibrate")
+    page.goto(visited.address + "/")
+    follow(page.get_by_role("link", name="Calibrate", exact=True).first)
     require_fits(page)
     page.get_by_label("Files, each a run of one sensor").set_input_files(turntable)
-    page.get_by_role("button", name="Calibrate").click()
-    expect(page.locator("body")).to_contain_text("good")
+    expect(page.get_by_label("Role of theta_x_deg")).to_have_value("direction-1")
+    expect(page.get_by_label("Role of y_px")).to_have_value("reading-2")
+    expect(page.locator("#columns tbody tr")).to_have_count(6)  # roles, and five rows
+    require_fits(page)
+    page.get_by_role("button", name="Calibrate", exact=True).click()
     expect(page.get_by_role("heading", name="Models compared")).to_be_visible()
-    expect(page.locator("figure svg")).to_have_count(4)
+    expect(page.locator(".verdict")).to_contain_text("good")
+    expect(page.locator("figure svg")).to_have_count(5)
+    expect(page.get_by_label("Role of y_px")).to_be_visible()  # the form stays
     require_fits(page)
-
-    page.go_back()
-    page.get_by_label("Files, each a run of one sensor").set_input_files(turntable)
-    page.get_by_label("Answer with").select_option("zip")
     with page.expect_download() as coming:
-        page.get_by_role("button", name="Calibrate").click()
+        page.get_by_role("link", name="Download all files").click()
     coming.value.save_as(tmp_path / "all.zip")
     with zipfile.ZipFile(tmp_path / "all.zip") as archive:
         archive.extractall(tmp_path)
-    assert (tmp_path / "sun_sensor_report.html").read_text().count("<svg") == 4
+    assert (tmp_path / "sun_sensor_report.html").read_text().count("<svg") == 5
+    assert visited.complaints == []
     if shutil.which("gcc"):
         names = ["sun_sensor.c", "sun_sensor_selftest.c"]
         flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-DSUN_SENSOR_SELFTEST"]
@@ -61,12 +70,50 @@ def test_a_file_becomes_a_verdict_and_code(
         subprocess.run(["./test"], cwd=tmp_path, check=True, capture_output=True)
 
 
-def test_a_wrong_file_is_refused_with_its_row_and_column(narrow: Visit, tmp_path: Path) -> None:
+def test_columns_of_unknown_names_are_said_in_the_form(wide: Visit, tmp_path: Path) -> None:
+    page = wide.page
+    angles = grid(11, 40.0)
+    path = write(
+        tmp_path / "odd.csv", ["foo", "bar", "baz", "qux"], angles, spots(sun_of(angles), 1)
+    )
+    page.goto(wide.address + "/calibrate")
+    page.get_by_label("Files, each a run of one sensor").set_input_files(path)
+    roles = {"foo": "direction-1", "bar": "direction-2", "baz": "reading-1", "qux": "reading-2"}
+    for name, role in roles.items():
+        page.get_by_label(f"Role of {name}").select_option(role)
+    page.get_by_label("Readings are").select_option("spot")
+    page.get_by_label("Directions are").select_option("alpha-inner")
+    page.get_by_text("More settings").click()
+    page.get_by_label("Model, such as").fill("homography")
+    config = page.get_by_label("Settings, TOML").input_value()
+    assert 'columns = ["baz","qux"]' in config
+    page.get_by_role("button", name="Calibrate", exact=True).click()
+    expect(page.locator(".verdict")).to_contain_text("Verdict: good")
+
+
+def test_a_wrong_file_is_refused_beside_the_form_which_stays(narrow: Visit, tmp_path: Path) -> None:
     page = narrow.page
     wrong = tmp_path / "wrong.csv"
     wrong.write_text("x_px,y_px,theta_x_deg,theta_y_deg\n1,b,3,4\n")
     page.goto(narrow.address + "/calibrate")
+    page.get_by_label("Requirement on the error").fill("0.1deg@rms")
     page.get_by_label("Files, each a run of one sensor").set_input_files(wrong)
-    page.get_by_role("button", name="Calibrate").click()
-    expect(page.locator("main")).to_contain_text("row 2, column y_px: expected a number; got 'b'")
+    page.get_by_role("button", name="Calibrate", exact=True).click()
+    said = page.get_by_role("alert")
+    expect(said).to_contain_text("row 2, column y_px: expected a number; got 'b'")
+    expect(page.get_by_label("Requirement on the error")).to_have_value("0.1deg@rms")
+    assert page.get_by_label("Files, each a run of one sensor").evaluate("e => e.files.length") == 1
     require_fits(page)
+
+
+def test_the_sample_is_calibrated_without_a_script(browser: Browser, address: str) -> None:
+    """The page that is sent holds form, report and archive."""
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.set_default_timeout(PATIENCE_MS)
+    page.goto(address + "/calibrate?model=homography")
+    page.get_by_role("button", name="Try with the sample").click()
+    expect(page.get_by_role("heading", name="Models compared")).to_be_visible()
+    expect(page.get_by_role("link", name="Download all files")).to_be_visible()
+    expect(page.get_by_label("Model, such as")).to_have_value("homography")
+    context.close()

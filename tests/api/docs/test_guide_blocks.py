@@ -12,7 +12,10 @@ from api.docs import documentation, model_pages
 from api.docs.blocks import NOT_RUN, BlockError, blocks, reason_not_to_run, rerun
 
 ROOT = Path(__file__).resolve().parents[3]
-SLOW = {"docs/guide/tutorial.md", "docs/guide/calibrate.md", "docs/algorithms.md", "README.md"}
+SLOW = {
+    *("docs/guide/tutorial.md", "docs/guide/calibrate.md", "docs/guide/python.md"),
+    *("docs/algorithms.md", "README.md"),
+}
 RUN = sorted([*(f"docs/{page}" for page in documentation.RUN), "docs/algorithms.md", "README.md"])
 PAGES = sorted(
     path.relative_to(ROOT).as_posix() for path in [ROOT / "README.md", *ROOT.glob("docs/**/*.md")]

@@ -21,6 +21,7 @@ OPERATIONS = [
     ("GET", "/v1/recommendations/flow"),
     ("GET", "/v1/recommendations/designs"),
     ("POST", "/v1/calibrations"),
+    ("POST", "/v1/calibrations/preview"),
     ("GET", "/v1/algorithms"),
     ("GET", "/v1/datasets"),
     ("GET", "/v1/datasets/{name}"),
@@ -54,7 +55,7 @@ PLAIN = {"/healthz", "/v1/leaderboard/croissant.json", "/v1/leaderboard/linkset.
 # Nothing but `format` can be asked for, and so little else be right.
 ONLY_FORMAT = {"/v1/figures", "/v1/taxonomy", "/v1/protocol"}
 # No schema tells which bytes are readings: tests of calibrations upload right ones.
-UPLOADS = {"/v1/calibrations"}
+UPLOADS = {"/v1/calibrations", "/v1/calibrations/preview"}
 # A cursor cannot be distinguished from its schema: one that was never given out is a 400 (see the
 # check).
 ACCEPTED = ["2xx", "304", "400"]

@@ -84,6 +84,7 @@ def test_every_endpoint_of_the_contract_is_documented(document):
         ("/v1/recommendations/flow", "get"),
         ("/v1/recommendations/designs", "get"),
         ("/v1/calibrations", "post"),
+        ("/v1/calibrations/preview", "post"),
         ("/v1/algorithms", "get"),
         ("/v1/datasets", "get"),
         ("/v1/datasets/{name}", "get"),
