@@ -16,7 +16,7 @@ from api.calibrate.settings import Settings
 _MOST, _FEWEST = 2000, 100
 _BLOCKS, _CERTAIN = 8, 6.0
 #: Share of what a smooth function leaves that the kink explains, and the least change of slope.
-_SHARE = 0.1
+_SHARE = 0.05
 _LEAST = 0.01
 
 
@@ -56,14 +56,15 @@ def _bend(readings: Readings, angle: Floats) -> tuple[float, float, float]:
     features = readings.features
     scaled = (features - features.mean(axis=0)) / np.maximum(features.std(axis=0), 1e-12) / 2.0
     design = np.linalg.qr(terms(scaled, degree_for(len(angle), features.shape[1])))[0]
-    hinge = np.maximum(angle, 0.0)
-    hinge_left, left = (column - design @ (design.T @ column) for column in (hinge, angle))
+    tangents = readings.sun[:, :2] / readings.sun[:, 2:]
+    along = [abs(float(np.corrcoef(angle, tangents[:, at])[0, 1])) for at in (0, 1)]
+    tangent = tangents[:, int(np.argmax(along))]
+    # what images tangents is smoother over them than over angles
+    forms = [(np.var(_rest(design, form)) / np.var(form), form) for form in (angle, tangent)]
+    used = min(forms, key=lambda one: one[0])[1]
+    hinge_left, left = _rest(design, np.maximum(used, 0.0)), _rest(design, used)
     kept = np.abs(left) <= 6.0 * np.median(np.abs(left))
-    other = (
-        readings.sun[:, 0]
-        if abs(np.corrcoef(readings.sun[:, 0], angle)[0, 1]) < 0.5
-        else (readings.sun[:, 1])
-    )
+    other = tangents[:, int(np.argmin(along))]
     block = np.argsort(np.argsort(other)) * _BLOCKS // len(other)
     whole = _ratio(hinge_left[kept], left[kept])
     without = np.array(
@@ -73,6 +74,10 @@ def _bend(readings: Readings, angle: Floats) -> tuple[float, float, float]:
     rest = float(np.var(left[kept] - whole * hinge_left[kept]))
     share = 1.0 - rest / max(float(np.var(left[kept])), 1e-300)
     return whole, float(np.sqrt((_BLOCKS - 1) / _BLOCKS * scatter)), share
+
+
+def _rest(design: Floats, column: Floats) -> Floats:
+    return np.asarray(column - design @ (design.T @ column))
 
 
 def _ratio(hinge: Floats, left: Floats) -> float:

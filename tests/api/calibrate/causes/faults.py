@@ -197,7 +197,7 @@ def _scale(kind, readings, angles, made, rng):
         stated[:, 0] *= factor
     else:
         stated[:, 0] = np.where(angles[:, 0] > 0, factor * angles[:, 0], angles[:, 0])
-    made.unseen = which in ("all", "first") and kind in ("electrodes", "quadrants")
+    made.unseen = which in ("all", "first") and kind == "electrodes"
     return readings, stated, f"scale {factor:.3f} of {which}", made
 
 
