@@ -132,7 +132,9 @@ def calibrated(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     written = [Path("out/a.html"), Path("out/a.json")]
     monkeypatch.setattr(calibration, "calibrate", lambda *_, **__: found)
 
-    def write(_found: object, out: Path, _name: str, _command: str, asked: Asked) -> list[Path]:
+    def write(
+        _found: object, out: Path, _name: str, _command: str, asked: Asked, **_: object
+    ) -> list[Path]:
         if asked.certificate:
             out.mkdir()
             (out / asked.certificate).write_text("<dcc/>\n", encoding="utf-8")
