@@ -11,9 +11,10 @@ import numpy as np
 from algorithms.angles import separation_deg
 from algorithms.chain import Scored
 from algorithms.contract import Floats, Model, SensorGeometry, UnusableDataError
-from api.calibrate.causes.applying import applied_to, read_as, require_two_axes, with_cells
+from api.calibrate.causes.applying import applied_to, one_plane, read_as, with_cells
 from api.calibrate.causes.bad_cells import joined_levels
 from api.calibrate.causes.held_out import Part, parts_of
+from api.calibrate.causes.less_light import doubt_of_light
 from api.calibrate.causes.limits import ReadingLimits, limits_of
 from api.calibrate.causes.removed import unexplained
 from api.calibrate.causes.untested import untested_in
@@ -30,6 +31,7 @@ from api.calibrate.selection import (
     choose,
     compare,
     deviation_of,
+    explained,
     fitted,
     geometry_of,
     settled,
@@ -59,8 +61,6 @@ from benchmark.running.threads import one_thread
 
 #: Samples from which wrong poses are looked for.
 _FEWEST_FOR_WRONG = 40
-#: RMS over the directions' own spread from which a model explains no more than chance does.
-_CHANCE = 0.5
 #: Samples a final fit is made of at most; more are thinned evenly.
 MOST_FITTED = 40_000
 
@@ -107,14 +107,12 @@ class Calibration:
         Names of the files.
     notes : tuple of str
         On how the files, pictures and cells were read, and changes that did not settle.
-    digests : tuple of str
-        SHA-256 of each file.
+    digests, columns : tuple of str
+        SHA-256 of each file, and columns of the first table in its order.
     left_out : ndarray, shape (M, 3), optional
         Predicted minus true direction of the samples compared on, each when a fit did not see it.
     limits : ReadingLimits
         Of readings that may be used.
-    columns : tuple of str
-        Of the first table, in its order.
     """
 
     settings: Settings
@@ -250,6 +248,8 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     models: Sequence[str] | None,
     progress: Callable[[str, int, int], None],
 ) -> Calibration:
+    from api.calibrate.one_axis.calibrated import calibration_of_axis  # noqa: PLC0415 - it imports this
+
     notes: list[str] = []
     progress("conventions", 0, 1)
     file = read_as(tables, stated)
@@ -258,9 +258,12 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         file, applied = applied_to(tables, file, notes)
     stated, readings, found = file.settings, file.readings, file.findings
     notes += [note for part in file.bad for note in part.notes]
+    if one_plane(readings):
+        return calibration_of_axis(readings, file, tables, notes)
     sound, excluded, runs, fold = sound_of(readings)
     excluded = [*(one for part in file.bad for one in part.excluded), *excluded]
-    require_two_axes(sound)
+    if one_plane(sound):
+        return calibration_of_axis(sound, file, tables, notes, excluded)
     readings = sound
     wrong = np.zeros(len(sound), dtype=np.bool_)
     if len(sound) >= _FEWEST_FOR_WRONG:
@@ -281,7 +284,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         progress(name, count, 2 * len(wanted) + 4)
         count += 1
 
-    candidates = [_explained(one, readings) for one in compare(readings, geometry, wanted, tick)]
+    candidates = [explained(one, readings) for one in compare(readings, geometry, wanted, tick)]
     candidates.sort(key=_by_error)
     chosen, why = choose(candidates)
     kept = kept_by_model(wanted[chosen.name], chosen, sound, readings, geometry)
@@ -290,9 +293,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     wrong_ones = sound.only(~kept)
     excluded += excluded_of(~kept, WRONG, sound)
     if changed:  # a wrong pose that was not seen may have misled the choice
-        candidates = [
-            _explained(one, readings) for one in compare(readings, geometry, wanted, tick)
-        ]
+        candidates = [explained(one, readings) for one in compare(readings, geometry, wanted, tick)]
         candidates.sort(key=_by_error)
         chosen, why = choose(candidates)
     count = 2 * len(wanted)
@@ -313,7 +314,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     compared = readings.only(np.arange(0, len(readings), _step(readings, chosen)))
     patterns = patterns_in(np.asarray(chosen.offsets), compared)
     removed = sound.only(~kept & ~wrong)
-    left_out = errors_left_out(wanted[chosen.name], chosen, compared, geometry, model, removed)
+    left_out = errors_left_out(same, chosen, compared, geometry, model, removed)
     stated_sigma = intervals(*left_out)
     verdict = judge(
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
@@ -321,7 +322,8 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     )  # fmt: skip
     verdict = withheld(
         replace(verdict, untested=untested_in(readings, stated)),
-        unexplained(readings, excluded, wrong_ones, stated.sensor.half_fov_deg, fold),
+        unexplained(readings, excluded, wrong_ones, stated.sensor.half_fov_deg, fold)
+        or doubt_of_light(model, readings, stated, chosen.rms_deg),
         () if stated_sigma is None else _parts(chosen, stated_sigma, compared),
     )
     if uncertain := next((one for one in found if one.certain), None):
@@ -335,19 +337,6 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         limits=limits_of(readings, stated, joined_levels(file.bad)),
         columns=tuple(tables[0].columns),
     )  # fmt: skip
-
-
-def _explained(candidate: Candidate, readings: Readings) -> Candidate:
-    """Refuse a candidate that explains no more of where the light was than chance does."""
-    middle = readings.sun.mean(axis=0)
-    spread = float(np.degrees(np.sqrt(np.mean(((readings.sun - middle) ** 2).sum(axis=1)))))
-    if candidate.refused or candidate.rms_deg <= _CHANCE * spread:
-        return candidate
-    return Candidate(
-        candidate.name,
-        refused=f"errs {candidate.rms_deg:.3g} deg where directions spread over {spread:.3g} deg: "
-        "readings and directions do not belong together",
-    )
 
 
 def _by_error(one: Candidate) -> tuple[bool, bool, float]:

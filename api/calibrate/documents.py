@@ -24,6 +24,7 @@ from algorithms.contract import Compensation, Floats, Model
 from algorithms.discovery import discover_compensations, discover_models
 from api.calibrate.calibration import Calibration
 from api.calibrate.intervals.places import tangent_axes
+from api.calibrate.one_axis.curve import AxisCurve
 from api.calibrate.readings import readings_of
 from api.calibrate.recalibration import Correction
 from api.calibrate.selection import deviation_of, unbounded
@@ -275,13 +276,15 @@ def _loaded(stored: dict[str, Any], source: str) -> SavedCalibration:
         raise UnreadableCalibrationError("fit lacks rms_left_out_deg")
     if (stated := fit["rms_left_out_deg"]) is not None:
         numbers(stated, (), "fit.rms_left_out_deg")
+    model = cast("Model", stage_of(stored["model"], _models()))
+    _require_vector(model)
     return SavedCalibration(
         settings,
         tuple(
             cast("Compensation", stage_of(stage, {**discover_compensations(), **TERMS}))
             for stage in stored["compensations"]
         ),
-        cast("Model", stage_of(stored["model"], discover_models())),
+        model,
         numbers(fit.get("interval_factor", 1.0), (), "fit.interval_factor", above=0.0).item(),
         _intervals_of(fit.get("intervals")),
         None if measured is None else temperatures(measured),
@@ -290,6 +293,21 @@ def _loaded(stored: dict[str, Any], source: str) -> SavedCalibration:
         stored,
         correction.gain,
     )
+
+
+def _models() -> dict[str, type[Any]]:
+    return {**discover_models(), AxisCurve.about.name: AxisCurve}
+
+
+def _require_vector(model: Any) -> None:
+    """Raise where a drawing has other than a number for each parameter: its loops are compiled."""
+    if not hasattr(model, "free_parameters"):
+        return
+    wanted, vector = (len(model.free_parameters()),), model.vector_
+    if not isinstance(vector, np.ndarray) or vector.shape != wanted or vector.dtype != np.float64:
+        raise UnreadableCalibrationError(
+            f"{model.about.name} has {wanted[0]} parameters; its vector_ has {str(vector)[:60]}"
+        )
 
 
 def with_correction(

@@ -21,6 +21,10 @@ from files.reading import FileRefusedError, read_bytes
 #: Columns that a spot gets in the table.
 SPOT = "spot_x_px", "spot_y_px"
 _LARGEST_PICTURE = 100_000_000
+_MOST_PIXELS = 100_000_000
+#: Pixels of the largest value, and their share of those above half of it, from which they count as
+#: saturated.
+_FEWEST_CLIPPED, _SHARE_CLIPPED = 8, 0.1
 
 
 def table_in(directory: Path) -> Path:
@@ -66,10 +70,19 @@ def with_spots(
     names = np.asarray(table.columns[column]).astype(str)
     extractor = _extractor(settings)
     spots = np.full((len(names), 2), np.nan)
-    flags, colours = Counter[str](), 0
+    flags, colours, clipped = Counter[str](), 0, 0
+    size: tuple[int, ...] | None = None
     for at, name in enumerate(names):
-        frame, coloured = _frame(directory, name, f"{table.source}, row {at + table.first_row}")
+        place = f"{table.source}, row {table.rows[at]}"
+        frame, coloured = _frame(directory, name, place)
+        if size is not None and frame.shape != size:
+            raise TableError(
+                f"{place}: expected a picture of {_words(size)}, as those before it; got "
+                f"{_words(frame.shape)}"
+            )
+        size = frame.shape
         colours += coloured
+        clipped += _clipped(frame)
         found = extractor.measure(frame)
         spots[at] = found.features[0]
         flags.update(
@@ -79,6 +92,10 @@ def with_spots(
     said = [f"{len(names)} frames were read by {settings.readings.extractor}"]
     if colours:
         said.append(f"{colours} frames in colour were read by their luminance")
+    if clipped:
+        said.append(
+            f"{clipped} frames may be saturated: many pixels of the light share the largest value"
+        )
     said += [f"{count} frames: {name}" for name, count in sorted(flags.items())]
     columns = {**table.columns, **dict(zip(SPOT, spots.T, strict=True))}
     return replace(table, columns=columns), said
@@ -112,7 +129,10 @@ def _frame(directory: Path, name: str, place: str) -> tuple[NDArray[np.generic],
     """Return a picture as grey levels (H, W), and whether it was one in colour."""
     import cv2  # noqa: PLC0415 - OpenCV, where there are pictures
 
-    path = (directory / name).resolve()
+    try:
+        path = (directory / name).resolve()
+    except (OSError, RuntimeError, ValueError):  # links in a circle, null characters
+        raise TableError(f"{place}: expected a picture; got no file {name[:60]!r}") from None
     if not name.strip() or not path.is_relative_to(directory.resolve()):
         raise TableError(f"{place}: expected a picture in {directory.name}; got {name[:60]!r}")
     try:
@@ -121,14 +141,39 @@ def _frame(directory: Path, name: str, place: str) -> tuple[NDArray[np.generic],
         raise TableError(f"{place}: there is no picture {name[:60]!r}") from None
     except FileRefusedError as error:
         raise TableError(f"{place}: {error.reason}") from None
-    picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED) if data else None
+    try:
+        read = np.frombuffer(data, np.uint8)
+        picture = cv2.imdecode(read, cv2.IMREAD_UNCHANGED) if data else None
+    except (cv2.error, MemoryError):  # OpenCV's own limit, 2^30 pixels
+        raise TableError(
+            f"{place}: expected a picture of at most {_MOST_PIXELS} pixels; got more"
+        ) from None
     if picture is None:
         raise TableError(f"{place}: expected a PNG, TIFF, BMP or JPEG picture; got {name[:60]!r}")
+    if picture.shape[0] * picture.shape[1] > _MOST_PIXELS:
+        raise TableError(
+            f"{place}: expected a picture of at most {_MOST_PIXELS} pixels; got "
+            f"{_words(picture.shape)}"
+        )
     if picture.ndim == 2:
         return picture, False
     colours = picture[:, :, :3]
-    coloured = bool((colours != colours[:, :, :1]).any())
-    return (_luminance(colours) if coloured else colours[:, :, 0]), coloured
+    # of three equal colours each is the luminance
+    grey = bool((colours == colours[:, :, :1]).all())
+    return (colours[:, :, 0] if grey else _luminance(colours)), True
+
+
+def _clipped(frame: NDArray[np.generic]) -> bool:
+    """Say whether many of the pixels of the light share the largest value."""
+    levels = np.asarray(frame, dtype=np.float64)
+    largest = float(levels.max())
+    count = int((levels == largest).sum())
+    lit = int((levels > (largest + float(np.median(levels))) / 2.0).sum())
+    return count >= _FEWEST_CLIPPED and count > _SHARE_CLIPPED * lit
+
+
+def _words(shape: tuple[int, ...]) -> str:
+    return f"{shape[1]} x {shape[0]} pixels"
 
 
 def _luminance(colours: NDArray[np.generic]) -> Floats:

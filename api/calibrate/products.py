@@ -13,9 +13,10 @@ from algorithms.calibration.documents import DIGEST
 from api.calibrate.calibration import Calibration
 from api.calibrate.certificate.certificate import certificate
 from api.calibrate.documents import document, versions
-from api.calibrate.flight.code import flight_code
+from api.calibrate.flight.code import FlightCode, flight_code
 from api.calibrate.flight.names import c_name
 from api.calibrate.flight.program import NoCodeError
+from api.calibrate.one_axis.curve import AxisCurve
 from api.calibrate.report.page import Asked, report
 from files.directories import replace_in_directory
 
@@ -45,7 +46,7 @@ def products(
     made = {f"{prefix}.json": json.dumps(held, indent=1, allow_nan=False) + "\n"}
     code = ""
     try:
-        made_code = flight_code(found)
+        made_code = _code(found)
     except NoCodeError as error:
         made[f"{prefix}_no_code.txt"] = f"No code was written: {error}.\n"
         tell(f"none: {error}")
@@ -66,6 +67,15 @@ def products(
         made[asked.certificate] = certificate(found, command)
     made[f"{prefix}_report.html"] = report(found, command, code, asked or Asked())
     return made | {f"{prefix}.sha256": _listed(made)}
+
+
+def _code(found: Calibration) -> FlightCode:
+    if isinstance(found.model, AxisCurve):
+        raise NoCodeError(
+            "code for flight gives a direction of two angles, and this is a calibration of one "
+            "axis: take the polynomial of the JSON document"
+        )
+    return flight_code(found)
 
 
 def _readings(found: Calibration) -> str:

@@ -42,7 +42,7 @@ NO_SUM = "the signals have no positive sum"
 EMPTY = "a cell is empty or not a finite number"
 FAINT_ROWS = "there is hardly any light"
 #: Cosine of the angle off the axis up to which the light is along the detector's plane.
-_GRAZING = 1e-6
+GRAZING = 1e-6
 #: Share of the usual light below which balances are those of noise.
 FAINT = 0.1
 _KINDS = {"spot": FeatureKind.SPOT, "channels": FeatureKind.SIGNALS}
@@ -281,7 +281,8 @@ def quadrant_balances(signals: Floats) -> Floats:
 def _reasons(  # noqa: PLR0917 - what a row is made of
     raw: Floats, signals: Floats, stated: Floats, sun: Floats, features: Floats, settings: Settings
 ) -> dict[str, NDArray[np.bool_]]:
-    zeros = (raw == 0).all(axis=1)
+    # a single reading may well be zero
+    zeros = (raw == 0).all(axis=1) & (raw.shape[1] > 1)
     faint = np.zeros(len(raw), dtype=np.bool_)
     if settings.readings.kind in ("quadrants", "electrodes", "pair"):
         total = signals.sum(axis=1)
@@ -297,7 +298,7 @@ def _reasons(  # noqa: PLR0917 - what a row is made of
         NO_SUM: ~np.isfinite(features).all(axis=1),
     }
     if settings.readings.kind != "channels":
-        found[BEHIND] = ~(sun[:, 2] > _GRAZING)
+        found[BEHIND] = ~(sun[:, 2] > GRAZING)
     return found
 
 

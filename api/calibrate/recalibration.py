@@ -11,6 +11,7 @@ import numpy as np
 
 from algorithms.angles import separation_deg
 from algorithms.contract import FeatureKind, Floats, UnusableDataError
+from api.calibrate.one_axis.curve import AxisCurve
 from api.calibrate.readings import Readings, joined, readings_of
 from api.calibrate.table import read_table
 from api.calibrate.terms.age import Changes, Kind, answered, fit
@@ -145,10 +146,14 @@ def recalibrate(paths: Sequence[Path], old: Any) -> Correction:
     Raises
     ------
     UnusableDataError
-        If the old calibration answers fewer than four of the poses.
+        If the old calibration answers fewer than four of the poses, or is one of a single axis.
     TableError
         As `api.calibrate.table.read_table`.
     """
+    if isinstance(old.model, AxisCurve):
+        raise UnusableDataError(
+            "the old calibration is one of a single axis, which is not corrected: calibrate anew"
+        )
     readings = joined(
         [readings_of(read_table(path, old.settings.file), old.settings) for path in paths]
     )
@@ -242,14 +247,14 @@ def _said(changes: Changes, kinds: tuple[Kind, ...], columns: Sequence[str]) -> 
         said += [
             f"gain of channel {at + 1} ({columns[at]}) is {changes.gain[at]:.4g} "
             f"+- {changes.gain_sigma[at]:.1g}"
-            for at in np.flatnonzero(changes.gain_sigma)
+            for at in map(int, np.flatnonzero(changes.gain_sigma))
         ]
     if "scale" in kinds:
         said.append(f"readings grew {changes.gain[0]:.5g} +- {changes.gain_sigma[0]:.1g} times")
     if {"offset", "scale"} & set(kinds):
         said += [
             f"{columns[at]} moved by {changes.offset[at]:.3g} +- {changes.offset_sigma[at]:.1g}"
-            for at in np.flatnonzero(changes.offset_sigma)
+            for at in map(int, np.flatnonzero(changes.offset_sigma))
         ]
     if "boresight" in kinds:
         said.append(f"a turn by {changes.turn_deg:.3g} +- {changes.turn_sigma_deg:.1g} deg")

@@ -12,7 +12,8 @@ import numpy as np
 
 from api.calibrate.forms import names as words
 from api.calibrate.forms.attitudes import are_matrices, are_quaternions
-from api.calibrate.forms.fits import best_of, looks_like_tilted_cells
+from api.calibrate.forms.config_lines import by_order, config_lines
+from api.calibrate.forms.fits import best_of
 from api.calibrate.forms.units import AngleUnit, TemperatureUnit, TimeUnit, is_angle, named
 from api.calibrate.settings import (
     DirectionSettings,
@@ -30,7 +31,6 @@ _COLDEST_K = 150.0
 _EPOCHS: tuple[tuple[float, TimeUnit], ...] = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"))
 #: Largest size of a balance, noise included.
 _BALANCE = 1.2
-_SAY = "say in a config, which --init writes:"
 
 
 @dataclass(frozen=True)
@@ -54,17 +54,19 @@ class _Columns:
 
     table: Table
     keys: dict[str, str]
+    units: dict[str, str]
     rest: list[str]
     notes: list[str] = field(default_factory=list)
 
     @classmethod
     def of(cls, table: Table) -> _Columns:
-        keys = {}
+        keys, units = {}, dict(table.units)
         for name in table.columns:
             read = named(name)
-            unit = table.units.get(name, read.unit)
-            keys[name] = f"{read.bare}_deg" if is_angle(unit) else read.bare
-        return cls(table, keys, list(table.columns))
+            if read.unit is not None:
+                units.setdefault(name, read.unit)
+            keys[name] = f"{read.bare}_deg" if is_angle(units.get(name)) else read.bare
+        return cls(table, keys, units, list(table.columns))
 
     def take(self, *columns: str | None) -> None:
         self.rest = [name for name in self.rest if name not in columns]
@@ -79,7 +81,7 @@ class _Columns:
         return name not in self.table.unread
 
     def angle(self, name: str) -> bool:
-        return is_angle(self.table.units.get(name))
+        return is_angle(self.units.get(name))
 
     def values(self, columns: Sequence[str]) -> np.ndarray[Any, Any]:
         return np.column_stack([self.table.numbers(name) for name in columns])
@@ -115,12 +117,9 @@ def understood(table: Table) -> Understood:
     readings, normals = _readings_of(columns, one_axis=one_axis)
     if readings is None:
         raise TableError(_no_readings(columns, ways[0]))
-    kinds = [readings]
-    if readings.kind == "quadrants" and all(columns.readable(name) for name in readings.columns):
-        kinds.append(readings.model_copy(update={"kind": "channels"}))
     made = [
         Settings(
-            readings=kinds[0], direction=way, rows=rows, sensor=SensorSettings(face_normals=normals)
+            readings=readings, direction=way, rows=rows, sensor=SensorSettings(face_normals=normals)
         )
         for way in ways
     ]
@@ -129,18 +128,12 @@ def understood(table: Table) -> Understood:
         settings, said = best_of(table, made)
         columns.notes.append(said)
     settings = _turned(table, settings, columns.notes)
-    if len(kinds) > 1 and looks_like_tilted_cells(table, settings):
-        settings = settings.model_copy(update={"readings": kinds[1]})
-        columns.notes.append(
-            "the four readings are linear in the light's direction: they are taken as cells that "
-            "look different ways, not as quadrants"
-        )
+    settings = _as_cells(table, settings, columns.notes)
     return Understood(settings, tuple(columns.notes))
 
 
 def _rows_of(columns: _Columns) -> RowSettings:
     """Take run, time, temperature and indices off the columns."""
-    table = columns.table
     run = columns.match(words.RUN)
     temperature = next(
         (
@@ -148,14 +141,14 @@ def _rows_of(columns: _Columns) -> RowSettings:
             for name in columns.rest
             if columns.readable(name)
             and re.fullmatch(words.TEMPERATURE, columns.keys[name])
-            and (columns.keys[name] != "t" or table.units.get(name) in get_args(TemperatureUnit))
+            and (columns.keys[name] != "t" or columns.units.get(name) in get_args(TemperatureUnit))
         ),
         None,
     )
     columns.take(run, temperature)
     times = [n for n in columns.rest if re.fullmatch(words.TIME, columns.keys[n])]
     times = [name for name in times if not columns.angle(name)]
-    dated = [name for name in times if table.units.get(name) == "unix"]
+    dated = [name for name in times if columns.units.get(name) == "unix"]
     readable = [*dated, *(name for name in times if columns.readable(name))]
     columns.notes += [
         f"column {name} is neither a number nor a date and is not used"
@@ -187,7 +180,7 @@ def _counts(columns: _Columns, name: str) -> bool:
 
 
 def _time_unit(columns: _Columns, name: str) -> TimeUnit:
-    unit = columns.table.units.get(name)
+    unit = columns.units.get(name)
     if unit in get_args(TimeUnit):
         return unit  # type: ignore[return-value]  # narrowed by what it is one of
     if unit == "unix":
@@ -210,7 +203,7 @@ def _median(columns: _Columns, name: str) -> float:
 
 
 def _temperature_unit(columns: _Columns, name: str) -> TemperatureUnit:
-    unit = columns.table.units.get(name)
+    unit = columns.units.get(name)
     if unit in get_args(TemperatureUnit):
         return unit  # type: ignore[return-value]  # narrowed by what it is one of
     if _median(columns, name) > _COLDEST_K:
@@ -246,7 +239,7 @@ def _directions_of(columns: _Columns) -> list[DirectionSettings]:
 
 
 def _angles(columns: _Columns, pair: tuple[str, ...], form: Any) -> DirectionSettings:
-    said = [columns.table.units.get(name) for name in pair]
+    said = [columns.units.get(name) for name in pair]
     units = tuple(cast("AngleUnit", unit if is_angle(unit) else "deg") for unit in said)
     return DirectionSettings(
         columns=pair, form=form, unit=units[0] if len(set(units)) == 1 else units
@@ -260,9 +253,7 @@ def _attitudes(columns: _Columns, vector: tuple[str, ...]) -> list[DirectionSett
         if (four := columns.match_all(patterns)) and are_quaternions(columns.values(four)):
             found = [{"columns": four, "form": "quaternion", "scalar": "last"}]
     if not found:
-        for patterns, order in zip(
-            words.NUMBERED, (("first", "last"), ("last", "first")), strict=True
-        ):
+        for patterns in words.NUMBERED:
             four = columns.match_all(patterns)
             if four and all(map(columns.readable, four)) and are_quaternions(columns.values(four)):
                 order = ("first", "last") if patterns[0].endswith("0") else ("last", "first")
@@ -298,7 +289,7 @@ def _dated(columns: _Columns) -> str | None:
     for name in columns.table.columns:
         if not re.fullmatch(words.TIME, columns.keys[name]) or not columns.readable(name):
             continue
-        if columns.table.units.get(name) == "unix" or _median(columns, name) > 1e8:
+        if columns.units.get(name) == "unix" or _median(columns, name) > 1e8:
             return name
         if columns.keys[name].startswith(("jd", "mjd", "julian")):
             return name
@@ -323,7 +314,7 @@ def _readings_of(
         return ReadingsSettings(kind="channels", columns=tuple(faces)), normals
     if len(channels) > 4 and len(channels) > len(found):
         return ReadingsSettings(kind="channels", columns=tuple(channels)), None
-    if kind is not None and not (one_axis and len(found) > 2):
+    if kind is not None:
         return ReadingsSettings(kind=kind, columns=found), None
     numeric = [name for name in among if columns.readable(name)]
     if one_axis:
@@ -350,6 +341,24 @@ def _one_axis(columns: _Columns, numeric: list[str]) -> ReadingsSettings | None:
     return ReadingsSettings(kind=kind, columns=tuple(numeric))
 
 
+def _as_cells(table: Table, settings: Settings, notes: list[str]) -> Settings:
+    """Return settings with channels where four readings are plain cells, not quadrants."""
+    from api.calibrate.causes.applying import with_cells  # noqa: PLC0415 - it reads tables, too
+
+    if settings.direction.form == "one-angle" or settings.readings.kind != "quadrants":
+        return settings
+    try:
+        changed = with_cells([table], settings)
+    except TableError:  # which is told when the table is read
+        return settings
+    if changed != settings:
+        notes.append(
+            "the four readings are linear in the light's direction: they are taken as cells that "
+            "look different ways, not as quadrants"
+        )
+    return changed
+
+
 def _turned(table: Table, settings: Settings, notes: list[str]) -> Settings:
     """Return settings with vectors that point from the light where the values say so."""
     from api.calibrate.forms.fits import points_from_light  # noqa: PLC0415 - one use
@@ -364,33 +373,26 @@ def _turned(table: Table, settings: Settings, notes: list[str]) -> Settings:
 
 
 def _no_direction(columns: _Columns) -> str:
-    names = ", ".join(columns.table.columns)
-    said = _header_note(columns.table)
+    names = [name for name in columns.rest if columns.readable(name)] or columns.rest
+    readings, direction = by_order(names or list(columns.table.columns))
     return (
-        f"{columns.table.source}: {said}no columns of the light's direction among {names}; "
-        "expected sun_x, sun_y, sun_z, or alpha, beta, or azimuth, elevation, or qx, qy, qz, qw; "
-        f'{_SAY} [direction] form = "projection", columns = {_two(columns.rest)}'
+        f"{columns.table.source}: {_header_note(columns.table)}no columns of the light's direction "
+        f"among {', '.join(columns.table.columns)}; expected sun_x, sun_y, sun_z, or alpha, beta, "
+        f"or azimuth, elevation, or qx, qy, qz, qw; {config_lines(readings, direction)}"
     )
 
 
 def _no_readings(columns: _Columns, way: DirectionSettings) -> str:
-    kind = {1: "balance", 2: "spot"}.get(len(columns.rest), "channels")
-    said = _header_note(columns.table)
+    kind: Kind = "channels" if len(columns.rest) > 2 else "spot"
+    if way.form != "one-angle" and len(columns.rest) < 2:
+        said = "there is none to be named"
+    else:
+        said = config_lines(ReadingsSettings(kind=kind, columns=tuple(columns.rest)), way)
     return (
-        f"{columns.table.source}: {said}no columns of readings recognised among "
-        f"{', '.join(columns.rest) or 'none'}; {_SAY} [readings] "
-        f'kind = "{kind}", columns = {_listed(columns.rest)}'
-        f" (direction: {way.form} of {', '.join(way.columns)})"
+        f"{columns.table.source}: {_header_note(columns.table)}no columns of readings recognised "
+        f"among {', '.join(columns.rest) or 'none'}; {said}"
     )
 
 
 def _header_note(table: Table) -> str:
     return "" if table.header_row else "expected a header with names of columns, and found none; "
-
-
-def _two(names: Sequence[str]) -> str:
-    return _listed(names[-2:])
-
-
-def _listed(names: Sequence[str]) -> str:
-    return "[" + ", ".join(f'"{name}"' for name in names) + "]"

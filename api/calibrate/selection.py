@@ -24,6 +24,7 @@ from algorithms.contract import (
     UnusableDataError,
 )
 from algorithms.discovery import discover_chains
+from api.calibrate.causes.light import LESS_LIGHT
 from api.calibrate.conventions.findings import linear_map
 from api.calibrate.face_normals import face_normals
 from api.calibrate.readings import Readings
@@ -34,12 +35,14 @@ from api.calibrate.terms.temperature import with_temperature
 NETWORKS = frozenset({"ann", "dnn", "dnn-surface"})
 #: Samples that models are compared on; more are thinned evenly for the comparison alone.
 MOST_COMPARED = 6000
+#: RMS over the directions' own spread from which a model explains no more than chance does.
+_CHANCE = 0.5
 #: Fewest runs that are left out one by one; with fewer, blocks of poses are.
 _FEWEST_RUNS = 3
 #: Samples of a run for it to be one that can be left out.
 _FEWEST_OF_RUN = 20
-#: Letters of one model's refusal that are said where all refuse.
-_LONGEST_REFUSAL = 200
+#: What models say of readings that they cannot explain.
+_APART = "do not belong together"
 #: Families from the simplest to the most flexible: of two as good, the first is taken.
 _FLEXIBILITY = (
     *("spm", "basic", "linear", "homography", "camera", "lsq", "pinhole", "qpd", "solar-panel"),
@@ -73,6 +76,8 @@ class Candidate:
         Predicted minus true direction then.
     deviation : ndarray, shape (N,), optional
         1-sigma of a tangent axis that the model stated then, degrees.
+    moved_deg : float
+        RMS of what its answers move by with a tenth less light.
     """
 
     name: str
@@ -86,6 +91,7 @@ class Candidate:
     errors: Floats | None = field(default=None, repr=False)
     offsets: Floats | None = field(default=None, repr=False)
     deviation: Floats | None = field(default=None, repr=False)
+    moved_deg: float = 0.0
 
 
 def geometry_of(readings: Readings, settings: Settings) -> SensorGeometry:
@@ -189,13 +195,9 @@ def choose(candidates: Sequence[Candidate]) -> tuple[Candidate, str]:
     """
     usable = [one for one in candidates if not one.refused]
     if not usable:
-        said = [one[:_LONGEST_REFUSAL] for one in dict.fromkeys(o.refused for o in candidates)]
-        more = f"; and {len(said) - 3} other reasons" if len(said) > 3 else ""
-        raise UnusableDataError(
-            "no model can be calibrated on these readings: "
-            f"{'; '.join(said[:3]) or 'no model applies'}{more}"
-        )
+        raise UnusableDataError(f"no model can be calibrated on these readings: {_why(candidates)}")
     answering = [one for one in usable if one.missing <= min(o.missing for o in usable) + 0.02]
+    answering = [one for one in answering if one.moved_deg <= one.rms_deg] or answering
     best = min(answering, key=lambda one: one.rms_deg)
     limit = best.rms_deg + best.spread_deg
     near = [one for one in answering if one.rms_deg <= max(limit, best.rms_deg * 1.001)]
@@ -205,6 +207,30 @@ def choose(candidates: Sequence[Candidate]) -> tuple[Candidate, str]:
     return simplest, (
         f"simplest within one standard error ({best.spread_deg:.2g} deg) of the best, "
         f"{best.name} ({best.rms_deg:.4g} deg)"
+    )
+
+
+def _why(refused: Sequence[Candidate]) -> str:
+    """Return why no model can be fitted, in a sentence: one that suits the sensor says so first."""
+    said = list(dict.fromkeys(one.refused for one in refused))
+    apart = [one for one in said if _APART in one]
+    if apart:
+        return f"readings and directions {_APART}: no model explains more than chance does"
+    return "; ".join(said[:2]) + (f"; and {len(said) - 2} more" if len(said) > 2 else "") or (
+        "no model applies"
+    )
+
+
+def explained(candidate: Candidate, readings: Readings) -> Candidate:
+    """Refuse a candidate that explains no more of where the light was than chance does."""
+    middle = readings.sun.mean(axis=0)
+    spread = float(np.degrees(np.sqrt(np.mean(((readings.sun - middle) ** 2).sum(axis=1)))))
+    if candidate.refused or candidate.rms_deg <= _CHANCE * spread:
+        return candidate
+    return Candidate(
+        candidate.name,
+        refused=f"errs {candidate.rms_deg:.3g} deg where directions spread over {spread:.3g} deg: "
+        "readings and directions do not belong together",
     )
 
 
@@ -347,7 +373,18 @@ def _judged(  # noqa: PLR0917 - what a comparison shares
         np.where(judged, errors, np.nan),
         predicted - used.sun,
         deviation,
+        _moved_deg(whole, used),
     )
+
+
+def _moved_deg(model: Model, used: Readings) -> float:
+    """Return the RMS, degrees, of what answers move by with less light; 0 of what measures none."""
+    if used.kind is not FeatureKind.SIGNALS:
+        return 0.0
+    less = (model.predict(light * used.features, used.context) for light in (1.0, 1.0 - LESS_LIGHT))
+    moved = separation_deg(*less)
+    known = np.isfinite(moved)
+    return float(np.sqrt(np.mean(moved[known] ** 2))) if known.any() else 0.0
 
 
 def _unanswered(one: Candidate) -> float:

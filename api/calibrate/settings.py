@@ -337,6 +337,8 @@ def _faults(error: ValidationError) -> list[str]:
     return [
         f"{place}: {' or '.join(dict.fromkeys(messages))}; got {_short(came[place])}"
         for place, messages in said.items()
+        # of a list that may be one value too, the part that is wrong says more
+        if not any(other.startswith(f"{place}.") for other in said)
     ]
 
 

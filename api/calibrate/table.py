@@ -132,12 +132,7 @@ def read_table(path: Path, stated: FileSettings | None = None) -> Table:
         raise TableError(
             f"{path.name}: expected a file of {', '.join(SUFFIXES)}; got {kind or 'none'}"
         )
-    try:
-        data = read_bytes(path, LARGEST)
-    except OSError as error:  # a link that leads to itself, too
-        if isinstance(error, FileNotFoundError):
-            raise
-        raise TableError(f"{path.name}: expected a file; got {error.strerror}") from None
+    data = read_bytes(path, LARGEST)
     if not data:
         raise TableError(f"{path.name}: the file is empty")
     table = readers[kind](data, path.name)
@@ -213,7 +208,7 @@ def _of_frame(  # noqa: PLR0917 - what a table is made of
         if read.unit and name not in units:
             units[name] = read.unit
         if column.dtype.kind in "iufb":
-            columns[name] = column.to_numpy(dtype=np.float64)
+            columns[name] = column.to_numpy(dtype=np.float64, na_value=np.nan)
             continue
         text = _as_text(column)
         found = numbers_of(text, decimal, of_time="time" in read.bare)
@@ -232,6 +227,8 @@ def _of_frame(  # noqa: PLR0917 - what a table is made of
 
 def _as_text(column: pd.Series[str]) -> pd.Series[str]:
     """Cells as text without blanks around them; bytes as the text that they spell."""
+    if column.dtype.kind == "m":
+        return pd.to_timedelta(column).dt.total_seconds().map(str)
     if column.dtype.kind == "M":
         stamps = pd.to_datetime(column, utc=True)
         return stamps.dt.strftime("%Y-%m-%dT%H:%M:%S.%f").fillna("").astype(str)

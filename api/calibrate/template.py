@@ -8,6 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from api.calibrate.forms.config_lines import by_order
 from api.calibrate.forms.units import named
 from api.calibrate.roles import Understood, understood
 from api.calibrate.settings import (
@@ -122,7 +123,7 @@ def template_of(table: Table) -> str:
         lines += [f"# {part}" for note in found.notes for part in _wrapped(f"Guessed: {note}.")]
     lines += ["#", "# Columns of the file, their units and first values:"]
     lines += [_described(table, name) for name in table.columns]
-    settings = by_order(table) if found is None else found.settings
+    settings = _placed(table) if found is None else found.settings
     return "\n".join(lines) + "\n\n" + template(settings)
 
 
@@ -144,25 +145,11 @@ def template(settings: Settings) -> str:
     return "\n".join(lines) + "\n"
 
 
-def by_order(table: Table) -> Settings:
-    """Return settings of columns by their order: the last two are angles, those before readings.
-
-    Columns that count rows, and text, come last in line.
-    """
-    names = [name for name in table.columns if name not in table.unread] or list(table.columns)
-    names = (names + list(table.columns))[: max(len(names), 2)]
-    if len(names) < 4:
-        return Settings(
-            readings=ReadingsSettings(kind="spot", columns=tuple(names[:1])),
-            direction=DirectionSettings(columns=(names[-1],), form="one-angle"),
-        )
-    readings = tuple(names[-4:-2]) if len(names) == 4 else tuple(names[:-2])
-    return Settings(
-        readings=ReadingsSettings(
-            kind="spot" if len(readings) == 2 else "channels", columns=readings
-        ),
-        direction=DirectionSettings(columns=tuple(names[-2:]), form="alpha-inner"),
-    )
+def _placed(table: Table) -> Settings:
+    """Return settings of a table's columns by their order; those that hold text come last."""
+    names = [name for name in table.columns if name not in table.unread]
+    readings, direction = by_order(names or list(table.columns))
+    return Settings(readings=readings, direction=direction)
 
 
 def _understood(table: Table) -> tuple[Understood | None, str]:
@@ -196,4 +183,4 @@ def _value(value: object) -> str:
 def _wrapped(text: str) -> list[str]:
     import textwrap  # noqa: PLC0415 - one use
 
-    return textwrap.wrap(text, 96)
+    return textwrap.wrap(text, 96, break_on_hyphens=False, break_long_words=False)

@@ -160,8 +160,7 @@ def _safe(name: str, number: int) -> str:
 
 def _answer(directory: Path) -> dict[str, Any]:
     """Return the answer, why there is none, or the program's fault."""
-    import tomllib  # noqa: PLC0415 - of the process
-    import traceback  # noqa: PLC0415 - as above
+    import traceback  # noqa: PLC0415 - of the process
 
     from algorithms.contract import UnusableDataError  # noqa: PLC0415 - as above
     from api.calibrate.report.requirement import RequirementError  # noqa: PLC0415 - as above
@@ -173,7 +172,7 @@ def _answer(directory: Path) -> dict[str, Any]:
     refusals = (TableError, SettingsError, RequirementError, UnusableDataError)
     try:
         return {"answer": _previewed(paths[0]) if task.get("preview") else _made(paths, task)}
-    except (*refusals, tomllib.TOMLDecodeError) as error:
+    except refusals as error:
         return {"refused": str(error)}
     except MemoryError:
         return {"refused": "the files need more memory than a calibration may take"}
@@ -189,22 +188,16 @@ def _previewed(path: Path) -> dict[str, Any]:
 
 
 def _made(paths: Sequence[Path], task: dict[str, Any]) -> dict[str, str]:
-    import tomllib  # noqa: PLC0415 - of the process
-
-    from api.calibrate.calibration import calibrate  # noqa: PLC0415 - as above
+    from api.calibrate.calibration import calibrate  # noqa: PLC0415 - of the process
     from api.calibrate.products import products  # noqa: PLC0415 - as above
     from api.calibrate.report.page import Asked  # noqa: PLC0415 - as above
     from api.calibrate.report.requirement import requirement  # noqa: PLC0415 - as above
-    from api.calibrate.settings import SettingsError, parse_settings  # noqa: PLC0415 - as above
+    from api.calibrate.settings import parse_settings, parse_toml  # noqa: PLC0415 - as above
     from api.calibrate.table import TableError, read_table  # noqa: PLC0415 - as above
 
     settings = None
     if task["config"].strip():
-        try:
-            stated = tomllib.loads(task["config"])
-        except RecursionError:
-            raise SettingsError("config: brackets stand too deep in each other") from None
-        settings = parse_settings(stated, "config")
+        settings = parse_settings(parse_toml(task["config"], "config"), "config")
     asked = (requirement(task["require"]),) if task.get("require", "").strip() else ()
     layout = settings.file if settings else None
     rows = sum(len(read_table(path, layout)) for path in paths)

@@ -160,20 +160,20 @@ def with_uncertain_conventions(verdict: Verdict, found: str) -> Verdict:
     return replace(verdict, word="conventions uncertain", reason=reason)
 
 
-def withheld(verdict: Verdict, removed: str, parts: tuple[Part, ...]) -> Verdict:
+def withheld(verdict: Verdict, doubt: str, parts: tuple[Part, ...]) -> Verdict:
     """Return a verdict that is not good where rows are missing for no cause, or intervals fail.
 
     Parameters
     ----------
     verdict : Verdict
         On the fit.
-    removed : str
-        Which rows were left out without a known cause, in a sentence; empty where few were.
+    doubt : str
+        What speaks against it, as rows left out without a known cause, in a sentence; or empty.
     parts : tuple of Part
         Of the samples left out.
     """
     bad = uncovered(parts)
-    said = removed or (
+    said = doubt or (
         f"95 % intervals hold {100 * bad.coverage:.0f} % of the errors at {bad.name} "
         f"({bad.samples} samples)"
         if bad

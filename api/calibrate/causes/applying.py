@@ -40,7 +40,8 @@ def read_as(tables: Sequence[Table], settings: Settings) -> File:
     dropped = {**readings.dropped}
     dropped[EMPTY] = dropped.get(EMPTY, 0) - sum(len(one.excluded) for one in bad)
     readings = replace(readings, dropped={name: n for name, n in dropped.items() if n > 0})
-    require_two_axes(readings)
+    if one_plane(readings):
+        return File(settings, readings, [], bad)
     every = None
     if readings.dropped.get(BEHIND, 0) > _MANY_BEHIND * len(readings):
         every = joined([readings_of(table, settings, behind=True) for table, _ in cleaned])
@@ -82,12 +83,9 @@ def applied_to(tables: Sequence[Table], file: File, notes: list[str]) -> tuple[F
     return file, applied
 
 
-def require_two_axes(readings: Readings) -> None:
-    """Raise UnusableDataError where the poses lie along one axis."""
+def one_plane(readings: Readings) -> bool:
+    """Say whether the poses lie in one plane through the sensor; UnusableDataError below three."""
+    if len(readings) < 3:
+        raise UnusableDataError(f"expected three poses or more; got {len(readings)}")
     size = np.linalg.svd(readings.sun, compute_uv=False)
-    if len(readings) < 3 or size[2] < _ONE_AXIS * size[1]:
-        raise UnusableDataError(
-            f"the {len(readings)} poses lie along one axis: a second axis would settle the "
-            "calibration (turn the sensor by 90 deg about its boresight, or sweep the other "
-            "gimbal, and add the rows)"
-        )
+    return bool(size[2] < _ONE_AXIS * size[1])

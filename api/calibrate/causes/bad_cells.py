@@ -72,6 +72,7 @@ def without_bad_cells(table: Table, settings: Settings) -> tuple[Table, BadCells
         values = table.numbers(name).copy()
         _of_readings(name, values, settings, found, cause)
         columns[name] = values
+    _shared_levels(columns, settings, found, cause)
     for name, unit in zip(settings.direction.columns, settings.direction.units, strict=True):
         values = table.numbers(name).copy()
         _of_directions(name, values, settings, DEGREES[unit], cause)
@@ -102,6 +103,23 @@ def _of_readings(
         level = _narrowed(level, value, float(np.nanmedian(values)))
         _blank(values, values == value, f"{word} at {value:.6g} in {name}", found, cause)
     found.levels[name] = level
+
+
+def _shared_levels(
+    columns: dict[str, NDArray[np.generic]],
+    settings: Settings,
+    found: BadCells,
+    cause: NDArray[np.object_],
+) -> None:
+    """Blank values at the level at which another column is cut off: one converter reads all."""
+    highs = {level.high for level in found.levels.values() if np.isfinite(level.high)}
+    for name in settings.readings.columns:
+        values = np.asarray(columns[name], dtype=np.float64)
+        for high in highs:
+            if np.isfinite(values).any() and np.nanmax(values) == high:
+                found.levels[name] = _narrowed(found.levels[name], high, -np.inf)
+                _blank(values, values == high, f"cut off at {high:.6g} in {name}", found, cause)
+        columns[name] = values
 
 
 def _blank(

@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from algorithms.angles import angles_from_sun, sun_from_angles
 from algorithms.contract import FeatureKind, Floats
 from api.calibrate.causes.light import plane_of, reading_noise
+from api.calibrate.conventions.channels import level_of
 from api.calibrate.conventions.finding import Finding
-from api.calibrate.readings import Readings, sun_of_angles
+from api.calibrate.readings import MATRICES, Readings, quadrant_balances, sun_of_angles
 from api.calibrate.settings import AngleForm, Settings
 
 #: What a law leaves, over the noise, to be followed.
@@ -28,6 +29,8 @@ FOLLOWED = 1.3
 _FACTORS, _LEAST = (0.7, 1.4), 0.003
 #: Standard deviations from which a factor is told, and step by which its error is.
 _CERTAIN, _STEP = 6.0, 0.01
+#: What a law leaves without a factor, over that with it, where it is not exact.
+_BETTER = 1.15
 _WITHIN_DEG = 75.0
 _MOST = 600
 _ROUNDS = 8
@@ -69,13 +72,14 @@ def scale_of_angles(readings: Readings, settings: Settings) -> Scale:
     from scipy.optimize import minimize_scalar  # noqa: PLC0415 - SciPy, at the first use
 
     used = readings.thinned(_MOST)
-    noise = np.maximum(reading_noise(used.features, used.sun), 1e-12)
+    features = _without_dark(used, settings)
+    noise = np.maximum(reading_noise(features, used.sun), 1e-12)
     law = _left_of_cells if readings.kind is FeatureKind.SIGNALS else _left_of_projection
 
     def left(turned: Callable[[float], Floats], factor: float) -> float:
-        return law(used.features, turned(factor), noise)
+        return law(features, turned(factor), noise)
 
-    as_stated = law(used.features, used.sun, noise)
+    as_stated = law(features, used.sun, noise)
     best = Scale(as_stated, as_stated, 1.0, np.inf, "")
     if not np.isfinite(as_stated):
         return best
@@ -92,6 +96,19 @@ def scale_of_angles(readings: Readings, settings: Settings) -> Scale:
     return replace(best, error=error)
 
 
+def _without_dark(readings: Readings, settings: Settings) -> Floats:
+    """Return features, of quadrants without a level that their products tell, however small."""
+    if settings.readings.kind != "quadrants":
+        return readings.features
+    dark = level_of(readings, settings)
+    if not np.abs(dark.level).max() > _CERTAIN * dark.error:
+        return readings.features
+    features = quadrant_balances(readings.raw - dark.level)
+    for transform in settings.apply:
+        features = features @ np.asarray(MATRICES[transform]).T
+    return features if np.isfinite(features).all() else readings.features
+
+
 def _error_of_factor(left: Callable[[float], float], found: Any, readings: Readings) -> float:
     """Return the 1-sigma of a factor, by the curvature of the sum of squares around it."""
     count = readings.features.size
@@ -103,13 +120,15 @@ def _error_of_factor(left: Callable[[float], float], found: Any, readings: Readi
 def of_scale(readings: Readings, settings: Settings, known: Scale) -> Iterator[Finding]:
     """Yield the factor of the angles with which a law is followed that is broken without.
 
-    A law that is followed to 1.3 times the noise may be so by another small cause, but not that of
-    cells and of cameras, which is exact.
+    The laws of cells and of cameras are exact. That of quadrants, or another sensor's, may be off
+    by a small cause that a factor takes up too.
     """
     exact = readings.kind is FeatureKind.SIGNALS or settings.readings.kind in ("spot", "frames")
     inside = _FACTORS[0] + 0.02 < known.factor < _FACTORS[1] - 0.02
     off = abs(known.factor - 1.0)
-    told = known.best < FOLLOWED and (exact or known.followed > FOLLOWED)
+    better = settings.readings.kind == "quadrants" or known.followed > FOLLOWED
+    better &= known.followed > _BETTER * known.best
+    told = known.best < FOLLOWED and (exact or better)
     gain = readings.thinned(_MOST).features.size * ((known.followed / known.best) ** 2 - 1.0)
     if not (told and inside and gain > _CERTAIN**2 and off > _LEAST):
         return

@@ -18,7 +18,7 @@ from api.calibrate.causes.lag import of_rows
 from api.calibrate.causes.laws import of_scale, scale_of_angles
 from api.calibrate.conventions.channels import of_cells, of_faces, of_light, of_quadrants
 from api.calibrate.conventions.finding import BETTER, MUCH_BETTER, Finding
-from api.calibrate.readings import MATRICES, Readings, sun_of_angles
+from api.calibrate.readings import GRAZING, MATRICES, Readings, sun_of_angles
 from api.calibrate.robust import SmoothMap, answer_noise_deg, normalised, robust_map, terms
 from api.calibrate.settings import AngleForm, Settings
 
@@ -199,7 +199,7 @@ def _of_angles(readings: Readings, settings: Settings) -> Iterator[Finding]:
         if form.startswith("azimuth") and np.ptp(angles[:, 0]) < _WIDE_AZIMUTH_DEG:
             continue
         sun = sun_of_angles(angles, form)
-        if not (np.isfinite(sun).all() and (sun[:, 2] > 0).all()):
+        if not (np.isfinite(sun).all() and (sun[:, 2] > GRAZING).all()):
             continue
         left[form] = _left_deg(readings, sun)
     best = min(left, key=lambda word: left[word])
@@ -246,7 +246,7 @@ def _flips(readings: Readings) -> Iterator[tuple[str, Floats]]:
 
 def _left_deg(readings: Readings, sun: Floats) -> float:
     """RMS residual, degrees, of a projective map with cubic distortion, without the worst tenth."""
-    finite = np.isfinite(sun).all(axis=1) & (sun[:, 2] > 0)
+    finite = np.isfinite(sun).all(axis=1) & (sun[:, 2] > GRAZING)
     used, features = sun[finite], readings.features[finite]
     middle, width = np.median(features, axis=0), np.maximum(np.std(features), 1e-12)
     tangents = tangents_from_sun(used)[:, ::-1]

@@ -16,7 +16,7 @@ import numpy as np
 
 from api.calibrate.flight.answers import Answers
 from api.calibrate.flight.names import comment, comment_lines
-from api.calibrate.flight.program import Program, Step
+from api.calibrate.flight.program import Program, Step, Thermometer
 from api.calibrate.flight.runtime import STATUSES
 from api.calibrate.flight.vectors import Vectors
 
@@ -65,7 +65,12 @@ def c_files(  # noqa: PLR0917 - what the files are made of
         ``NAME.h``, ``NAME.c``, ``NAME_selftest.c``, ``NAME_example.c``.
     """
     readings = len(program.columns)
-    inputs = [*program.columns, *(["temperature_K"] if program.warm else [])]
+    inputs = list(program.columns)
+    temperature, kelvin = "not read", "R(0.0)"
+    if program.thermometer is not None:
+        inputs.append(program.thermometer.column)
+        temperature = comment(f"{program.thermometer.unit}, column {program.thermometer.column}")
+        kelvin = _kelvin(program.thermometer)
     first, second = answers.form.c
     texts = {
         "name": name,
@@ -75,8 +80,8 @@ def c_files(  # noqa: PLR0917 - what the files are made of
         "said": comment_lines(said, " * "),
         "raw": str(readings),
         "width": str(max(readings, 3)),
-        "temperature": "kelvin" if program.warm else "not read",
-        "kelvin": "in->temperature_K" if program.warm else "R(0.0)",
+        "temperature": temperature,
+        "kelvin": kelvin,
         "angles": answers.form.words,
         "first_angle": first,
         "second_angle": second,
@@ -153,7 +158,7 @@ def _numbered(text: str, constants: Mapping[str, Any]) -> str:
     for name, value in constants.items():
         if isinstance(value, int):
             text = re.sub(rf"\b{name.upper()}\b", str(value), text)
-    return text
+    return re.sub(r"\[(\d+) \+ 1\]", lambda size: f"[{int(size[1]) + 1}]", text)
 
 
 def _used(text: str) -> str:
@@ -162,6 +167,13 @@ def _used(text: str) -> str:
         if len(re.findall(rf"\b{name}\b", text)) == len(re.findall(rf"#define {name}\b", text)):
             text = re.sub(rf"#define {name}\b.*\n", "", text)
     return text
+
+
+def _kelvin(thermometer: Thermometer) -> str:
+    """Return the expression that makes a temperature kelvin."""
+    scale, offset = c_real(thermometer.scale), c_real(thermometer.offset)
+    scaled = "in->temperature" if thermometer.scale == 1.0 else f"({scale} * in->temperature)"
+    return scaled if thermometer.offset == 0.0 else f"{scaled} + {offset}"
 
 
 def _call(at: int, step: Step) -> str:
@@ -193,14 +205,14 @@ def _constants(constants: Mapping[str, Any]) -> str:
 
 def _vectors(vectors: Vectors, name: str) -> str:
     lines = []
-    for values, kelvin, sun, status in zip(
-        vectors.values, vectors.kelvin, vectors.sun, vectors.status, strict=True
+    for values, warmth, sun, status in zip(
+        vectors.values, vectors.temperature, vectors.sun, vectors.status, strict=True
     ):
         reading = ", ".join(c_real(one) for one in values)
         direction = ", ".join(c_real(one) for one in np.nan_to_num(sun))
         said = f"{name.upper()}_{STATUSES[status]}"
         lines.append(
-            f"    {{ {{ {{ {reading} }}, {c_real(kelvin)} }}, {{ {direction} }}, {said} }}"
+            f"    {{ {{ {{ {reading} }}, {c_real(warmth)} }}, {{ {direction} }}, {said} }}"
         )
     return ",\n".join(lines)
 

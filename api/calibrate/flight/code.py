@@ -14,7 +14,7 @@ from api.calibrate.flight.answers import Answers, answers_of
 from api.calibrate.flight.c_source import c_files
 from api.calibrate.flight.faces import faces_steps
 from api.calibrate.flight.plane import plane_steps
-from api.calibrate.flight.program import NoCodeError, Program, Step, run
+from api.calibrate.flight.program import NoCodeError, Program, Step, Thermometer, run
 from api.calibrate.flight.python_source import python_module
 from api.calibrate.flight.raw import (
     LARGEST,
@@ -26,9 +26,13 @@ from api.calibrate.flight.raw import (
 )
 from api.calibrate.flight.runtime import STATUSES
 from api.calibrate.flight.vectors import Vectors, vectors_of
+from api.calibrate.forms.units import KELVIN
+from api.calibrate.settings import RowSettings
 
 #: Share of the model's error above which what the code adds is refused.
 _MOST_ADDED = 0.1
+#: Of temperatures in other units.
+_ROUNDING_K = 1e-9
 #: Rows of the calibration by which code is judged.
 _JUDGED = 2000
 _KINDS = ("spot", "balance", "quadrants", "electrodes", "channels")
@@ -106,8 +110,10 @@ class FlightCode:
                 f"column {name}, in its unit; dark {made['dark'][place]:.6g}, gain "
                 f"{made['gain'][place]:.6g}{_clipped(limits, place)}"
             )
-        if program.warm:
-            lines["Input temperature_K"] = "kelvin"
+        if program.thermometer is not None:
+            lines["Input temperature"] = (
+                f"column {program.thermometer.column}, {program.thermometer.unit}"
+            )
         if limits.least_light > -LARGEST:
             lines["Light"] = (
                 f"readings less dark over gain add up to {limits.least_light:.6g} to "
@@ -140,14 +146,16 @@ def flight_code(found: Calibration) -> FlightCode:
     kind = settings.readings.kind
     if kind not in _KINDS:
         raise NoCodeError(f"flight code takes readings of {', '.join(_KINDS)}; these are {kind}")
+    if readings.features.shape[1] == 2 and not np.ptp(readings.features, axis=0).all():
+        raise NoCodeError("flight code is not written for sensors of one axis")
     context = tuple(found.model.about.context)
     if set(context) - {"temperature_K"}:
         raise NoCodeError(f"code for flight knows no {', '.join(context)}")
     columns = columns_of(found)
     allowed = limits_of(found)
     steps = raw_steps(columns, settings, allowed)
-    warm = bool(context)
-    if warm:
+    thermometer = _thermometer(settings.rows) if context else None
+    if thermometer is not None:
         steps.append(_temperatures(readings.context["temperature_K"]))
     used = readings.thinned(_JUDGED)
     if readings.kind is FeatureKind.SIGNALS:
@@ -156,7 +164,7 @@ def flight_code(found: Calibration) -> FlightCode:
         made, words = plane_steps(
             found.model, readings.features, readings.context, found.chosen.rms_deg
         )
-    program = Program(columns, (*steps, *made), warm, words)
+    program = Program(columns, (*steps, *made), thermometer, words)
     raw = np.empty((len(used), len(columns)))
     raw[:, steps[0].constants["place"]] = raw_readings(used, settings.readings)
     kelvin = used.context.get("temperature_K", np.zeros(len(used)))
@@ -189,7 +197,13 @@ def _judged(
 
 
 def _temperatures(kelvin: Floats) -> Step:
-    return Step("temperature_range", {"low": float(kelvin.min()), "high": float(kelvin.max())}, 2)
+    low, high = float(kelvin.min()) - _ROUNDING_K, float(kelvin.max()) + _ROUNDING_K
+    return Step("temperature_range", {"low": low, "high": high}, 2)
+
+
+def _thermometer(rows: RowSettings) -> Thermometer:
+    unit = rows.temperature_unit
+    return Thermometer(rows.temperature_K or "temperature_K", unit, *KELVIN[unit])
 
 
 def _clipped(limits: RawLimits, place: int) -> str:

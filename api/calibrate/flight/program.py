@@ -39,6 +39,20 @@ class Step:
 
 
 @dataclass(frozen=True)
+class Thermometer:
+    """A file's temperature: kelvin are ``scale * value + offset``."""
+
+    column: str
+    unit: str
+    scale: float
+    offset: float
+
+    def value(self, kelvin: Floats) -> Floats:
+        """Return temperatures (N,) as the file has them."""
+        return np.asarray((kelvin - self.offset) / self.scale)
+
+
+@dataclass(frozen=True)
 class Program:
     """All steps of a sensor.
 
@@ -48,15 +62,15 @@ class Program:
         Of the raw readings, in the file's order.
     steps : tuple of Step
         In order; each but the last few reads what the one before left.
-    warm : bool
-        Whether a temperature is read.
+    thermometer : Thermometer or None
+        None where no temperature is read.
     words : str
         What stands for the model, for a report.
     """
 
     columns: tuple[str, ...]
     steps: tuple[Step, ...]
-    warm: bool
+    thermometer: Thermometer | None
     words: str
 
     @property

@@ -38,7 +38,10 @@ def python_module(
         digest=digest,
         statuses=STATUSES,
         columns=repr([comment(name) for name in program.columns]),
-        warm=program.warm,
+        warm=program.thermometer is not None,
+        unit=program.thermometer.unit if program.thermometer else "not read",
+        scale=program.thermometer.scale if program.thermometer else 1.0,
+        offset=program.thermometer.offset if program.thermometer else 0.0,
         first=answers.form.python[0],
         second=answers.form.python[1],
         form=answers.form.words,
@@ -46,7 +49,7 @@ def python_module(
         steps=steps,
         sigma=_mapping(answers.constants()),
         values=_array(vectors.values),
-        kelvin=_array(vectors.kelvin),
+        temperature=_array(vectors.temperature),
         directions=_array(vectors.sun),
         expected=vectors.status.tolist(),
         most=1e-9 + 1.5 * vectors.largest_deg,
@@ -100,15 +103,15 @@ STEPS = [
 SIGMA = {sigma}
 
 
-def solve(readings, temperature_K=None):
+def solve(readings, temperature=None):
     """Directions of raw readings, and what is known of them.
 
     Parameters
     ----------
     readings : array_like, shape (N, K)
         As the sensor gives them, in the order of COLUMNS.
-    temperature_K : array_like, shape (N,), optional
-        Kelvin, where NEEDS_TEMPERATURE.
+    temperature : array_like, shape (N,), optional
+        Where NEEDS_TEMPERATURE: {unit}, as the sensor gives it.
 
     Returns
     -------
@@ -121,10 +124,11 @@ def solve(readings, temperature_K=None):
     values = np.array(np.atleast_2d(readings), dtype=float)
     if values.shape[1] != len(COLUMNS):
         raise ValueError(f"expected readings of {{COLUMNS}}; got {{values.shape[1]}} a row")
-    if NEEDS_TEMPERATURE and temperature_K is None:
-        raise ValueError("expected a temperature of each row, kelvin; got none")
-    given = 0.0 if temperature_K is None else temperature_K
-    kelvin = np.array(np.broadcast_to(np.asarray(given, dtype=float), len(values)))
+    if NEEDS_TEMPERATURE and temperature is None:
+        raise ValueError("expected a temperature of each row ({unit}); got none")
+    given = 0.0 if temperature is None else temperature
+    kelvin = {scale!r} * np.asarray(given, dtype=float) + {offset!r}
+    kelvin = np.array(np.broadcast_to(kelvin, len(values)))
     found = np.full((len(values), 3), np.nan)
     status = np.zeros(len(values), dtype=int)
     with np.errstate(all="ignore"):
@@ -139,18 +143,18 @@ def solve(readings, temperature_K=None):
     return {{"sun": found, "angle_deg": angles_deg, "sigma_deg": sigma, "status": status}}
 
 
-def sun(readings, temperature_K=None):
+def sun(readings, temperature=None):
     """Unit vectors (N, 3) to the Sun of raw readings (N, K); NaN rows where there is no answer."""
-    return solve(readings, temperature_K)["sun"]
+    return solve(readings, temperature)["sun"]
 
 
 def selftest():
     """Readings that differ from what the model says of them, and the largest difference, deg."""
     readings = {values}
-    kelvin = {kelvin}
+    temperature = {temperature}
     model = {directions}
     expected = np.array({expected})
-    made = solve(readings, kelvin)
+    made = solve(readings, temperature)
     off = np.degrees(np.linalg.norm(np.cross(made["sun"], model), axis=1))
     good = (made["status"] == expected) & ((expected != 0) | (off <= {most!r}))
     return int((~good).sum()), float(np.nanmax(off))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +16,8 @@ from api.calibrate.settings import ReadingsSettings, Settings
 
 #: Beyond this a reading is no number; of limits, that there is none.
 LARGEST = 1e30
-#: Kinds whose readings add up to the light.
-_OF_LIGHT = frozenset({"quadrants", "electrodes", "channels"})
-#: Least and most light that is answered, over the least and most that was calibrated.
-_LEAST, _MOST = 0.5, 2.0
+#: Of a limit, how far a reading may be rounded in the file and not on board.
+_ROUNDING = 1e-6
 
 
 @dataclass(frozen=True)
@@ -41,41 +38,18 @@ class RawLimits:
     most_light: float
 
 
-@runtime_checkable
-class Limited(Protocol):
-    """A calibration that found the limits of its raw readings, of the fields of `RawLimits`."""
-
-    @property
-    def limits(self) -> Any:
-        """What readings may be."""
-
-
 def limits_of(found: Calibration) -> RawLimits:
-    """Return the limits that a calibration found; half and twice its light where it found none."""
-    readings, settings = found.readings, found.settings.readings
-    count = readings.raw.shape[1]
-    none = np.full(count, LARGEST)
-    known: object = found
-    if isinstance(known, Limited):
-        low, high, least, most = (
-            np.nan_to_num(
-                np.asarray(value, dtype=np.float64), nan=nan, posinf=LARGEST, neginf=-LARGEST
-            )
-            for value, nan in (
-                (known.limits.low, -LARGEST),
-                (known.limits.high, LARGEST),
-                (known.limits.least_light, -LARGEST),
-                (known.limits.most_light, LARGEST),
-            )
-        )
-        if settings.kind not in _OF_LIGHT:
-            least, most = np.array(-LARGEST), np.array(LARGEST)
-        return RawLimits(low + 0.0 * none, high + 0.0 * none, float(least), float(most))
-    if settings.kind not in _OF_LIGHT:
-        return RawLimits(-none, none, -LARGEST, LARGEST)
-    light = readings.raw.sum(axis=1)
-    least_light, most_light = _LEAST * float(np.percentile(light, 1)), _MOST * float(light.max())
-    return RawLimits(-none, none, least_light, most_light)
+    """Return the limits that a calibration found, as finite numbers that C can hold."""
+    count, known = len(found.settings.readings.columns), found.limits
+    of_light = np.isfinite(known.most_light)
+    low = np.maximum(np.array(known.low or (-np.inf,) * count), -LARGEST)
+    high = np.minimum(np.array(known.high or (np.inf,) * count), LARGEST)
+    return RawLimits(
+        np.where(low > -LARGEST, low + _ROUNDING * np.abs(low), low),
+        np.where(high < LARGEST, high - _ROUNDING * np.abs(high), high),
+        float(known.least_light) if of_light else -LARGEST,
+        float(known.most_light) if of_light else LARGEST,
+    )
 
 
 def raw_readings(readings: Readings, settings: ReadingsSettings) -> Floats:

@@ -69,19 +69,9 @@ def axes(v: Floats, sun: Floats, kelvin: Floats, c: Any) -> Any:
     return np.column_stack([a * x + b * y, d * x + e * y]), sun, flagged(False, 0)
 
 
-def shift(v: Floats, sun: Floats, kelvin: Floats, c: Any) -> Any:
-    """Return features less an offset."""
-    return v - c["offset"], sun, flagged(False, 0)
-
-
 def temperature_range(v: Floats, sun: Floats, kelvin: Floats, c: Any) -> Any:
     """Refuse temperatures outside those that were calibrated."""
     return v, sun, flagged(~((kelvin >= c["low"]) & (kelvin <= c["high"])), 5)
-
-
-def turn(v: Floats, sun: Floats, kelvin: Floats, c: Any) -> Any:
-    """Return directions rotated."""
-    return v, sun @ np.asarray(c["rotation"]).T, flagged(False, 0)
 
 
 def cone(v: Floats, sun: Floats, kelvin: Floats, c: Any) -> Any:

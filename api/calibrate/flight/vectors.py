@@ -24,7 +24,8 @@ class Vectors:
     Attributes
     ----------
     values : ndarray, shape (V, K)
-    kelvin : ndarray, shape (V,)
+    temperature : ndarray, shape (V,)
+        As the file has it.
     sun : ndarray, shape (V, 3)
         Of the model; NaN where the status is not 0.
     status : ndarray of int, shape (V,)
@@ -33,7 +34,7 @@ class Vectors:
     """
 
     values: Floats
-    kelvin: Floats
+    temperature: Floats
     sun: Floats
     status: NDArray[np.int64]
     largest_deg: float
@@ -60,9 +61,10 @@ def vectors_of(program: Program, raw: Floats, kelvin: Floats, model: Floats) -> 
     chosen = known[_spread(model[known])]
     refused, warm = _refused(program, raw[chosen[0]], float(kelvin[chosen[0]]))
     _, nothing, stated = run(program.steps, refused, warm)
+    warmth = np.concatenate([kelvin[chosen], warm])
     return Vectors(
         np.vstack([raw[chosen], refused]),
-        np.concatenate([kelvin[chosen], warm]),
+        warmth if program.thermometer is None else program.thermometer.value(warmth),
         np.vstack([model[chosen], nothing]),
         np.concatenate([status[chosen], stated]).astype(np.int64),
         float(off[chosen].max()),
@@ -96,6 +98,6 @@ def _refused(program: Program, usual: Floats, kelvin: float) -> tuple[Floats, Fl
             row[place[at]] = limit[at]
             rows.append(row)
     values, warm = np.vstack(rows), np.full(len(rows), kelvin)
-    if program.warm:
+    if program.thermometer is not None:
         values, warm = np.vstack([values, usual]), np.append(warm, kelvin + 500.0)
     return values, warm

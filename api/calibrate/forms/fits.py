@@ -16,14 +16,8 @@ from api.calibrate.table import Table, TableError
 _JUDGED = 2000
 #: Error of the best convention over that of the next, up to which it counts as told.
 _TOLD = 0.5
-#: Residual of cells that are linear in the direction, over their spread.
-_LINEAR = 0.05
-#: Over a plain fit's residual, that of one with the product term of quadrants.
-_PRODUCT = 0.5
 #: Share of vectors behind a sensor that looks one way from which they point from the light.
 _BEHIND = 0.9
-#: Light over its largest from which a cell counts as lit.
-_LIT = 0.1
 
 
 def best_of(table: Table, ways: Sequence[Settings]) -> tuple[Settings, str]:
@@ -73,39 +67,6 @@ def _left_deg(table: Table, settings: Settings) -> float:
     if readings.kind is FeatureKind.SIGNALS:
         return float(np.median(robust_map(readings.features, readings.sun, 2)[1]))
     return projective_left_deg(readings)
-
-
-def looks_like_tilted_cells(table: Table, settings: Settings) -> bool:
-    """Say whether four readings are plain cosines of four directions, rather than quadrants.
-
-    Those of quadrants have a term with the product of both tangents, which cells have not.
-    """
-    channels = settings.model_copy(
-        update={"readings": settings.readings.model_copy(update={"kind": "channels"})}
-    )
-    try:
-        readings = readings_of(table, channels).thinned(_JUDGED)
-    except TableError:
-        return False
-    if len(readings) < 20:
-        return False
-    sun, signals = readings.sun, readings.features
-    plain, product = [], []
-    for signal in signals.T:
-        lit = signal > _LIT * np.nanpercentile(signal, 99)
-        if lit.sum() < 12:
-            return False
-        spread = float(np.std(signal[lit])) or 1.0
-        bent = np.column_stack([sun, sun[:, 0] * sun[:, 1] / np.maximum(np.abs(sun[:, 2]), 0.05)])
-        plain.append(_left(sun[lit], signal[lit]) / spread)
-        product.append(_left(bent[lit], signal[lit]) / spread)
-    linear, bilinear = float(np.max(plain)), float(np.max(product))
-    return linear < _LINEAR and bilinear > _PRODUCT * linear
-
-
-def _left(design: Floats, signal: Floats) -> float:
-    fit = np.linalg.lstsq(design, signal, rcond=None)[0]
-    return float(np.sqrt(np.mean((signal - design @ fit) ** 2)))
 
 
 def points_from_light(table: Table, settings: Settings) -> bool:

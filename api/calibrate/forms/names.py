@@ -11,6 +11,14 @@ from api.calibrate.settings import AngleForm, Kind
 _Word = TypeVar("_Word", bound=str)
 _AZIMUTH = r"(az|azim|azimuth|phi)(_angle)?"
 _ABOUT = r"(rot|theta|angle|tilt|r)_?@|@_?(angle|tilt)"
+_INNER = (
+    rf"inner|pitch|tilt|{_ABOUT.replace('@', 'x')}|x_deg|dec|inner_(gimbal|angle|axis)"
+    r"|gimbal_?(inner|1|x)|axis_?1|vert(ical)?(_angle)?|v_angle|theta"
+)
+_OUTER_AXIS = (
+    rf"outer|yaw|pan|{_ABOUT.replace('@', 'y')}|y_deg|ha|outer_(gimbal|angle|axis)"
+    r"|gimbal_?(outer|2|y)|axis_?2|hor(izontal)?(_angle)?|h_angle|psi"
+)
 #: Patterns of two angles, tried in this order; `named` puts ``_deg`` behind names with a unit.
 ANGLES: tuple[tuple[AngleForm, tuple[str, ...]], ...] = (
     (
@@ -21,12 +29,7 @@ ANGLES: tuple[tuple[AngleForm, tuple[str, ...]], ...] = (
     ("projection", (r"alpha", r"beta")),
     (
         "alpha-inner",
-        (
-            rf"inner|pitch|tilt|{_ABOUT.replace('@', 'x')}|x_deg|dec|inner_(gimbal|angle|axis)"
-            r"|gimbal_?(inner|1|x)|axis_?1|vert(ical)?(_angle)?|v_angle|theta",
-            rf"outer|yaw|pan|{_ABOUT.replace('@', 'y')}|y_deg|ha|outer_(gimbal|angle|axis)"
-            r"|gimbal_?(outer|2|y)|axis_?2|hor(izontal)?(_angle)?|h_angle|psi",
-        ),
+        (_INNER, _OUTER_AXIS),
     ),
 )
 #: Names of the angle of a sensor of one axis.

@@ -85,6 +85,8 @@ _OF_LETTERS = {
     "day": re.compile(r".*time.*|t"),
     "min": re.compile(r".*time.*|t"),
 }
+#: Letters of a name past which it says nothing.
+_LONGEST = 100
 _BRACKETS = re.compile(r"(?P<name>.+?)[\s_]*[\[({<]\s*(?P<unit>[^\])}>]*?)\s*[\])}>]")
 _AFTER = re.compile(r"(?P<name>.+?)\s*(?:/|,|:|\s+in\s+)\s*(?P<unit>[^\s/,:]+)")
 _ENDING = re.compile(r"(?P<name>.+?)[_\s.-]+(?P<unit>deg[_ ][cf]|[^_\s.-]+)", re.IGNORECASE)
@@ -136,6 +138,8 @@ def named(name: str) -> Named:
     Named(bare='q_c', unit=None)
     """
     text = name.strip()
+    if len(text) > _LONGEST:
+        return Named(bare="", unit=None)
     for pattern in (_BRACKETS, _DEGREE_SIGN, _AFTER, _ENDING, _CAMEL):
         match = pattern.fullmatch(text)
         unit = unit_of(match["unit"]) if match else None

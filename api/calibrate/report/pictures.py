@@ -71,7 +71,7 @@ def _axes(equal: bool = True) -> tuple[Figure, Any]:
     axes.grid(color="#e4e4e4", linewidth=0.6)
     axes.set_axisbelow(True)
     if equal:
-        axes.set_aspect("equal")
+        axes.set_aspect("equal", adjustable="datalim")  # poses may lie on a line
         axes.set_xlabel("off axis along x, deg")
         axes.set_ylabel("off axis along y, deg")
     return figure, axes

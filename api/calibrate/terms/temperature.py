@@ -116,12 +116,8 @@ class TemperatureTerms(_LinearInTemperature):
             raise UnusableDataError(f"{self.about.name}: readings do not go with the temperature")
         form, numbers = found
         self.shift_ = numbers[:2]
-        self.slope_ = {
-            "shift": lambda: np.zeros((2, 2)),
-            "scale": lambda: numbers[2] * np.eye(2),
-            "scales": lambda: np.diag(numbers[2:]),
-            "linear": lambda: numbers[2:].reshape(2, 2),
-        }[form]()
+        scales = {"shift": np.zeros(2), "scale": np.repeat(numbers[2:], 2)}.get(form, numbers[2:])
+        self.slope_ = numbers[2:].reshape(2, 2) if form == "linear" else np.diag(scales)
         self.reference_k_ = reference
 
 
@@ -258,7 +254,7 @@ def _simplest(
     found = None
     for name, columns in forms.items():
         design = np.column_stack([_left(one, span).reshape(-1) for one in columns])
-        numbers = np.linalg.lstsq(design, aim, rcond=1e-12)[0]
+        numbers: Floats = np.asarray(np.linalg.lstsq(design, aim, rcond=1e-12)[0], dtype=np.float64)
         rest = aim - design @ numbers
         criterion = count * np.log(max(float(rest @ rest), 1e-300)) + len(numbers) * np.log(count)
         if criterion < best:

@@ -111,15 +111,6 @@ def test_a_cross_of_poses_is_said_to_leave_parts_of_the_field_untested(tmp_path)
     assert len(found.verdict.next_poses) == 20
 
 
-@pytest.mark.parametrize("turned", [0.0, 30.0])
-def test_one_axis_is_refused_with_what_would_settle_it(turned, tmp_path):
-    line = np.linspace(-50, 50, 60)
-    sun = sun_of(np.column_stack([line, 0 * line])) @ turn("z", turned).T
-    path = write(tmp_path / "one.csv", HEADER, spots(sun, 1), angles_of(sun))
-    with pytest.raises(UnusableDataError, match="second axis"):
-        calibrate([path])
-
-
 @pytest.mark.parametrize(
     "model",
     [
@@ -145,13 +136,9 @@ def test_readings_that_have_nothing_to_do_with_the_light_are_refused(seed, tmp_p
 
 
 @pytest.mark.skipif(not SHARED.is_dir(), reason="no ../shared beside this checkout")
-@pytest.mark.parametrize(
-    ("name", "said"),
-    [("one-axis-sweep.csv", "second axis"), ("faces-random.csv", "do not belong together")],
-)
-def test_files_that_failed_are_refused_in_a_sentence(name, said):
-    with pytest.raises(UnusableDataError, match=said):
-        calibrate([SHARED / "cases" / name])
+def test_readings_by_chance_are_refused_in_a_sentence():
+    with pytest.raises(UnusableDataError, match="do not belong together"):
+        calibrate([SHARED / "cases" / "faces-random.csv"])
 
 
 @pytest.mark.skipif(not SHARED.is_dir(), reason="no ../shared beside this checkout")
@@ -230,7 +217,8 @@ def test_the_command_writes_report_and_code_and_a_template(tmp_path, monkeypatch
     assert "verdict: good" in capsys.readouterr().out
     page = (out / "sun_sensor_report.html").read_text()
     assert page.count("<svg") == 5
-    assert {path.suffix for path in out.iterdir()} == {".html", ".json", ".py", ".c", ".h"}
+    ends = {path.suffix for path in out.iterdir()}
+    assert ends == {".html", ".json", ".py", ".c", ".h", ".sha256"}
 
 
 def test_an_interrupted_command_leaves_nothing(camera, tmp_path, monkeypatch):

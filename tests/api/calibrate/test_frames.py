@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import cv2
@@ -14,6 +15,7 @@ from api.calibrate.frames import SPOT, with_spots
 from api.calibrate.settings import Settings, SettingsError
 from api.calibrate.table import Table, TableError
 
+CASES = Path(os.environ.get("SUNATLAS_CASES", Path(__file__).parents[4] / "shared" / "cases"))
 ANGLES = grid(9, 20.0)
 FOCAL, MIDDLE = 60.0, (39.5, 29.5)
 
@@ -122,3 +124,67 @@ def test_a_directory_is_no_picture(tmp_path: Path) -> None:
     (tmp_path / "0.png").mkdir()
     with pytest.raises(TableError, match=r"^poses.csv, row 2: expected a file, got a directory"):
         with_spots(named("0.png"), tmp_path, settings())
+
+
+def one_picture(directory: Path, *pictures: Path | np.ndarray) -> tuple[Table, list[str]]:
+    """The table of pictures in a directory of their own, with their spots."""
+    directory.mkdir()
+    for number, one in enumerate(pictures):
+        path = directory / f"{number}.png"
+        if isinstance(one, Path):
+            path.write_bytes(one.read_bytes())
+        else:
+            assert cv2.imwrite(str(path), one)
+    names = np.array([f"{number}.png" for number in range(len(pictures))])
+    table = Table({"image": names}, 2, "poses.csv", {"image": (2, "0.png")})
+    settings = Settings.model_validate(
+        {
+            "readings": {"kind": "frames", "columns": ["image"]},
+            "direction": {"form": "projection", "columns": ["a", "b"]},
+        }
+    )
+    return with_spots(table, directory, settings)
+
+
+def test_a_picture_of_another_size_is_refused_by_its_row(tmp_path: Path) -> None:
+    sun = sun_of(np.array([[0.0, 0.0]]))[0]
+    usual = picture(sun, np.random.default_rng(1))
+    with pytest.raises(TableError, match=r"row 3: expected a picture of 80 x 60 .*; got 80 x 50"):
+        one_picture(tmp_path / "run", usual, usual[:50])
+
+
+def test_a_picture_of_too_many_pixels_is_refused(tmp_path: Path) -> None:
+    import struct
+    import zlib
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return (
+            struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        )
+
+    head = struct.pack(">IIBBBBB", 50_000, 50_000, 8, 0, 0, 0, 0)
+    path = tmp_path / "large.png"
+    path.write_bytes(
+        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", b"") + chunk(b"IEND", b"")
+    )
+    with pytest.raises(TableError, match="row 2: expected a picture of at most 100000000 pixels"):
+        one_picture(tmp_path / "run", path)
+
+
+def test_links_in_a_circle_are_no_picture(tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    run.mkdir()
+    (run / "a.png").symlink_to(run / "b.png")
+    (run / "b.png").symlink_to(run / "a.png")
+    (run / "poses.csv").write_text("image,theta_x_deg,theta_y_deg\na.png,1,2\n")
+    with pytest.raises(TableError, match=r"row 2: expected a picture; got no file 'a\.png'"):
+        calibrate([run])
+
+
+@pytest.mark.skipif(not CASES.is_dir(), reason="no ../shared beside this checkout")
+def test_colour_is_said_and_a_saturated_disc_flagged(tmp_path: Path) -> None:
+    table, said = one_picture(tmp_path / "colour", CASES / "colour-disc.png")
+    assert len(table.columns[SPOT[0]]) == 1
+    assert any("1 frames in colour" in note for note in said), said
+    table, said = one_picture(tmp_path / "clipped", CASES / "half-saturated-disc.png")
+    assert any("1 frames may be saturated" in note for note in said)

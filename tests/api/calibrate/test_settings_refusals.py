@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from api.calibrate.settings import SettingsError, parse_settings, read_settings
+from api.calibrate.settings import SettingsError, parse_settings, parse_toml, read_settings
 
 SPOT: dict[str, Any] = {"kind": "spot", "columns": ["x", "y"]}
 VECTOR: dict[str, Any] = {"form": "vector", "columns": ["sun_x", "sun_y", "sun_z"]}
@@ -40,6 +40,49 @@ def test_readings_that_contradict_themselves_are_refused(
 ) -> None:
     with pytest.raises(SettingsError, match=rf"^a\.toml: readings: {said}"):
         parse_settings({"readings": readings, "direction": VECTOR}, "a.toml")
+
+
+NAN, INF = float("nan"), float("inf")
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "said"),
+    [
+        ("readings.dark", 1e308, "less than or equal to 1000000000000000 .*; got 1e\\+308"),
+        ("readings.dark", [0.0, NAN], "a finite number; got nan"),
+        ("readings.gain", INF, "a finite number .*; got inf"),
+        ("readings.gain", True, "gain must be no true or false"),
+        ("rows.shift", 1e30, "integer.*; got 1e\\+30"),
+        ("rows.shift", 10_001, "less than or equal to 10000; got 10001"),
+        ("bench.floor_deg", 1e308, "less than or equal to 30; got 1e\\+308"),
+        ("bench.floor_deg", INF, "a finite number; got inf"),
+        ("sensor.focal_length_mm", INF, "a finite number; got inf"),
+        ("sensor.focal_length_mm", True, "focal_length_mm must be no true or false"),
+        ("sensor.centre_px", [NAN, 0.0], "a finite number; got nan"),
+        ("sensor.face_normals", [[0.0, 0.0, 0.0]], "directions; got one of zeros"),
+        ("sensor.face_normals", [[0.0, NAN, 1.0]], "a finite number; got nan"),
+        ("direction.light", [0.0, 0.0, 0.0], "light must be a direction; got zeros"),
+    ],
+)
+def test_a_setting_out_of_range_is_refused_by_its_name(place: str, value: Any, said: str) -> None:
+    part, name = place.split(".")
+    stated: dict[str, Any] = {"readings": SPOT, "direction": VECTOR}
+    stated[part] = stated.get(part, {}) | {name: value}
+    with pytest.raises(SettingsError, match=rf"^a\.toml: {part}[.:].*{said}"):
+        parse_settings(stated, "a.toml")
+
+
+@pytest.mark.parametrize(
+    "text", ["shift = " + "1" * 19_000, "apply = " + 50_000 * "[", 'source = "\\q"']
+)
+def test_toml_that_nobody_can_read_is_refused_in_a_sentence(text: str) -> None:
+    with pytest.raises(SettingsError, match=r"^a\.toml: .{10,200}$"):
+        parse_toml(text, "a.toml")
+
+
+def test_one_reading_is_of_one_axis() -> None:
+    with pytest.raises(SettingsError, match=r'with direction\.form = "one-angle"; got vector'):
+        parse_settings({"readings": {"kind": "spot", "columns": ["x"]}, "direction": VECTOR}, "a")
 
 
 @pytest.mark.parametrize(

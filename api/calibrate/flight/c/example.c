@@ -24,7 +24,7 @@ int main(void)
         }
         else
         {
-            in.temperature_K = (%name%_real)number;
+            in.temperature = (%name%_real)number;
         }
         count++;
         if (count == %columns%)

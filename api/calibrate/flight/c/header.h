@@ -38,7 +38,7 @@ typedef enum
 typedef struct
 {
     %name%_real value[%NAME%_READINGS];
-    %name%_real temperature_K; /* %temperature% */
+    %name%_real temperature; /* %temperature% */
 } %name%_reading;
 
 typedef struct

@@ -87,30 +87,10 @@
 
     v[0] = x;
     v[1] = y;
-/* step: shift */
-    /* features less an offset */
-    int i;
-
-    for (i = 0; i < FEATURES; i++)
-    {
-        v[i] -= offset[i];
-    }
 /* step: temperature_range */
     if (!((kelvin >= low) && (kelvin <= high)))
     {
         status = %NAME%_TEMPERATURE;
-    }
-/* step: turn */
-    /* the direction rotated */
-    const real x = sun[0];
-    const real y = sun[1];
-    const real z = sun[2];
-    int i;
-
-    for (i = 0; i < 3; i++)
-    {
-        sun[i] = (rotation[3 * i] * x) + (rotation[(3 * i) + 1] * y) +
-                 (rotation[(3 * i) + 2] * z);
     }
 /* step: cone */
     /* the direction inside those that were calibrated */

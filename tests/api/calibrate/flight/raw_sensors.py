@@ -17,11 +17,13 @@ import numpy as np
 from algorithms.contract import FeatureKind
 from algorithms.discovery import discover_chains
 from api.calibrate.calibration import Calibration
+from api.calibrate.causes.limits import limits_of
 from api.calibrate.readings import Readings
 from api.calibrate.selection import Candidate, fitted, geometry_of
 from api.calibrate.settings import parse_settings
 
 DARK = 4.8
+WARMTH = {"temperature_K": "temp_C", "temperature_unit": "degC"}
 KINDS = {"spot": FeatureKind.SPOT, "channels": FeatureKind.SIGNALS}
 
 
@@ -60,6 +62,17 @@ class Sensor:
         kelvin = self.context(seed, count)["temperature_K"]
         return rows * (1.0 + self.drift * (kelvin - 290.0)[:, None])
 
+    def celsius(self, seed: int) -> np.ndarray | None:
+        """Temperatures as the file has them."""
+        kelvin = self.context(seed).get("temperature_K")
+        return None if kelvin is None else kelvin - 273.15
+
+    def telemetry(self, seed: int) -> np.ndarray:
+        """Rows with their temperature, where there is one."""
+        celsius = self.celsius(seed)
+        rows = self.raw(seed)
+        return rows if celsius is None else np.column_stack([rows, celsius])
+
     def answers(self, model: Any, seed: int) -> np.ndarray:
         """Directions that a model gives of rows."""
         return np.asarray(model.predict(self.features(self.raw(seed)), self.context(seed)))
@@ -73,6 +86,7 @@ class Sensor:
                 "direction": {"columns": columns, "form": self.form},
                 "apply": self.apply,
                 "sensor": self.sensor,
+                "rows": {} if self.drift is None else WARMTH,
             },
             "test",
         )
@@ -99,6 +113,7 @@ class Sensor:
             model=model,
             chosen=Candidate(self.model, rms_deg=float(np.sqrt(np.nanmean(off**2)))),
             intervals=None,
+            limits=limits_of(made, settings, {}),
             columns=self.columns,
             sources=("bench.csv",),
         )

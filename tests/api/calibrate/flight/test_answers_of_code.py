@@ -6,7 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from raw_sensors import OTHERS, SENSORS, compiled
 
+from api.calibrate.causes.limits import ReadingLimits
 from api.calibrate.flight.code import flight_code
 from api.calibrate.flight.names import c_name, comment
 from api.calibrate.flight.program import run
@@ -23,43 +24,31 @@ from api.calibrate.uncertainty import Intervals
 DIGEST = "0123456789abcdef0123456789abcdef"
 
 
-@dataclass(frozen=True)
-class Limits:
-    """What readings may be, by column of the settings, and the light that they add up to."""
-
-    low: tuple[float, ...]
-    high: tuple[float, ...]
-    least_light: float
-    most_light: float
-
-
-def limited(found: Any, limits: Limits) -> Any:
-    """The calibration with limits, as one that looked for them has."""
-    made = replace(found)
-    vars(made)["limits"] = limits
-    return made
-
-
 def answers_of(text: str) -> Any:
     names: dict[str, Any] = {"__name__": "ss"}
     exec(text, names)
     return SimpleNamespace(**names)
 
 
-def test_readings_at_their_limits_are_saturated_by_the_column_of_the_settings(camera: Any) -> None:
+@pytest.mark.parametrize("rounded", [0.0, 5e-7])
+def test_readings_at_their_limits_are_saturated_by_the_column_of_the_settings(
+    rounded: float, camera: Any
+) -> None:
     sensor = SENSORS["quadrants"]
     found = sensor.calibrated(camera)
     # the first quadrant, which is the file's second column, is clipped below
     raw = sensor.raw(3)
     clipped = float(np.quantile(raw[:, 1], 0.3))
-    limits = Limits((clipped, -np.inf, -np.inf, -np.inf), (np.inf,) * 4, 0.1, 100.0)
-    code = flight_code(limited(found, limits))
+    stated = (1.0 - rounded) * clipped  # as a file's last digit has it
+    limits = ReadingLimits((stated, -np.inf, -np.inf, -np.inf), (np.inf,) * 4, 0.1, 100.0)
+    code = flight_code(replace(found, limits=limits))
     _, _, status = run(code.program.steps, raw)
     assert np.array_equal(status == 3, raw[:, 1] <= clipped)
     assert (status == 3).mean() == pytest.approx(0.3, abs=0.01)
-    assert f"column q1, in its unit; dark 4.8, gain -1, clipped at {clipped:.6g}" in " ".join(
-        code.files("ss", {}, DIGEST)["ss.h"].replace("*", "").split()
-    )
+    header = " ".join(code.files("ss", {}, DIGEST)["ss.h"].replace("*", "").split())
+    said = re.search(r"column q1, in its unit; dark 4.8, gain -1, clipped at (\S+) and", header)
+    assert said
+    assert float(said[1]) == pytest.approx(clipped, rel=1e-5)
 
 
 def test_light_outside_its_limits_is_named(camera: Any) -> None:
@@ -67,8 +56,8 @@ def test_light_outside_its_limits_is_named(camera: Any) -> None:
     found = sensor.calibrated(camera)
     light = sensor.raw(3).sum(axis=1)
     low, high = np.quantile(light, (0.2, 0.8))
-    none = Limits((-np.inf,) * 6, (np.inf,) * 6, float(low), float(high))
-    code = flight_code(limited(found, none))
+    none = ReadingLimits((-np.inf,) * 6, (np.inf,) * 6, float(low), float(high))
+    code = flight_code(replace(found, limits=none))
     _, _, status = run(code.program.steps, sensor.raw(3))
     assert np.array_equal(status == 2, light < low)
     assert np.array_equal(status == 4, light > high)
@@ -140,7 +129,7 @@ int main() {
     long most = 0, most_calls = 0;
     ss_reading in; double x; int at = 0;
     while (std::scanf("%lf", &x) == 1) {
-        if (at < SS_READINGS) in.value[at] = x; else in.temperature_K = x;
+        if (at < SS_READINGS) in.value[at] = x; else in.temperature = x;
         if (++at == INPUTS) {
             ss_answer out; at = 0; operations = calls = 0;
             ss_solve(&in, &out);
@@ -170,7 +159,7 @@ def test_the_header_bounds_the_operations_that_a_counting_number_counts(
     (tmp_path / "ss.h").write_text(header)
     (tmp_path / "ss.c").write_text(texts["ss.c"])
     (tmp_path / "main.cpp").write_text(MAIN)
-    rows = np.column_stack([sensor.raw(3), *sensor.context(3).values()])
+    rows = sensor.telemetry(3)
     inputs = rows.shape[1]
     compiled(tmp_path, "g++", "-O1", f"-DINPUTS={inputs}", "main.cpp", "-o", "count")
     text = "\n".join(" ".join(f"{value:.17g}" for value in row) for row in rows)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from raw_sensors import DARK, OTHERS, SENSORS, Sensor, apart_deg, compiled
+from raw_sensors import DARK, OTHERS, SENSORS, apart_deg, compiled
 
 from api.calibrate.flight.code import flight_code
 
@@ -59,16 +59,11 @@ def c_answers(directory: Path, rows: np.ndarray, program: str = "example") -> np
     return np.array([line.split() for line in lines], dtype=float)
 
 
-def rows_of(sensor: Sensor, seed: int) -> np.ndarray:
-    """Raw rows with their temperature."""
-    return np.column_stack([sensor.raw(seed), *sensor.context(seed).values()])
-
-
 @needs_gcc
 @pytest.mark.parametrize("kind", SENSORS)
 def test_c_adds_less_than_a_hundredth_of_the_error_on_raw_rows_held_out(kind, written):
     sensor, (found, _, directory) = SENSORS[kind], written(kind)
-    answers = c_answers(directory, rows_of(sensor, 3))
+    answers = c_answers(directory, sensor.telemetry(3))
     model = sensor.answers(found.model, 3)
     answered = answers[:, 0] == 0
     known = np.isfinite(model[:, 0])
@@ -86,7 +81,7 @@ def test_c_adds_less_than_a_hundredth_of_the_error_on_raw_rows_held_out(kind, wr
 @pytest.mark.parametrize("kind", SENSORS)
 def test_python_answers_what_c_does(kind, written):
     sensor, (_, _, directory) = SENSORS[kind], written(kind)
-    rows = rows_of(sensor, 4)
+    rows = sensor.telemetry(4)
     rows[5] = 0.0
     rows[6, 0] = np.nan
     readings = len(sensor.columns)
@@ -186,8 +181,8 @@ def test_ten_percent_less_light_changes_no_direction_of_balances(written):
 @needs_gcc
 def test_temperatures_that_were_not_calibrated_are_refused(written):
     sensor, (_, _, directory) = SENSORS["warm faces"], written("warm faces")
-    rows = rows_of(sensor, 3)
-    rows[:, -1] = 25.0  # degrees Celsius
+    rows = sensor.telemetry(3)
+    rows[:, -1] += 273.15  # kelvin
     assert (c_answers(directory, rows)[:, 0] == 5).all()
 
 
@@ -203,7 +198,7 @@ def test_temperatures_that_were_not_calibrated_are_refused(written):
 )
 def test_angles_are_those_of_the_files_form(kind, angles, written):
     _, _, directory = written(kind)
-    answers = c_answers(directory, rows_of(SENSORS[kind], 5))
+    answers = c_answers(directory, SENSORS[kind].telemetry(5))
     answers = answers[answers[:, 0] == 0]
     expected = np.degrees(np.column_stack(angles(*answers[:, 1:4].T)))
     assert np.allclose(answers[:, 4:6], expected, rtol=0, atol=1e-5)
@@ -216,7 +211,7 @@ def test_models_of_faces_are_emitted_themselves(name, camera, tmp_path):
     code = flight_code(found)
     assert not code.flagged
     (tmp_path / "ss.py").write_text(code.files("ss", {}, DIGEST)["ss.py"])
-    made = module_of(tmp_path).solve(sensor.raw(3), sensor.context(3).get("temperature_K"))
+    made = module_of(tmp_path).solve(sensor.raw(3), sensor.celsius(3))
     model = sensor.answers(found.model, 3)
     answered = made["status"] == 0
     off = apart_deg(made["sun"][answered], model[answered])

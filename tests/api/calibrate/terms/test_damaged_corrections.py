@@ -92,11 +92,15 @@ def test_a_part_that_is_something_else_is_refused(
         load(file)
 
 
-def test_a_fitted_array_of_text_is_refused(held: dict[str, Any], tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "change", [{"array": ["1"] * 10, "dtype": "U1"}, {"array": [1.0], "shape": [1]}]
+)
+def test_parameters_of_another_number_or_kind_are_refused(
+    held: dict[str, Any], tmp_path: Path, change: dict[str, Any]
+) -> None:
     model = json.loads(json.dumps(held["model"]))
-    vector = model["fitted"]["vector_"]
-    vector.update(array=["1"] * len(vector["array"]), dtype="U1")
-    with pytest.raises(UnreadableCalibrationError, match=r"^a\.json: "):
+    model["fitted"]["vector_"].update(change)
+    with pytest.raises(UnreadableCalibrationError, match=r"^a\.json: homography has 10 parameters"):
         load(forged(held, tmp_path / "a.json", {"model": model}))
 
 
