@@ -20,6 +20,8 @@ from api.calibrate.uncertainty import NORMAL_95, tangent_offsets
 THREE_SIGMA = 0.9973
 _BAND_DEG = 10.0
 _AZIMUTHS = 8
+#: Largest error of an axis that was not measured, of rounding.
+_ROUNDING_DEG = 1e-9
 
 
 @dataclass(frozen=True)
@@ -75,8 +77,10 @@ class Errors:
 
     @cached_property
     def covered(self) -> NDArray[np.bool_]:
-        """Which errors (M, 2) lie within the 95 % interval of their axis."""
-        return np.asarray(np.abs(self.along_deg) <= NORMAL_95 * self.sigma_deg)
+        """Which errors (M, 2), (M, 1) of one axis, lie within their axis' 95 % interval."""
+        inside = np.abs(self.along_deg) <= NORMAL_95 * self.sigma_deg
+        measured = (np.abs(self.along_deg[self.known]) > _ROUNDING_DEG).any(axis=0)
+        return np.asarray(inside[:, measured] if measured.any() else inside)
 
 
 @dataclass(frozen=True)
