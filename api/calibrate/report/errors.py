@@ -20,6 +20,8 @@ from api.calibrate.uncertainty import NORMAL_95, tangent_offsets
 THREE_SIGMA = 0.9973
 _BAND_DEG = 10.0
 _AZIMUTHS = 8
+#: Largest error of an axis that was not measured, of rounding.
+_ROUNDING_DEG = 1e-9
 
 
 @dataclass(frozen=True)
@@ -75,8 +77,10 @@ class Errors:
 
     @cached_property
     def covered(self) -> NDArray[np.bool_]:
-        """Which errors (M, 2) lie within the 95 % interval of their axis."""
-        return np.asarray(np.abs(self.along_deg) <= NORMAL_95 * self.sigma_deg)
+        """Which errors (M, 2), (M, 1) of one axis, lie within their axis' 95 % interval."""
+        inside = np.abs(self.along_deg) <= NORMAL_95 * self.sigma_deg
+        measured = (np.abs(self.along_deg[self.known]) > _ROUNDING_DEG).any(axis=0)
+        return np.asarray(inside[:, measured] if measured.any() else inside)
 
 
 @dataclass(frozen=True)
@@ -195,11 +199,14 @@ class Field:
 
 
 def field_of(sun: Floats, azimuths: int = _AZIMUTHS) -> Field | None:
-    """Return how far the hull of poses (N, 3) reaches; None where the boresight is outside."""
+    """Return how far the hull of poses (N, 3) reaches; None where the boresight is outside.
+
+    Of poses along one axis, the two ends.
+    """
     try:
         hull = Hull.of_directions(sun, "field")
     except UnusableDataError:
-        return None
+        return _sweep(sun)
     off = np.arange(0.0, 180.25, 0.25)
     reach = []
     for azimuth in np.arange(azimuths) * 360.0 / azimuths:
@@ -210,6 +217,18 @@ def field_of(sun: Floats, azimuths: int = _AZIMUTHS) -> Field | None:
         reach.append((float(azimuth), float(off[last - 1])))
     angles = [angle for _, angle in reach]
     return Field(min(angles), max(angles), tuple(reach))
+
+
+def _sweep(sun: Floats) -> Field | None:
+    """Return the ends of poses (N, 3) along one axis; None where the boresight is outside."""
+    axis = np.linalg.svd(sun[:, :2], full_matrices=False)[2][0]
+    axis = axis if axis.sum() >= 0 else -axis
+    off = np.degrees(np.arctan2(sun[:, :2] @ axis, sun[:, 2]))
+    low, high = float(off.min()), float(off.max())
+    if not low < 0.0 < high:
+        return None
+    azimuth = float(np.degrees(np.arctan2(axis[1], axis[0])))
+    return Field(min(-low, high), max(-low, high), ((azimuth, high), (azimuth + 180.0, -low)))
 
 
 def ray(azimuth_deg: float | Floats, off_deg: float | Floats) -> Floats:

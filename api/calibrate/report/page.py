@@ -109,6 +109,7 @@ def report(
         fewest=fewest_for(THREE_SIGMA),
         tested=int(errors.known.sum()),
         rows=selection_table(found),
+        refused=_refused(found),
         pictures={title: Markup(svg) for title, svg in drawn.items()},  # noqa: S704 - drawn here
         excluded=counted.most_common(),
         listed=found.excluded[:_LISTED],
@@ -121,6 +122,16 @@ def report(
         coverage_factor=COVERAGE_FACTOR,
         unstated=UNSTATED,
     )
+
+
+def _refused(found: Calibration) -> dict[str, list[str]]:
+    """Return the models that cannot be fitted, by reason; what came is left out of it."""
+    reasons: dict[str, list[str]] = {}
+    for one in found.candidates:
+        if one.refused:
+            said = one.refused.split("; got ")[0].removeprefix(f"{one.name} ")
+            reasons.setdefault(said, []).append(one.name)
+    return reasons
 
 
 def _settings(found: Calibration) -> list[tuple[str, Any]]:

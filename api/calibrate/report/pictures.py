@@ -125,7 +125,7 @@ def _against_angle(few: Errors, asked: Sequence[Requirement]) -> str:
         )  # fmt: skip
     axes.set_xlabel("off-axis angle, deg")
     axes.set_ylabel("error, deg")
-    axes.set_ylim(bottom=0.0)
+    axes.set_ylim(0.0, 1.25 * axes.get_ylim()[1])  # room for the legend
     axes.legend()
     return _svg(figure)
 

@@ -10,7 +10,7 @@ import numpy as np
 from algorithms.calibration.hull import Hull
 from algorithms.contract import Floats, UnusableDataError
 from api.calibrate.calibration import Calibration
-from api.calibrate.report.errors import THREE_SIGMA, Errors, fewest_for, level, ray
+from api.calibrate.report.errors import THREE_SIGMA, Errors, fewest_for, field_of, level, ray
 
 _FORM = re.compile(
     r"(?P<limit>\d+(\.\d*)?|\.\d+) *(?P<unit>deg|arcmin|arcsec|mrad) *@ *"
@@ -170,8 +170,10 @@ def _short_of(half: float, sun: Floats) -> float | None:
     """Return an azimuth at which poses end more than a step before an off-axis angle."""
     try:
         hull = Hull.of_directions(sun, "requirement")
-    except UnusableDataError:
-        return 0.0
+    except UnusableDataError:  # along one axis, where a step is a hundredth of the sweep
+        ends = field_of(sun)
+        short = [] if ends is None else [at for at, reach in ends.reach if 1.01 * reach < half]
+        return 0.0 if ends is None else next(iter(short), None)
     if not len(hull.facets):
         return None
     azimuths = np.arange(0.0, 360.0, 5.0)

@@ -95,10 +95,10 @@ def calibrate(
 ) -> int:
     """Calibrate your own sensor from a turntable file.
 
-    Reads the file, detects its conventions and wrong poses, compares all applicable models by
-    cross-validation, and writes a report (HTML), the calibration (JSON), a Python module and C99
-    code: all files or none, even if it is killed. The exit code is 0 if the verdict is "good" and
-    every requirement is met, otherwise 3.
+    Reads the file, detects its conventions and wrong poses, and compares all applicable models by
+    cross-validation. Writes a report (HTML), the calibration (JSON), a Python module and C99 code:
+    all files or none, even if it is killed. The exit code is 0 if the verdict is "good" and every
+    requirement is met, otherwise 3.
     """
     from api.calibrate.calibration import calibrate as run  # noqa: PLC0415 - SciPy
     from api.calibrate.flight.names import c_name  # noqa: PLC0415 - as above

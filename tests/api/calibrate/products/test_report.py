@@ -112,6 +112,16 @@ def test_the_field_of_a_square_reaches_farther_in_its_corners() -> None:
     assert field_of(aside) is None
 
 
+def test_the_field_of_one_axis_is_its_two_ends() -> None:
+    angle = np.radians(np.linspace(-30.0, 50.0, 81))
+    sweep = np.column_stack([np.zeros(81), np.sin(angle), np.cos(angle)])
+    field = field_of(sweep)
+    assert field is not None
+    assert (field.least_deg, field.most_deg) == pytest.approx((30.0, 50.0))
+    assert dict(field.reach) == pytest.approx({90.0: 50.0, 270.0: 30.0})
+    assert field_of(sweep[angle > 0.1]) is None
+
+
 @pytest.mark.parametrize(
     ("text", "limit", "share", "half"),
     [
