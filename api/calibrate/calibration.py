@@ -22,6 +22,7 @@ from api.calibrate.conventions.finding import Finding
 from api.calibrate.exclusions import WRONG, Excluded, excluded_of, kept_by_model, sound_of
 from api.calibrate.halves import halves
 from api.calibrate.intervals.left_out import errors_left_out
+from api.calibrate.one_axis.calibrated import calibration_of_axis
 from api.calibrate.readings import Readings
 from api.calibrate.robust import wrong_poses
 from api.calibrate.runs import RunOffset
@@ -247,8 +248,6 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     models: Sequence[str] | None,
     progress: Callable[[str, int, int], None],
 ) -> Calibration:
-    from api.calibrate.one_axis.calibrated import calibration_of_axis  # noqa: PLC0415 - it imports this
-
     notes: list[str] = []
     progress("conventions", 0, 1)
     file = read_as(tables, stated)
@@ -258,11 +257,11 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     stated, readings, found = file.settings, file.readings, file.findings
     notes += [note for part in file.bad for note in part.notes]
     if one_plane(readings):
-        return calibration_of_axis(readings, file, tables, notes)
+        return Calibration(**calibration_of_axis(readings, file, tables, notes))
     sound, excluded, runs, fold = sound_of(readings)
     excluded = [*(one for part in file.bad for one in part.excluded), *excluded]
     if one_plane(sound):
-        return calibration_of_axis(sound, file, tables, notes, excluded)
+        return Calibration(**calibration_of_axis(sound, file, tables, notes, excluded))
     readings = sound
     wrong = np.zeros(len(sound), dtype=np.bool_)
     if len(sound) >= _FEWEST_FOR_WRONG:

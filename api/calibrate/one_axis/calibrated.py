@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from algorithms.contract import FeatureKind, Floats, SensorGeometry, UnusableDataError
 from algorithms.models.non_physical.regression_axes import Target
-from api.calibrate.calibration import Calibration
 from api.calibrate.causes.applying import File
 from api.calibrate.causes.bad_cells import joined_levels
 from api.calibrate.causes.limits import limits_of
@@ -45,8 +44,8 @@ def calibration_of_axis(
     tables: Sequence[Table],
     notes: Sequence[str],
     excluded: Sequence[Excluded] = (),
-) -> Calibration:
-    """Return the calibration of the one angle that the poses of tables changed.
+) -> dict[str, Any]:
+    """Return what a calibration of the one angle that the poses of tables changed says.
 
     Parameters
     ----------
@@ -60,6 +59,11 @@ def calibration_of_axis(
     excluded : sequence of Excluded
         Samples left out before.
 
+    Returns
+    -------
+    dict
+        Attributes of `api.calibrate.calibration.Calibration` by their names.
+
     Raises
     ------
     UnusableDataError
@@ -68,17 +72,17 @@ def calibration_of_axis(
     settings = file.settings
     found = calibrated_axis(readings, settings.bench.floor_deg)
     found["excluded"] = (*excluded, *found["excluded"])
-    return Calibration(
-        settings=settings,
-        findings=(),
-        applied=(),
-        digest="",
-        sources=tuple(table.source for table in tables),
-        notes=(*notes, plane_note(readings)),
-        limits=limits_of(found["readings"], settings, joined_levels(file.bad)),
-        columns=tuple(tables[0].columns),
+    return {
         **found,
-    )
+        "settings": settings,
+        "findings": (),
+        "applied": (),
+        "digest": "",
+        "sources": tuple(table.source for table in tables),
+        "notes": (*notes, plane_note(readings)),
+        "limits": limits_of(found["readings"], settings, joined_levels(file.bad)),
+        "columns": tuple(tables[0].columns),
+    }
 
 
 def calibrated_axis(readings: Readings, floor_deg: float) -> dict[str, Any]:
