@@ -214,8 +214,10 @@ def _why(refused: Sequence[Candidate]) -> str:
     """Return why no model can be fitted, in a sentence: one that suits the sensor says so first."""
     said = list(dict.fromkeys(one.refused for one in refused))
     apart = [one for one in said if _APART in one]
-    if apart:
-        return min(apart, key=len)
+    if apart:  # in our own words where there are some: those of models are longer
+        short = [one for one in apart if one.startswith("errs ")]
+        more_than = "no model explains more than chance does"
+        return min(short, key=len, default=f"readings and directions {_APART}: {more_than}")
     return "; ".join(said[:2]) + (f"; and {len(said) - 2} more" if len(said) > 2 else "") or (
         "no model applies"
     )

@@ -25,6 +25,8 @@ from api.calibrate.settings import AngleForm, Settings
 
 #: What a law leaves, over the noise, to be followed.
 FOLLOWED = 1.3
+#: The same with a factor where the law is not exact: the sensor's own distortion is like one.
+_CLOSELY = 1.1
 #: Factors of angles that are tried, and the change from which one is told.
 _FACTORS, _LEAST = (0.7, 1.4), 0.003
 #: Standard deviations from which a factor is told, and step by which its error is.
@@ -130,7 +132,7 @@ def of_scale(readings: Readings, settings: Settings, known: Scale) -> Iterator[F
     off = abs(known.factor - 1.0)
     better = settings.readings.kind == "quadrants" or known.followed > FOLLOWED
     better &= known.followed > _BETTER * known.best
-    told = known.best < FOLLOWED and (exact or better)
+    told = known.best < (FOLLOWED if exact else _CLOSELY) and (exact or better)
     gain = readings.thinned(_MOST).features.size * ((known.followed / known.best) ** 2 - 1.0)
     if not (told and inside and gain > _CERTAIN**2 and off > _LEAST):
         return
