@@ -215,7 +215,8 @@ def _why(refused: Sequence[Candidate]) -> str:
     said = list(dict.fromkeys(one.refused for one in refused))
     apart = [one for one in said if _APART in one]
     if apart:
-        return min(apart, key=len)
+        own = [one for one in apart if one.startswith("errs")]
+        return own[0] if own else f"readings and directions {_APART}, as every fit says"
     return "; ".join(said[:2]) + (f"; and {len(said) - 2} more" if len(said) > 2 else "") or (
         "no model applies"
     )
