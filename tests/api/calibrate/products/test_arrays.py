@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -89,7 +90,7 @@ def test_runs_times_and_dark_levels_reach_the_calibration() -> None:
         (lambda: calibrate_arrays(spots(SUN, 1), SUN, kind="quadrants"), "4 columns; got 2"),
     ],
 )
-def test_arrays_that_do_not_fit_are_refused_by_name(call, said: str) -> None:
+def test_arrays_that_do_not_fit_are_refused_by_name(call: Callable[[], object], said: str) -> None:
     with pytest.raises(ValueError, match=said):
         call()
 

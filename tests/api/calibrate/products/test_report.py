@@ -43,7 +43,7 @@ def known(offsets: np.ndarray, sigma: float = 0.05, **context: np.ndarray) -> Er
 def towards(axis: int) -> np.ndarray:
     """Unit vectors square to each direction, towards an axis."""
     made = np.eye(3)[axis] - SUN[:, [axis]] * SUN
-    return made / np.maximum(np.linalg.norm(made, axis=1), 1e-12)[:, None]
+    return np.asarray(made / np.maximum(np.linalg.norm(made, axis=1), 1e-12)[:, None])
 
 
 @pytest.mark.parametrize(("axis", "name"), [(0, "along x"), (1, "along y")])
