@@ -1,6 +1,7 @@
 """Level without light, and readings that fall: what the sum of the signals and their products tell.
 
-A sensor whose light falls as the cosine of incidence reads, in all, ``4 d + L cos(theta)``. Four
+A sensor whose light falls as the cosine of incidence reads, in all, ``4 d + L cos(theta)``, where
+channels of other gains add what goes with the place of the light across them. Four
 quadrants under a rectangular opening, or behind a spot that is a product of two profiles, read
 ``l_i = x_i y_i``: opposite ones have one product, so ``(q1 - d)(q3 - d) = (q2 - d)(q4 - d)``,
 whatever the opening's transmission. Each law is believed as far as blocks of poses agree on `d`.
@@ -95,15 +96,18 @@ def level_of_sum(readings: Readings) -> Dark:
     """Return the level that the sum of the signals has without light, a share for each column.
 
     By the cosine, and by the cosine behind a plate of glass: where they do not agree on it, the
-    sensor's transmission is not known well enough.
+    sensor's transmission is not known well enough. Channels take shares of the light that go with
+    its tangents and their product: with gains of their own the sum does so, too.
     """
     total, cosine = readings.raw.sum(axis=1), readings.sun[:, 2]
+    tangents = readings.sun[:, :2] / np.maximum(cosine, _STEEPEST)[:, None]
+    shares = np.column_stack([np.ones(len(total)), tangents, tangents.prod(axis=1)])
     count = readings.raw.shape[1]
     laws = {"the cosine": cosine, "the cosine behind glass": cosine * _transmission(cosine)}
     noise = float(reading_noise(total[:, None], readings.sun)[0])
     found = []
     for light in laws.values():
-        design = np.column_stack([np.ones(len(total)), light])
+        design = np.column_stack([np.ones(len(total)), light[:, None] * shares])
         level, error = _by_blocks(design, total, readings.sun)
         fit = np.linalg.lstsq(design, total, rcond=None)[0]
         left = float(np.sqrt(np.mean((total - design @ fit) ** 2)))

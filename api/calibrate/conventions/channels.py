@@ -64,11 +64,18 @@ def of_light(readings: Readings, settings: Settings, noise_deg: float) -> Iterat
         )  # fmt: skip
     elif np.max(np.abs(dark.level)) > CERTAIN * dark.error:
         levels = _stated_as(dark, settings)
-        yield Finding(
-            "light",
+        found = (
             "the level without light seems to be "
-            f"{', '.join(f'{level:.4g}' for level in levels)}, by {dark.by}",
-            np.nan, np.nan, {"readings": {"dark": levels}},
+            f"{', '.join(f'{level:.4g}' for level in levels)}, by {dark.by}"
+        )
+        # light takes no reading below that without it: a scale of the angles may have made this
+        odd = not settings.readings.inverted and min(levels) < 0 <= readings.raw.min()
+        if odd:
+            found += (
+                ", below all readings and zero: state dark if it is, or look at the angles' scale"
+            )
+        yield Finding(
+            "light", found, np.nan, np.nan, {} if odd else {"readings": {"dark": levels}},
             bool(settled and changes_answers(dark, readings, noise_deg)),
             "light that all channels see alike, as stray light, looks the same",
         )  # fmt: skip
