@@ -71,9 +71,7 @@ def of_light(readings: Readings, settings: Settings, noise_deg: float) -> Iterat
         # light takes no reading below that without it: a scale of the angles may have made this
         odd = not settings.readings.inverted and min(levels) < 0 <= readings.raw.min()
         if odd:
-            found += (
-                ", below all readings and zero: state dark if it is, or look at the angles' scale"
-            )
+            found += ", below zero: state it if it is so, or look at the scale of the angles"
         yield Finding(
             "light", found, np.nan, np.nan, {} if odd else {"readings": {"dark": levels}},
             bool(settled and changes_answers(dark, readings, noise_deg)),

@@ -89,6 +89,27 @@ def test_both_laws_of_quadrants_tell_their_level_without_light():
         assert np.abs(dark.level - 0.32).max() < 4.0 * dark.error
 
 
+def test_quadrants_with_gains_of_their_own_tell_their_level_by_the_sum():
+    gains = np.array([1.03, 0.98, 1.01, 0.97])
+    made = table(QUADRANTS, LIGHT * gains + 0.3, NARROW)
+    readings = readings_of(made, guess(made))
+    dark = level_of_sum(readings)
+    # a share of the light that all see stays a level of the gain's size
+    assert np.abs(dark.level - (0.3 + 0.02 * gains.mean())).max() < 4.0 * dark.error
+    assert dark.error < 0.02
+
+
+def test_a_level_below_zero_is_named_and_not_taken_over():
+    names = ("x_plus", "x_minus", "y_plus", "y_minus", *QUADRANTS[4:])
+    currents = bench.electrodes(bench.sun_of(NARROW), 3)
+    # a table of angles that are too small asks for a level that no light goes below
+    (found,) = found_in(table(names, currents, 0.9 * NARROW))
+    assert "below zero" in found.found
+    assert found.certain
+    assert not found.change
+    assert found_in(table(names, currents, NARROW)) == []
+
+
 @pytest.mark.parametrize("late", [0.0, 0.3, 0.7])
 def test_readings_late_by_a_part_of_a_row_are_told_on_sweeps_to_and_fro(late):
     grid = ANGLES.reshape(17, 17, 2).copy()
