@@ -150,7 +150,7 @@ def recalibrate(paths: Sequence[Path], old: Any) -> Correction:
     TableError
         As `api.calibrate.table.read_table`.
     """
-    if isinstance(old.model, AxisCurve):
+    if isinstance(getattr(old, "model", None), AxisCurve):
         raise UnusableDataError(
             "the old calibration is one of a single axis, which is not corrected: calibrate anew"
         )

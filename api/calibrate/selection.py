@@ -215,12 +215,10 @@ def _why(refused: Sequence[Candidate]) -> str:
     said = list(dict.fromkeys(one.refused for one in refused))
     apart = [one for one in said if _APART in one]
     if apart:  # in our own words where there are some: those of models are longer
-        short = [one for one in apart if one.startswith("errs ")]
-        more_than = "no model explains more than chance does"
-        return min(short, key=len, default=f"readings and directions {_APART}: {more_than}")
-    return "; ".join(said[:2]) + (f"; and {len(said) - 2} more" if len(said) > 2 else "") or (
-        "no model applies"
-    )
+        short = (one for one in apart if one.startswith("errs "))
+        return next(short, f"readings and directions {_APART}: chance explains them as well")
+    more = f"; and {len(said) - 2} more" if len(said) > 2 else ""
+    return "; ".join(said[:2]) + more or "no model applies"
 
 
 def explained(candidate: Candidate, readings: Readings) -> Candidate:
