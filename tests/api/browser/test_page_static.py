@@ -82,7 +82,7 @@ def test_every_module_imports_files_and_names_that_exist() -> None:
 def test_every_element_looked_up_by_id_is_made_somewhere(index: Tags) -> None:
     made = {attributes["id"] for _, attributes in index.tags if "id" in attributes}
     code = "\n".join(path.read_text(encoding="utf-8") for path in MODULES)
-    for template in (PAGE.parent / "templates").rglob("*.html"):
+    for template in (PAGE.parent / "pages" / "templates").rglob("*.html"):
         made |= set(re.findall(r"\bid=\"([\w-]+)\"", template.read_text(encoding="utf-8")))
     made |= set(re.findall(r"\bid: \"([\w-]+)\"", code))
     made |= set(re.findall(r"choice\(\"[^\"]+\", \"([\w-]+)\"", code))
