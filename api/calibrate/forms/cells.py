@@ -27,7 +27,8 @@ _SEXAGESIMAL = re.compile(
     r"(?:\s*(?:['′m:]|’)\s*(?:(?P<seconds>\d{1,2}(?:\.\d*)?)\s*(?:[\"″s]|''|”|’’)?)?)?",
     re.IGNORECASE,
 )
-_WITH_UNIT = re.compile(r"(?P<number>[+-]?[\d.,]+(?:[eE][+-]?\d+)?)\s*(?P<unit>[^\d\s.,+-].*)")
+#: From a cell's start: sought at every digit of a long number it would take minutes.
+_WITH_UNIT = re.compile(r"^(?P<number>[+-]?[\d.,]+(?:[eE][+-]?\d+)?)\s*(?P<unit>[^\d\s.,+-].*)")
 _DATE = re.compile(r"\d{4}[-/.]\d{1,2}[-/.]\d{1,2}([T\s].*)?|\d{1,2}[./-]\d{1,2}[./-]\d{4}(\s.*)?")
 
 
