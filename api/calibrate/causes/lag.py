@@ -14,12 +14,12 @@ from api.calibrate.settings import Settings
 
 _SHIFTS = (-4, -3, -2, -1, 1, 2, 3, 4)
 _MOST_PAIRS = 1000
-#: Rows along a sweep from which a fraction is told, stretches of them, and its significance.
+#: Fewest rows along a sweep that show a fraction, stretches of them, and its significance.
 _FEWEST_SWEPT, _STRETCHES, _CERTAIN = 60, 8, 6.0
 #: Change of step over two steps up to which rows lie along a sweep.
 _STEADY = 0.25
 #: Share of the changes from row to row that goes with no smooth function of the readings, from
-#: which a fraction is told: sweeps that all go one way are late by a constant that none tells.
+#: which a fraction is reported: where all sweeps go one way, a lag looks like an offset.
 _TURNS = 0.2
 
 

@@ -27,9 +27,9 @@ from api.calibrate.settings import AngleForm, Settings
 FOLLOWED = 1.3
 #: The same with a factor where the law is not exact: the sensor's own distortion is like one.
 _CLOSELY = 1.1
-#: Factors of angles that are tried, and the change from which one is told.
+#: Range of factors of angles that are tried, and the smallest change that is reported.
 _FACTORS, _LEAST = (0.7, 1.4), 0.003
-#: Standard deviations from which a factor is told, and step by which its error is.
+#: Standard deviations from which a factor is reported, and the step that gives its error.
 _CERTAIN, _STEP = 6.0, 0.01
 #: What a law leaves without a factor, over that with it, where it is not exact.
 _BETTER = 1.15
@@ -48,7 +48,7 @@ UNTESTED = (
 
 @dataclass(frozen=True)
 class Scale:
-    """What is known of the scale of a table's angles.
+    """The scale of a table's angles, by the law of the sensor.
 
     Attributes
     ----------

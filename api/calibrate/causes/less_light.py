@@ -17,8 +17,8 @@ _MOST = 500
 def moved_by_less_light(model: Model, readings: Readings, settings: Settings) -> float:
     """Return by how much answers may move with a tenth less light, RMS, degrees.
 
-    The level without light of each column is taken to be wrong by its error, one after the other,
-    and the largest is told; NaN where readings are no light, or nothing tells that level.
+    The level without light of each column in turn is taken to be wrong by its error; the largest
+    change counts. NaN where readings are no light, or that level is not known.
     """
     kind = settings.readings.kind
     if kind not in ("quadrants", "electrodes", "channels"):
