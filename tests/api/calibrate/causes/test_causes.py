@@ -185,6 +185,7 @@ def test_a_part_that_intervals_hold_too_little_is_named():
         pytest.param(np.arange(12), FOLD, False, id="a fold"),
         pytest.param(np.arange(120), "saturated at 5 in q1", True, id="saturated"),
         pytest.param(np.arange(160), "saturated at 5 in q1", False, id="most rows"),
+        pytest.param(np.arange(160), DUPLICATE, True, id="rows that are there twice"),
     ],
 )
 def test_rows_are_left_out_for_a_cause_or_the_verdict_says_so(places, reason, named):
