@@ -15,6 +15,7 @@ from benchmark.leaderboard.headlines import Headline, accuracies, headlines, ran
 from benchmark.leaderboard.realism import realism
 from benchmark.leaderboard.summaries import digits
 from benchmark.results.store import Store
+from survey_data.hardware import hardware
 
 #: Factor within which a published and a measured accuracy agree.
 _NEAR = 3
@@ -39,7 +40,7 @@ def best_pipelines() -> str:
                 digits(row["rms_deg"] / bound),
                 "–" if judged.is_near_bound else PARTS[judged.leading_part],
                 digits(pin.bench_deg if pin else None, nothing="–"),
-                _sensors(built.get(name)),
+                _sensors(name, built.get(name)),
             )
         )
     header = (
@@ -138,8 +139,14 @@ def _conditions() -> Mapping[str, str]:
     return {name: row["condition"] for name, row in ERROR_BUDGET.read().items()}
 
 
-def _sensors(beside: Mapping[str, Any] | None) -> str:
+def _sensors(dataset: str, beside: Mapping[str, Any] | None) -> str:
+    """List built sensors with their accuracies; a detector that is not the data set's is named."""
+    detector = knowledge().measurements.presets[dataset].detector
     sensors = (beside or {}).get("sensors", ())
     known = [sensor for sensor in sensors if sensor["accuracy_rms_deg"] is not None]
-    said = [f"{digits(sensor['accuracy_rms_deg'])} ({sensor['name']})" for sensor in known]
+    said = []
+    for sensor in known:
+        built = hardware()[sensor["id"]].detector
+        other = f", {built}" if built and built != detector else ""
+        said.append(f"{digits(sensor['accuracy_rms_deg'])} ({sensor['name']}{other})")
     return "; ".join(said) or "none published"
