@@ -42,12 +42,12 @@ def benches(record: Record) -> Finding:
     added, least, most = map(number, raised)
     return Finding(
         "benches",
-        f"A bench twice as accurate cuts the error by {_cut(halved)} behind an array detector, by "
-        f"{_cut(unmoved)} behind others.",
-        "Calibrated on drawn benches, the best pipeline of a data set has "
-        f"{number(array.value)} times the error it has with true directions behind a CCD, CMOS, "
-        f"PDA or event detector (median of {array.n} data sets; 95 % interval {array.interval}), "
-        f"and {added} % more behind other detectors ({single.n}; {least} to {most} %). Standard "
+        f"A bench twice as accurate cuts the error of array detectors by {_cut(halved)}, that of "
+        f"others by {_cut(unmoved)}.",
+        "Calibrated on simulated benches, the best pipeline of a data set has "
+        f"{number(array.value)} times the error it has with true directions for CCD, CMOS, PDA "
+        f"and event detectors (median of {array.n} data sets; 95 % interval {array.interval}), "
+        f"and {added} % more for other detectors ({single.n}; {least} to {most} %). Standard "
         f"benches err by {_benches(record)} RMS. Errors of sensor and bench add as squares: "
         f"measured ones are {confirmed.value:.2f} times that sum ({confirmed.low:.2f} to "
         f"{confirmed.high:.2f}).",

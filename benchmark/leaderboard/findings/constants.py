@@ -42,8 +42,8 @@ def constants(record: Record) -> Finding:
     missing = len(places) - len(rows)
     return Finding(
         "constants",
-        f"A projection with the constants of its drawing has {number(ratio.value)} times the error "
-        "of one fitted on a bench.",
+        f"A projection with nominal constants has {number(ratio.value)} times the error of one "
+        "fitted on a bench.",
         f"Same extractor, the bench's error included: median of {ratio.n} data sets; 95 % interval "
         f"{ratio.interval}. Fitting raises the error in {worse} of {len(rows)} pairs. It pays up "
         f"to a bench error of {number(even.value)} deg ({even.interval}), for the assembly "

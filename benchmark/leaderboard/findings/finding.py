@@ -100,7 +100,7 @@ class Finding:
     @property
     def markdown(self) -> str:
         """All of it, with the command."""
-        return f"**{self.title}** {self.details} `{self.command}`"
+        return f"**{self.title}** {self.details} Pairs: `{self.command}`"
 
 
 def number(value: float) -> str:

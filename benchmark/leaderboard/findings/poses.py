@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from benchmark.leaderboard.findings.finding import Estimate, Finding, number
@@ -22,7 +22,7 @@ def poses(curves: Iterable[Row]) -> Finding:
         Published learning curves as `benchmark.learning_curves.record.published_curves` gives them.
     """
     first = [row for row in curves if row["place"] == 1]
-    kept = [row for row in first if not row["in_order"] and row["floor_error_deg"] is not None]
+    kept = [row for row in first if not row["in_order"]]
     pairs = [_pair(row) for row in kept]
     of = "data sets"
     own, bench, answers = (
@@ -41,8 +41,8 @@ def poses(curves: Iterable[Row]) -> Finding:
         f"{bench.interval}) the error of the best pipeline on the standard bench is within "
         f"{100 * (NEAR - 1):.0f} % of its floor; with true directions from {number(own.value)} on "
         f"({own.interval}). It answers {100 * AVAILABLE:.0f} % of the test split from "
-        f"{number(answers.value)} on ({answers.interval}), as models answer only between their "
-        "poses; a planned grid may need fewer.",
+        f"{number(answers.value)} on ({answers.interval}), because models answer only inside the "
+        "hull of their poses; a planned grid may need fewer.",
         (own, bench, answers),
         (f"{len(first) - len(kept)} flights, which have no choice of poses",),
         tuple(pairs),
@@ -64,7 +64,7 @@ def _pair(row: Row) -> dict[str, Any]:
     }
 
 
-def _from(row: Row, meets: Any) -> int | None:
+def _from(row: Row, meets: Callable[[Row], bool]) -> int | None:
     """Return the smallest number of poses from which on every point meets a condition."""
     found: int | None = None
     for point in reversed(row["points"]):
@@ -74,9 +74,11 @@ def _from(row: Row, meets: Any) -> int | None:
     return found
 
 
-def _is_near(point: Row, floor_deg: float, bench_deg: float) -> bool:
+def _is_near(point: Row, floor_deg: float | None, bench_deg: float) -> bool:
+    if floor_deg is None or point["middle_deg"] is None:
+        return False
     limit = NEAR * math.hypot(floor_deg, bench_deg)
-    return point["middle_deg"] is not None and math.hypot(point["middle_deg"], bench_deg) <= limit
+    return math.hypot(point["middle_deg"], bench_deg) <= limit
 
 
 def _answers(point: Row) -> bool:

@@ -222,7 +222,7 @@ def test_the_error_on_a_bench_is_compared_with_the_own_one_of_the_same_units() -
     assert [one.value for one in found.estimates] == pytest.approx(
         [5 / 3, 1.01, math.hypot(3, 2) / 5, math.hypot(3, 2) / 5, (1.0 + 0.0303 / 0.05) / 2]
     )
-    assert "and 1.0 % more behind other detectors" in found.text
+    assert "and 1.0 % more for other detectors" in found.text
 
 
 def curve(points: Sequence[tuple[int, float | None, float, int]], **more: Any) -> dict[str, Any]:
