@@ -10,12 +10,6 @@ import pytest
 from api.cells import cell, plain_value
 
 
-class Order(enum.IntEnum):
-    """Numbers with names."""
-
-    FIRST = 1
-
-
 class Verdict(enum.StrEnum):
     """Words with names."""
 
@@ -73,20 +67,3 @@ def test_a_cell_is_spelled_one_way(value, text):
 def test_what_no_document_holds_is_refused(value: object) -> None:
     with pytest.raises(TypeError, match=type(value).__name__):
         plain_value([value])
-
-
-def test_choices_stay_what_they_are_in_a_document() -> None:
-    assert plain_value({"word": Word.NEAR, "number": Number.TWO}) == {"word": "near", "number": 2}
-
-
-@pytest.mark.parametrize(
-    ("value", "text", "plain"),
-    [
-        (Order.FIRST, "1", 1),
-        (Verdict.AGREES, "agrees", "agrees"),
-        ([Verdict.AGREES, Order.FIRST], "agrees; 1", ["agrees", 1]),
-    ],
-)
-def test_a_named_constant_is_spelled_as_its_value(value: object, text: str, plain: object) -> None:
-    assert cell(value) == text
-    assert plain_value(value) == plain

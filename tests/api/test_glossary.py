@@ -54,14 +54,3 @@ def test_a_value_means_what_the_table_says_unless_two_attributes_have_it():
     assert terms["detector", "CMOS"] == table["CMOS"]
     assert "Slit" in table
     assert terms["mask", "Slit"] != terms["model", "Slit"]
-
-
-def test_a_term_as_json_is_without_the_words_that_are_avoided() -> None:
-    term = module.Term("bound", "Cramer-Rao bound", "A limit.", "term", "", ("limit",))
-    assert term.to_dict() == {
-        "term": "bound",
-        "name": "Cramer-Rao bound",
-        "meaning": "A limit.",
-        "kind": "term",
-        "see": "",
-    }

@@ -133,20 +133,3 @@ def test_pictures_of_older_code_are_removed_but_the_newest(tmp_path: Path) -> No
     previews.forget_others(tmp_path)
     left = {found.name for found in (tmp_path / previews.FOLDER).iterdir()}
     assert left == {"older3", "older4", "older5", previews.digest()}
-
-
-@pytest.mark.parametrize("arguments", [[], ["store"], ["--publsh"], ["--publish", "store", "a"]])
-def test_what_is_to_be_drawn_has_to_be_said(arguments, capsys):
-    with pytest.raises(SystemExit) as ended:
-        previews.main(arguments)
-    assert ended.value.code == 2
-    assert "python -m api.previews: error: " in capsys.readouterr().err
-
-
-def test_a_picture_that_is_kept_already_is_not_drawn_again(tmp_path: Path) -> None:
-    name = datasets.names()[0]
-    path = place(tmp_path, name)
-    path.parent.mkdir(parents=True)
-    path.write_bytes(b"kept")
-    previews.draw(tmp_path, [name])
-    assert path.read_bytes() == b"kept"

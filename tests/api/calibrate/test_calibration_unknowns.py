@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import replace
-from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -19,7 +18,7 @@ from algorithms.contract import UnusableDataError
 from api.calibrate import documents, products
 from api.calibrate.calibration import Calibration, calibrate
 from api.calibrate.certificate.certificate import certificate
-from api.calibrate.documents import load, number, save, versions, with_correction
+from api.calibrate.documents import load, save, with_correction
 from api.calibrate.recalibration import Correction
 from api.calibrate.recalibration import Errors as CorrectionErrors
 from api.calibrate.report import pictures
@@ -201,22 +200,3 @@ def test_a_document_of_another_kind_is_refused(
     file.write_text(json.dumps(documents.document(nine) | change), encoding="utf-8")
     with pytest.raises(UnreadableCalibrationError, match=rf"^nine\.json: {said}"):
         load(file)
-
-
-@pytest.mark.parametrize(
-    ("value", "expected"),
-    [(np.float64(0.5), 0.5), (float("inf"), None), ("offset", "offset"), (3, 3), (None, None)],
-)
-def test_what_is_no_number_is_none_in_a_document(value: object, expected: object) -> None:
-    assert number(value) == expected
-    assert not isinstance(number(value), np.floating)
-
-
-def test_a_package_that_is_not_installed_is_of_an_unknown_version(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    def missing(name: str) -> str:
-        raise PackageNotFoundError(name)
-
-    monkeypatch.setattr(documents, "version", missing)
-    assert versions()["numpy"] == "unknown"

@@ -27,14 +27,6 @@ def test_rows_with_the_light_behind_are_kept_where_asked_for() -> None:
     assert (every.sun[:, 2] > 0).sum() == len(front)
 
 
-def test_a_file_without_the_column_of_runs_is_refused() -> None:
-    made = spot_table(SPOTS, ANGLES)
-    stated = guess(made)
-    named = stated.model_copy(update={"rows": stated.rows.model_copy(update={"run": "sweep"})})
-    with pytest.raises(TableError, match=r"no column 'sweep' \(there are x_px"):
-        readings_of(made, named)
-
-
 def test_a_file_without_readings_of_known_names_is_refused() -> None:
     with pytest.raises(TableError, match="no columns of readings recognised among spin, note;"):
         guess(table(("spin", "note", *VECTOR), SPOTS, SUN))

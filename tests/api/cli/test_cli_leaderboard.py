@@ -3,13 +3,11 @@
 import csv
 import io
 import json
-import re
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
-from api.cli.boards import architectures_text
 from api.cli.command_line import app
 from api.cli.findings import NAMES
 from benchmark.leaderboard.findings import KEYS
@@ -58,32 +56,6 @@ def test_without_options_the_answer_fits_one_screen(rows):
         assert float(bench) == pytest.approx(row["on_bench_deg"], rel=0.005)
 
 
-def test_names_that_are_too_long_have_a_line_of_their_own_and_are_never_cut(rows):
-    long = {**rows[0], "extractor": "a-method-of-many-words", "model": "that + needs + a-chain"}
-    text = architectures_text([long, {**rows[1], "over_bound": 614340.0, "own_se": None}])
-    assert f"{long['extractor']} + {long['model']}" in text
-    assert max(map(len, text.splitlines())) <= COLUMNS
-    nothing = dict.fromkeys(rows[0]) | {"detector": "PD", "mask": "Slit", "datasets": []}
-    assert "none has an error" in architectures_text([{**nothing, "tie": False}])
-
-
-def test_what_answers_too_seldom_is_said_below_the_table(rows):
-    assert "Below 95 %" not in architectures_text(rows)
-    text = architectures_text([{**rows[0], "availability": 0.5}, *rows[1:]])
-    assert f"{rows[0]['detector']} {rows[0]['mask']} 50 %." in text
-
-
-def test_the_overview_fits_the_width_and_says_how_it_aggregates(knowledge):
-    document = json.loads(sunatlas("--overview", "--format", "json"))
-    lines = sunatlas("--overview").splitlines()
-    assert max(map(len, lines)) <= COLUMNS
-    assert " ".join(lines).startswith(document["says"])
-    for part in document["parts"]:
-        cells = [part["part"], str(part["boards"])]
-        (line,) = [line for line in lines if line.split()[:2] == cells]
-        assert f"{100 * part['share_10']:.0f} %" in line
-
-
 @pytest.mark.parametrize(
     ("arguments", "path", "listed"),
     [
@@ -130,17 +102,6 @@ def test_a_board_begins_with_the_best_of_each_extractor(atlas):
     ranked = {row["extractor"] for row in board if row["rank"] is not None}
     assert sorted(row["extractor"] for row in best) == sorted(ranked)
     assert [row["rank"] for row in best] == sorted(row["rank"] for row in best)
-
-
-def test_people_read_the_best_of_each_extractor_in_a_table_before_the_others(knowledge):
-    whole = sunatlas("--dataset", "psd-single-aperture", "--condition", "nominal")
-    best, others = whole.split("psd-single-aperture: the others")
-    assert "psd-single-aperture: the best of each extractor" in best
-    board = knowledge.measurements.board_rows("psd-single-aperture")
-    for row in (row for row in board if row["condition"] == "nominal"):
-        where = best if row["best_of_extractor"] else others
-        name = rf"\bnominal +{re.escape(row['extractor'])} +{re.escape(row['model'])}\s"
-        assert len(re.findall(name, where)) == len(re.findall(name, whole)) == 1
 
 
 def test_pipelines_are_marked_with_the_studies_that_resolve_to_them(atlas):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import io
 import os
 import signal
 import sys
@@ -28,18 +27,6 @@ class Ended:
     code: object
     out: str
     err: str
-
-
-class _Output(io.StringIO):
-    """Standard output that fails when it is flushed."""
-
-    def __init__(self, error: BaseException | None) -> None:
-        super().__init__()
-        self.error = error
-
-    def flush(self) -> None:
-        if self.error is not None:
-            raise self.error
 
 
 @pytest.fixture
@@ -99,27 +86,6 @@ def test_an_error_becomes_an_exit_code_and_a_line(
 
 
 @pytest.mark.usefixtures("told")
-@pytest.mark.parametrize(
-    ("error", "code", "said"),
-    [
-        (FULL, 1, "sunatlas: standard output: No space left on device\n"),
-        (BrokenPipeError(errno.EPIPE, "Broken pipe"), 1, ""),
-        (KeyboardInterrupt(), 130, ""),
-        (None, 0, ""),
-    ],
-)
-def test_output_that_fails_at_the_end_is_judged_as_in_between(
-    ending: Callable[[Callable[[], None]], Ended],
-    monkeypatch: pytest.MonkeyPatch,
-    error: BaseException | None,
-    code: int,
-    said: str,
-) -> None:
-    monkeypatch.setattr(sys, "stdout", _Output(error))
-    assert ending(lambda: None) == Ended(code, "", said)
-
-
-@pytest.mark.usefixtures("told")
 def test_a_reader_who_has_gone_ends_it_in_silence_for_good(
     ending: Callable[[Callable[[], None]], Ended], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -168,23 +134,3 @@ def test_a_closed_standard_output_is_said_before_anything_is_done(
     ended = ending(lambda: done.append(1))
     assert (ended.code, ended.err) == (1, "sunatlas: standard output is closed\n")
     assert done == []
-
-
-@pytest.mark.usefixtures("told")
-@pytest.mark.parametrize(("error", "code"), [(None, 0), (FULL, 1)])
-def test_with_stderr_closed_a_command_ends_with_its_code(
-    ending: Callable[[Callable[[], None]], Ended],
-    monkeypatch: pytest.MonkeyPatch,
-    error: BaseException | None,
-    code: int,
-) -> None:
-    def does() -> None:
-        typer.echo("done", err=True)
-        if error is not None:
-            raise error
-
-    with monkeypatch.context() as patch:
-        patch.setattr(sys, "stderr", None)
-        assert ending(does) == Ended(code, "", "")
-        with sys.stderr as opened:
-            assert opened.name == os.devnull

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
-import shutil
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
@@ -14,7 +12,7 @@ import pytest
 
 from algorithms import extractors
 from api.cli import contract
-from api.cli.contract import ContractResult, check_contract, name_of
+from api.cli.contract import name_of
 from api.cli.wrong_call import WrongCallError
 
 REPORT = """\
@@ -77,52 +75,3 @@ def suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
 
     monkeypatch.setattr(subprocess, "run", run)
     return told
-
-
-def test_checks_that_fail_are_said_in_words_without_the_class_of_error(
-    suite: SimpleNamespace, tmp_path: Path
-) -> None:
-    suite.code = 1
-    assert check_contract("direct") == ContractResult(
-        4,
-        (
-            "keeps its input: the input was changed",
-            "every class has a docstring: no docstring",
-            "it is measured: ",
-        ),
-    )
-    assert suite.cwd == tmp_path
-    assert suite.command[-2:] == ["-k", "[direct-check or [direct]"]
-    files = [Path(one).name for one in suite.command if one.endswith(".py")]
-    assert tuple(files) == contract.SUITE
-
-
-def test_a_message_longer_than_a_paragraph_is_cut(suite: SimpleNamespace) -> None:
-    suite.report = REPORT.replace("was changed", "x" * 1000)
-    result = check_contract("direct")
-    assert result is not None
-    assert result.failures[0] == f"keeps its input: the input {'x' * 290}"
-
-
-@pytest.mark.parametrize("code", [2, 4, 5])
-def test_a_runner_that_ran_nothing_is_a_refusal(suite: SimpleNamespace, code: int) -> None:
-    suite.code = code
-    with pytest.raises(WrongCallError, match=r"the checks did not run: ERROR: no tests ran$"):
-        check_contract("direct")
-
-
-def test_without_the_test_runner_it_is_said_how_to_get_it(
-    suite: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(importlib.util, "find_spec", lambda _: None)
-    with pytest.raises(WrongCallError, match="need pytest: `make install`"):
-        check_contract("direct")
-    assert suite.command == []
-
-
-def test_where_there_are_no_tests_nothing_is_checked(
-    suite: SimpleNamespace, tmp_path: Path
-) -> None:
-    shutil.rmtree(tmp_path / "tests")
-    assert check_contract("direct") is None
-    assert suite.command == []

@@ -106,18 +106,6 @@ def test_publications_are_those_of_the_table_of_studies() -> None:
     assert venues == expected
 
 
-@pytest.mark.parametrize("model", ["ECM", "SPM", "Sigmoid"])
-def test_venues_are_spoken_of_where_one_is_known(model: str) -> None:
-    """The venue of the only study with the last of these models is not known."""
-    found = figure("publications", facts(), {"model": [model]})
-    keys = {key for row in found.rows if row["part"] == "year" for key in row["studies"]}
-    known = keys & {row["study"] for row in read("venues")}
-    assert bool(known) == (model != "Sigmoid")
-    text = " ".join(found.text)
-    assert ("venue" in text) == bool(known)
-    assert (f"The venue of {len(known)} is known" in text) == bool(known)
-
-
 def test_the_years_that_the_survey_names_are_those_drawn() -> None:
     # "steady growth since 2001", "peaked in 2017 and again in 2022, with a slight decline in 2023"
     count: Counter[int] = Counter()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 
 import pytest
 from hypothesis import given, settings
@@ -11,7 +10,7 @@ from hypothesis import strategies as st
 
 from api.figures import svg
 from api.figures.catalogue import TITLES, evidence_map, figure
-from api.figures.lettering import shorten, text_width, wrap
+from api.figures.lettering import text_width, wrap
 from api.figures.ordering import crossings, order
 from api.figures.sankey_layout import sankey_layout
 from api.figures.sankey_svg import Mark, SankeyMarks, draw_sankey
@@ -216,9 +215,3 @@ def test_wrapped_text_keeps_to_its_width_and_loses_nothing_silently(
     assert all(text_width(line, 12.0) <= width for line in lines)
     said = " ".join(lines)
     assert said == " ".join(text.split()) or "…" in said
-
-
-def test_what_is_shortened_says_so() -> None:
-    assert shorten("Photodiode", 1000, 12) == "Photodiode"
-    assert shorten("Photodiode", 40, 12).endswith("…")
-    assert math.isclose(text_width("", 12), 0)

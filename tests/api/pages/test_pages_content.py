@@ -3,20 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
 from html import unescape
-from typing import Any
 
 import pytest
 
-from api.pages import dataset, sensors
 from api.pages.numbers import count_text, degrees, number, percent, times
 from api.pages.terms import display_text, explain_terms, glossary
-from api.server.app import create_app
-from benchmark.leaderboard.architectures import architectures
 from registry.studies import facts
 from tests.api.conftest import Client
-from tests.api.pages.addresses import KINDS
 
 TAGS = re.compile(r"<(script|style|template|noscript)\b.*?</\1>|<[^>]+>", re.DOTALL)
 
@@ -170,40 +164,6 @@ def test_comparison_names_what_is_far_finer_under_a_condition(atlas: Client) -> 
     assert all(f"availability {percent(t['availability'])}" in page for t in seldom)
 
 
-def finer_built(board: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """The best of each architecture, some with a far finer one beside, as once there were."""
-    finer = {"dataset": "ccd-lens", "extractor": "bcm", "model": "lut", "own_deg": 0.000123}
-    finer["availability"] = 0.789
-    return [
-        {**row, **{f"finer_{name}": value for name, value in finer.items()}}
-        if row["dataset"] == "ccd-lens"
-        else row
-        for row in architectures(board)
-    ]
-
-
-def test_data_sets_that_nothing_is_measured_on_yet_are_listed(
-    atlas: Client, client_of: Callable[..., Client], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(dataset.boards, "first_rows", lambda *_: [])
-    fresh = client_of(create_app(atlas.app.state.knowledge))
-    assert "pd-orbit" in fresh.get("/datasets", accept="text/html").text
-
-
-@pytest.mark.parametrize("address", ["/datasets", "/leaderboard", "/detectors/CCD"])
-def test_what_is_far_finer_on_a_part_stands_beside_the_best(
-    atlas: Client, client_of: Callable[..., Client], monkeypatch: pytest.MonkeyPatch, address: str
-) -> None:
-    monkeypatch.setattr(dataset, "best_of_each", finer_built)
-    monkeypatch.setattr(sensors, "architectures", finer_built)
-    fresh = client_of(create_app(atlas.app.state.knowledge))
-    html = fresh.get(address, accept="text/html").text
-    text = text_of(html)
-    assert text.count("0.000123°") == 1
-    assert re.search(r"0\.000123° \S+ 78\.9 % \(bcm \+ lut\)", text)
-    assert "/glossary#term-finer" in html
-
-
 def test_search_leads_to_the_page_of_what_it_finds(atlas: Client) -> None:
     for word, page in (
         ("Chang2008", "/studies/Chang2008"),
@@ -212,12 +172,6 @@ def test_search_leads_to_the_page_of_what_it_finds(atlas: Client) -> None:
     ):
         found = atlas.get(f"/search.json?q={word}").json()["items"]
         assert page in [item["page"] for item in found[:3]]
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_none_never_stands_bare(atlas: Client, kind: str) -> None:
-    page = atlas.get(KINDS[kind], accept="text/html").text
-    assert not re.search(r">\s*None\s*<", page)
 
 
 def test_every_abbreviation_of_the_taxonomy_is_told_in_the_glossary() -> None:

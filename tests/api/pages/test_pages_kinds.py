@@ -16,7 +16,9 @@ from api.pages.serving import PageRouter
 from api.web.static_files import page_files
 from tests.api.conftest import Client
 from tests.api.pages.addresses import KINDS
+from tests.api.pages.test_pages_content import text_of
 
+LABEL = re.compile(r"\b(?:sec|tab|fig|rq|rqsum):\w+")
 VOID = {"meta", "link", "img", "input", "br", "hr"}
 #: Parts of the atlas that a service has beside the pages.
 BESIDE = ("/guide",)
@@ -27,6 +29,7 @@ class Page(HTMLParser):
 
     def __init__(self, text: str) -> None:
         super().__init__()
+        self.text = text
         self.tags: list[tuple[str, dict[str, str | None]]] = []
         self.open: list[str] = []
         self.inline: list[str] = []
@@ -101,6 +104,11 @@ def test_tables_name_their_columns_and_pictures_say_what_they_show(page: Page) -
     for tag, attributes in page.tags:
         if tag == "svg":
             assert attributes.get("aria-label")
+
+
+def test_neither_a_bare_none_nor_a_label_of_the_surveys_source_is_read(page: Page) -> None:
+    assert not re.search(r">\s*None\s*<", page.text)
+    assert not LABEL.findall(text_of(page.text))
 
 
 def test_there_is_a_page_of_every_route() -> None:

@@ -12,7 +12,7 @@ import pytest
 
 from api.addresses import algorithm_page, architecture_page, dataset_page, study_page
 from api.cli.commands.studies import _rungs
-from api.pages.numbers import degrees, own_error
+from api.pages.numbers import degrees
 from api.service.knowledge import Knowledge
 from benchmark.leaderboard.summaries import digits
 from tests.api.conftest import Client
@@ -26,7 +26,6 @@ HOOK = re.compile(
 )
 BELOW = re.compile(r'<span class="below[^"]*">.*?</span>', re.DOTALL)
 CELL = re.compile(r'<td data-label="Own error[^"]*"[^>]*>(.*?)</td>', re.DOTALL)
-LABEL = re.compile(r"\b(?:sec|tab|fig|rq|rqsum):\w+")
 Place = tuple[str, ...]
 
 
@@ -106,11 +105,6 @@ def test_other_conditions_are_labelled_as_of_unit_0(atlas: Client) -> None:
     assert 'data-label="Own error"' not in board
 
 
-@pytest.mark.parametrize("address", KINDS.values(), ids=KINDS.keys())
-def test_no_label_of_the_surveys_source_is_read(atlas: Client, address: str) -> None:
-    assert not LABEL.findall(text_of(atlas.get(address, accept="text/html").text))
-
-
 def test_an_own_method_is_not_called_one_without_feature_extraction(atlas: Client) -> None:
     page = text_of(atlas.get("/architectures/CMOS/Single-Ap.", accept="text/html").text)
     assert "own method, not in the survey" in page
@@ -162,11 +156,6 @@ def test_rungs_that_are_unknown_say_so(knowledge: Knowledge, atlas: Client) -> N
     for key in unknown:
         read = text_of(atlas.get(f"/studies/{key}", accept="text/html").text)
         assert len(re.findall("not measured yet|its method is not implemented", read)) >= 3
-
-
-def test_an_own_error_that_is_none_is_a_dash() -> None:
-    row = {"dataset": "d", "extractor": "e", "model": "m", "own_deg": None}
-    assert own_error(row) == "–"
 
 
 def test_documents_have_the_records_own_errors(knowledge: Knowledge) -> None:

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 import typer
 
-from api.calibrate import calibration
 from api.cli.commands.dataset import app
 from api.real.scores import kept, measured
 from api.real.sets import SETS
@@ -31,37 +29,6 @@ def test_every_set_has_scores_the_best_first(name):
 @pytest.mark.parametrize("name", SETS)
 def test_the_files_give_the_scores_that_are_kept(name):
     assert measured(SETS[name], SHARED / name) == kept(name)
-
-
-def test_scores_have_four_digits_and_leave_out_models_that_were_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    asked: list[list[Path]] = []
-    numbers = {"rms_deg": 0.123456, "spread_deg": 0.0100049, "worst_deg": 2.0, "missing": 0.25}
-    models = [
-        SimpleNamespace(name="a", refused="", **numbers),
-        SimpleNamespace(name="b", refused="too few poses", **numbers),
-    ]
-
-    def calibrate(runs: list[Path], *, apply: bool) -> SimpleNamespace:
-        assert apply
-        asked.append(runs)
-        return SimpleNamespace(candidates=models)
-
-    monkeypatch.setattr(calibration, "calibrate", calibrate)
-    real = SETS["cubesatbox"]
-    assert measured(real, tmp_path) == [
-        {
-            "set": "cubesatbox",
-            "model": "a",
-            "rms_deg": 0.1235,
-            "standard_error_deg": 0.01,
-            "worst_run_deg": 2.0,
-            "unanswered": 0.25,
-        }
-    ]
-    texts = {"LICENSE", "README.md"}
-    assert asked == [[tmp_path / one.written for one in real.sources if one.written not in texts]]
 
 
 def test_the_command_shows_them_beside_a_standard_data_set(capsys):

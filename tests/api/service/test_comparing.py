@@ -143,26 +143,3 @@ def test_a_refusal_names_the_nearest(known):
     with pytest.raises(InvalidValueError) as refused:
         compare_architectures(known, ["CMOS:Multi-Ap.", "CMOS:Single-AP"])
     assert refused.value.nearest == "CMOS:Single-Ap."
-
-
-def test_under_a_condition_without_an_error_no_pipeline_is_finer(
-    known: Knowledge, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    ranked = module.architectures(known.measurements.leaderboard)
-    best, other = [row for row in ranked if row["dataset"]][:2]
-    board = known.measurements.board_rows(best["dataset"])
-    first, *_, last = known.measurements.presets[best["dataset"]].conditions
-    rows = [{**row, "charged_deg": None} if row["condition"] == last else row for row in board]
-    boards = {
-        other["dataset"]: known.measurements.board_rows(other["dataset"]),
-        best["dataset"]: rows,
-    }
-    monkeypatch.setattr(known.measurements, "board_rows", boards.__getitem__)
-    names = [f"{row['detector']}:{row['mask']}" for row in (best, other)]
-    item = compare_architectures(known, names)["items"][0]
-    assert item["conditions"][last] == {
-        "charged_deg": None,
-        "availability": item["conditions"][last]["availability"],
-        "finer": None,
-    }
-    assert item["conditions"][first]["charged_deg"] == item["unit_rms_deg"][0]

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import csv
 import json
-import shutil
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -17,19 +16,14 @@ from typer.testing import CliRunner
 
 from api.cli import asking
 from api.cli.command_line import app
-from api.cli.commands import leaderboard
 from api.cli.commands import rank as ranking
 from api.cli.contract import ContractResult
 from api.service.knowledge import Knowledge
-from benchmark.contract import Cell
-from benchmark.leaderboard import candidate, check, update
+from benchmark.leaderboard import candidate, check
 from benchmark.leaderboard.candidate import Ranking
 from benchmark.leaderboard.check import Difference
 from benchmark.leaderboard.pages import FORMATS
 from benchmark.results.store import PUBLISHED
-from benchmark.results.times import COLUMNS, MACHINE, TIMES, read_times
-from benchmark.running import times
-from benchmark.running.runner import Summary
 
 DATASET = "qpd-maskless-pyramid"
 
@@ -102,35 +96,7 @@ def test_a_check_that_finds_differences_fails_and_lists_them(checked: Checked) -
     assert table.stdout.startswith("2 differences\n")
 
 
-def test_a_check_that_holds_is_an_empty_document(checked: Checked) -> None:
-    shown = sunatlas("leaderboard", "--check", "--format", "json")
-    assert (shown.exit_code, json.loads(shown.stdout)) == (0, [])
-    assert len(checked.asked) == 1
-
-
 # ---- leaderboard update, render, times
-
-
-def test_an_update_says_what_failed_and_how_many_cells_were_measured(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    asked: list[tuple[Path, int]] = []
-    cell = Cell("pd-slit", "nominal", "direct", "basic")
-    summary = Summary(PUBLISHED, 12, 9, 3, ((cell, "no fit"),), ("a slow disk",), 4.25)
-
-    def done(directory: Path, workers: int) -> Summary:
-        asked.append((directory, workers))
-        return summary
-
-    monkeypatch.setattr(update, "update", done)
-    shown = sunatlas("leaderboard", "update", "--workers", 2)
-    assert (shown.exit_code, shown.stdout) == (0, "")
-    assert asked == [(PUBLISHED, 2)]
-    assert shown.stderr.splitlines() == [
-        f"failed: {cell}: no fit",
-        "warning: a slow disk",
-        f"12 cells, 3 measured in 4.2 s, 9 stored before; in {PUBLISHED}",
-    ]
 
 
 @pytest.fixture
@@ -167,28 +133,6 @@ def test_where_nothing_is_published_nothing_is_written(
     assert not (tmp_path / "out").exists()
 
 
-def test_times_say_how_many_are_new_and_of_which_machine(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    asked: list[tuple[Path, bool]] = []
-
-    def update(directory: Path, *, again: bool) -> int:
-        asked.append((directory, again))
-        return 1
-
-    monkeypatch.setattr(times, "update", update)
-    monkeypatch.setattr(leaderboard, "PUBLISHED", tmp_path)
-    (tmp_path / TIMES).write_text(
-        f"{','.join(COLUMNS)}\npd-slit,direct,basic,0.5,0.25\npd-slit,direct,lut,,\n"
-    )
-    shutil.copy(PUBLISHED / MACHINE, tmp_path)
-    shown = sunatlas("leaderboard", "times", "--again")
-    assert shown.exit_code == 0, shown.stderr
-    processor = read_times(PUBLISHED).machine.processor  # type: ignore[union-attr]
-    assert shown.stderr == f"1 timed now, 1 before, of {processor}; in {tmp_path / TIMES}\n"
-    assert asked == [(tmp_path, True)]
-
-
 # ---- leaderboard --dataset
 
 
@@ -200,13 +144,6 @@ def test_a_condition_that_no_data_set_asked_for_has_leaves_nothing() -> None:
     assert json.loads(shown.stdout) == {"items": [], "total": 0}
     assert shown.stderr == "sunatlas: no pipeline has such an error there\n"
     assert sunatlas("leaderboard", "--each", "--condition", "hot", "--max-error", 0).exit_code == 1
-
-
-@pytest.mark.parametrize("options", [("--field", 20), ("--max-error", 0.01), ()])
-def test_a_table_without_a_row_is_not_printed(options: tuple[Any, ...]) -> None:
-    wrong = ("--dataset", DATASET, "--condition", "stable")
-    shown = sunatlas("leaderboard", *wrong, *options)
-    assert (shown.exit_code, shown.stdout) == (1, "")
 
 
 # ---- rank
@@ -227,71 +164,3 @@ def ranked(board: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> Ranking:
     monkeypatch.setattr(candidate, "rank", lambda *_, **__: found)
     monkeypatch.setattr(ranking, "check_contract", lambda _: ContractResult(12, ()))
     return found
-
-
-def test_a_ranked_algorithm_is_marked_and_its_failures_are_named(
-    ranked: Ranking, tmp_path: Path
-) -> None:
-    page = tmp_path / "board.html"
-    call = ("rank", NEW, "--dataset", DATASET, "--store", tmp_path / "store", "--out", page)
-    shown = sunatlas(*call, "--format", "json")
-    assert shown.exit_code == 0, shown.stderr
-    document = json.loads(shown.stdout)
-    assert document["scope"] == "On one unit."
-    assert len(document["items"]) == len(ranked.rows)
-    new = {(row["extractor"], row["model"]) for row in document["items"] if row["new"]}
-    assert new == ranked.pipelines
-    failed = next(row for row in ranked.rows if row["reason"] == REASON)
-    lines = shown.stderr.splitlines()
-    assert lines[0] == "contract: 12 checks passed"
-    assert f"no score: {NEW} + {failed['model']}: {REASON}" in lines
-    assert lines[-2:] == [
-        f"3 cells measured now, kept in {tmp_path / 'store'}",
-        f"page: {page}",
-    ]
-    assert NEW in page.read_text("utf-8")
-
-
-def test_the_table_has_all_that_is_new_and_the_best_of_the_others(
-    ranked: Ranking, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    title, heading, _, *lines = sunatlas("rank", NEW, "--dataset", DATASET).stdout.splitlines()
-    assert title == f"{DATASET}: best of each extractor, and {NEW} (*)"
-    assert heading.split()[:2] == ["new", "rank"]
-    assert lines.pop() == "On one unit."
-    marked = [line for line in lines if line.startswith("*")]
-    assert len(marked) == len(ranked.pipelines)
-    others = [
-        row
-        for row in ranked.rows
-        if row["extractor"] != NEW and row["best_of_extractor"] and row["rank"]
-    ]
-    assert len(lines) == len(marked) + len(others)
-    assert (tmp_path / "out" / f"{NEW}-{DATASET}.html").is_file()
-
-
-@pytest.mark.usefixtures("ranked")
-def test_an_algorithm_that_fails_a_check_is_not_measured(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    failures = ("it is slow: 9 s", "it is exact: it errs")
-    monkeypatch.setattr(ranking, "check_contract", lambda _: ContractResult(5, failures))
-    page = tmp_path / "board.html"
-    shown = sunatlas("rank", NEW, "--dataset", DATASET, "--out", page)
-    assert (shown.exit_code, shown.stdout) == (1, "")
-    assert shown.stderr.splitlines()[:2] == [f"contract: {line}" for line in failures]
-    assert f"sunatlas: {NEW} fails 2 of 5 checks; the rules are in docs/guide/" in shown.stderr
-    assert not page.exists()
-
-
-@pytest.mark.usefixtures("ranked")
-def test_without_a_checkout_it_is_said_that_nothing_was_checked(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(ranking, "check_contract", lambda _: None)
-    page = tmp_path / "board.html"
-    shown = sunatlas("rank", NEW, "--dataset", DATASET, "--out", page)
-    assert shown.exit_code == 0, shown.stderr
-    assert shown.stderr.startswith("contract: not checked, the tests are in a checkout only\n")
-    assert page.is_file()

@@ -49,41 +49,9 @@ def test_studies_without_a_title_have_no_reference_and_are_named(atlas: Client) 
     assert untitled[0] not in alone.stdout
 
 
-def test_an_added_study_is_told_from_those_of_the_survey() -> None:
-    said = "Added after the survey, which does not map it.\n"
-    assert said in shown(LATER).stdout
-    assert said not in shown(STUDY).stdout
-
-
 @pytest.fixture
 def document(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """The service's answer about a study, to be altered."""
     found = dict(ask(service.study, key=STUDY).document)
     monkeypatch.setattr(studies, "ask", lambda *_, **__: SimpleNamespace(document=found))
     return found
-
-
-def test_who_confirmed_a_study_is_said(document: dict[str, Any]) -> None:
-    row = {"name": "Jane Doe", "date": "2031-02-28", "confirms": "every cell", "source": "a letter"}
-    document["verified"] = [row]
-    said = shown(STUDY).stdout
-    assert "Verified by Jane Doe on 2031-02-28: every cell (a letter)\n" in said
-    document["verified"] = []
-    assert "Verified" not in shown(STUDY).stdout
-
-
-@pytest.mark.parametrize(
-    ("changed", "said"),
-    [
-        ({"own_deg": 0.012345}, "nominal: 0.0123 deg"),
-        ({"own_deg": None, "status": "unavailable"}, "nominal: without an error"),
-        ({"own_deg": None, "status": None}, "nominal: not measured yet"),
-    ],
-)
-def test_a_pipeline_without_an_error_is_told_from_one_that_never_ran(
-    document: dict[str, Any], changed: dict[str, Any], said: str
-) -> None:
-    first = document["pipelines"][0]
-    score = {**first["scores"][0], "condition": "nominal", **changed}
-    document["pipelines"] = [{**first, "scores": [score]}]
-    assert said in shown(STUDY).stdout
