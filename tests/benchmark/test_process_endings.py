@@ -79,18 +79,6 @@ def test_a_worker_whose_coordinator_has_ended_already_ends_itself_at_once(
     assert killed.signals == [(os.getpid(), signal.SIGKILL)] * 2
 
 
-def test_elsewhere_than_on_linux_the_system_is_not_asked(
-    asked: list[tuple[Any, ...]], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    processes.release_free_memory()
-    assert len(asked) == (sys.platform == "linux")
-    asked.clear()
-    monkeypatch.setattr(sys, "platform", "darwin")
-    processes.release_free_memory()
-    processes._tell_at_death(signal.SIGTERM)
-    assert asked == []
-
-
 @pytest.mark.parametrize(
     ("number", "spoken"), [(signal.SIGTERM, False), (signal.SIGINT, False), (signal.SIGTERM, True)]
 )
@@ -184,23 +172,3 @@ def test_an_error_is_the_programs_own_unless_a_signal_came(
     assert capsys.readouterr().err == "interrupted\n"
     with pytest.raises(KeyboardInterrupt):
         processes.end_if_requested()
-
-
-class Lost:
-    """Raises where nobody can catch it."""
-
-    def __init__(self, error: BaseException) -> None:
-        self.error = error
-
-    def __del__(self) -> None:
-        raise self.error
-
-
-def test_an_interrupt_that_a_callback_loses_is_not_spoken_of_but_another_error_is(
-    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(sys, "unraisablehook", processes._ignore_interrupt)
-    Lost(KeyboardInterrupt())
-    assert capfd.readouterr().err == ""
-    Lost(ValueError("lost on the way"))
-    assert "ValueError: lost on the way" in capfd.readouterr().err

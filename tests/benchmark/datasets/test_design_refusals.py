@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -12,20 +11,10 @@ import numpy as np
 import pytest
 from fake_atlas import Diodes, FakeSetup
 
-from algorithms.contract import SensorGeometry
 from benchmark import datasets
-from benchmark.datasets.conditions import code_dials
-from benchmark.datasets.conditions.flight import FlightPreset
-from benchmark.datasets.conditions.flight_bounds import HORIZON, MAGNETOMETER, posterior_bound
-from benchmark.datasets.conditions.line_arrays import regime
-from benchmark.datasets.conditions.many_spots import diffract
-from benchmark.datasets.conditions.masked_photodiodes import masked_photodiodes
-from benchmark.datasets.conditions.pixel_arrays import as_bought, cmos
-from benchmark.datasets.conditions.propagation import measured_geometric
+from benchmark.datasets.conditions.flight_bounds import MAGNETOMETER, posterior_bound
 from benchmark.datasets.corrected import correction
-from benchmark.datasets.method_bound import method_bound_deg
 from benchmark.simulator.flight.gyro import Gyro
-from benchmark.simulator.readout.pixel_errors import PixelErrors
 
 SLIT = "from benchmark.datasets.standard.pd_slit import PRESET\n"
 
@@ -55,65 +44,6 @@ def test_a_module_without_a_data_set_of_its_own_name_is_refused(
     monkeypatch.setattr(datasets, "standard", there)
     with pytest.raises(error, match=message):
         datasets._presets.__wrapped__()
-
-
-def without_field() -> object:
-    return masked_photodiodes(
-        name="pd-new",
-        version=1,
-        detector="PD",
-        mask="Slit",
-        readings="four photodiodes",
-        geometry=SensorGeometry(aperture_width_mm=1.0),
-        setups={},
-        follows=(),
-        description="",
-        regime={},
-    )
-
-
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (without_field, "pd-new needs half_fov_deg in its geometry"),
-        (lambda: measured_geometric(1.0, (1.0, 1.0, 1.0)), "within 1 % of full light; got 1.0 %"),
-        (lambda: measured_geometric(-0.1, (1.0, 1.0, 1.0)), "within 1 % of full light; got -0.1 %"),
-        (lambda: diffract(0.1, 2.0, None), "needs a spectrum; got None"),
-    ],
-)
-def test_a_design_that_lacks_what_its_light_needs_is_refused(
-    make: Callable[[], object], message: str
-) -> None:
-    with pytest.raises(ValueError, match=message):
-        make()
-
-
-def test_light_without_a_spectrum_is_said_to_be_geometric() -> None:
-    sensor: Any = datasets.get("ccd-slit").setups["nominal"].sensor
-    diffracted, cast_light = regime(sensor), regime(replace(sensor, spectrum=None))
-    assert diffracted["propagation"] == "diffraction"
-    assert cast_light["propagation"] == "geometric"
-    assert cast_light["fresnel_number"] == diffracted["fresnel_number"]
-    assert code_dials._regime(None)["propagation"] == "geometric"
-
-
-@pytest.mark.parametrize(
-    ("errors", "said"),
-    [
-        (PixelErrors(), ""),
-        (PixelErrors(nonlinearity=0.02), "2 % nonlinearity at full well"),
-        (PixelErrors(crosstalk=0.03), "3 % crosstalk"),
-        (PixelErrors(smear=1e-4), "0.01 % smear per row"),
-        (
-            PixelErrors(crosstalk=0.03, column_offset_e=40.0),
-            "3 % crosstalk, column offsets of 40 electrons",
-        ),
-    ],
-)
-def test_a_card_names_the_errors_that_pixels_have_and_no_others(
-    errors: PixelErrors, said: str
-) -> None:
-    assert as_bought(replace(cmos(64, 0.01), errors=errors)) == said
 
 
 @dataclass(frozen=True)
@@ -192,20 +122,3 @@ def test_a_field_known_without_error_bounds_the_turns_across_it() -> None:
     other = posterior_bound(preset, "nominal", MAGNETOMETER, sequential=False, bound=bound_of(0.01))
     assert other is not None
     assert (other < found).all()
-
-
-@pytest.mark.parametrize("context", [MAGNETOMETER, HORIZON])
-def test_a_posterior_needs_what_single_samples_tell(context: frozenset[str]) -> None:
-    preset = flight_without_instruments()
-    with pytest.raises(ValueError, match="needs a bound with Fisher matrices"):
-        posterior_bound(preset, "nominal", context, sequential=False, bound=bound_of(None))
-
-
-def test_single_samples_bound_a_method_unless_it_carries_a_state_through_a_flight() -> None:
-    flown, still = datasets.get("pd-orbit"), datasets.get("pd-slit")
-    assert isinstance(flown, FlightPreset)
-    state, apart = frozenset({"time_s", "rate_deg_s"}), frozenset({"time_s", "temperature_K"})
-    assert method_bound_deg(still, "nominal", state, bound_of(None)) is None
-    assert method_bound_deg(flown, "nominal", apart, bound_of(None)) is None
-    with pytest.raises(ValueError, match="needs a bound with Fisher matrices"):
-        method_bound_deg(flown, "nominal", state, bound_of(None))

@@ -27,17 +27,6 @@ def test_every_leader_stands_at_its_error_bound_and_largest_part(rows):
         assert (text == PARTS[found.leading_part]) == (not found.is_near_bound)
 
 
-def test_a_largest_part_far_below_the_bound_has_no_mark(rows):
-    """But its name or its ratio to the bound, like any other."""
-    row = {**rows[0], "bound_deg": 1.0, "bound_unit_deg": None, "rms_deg": 1.1}
-    tiny = {**row, **{name: 1e-3 for name in row if name.endswith("_deg") and row[name]}}
-    tiny |= {"bound_deg": 1.0, "bound_unit_deg": None, "rms_deg": 1.1}
-    (axes,) = plots.figure([tiny]).axes
-    marks = [x for line in axes.lines for x in np.asarray(line.get_xdata(), float)]
-    assert min(x for x in marks if np.isfinite(x)) == 1.0
-    assert "1.1 times the bound" in {text.get_text() for text in axes.texts}
-
-
 def test_nothing_measured_is_said(rows):
     assert plots.figure([]).texts[-1].get_text() == "nothing is stored"
 

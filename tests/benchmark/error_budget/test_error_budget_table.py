@@ -1,16 +1,10 @@
 """The table of what holds pipelines back: of every data set, current, and said in words."""
 
-import dataclasses
-
-import fake_plan
 import pytest
-from fake_atlas import Currents, Diodes, LeastSquares
 
-from benchmark.error_budget import record, sentences
-from benchmark.error_budget.measure import VariantErrors
+from benchmark.error_budget import sentences
 from benchmark.error_budget.record import RECORD
 from benchmark.error_budget.variants import SINGLE, VARIANTS
-from benchmark.experiments import error_budget
 from benchmark.experiments.error_budget import ErrorBudget, leaders
 from benchmark.results.store import Store
 
@@ -165,47 +159,9 @@ def test_only_what_was_measured_contributes(errors, parts):
     assert {*found} >= {*SINGLE} - {"surroundings"}
 
 
-def test_a_method_that_was_fitted_to_no_other_poses_is_named_with_its_own_error_alone():
-    row = _row(perfect=0.045, perfect_dense=None, places=None, places_dense=None)
-    found = sentences.verdict(row)
-    assert found.leading_part == "method"
-    assert "perfect it is 0.045 deg (9.0 times). Main error source" in found.sentence
-
-
 def scored(**more):
     return {
         "dataset": "d", "condition": "c", "extractor": "e", "model": "m", "unit": 0,
         "rms_deg": 0.05, "charged_deg": 0.05, "bound_deg": 0.004, "bound_unit_deg": None,
         "availability": 0.75, "n_test": 40, "n_observable": 20, **more,
     }  # fmt: skip
-
-
-def test_a_row_has_the_score_it_is_of_and_no_error_that_is_only_rounding(monkeypatch):
-    asked = []
-
-    def found(*of, all_observable):
-        asked.append((*of, all_observable))
-        errors = {**dict.fromkeys(VARIANTS, 0.0123456789), "perfect": 9e-7, "places": None}
-        return VariantErrors(errors, 15)
-
-    monkeypatch.setattr(error_budget, "score_variants", found)
-    parts = fake_plan.parts(presets=(Diodes(name="d"),))
-    experiment = ErrorBudget(parts=parts)
-    pipeline = {"extractor": "fake-currents", "model": "fake-least-squares"}
-    experiment.leader_rows = {"d": scored(**pipeline), "other": scored(dataset="other")}
-    (task,) = experiment.tasks(["d"])
-    ((name, row),) = ErrorBudget.measure(task)
-    assert asked == [(parts.presets["d"], "c", Currents, LeastSquares, False)]
-    assert name == row["dataset"] == "d"
-    assert {row[f"{name}_deg"] for name in VARIANTS} == {0.012346, 0.0, None}
-    assert (row["perfect_deg"], row["places_deg"]) == (0.0, None)
-    assert (row["answered"], row["judged"]) == (15, 15)
-    assert {name: row[name] for name in record.SCORE} == {
-        **pipeline, "condition": "c", "rms_deg": 0.05, "bound_deg": 0.004, "bound_unit_deg": None,
-    }  # fmt: skip
-    ErrorBudget.measure(dataclasses.replace(task, score={**task.score, "n_observable": 40}))
-    assert asked[-1][-1] is True
-
-
-def test_a_picture_is_drawn_of_the_record():
-    assert ErrorBudget().pictures().keys() == {"error-budget.svg"}

@@ -167,23 +167,6 @@ def test_the_place_behind_a_lens_is_the_image_of_the_sun_s_centre() -> None:
     np.testing.assert_allclose(sensor.camera.sun_of(places[seen]), sun[seen], atol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("name", "kind"),
-    [
-        ("ccd-slit", FeatureKind.BALANCE),
-        ("ccd-slit", FeatureKind.SPOTS),
-        ("cmos-lens", FeatureKind.SPOTS),
-    ],
-)
-def test_features_that_are_no_place_of_one_spot_have_no_true_ones(
-    name: str, kind: FeatureKind
-) -> None:
-    preset = datasets.get(name)
-    sun = preset.scene("nominal", "test").sun
-    found = np.zeros((len(sun), 3))
-    assert perfected.true_features(preset, "nominal", kind, sun, found) is None
-
-
 def test_nothing_random_is_the_median_of_what_is_drawn() -> None:
     still = Still()
     assert (still.standard_normal((2, 3), np.float32) == np.zeros((2, 3), np.float32)).all()

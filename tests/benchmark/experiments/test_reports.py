@@ -7,38 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from benchmark.assessment.networks import NetworkError
 from benchmark.experiments import __main__ as command
-from benchmark.experiments import networks
-from benchmark.experiments.networks import Networks
 from benchmark.experiments.selection import Selection
 from benchmark.results.row_file import Row, RowFile
 from benchmark.running import experiment as running
 from benchmark.running.experiment import RecordedExperiment
-
-
-def test_each_question_on_networks_has_a_line_for_each_of_its_cases(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert Networks().cells() == ["orbits", "units", "seeds", "spans", "fields"]
-    cases = [NetworkError("seeds", f"seed {k}", "dnn", 0.5 + k, 1.0, 2.0, 0.75) for k in range(2)]
-    monkeypatch.setitem(networks._QUESTIONS, "seeds", lambda: iter(cases))
-    assert command.main(["networks", "seeds"]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert [" ".join(line.split()) for line in lines] == [
-        f"seeds seed {k} dnn rms {0.5 + k:.4f} p95 1.0000 max 2.000 answered 0.750"
-        for k in range(2)
-    ]
-    with pytest.raises(SystemExit):
-        command.main(["networks", "seed"])
-    assert "did you mean" in capsys.readouterr().err
-
-
-def test_selection_has_a_cell_for_each_data_set_with_a_model_that_chooses() -> None:
-    found = Selection().cells()
-    assert list(found) == sorted(set(found))
-    assert {"qpd-single-aperture", "pd-maskless-cube"} <= set(found)
-    assert Selection().tasks(found[:2]) == found[:2]
 
 
 def test_a_choice_that_is_a_tenth_worse_than_the_best_fails() -> None:

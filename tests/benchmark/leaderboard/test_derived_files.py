@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from benchmark.leaderboard.pages import FORMATS, render, to_csv, to_markdown
+from benchmark.leaderboard.pages import FORMATS, render, to_csv
 
 Board = Mapping[str, Any]
 
@@ -21,15 +21,6 @@ def two(published_board: Board) -> Board:
     by_kind = {bool(one["idealisation"]): one for one in published_board["datasets"]}
     chosen = [{**by_kind[kind], "rows": by_kind[kind]["rows"][:3]} for kind in (True, False)]
     return {**published_board, "datasets": chosen, "sweeps": published_board["sweeps"][:20]}
-
-
-def test_only_an_idealisation_is_called_one(two: Board) -> None:
-    ideal, built = two["datasets"]
-    text = to_markdown(two)
-    before, _, after = text.partition(f"## {built['name']}\n")
-    assert f"An idealisation: {ideal['idealisation']}" in before
-    assert "An idealisation" not in after
-    assert f"{built['detector']}, {built['mask']}; version {built['version']}" in after
 
 
 @pytest.mark.parametrize("for_spreadsheets", [False, True])

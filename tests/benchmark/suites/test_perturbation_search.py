@@ -132,42 +132,8 @@ def test_a_cell_that_another_rounding_refuses_is_found_with_the_reason() -> None
     assert one.columns["charged_deg"][1] is None
 
 
-def test_a_finding_without_an_error_is_named_by_its_first_column() -> None:
-    one = SensitiveCell(Cell("d", "c", "e", "m"), "features", {"availability": (1.0, None)})
-    assert str(one).endswith("(features): availability 1.0 -> None, 1 columns differ")
-
-
 @pytest.fixture
 def command(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """The command on the small data sets, and a record without a score."""
     monkeypatch.setattr(perturbation, "installed_parts", lambda: PARTS)
     monkeypatch.setattr(perturbation, "Store", lambda: Store(tmp_path))
-
-
-@pytest.mark.usefixtures("command")
-def test_the_command_names_each_cell_that_moves_and_fails(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    chosen = ["fake-coarse", "--model", "fake-cliff", "--all"]
-    assert perturbation.main(chosen) == 1
-    lines = capsys.readouterr().out.splitlines()
-    assert [line.split(": ")[0].split(" (")[1] for line in lines[:-1]] == [
-        "features)",
-        "observations)",
-    ]
-    assert lines[-1] == "1 cells: 2 move, 0 turn a last digit"
-
-
-@pytest.mark.usefixtures("command")
-def test_the_command_searches_only_cells_of_the_record_unless_told_otherwise(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    assert perturbation.main(["fake-coarse"]) == 0
-    assert capsys.readouterr().out == "0 cells: 0 move, 0 turn a last digit\n"
-
-
-@pytest.mark.usefixtures("command")
-def test_the_command_refuses_an_unknown_data_set(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit, match="2"):
-        perturbation.main(["fake-coarze"])
-    assert "'fake-coarze'" in capsys.readouterr().err

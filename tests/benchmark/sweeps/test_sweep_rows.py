@@ -15,13 +15,10 @@ from algorithms.contract import (
     SensorGeometry,
     UnusableDataError,
 )
-from benchmark.datasets.standard import pd_slit
-from benchmark.sweeps import plan, plots
-from benchmark.sweeps.acquisition import acquisition
+from benchmark.sweeps import plan
 from benchmark.sweeps.differences import differences
 from benchmark.sweeps.measure import Task, measure
 from benchmark.sweeps.points import Point
-from benchmark.sweeps.sweep_tables import to_markdown
 from benchmark.synthetic_features.series import SeriesPoint
 
 
@@ -116,16 +113,6 @@ def test_a_method_that_breaks_on_a_design_is_planned_and_its_row_says_so() -> No
     assert (row["status"], row["reason"]) == ("failed", "RuntimeError: no such sensor")
 
 
-def test_a_series_of_cameras_needs_a_camera() -> None:
-    with pytest.raises(TypeError, match="pd-slit has no lens camera; got SlitPairSensor"):
-        plan._camera_of(pd_slit.PRESET, "pd", "")
-
-
-def test_a_model_that_reads_no_code_is_refused() -> None:
-    with pytest.raises(TypeError, match="must be a model of coded masks; got ExtendedKalman"):
-        acquisition("cmos-encoded", "extended-kalman", directions=1, unit=7)
-
-
 ROW: dict[str, Any] = {
     "series": "slit",
     "sweep": "noise",
@@ -161,53 +148,9 @@ def test_numbers_differ_beyond_what_each_is_known_to(column: str, near: float, f
     assert found == (f"slit/noise/50/fake-lines/{column}", str(ROW[column]), str(far))
 
 
-def test_a_bias_without_a_spread_must_stay_as_it_is() -> None:
-    bare = {**ROW, "rms": None}
-    ((place, _, _),) = differences([bare], [{**bare, "bias": 1.000001e-5}])
-    assert place.endswith("/bias")
-
-
-def test_tables_list_what_is_not_measured_only_where_something_is_not() -> None:
-    lines = to_markdown([ROW])
-    assert "## Not measured" not in lines
-    left = {**ROW, "series": "", "sweep": "", "point": "", "reason": "reads nothing"}
-    assert to_markdown([ROW, left])[-1] == "- fake-lines on any: reads nothing"
-    assert to_markdown([ROW, left])[: len(lines)] == lines
-
-
 def rows_of(sweep: str, series: str, **changes: Any) -> list[dict[str, Any]]:
     values = {"noise": (5.0, 10.0, 100.0), "phase": (0.0, 0.25, 0.5, 0.625, 0.75, 0.875)}[sweep]
     return [{**ROW, "sweep": sweep, "series": series, "value": v, **changes} for v in values]
 
 
 NOTHING = {"rms": None, "bound": None, "found_fraction": 0.0}
-
-
-def test_a_panel_of_which_nothing_is_known_says_so() -> None:
-    rows = [*rows_of("noise", "slit"), *rows_of("noise", "slits", **NOTHING)]
-    full, empty = plots.figure(rows, "noise").axes
-    assert [line.get_marker() for line in full.lines].count("o") == 1
-    assert "nothing found" in [text.get_text() for text in empty.texts]
-    assert "nothing found" not in [text.get_text() for text in full.texts]
-    assert not [line for line in empty.lines if line.get_marker() == "o"]
-    assert empty.get_ylim() == (0.1, 1.0)
-    assert full.get_ylim() == pytest.approx((0.01, 0.1))
-
-
-def test_dots_are_hollow_where_little_is_found_and_a_phase_has_a_linear_axis() -> None:
-    rows = rows_of("phase", "slit", found_fraction=1.0, extractor_taxonomy="None")
-    rows[2]["found_fraction"] = 0.8
-    (axes,) = plots.figure(rows, "phase").axes
-    assert (axes.get_xscale(), axes.get_yscale()) == ("linear", "log")
-    dots = [line for line in axes.lines if line.get_marker() == "o"]
-    places = [np.asarray(line.get_xdata()).tolist() for line in dots]
-    assert sorted(map(len, places)) == [1, 5]
-    assert [0.5] in places
-    assert len({str(line.get_markerfacecolor()) for line in dots}) == 2
-    assert list(axes.get_xticks()) == [0.0, 0.5, 0.75], "every second one of many"
-    assert "slit (px)" in [text.get_text() for text in axes.texts]
-
-
-def test_a_sweep_that_is_not_drawn_is_refused() -> None:
-    with pytest.raises(ValueError, match="one of noise, size, phase; got 'pedestal'"):
-        plots.figure([ROW], "pedestal")

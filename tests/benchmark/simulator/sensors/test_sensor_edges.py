@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from benchmark import datasets
-from benchmark.simulator.flight.time_series import DriftingFrameSensor
 from benchmark.simulator.light.stray_slope import UnevenScene
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.masks.apertures import Aperture, Mask
@@ -21,7 +20,6 @@ from benchmark.simulator.optics.ghosts import Ghost
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.optics.rectangle_patterns import RectanglePattern
-from benchmark.simulator.readout.column_noise import CommonNoise
 from benchmark.simulator.readout.detectors import CurrentReadout
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.readout.pixel_errors import PixelErrors
@@ -77,16 +75,6 @@ def test_pixels_near_light_ask_their_sensor_for_all_that_is_of_whole_frames() ->
         assert readings.shape == (20, 24)
 
 
-def test_columns_share_noise_only_where_their_amplifiers_make_some() -> None:
-    sensor, scene = shadows(), lit_by((0.0, 3.0))
-    errors = replace(sensor.detector.errors, column_noise_e=20.0)
-    noisy = replace(sensor, detector=replace(sensor.detector, errors=errors))
-    for seen, kind in ((sensor, type(None)), (noisy, CommonNoise)):
-        pixels = LitPixels(seen, scene, seen.fixed_pattern("unit"))
-        expected = pixels.expected(scene, pixels.pattern)
-        assert isinstance(pixels.common_noise(expected.shape, None), kind)
-
-
 def test_a_scene_of_uneven_light_that_does_not_slope_has_the_light_of_an_even_one() -> None:
     sensor, scene = shadows(), lit_by((0.0, 3.0), (5.0, -8.0))
     pattern = sensor.fixed_pattern("unit")
@@ -97,11 +85,6 @@ def test_a_scene_of_uneven_light_that_does_not_slope_has_the_light_of_an_even_on
     )
     np.testing.assert_array_equal(flat, plain)
     assert np.abs(sloping - plain).max() > 0.1, "digital numbers"
-
-
-def test_shadows_have_no_diffracted_spots() -> None:
-    with pytest.raises(TypeError, match="without a spectrum has no diffracted spots"):
-        shadows()._spots  # noqa: B018 - the property refuses
 
 
 def test_the_boxes_of_a_shadow_hold_its_light() -> None:
@@ -175,20 +158,6 @@ def test_noise_of_columns_is_added_to_lines_that_bloom() -> None:
     assert added.std() == pytest.approx(500.0, rel=0.1)
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"pulse_e": 0.0}, "pulse_e and jitter_counts must be positive; got 0.0 and 0.01"),
-        ({"pulse_e": 1.0, "jitter_counts": -1.0}, "must be positive; got 1.0 and -1.0"),
-    ],
-)
-def test_converters_without_pulses_or_jitter_are_refused(
-    changes: dict[str, Any], message: str
-) -> None:
-    with pytest.raises(ValueError, match=message):
-        FrequencyCounter(1e4, 1.0, 0.0, 1e6, **changes)
-
-
 def test_flats_leave_less_unknown_of_a_converters_gain() -> None:
     """Without flats the whole mismatch is unknown; it scales with the light."""
     readout = FrequencyCounter(1e4, 1.0, 0.03, 1e6)
@@ -202,14 +171,6 @@ def test_flats_leave_less_unknown_of_a_converters_gain() -> None:
     many = sensor.unit_variance(expected, scene, References(100, 0))
     assert (many < some).all()
     assert (some < none).all()
-
-
-def test_a_mask_of_round_holes_does_not_drift() -> None:
-    sensor: Any = nominal("ccd-orbit")
-    assert isinstance(sensor, DriftingFrameSensor)
-    mask = replace(sensor.camera.mask, apertures=(Aperture("round", 0.1, 0.1),))
-    with pytest.raises(ValueError, match="round"):
-        replace(sensor, camera=replace(sensor.camera, mask=mask))
 
 
 def test_rims_a_whole_hole_apart_let_no_light_through() -> None:
