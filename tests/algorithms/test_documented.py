@@ -120,20 +120,6 @@ def test_every_section_is_completed_in_the_order_of_the_signature() -> None:
     assert made(("He2005",), ("model:spm",)).__doc__ == EXPECTED
 
 
-def test_a_parameter_that_nobody_describes_is_left_out() -> None:
-    @documented
-    @dataclass
-    class Bare(Base):
-        """Do another thing."""
-
-        about: ClassVar = made((), ()).about
-        nobody_describes_it: int = 1
-
-    text = Bare.__doc__ or ""
-    assert "\norder : int\n    Of the base.\n" in text
-    assert "nobody_describes_it" not in text
-
-
 @pytest.mark.parametrize(
     ("studies", "labels", "said"),
     [

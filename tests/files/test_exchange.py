@@ -44,20 +44,3 @@ def test_a_kernel_without_it_and_an_error_of_it_are_told_apart(
     monkeypatch.setattr(module.ctypes, "get_errno", lambda: errno.EACCES)
     with pytest.raises(PermissionError):
         exchange(tmp_path / "one", tmp_path / "other")
-
-
-def test_the_function_of_the_system_is_looked_up_with_the_types_of_its_arguments(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    class Library:
-        """A C library without the function, as of an old system."""
-
-        def __init__(self, name: str | None, *, use_errno: bool) -> None:
-            assert (name, use_errno) == (None, True)
-
-    look_up = module._renameat2.__wrapped__
-    monkeypatch.setattr(sys, "platform", "darwin")
-    assert look_up() is None
-    monkeypatch.setattr(sys, "platform", "linux")
-    monkeypatch.setattr("ctypes.CDLL", Library)
-    assert look_up() is None

@@ -90,11 +90,3 @@ def test_confirmations_stand_with_their_study_in_their_order(texts: Any) -> None
         {name: row[name] for name in ("name", "date", "confirms", "source")} for row in rows
     ]
     assert [each.name for each in fields(found[0])] == ["name", "date", "confirms", "source"]
-
-
-def test_an_attribute_without_entries_names_the_nearest(survey: Facts) -> None:
-    with pytest.raises(InvalidValueError, match=r"attribute: .*did you mean 'detector'"):
-        survey.taxonomy.entries("detektor")
-    assert [entry.value for entry in survey.taxonomy.entries("accuracy")] == list(
-        survey.taxonomy.values("accuracy")
-    )

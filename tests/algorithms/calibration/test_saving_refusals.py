@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import json
-import os
 from dataclasses import dataclass
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any, ClassVar
 
 import numpy as np
 import pytest
 
-from algorithms.calibration import documents, saving
+from algorithms.calibration import documents
 from algorithms.calibration.documents import DocumentError, digest_of, read_document
 from algorithms.calibration.saving import (
     UnreadableCalibrationError,
     document,
     pipeline_of,
-    save,
     stage_document,
 )
 from algorithms.contract import AboutExtractor, Extractor, FeatureKind, Floats, Observation
@@ -68,13 +65,6 @@ def test_a_list_that_does_not_name_its_kind_is_refused(pipeline: Pipeline) -> No
         pipeline_of(stored)
 
 
-@pytest.mark.parametrize("value", [{1, 2}, float("nan"), b"bytes"])
-def test_a_document_of_what_json_cannot_say_is_refused(pipeline: Pipeline, value: object) -> None:
-    stored = {**document(pipeline), "sensor": value}
-    with pytest.raises(UnreadableCalibrationError, match="damaged: expected what JSON can say"):
-        pipeline_of(stored)
-
-
 def nested(depth: int) -> Any:
     value: Any = 1
     for level in range(depth):
@@ -101,31 +91,3 @@ def test_a_file_may_be_as_large_as_the_limit_and_no_larger(
     monkeypatch.setattr(documents, "LARGEST_BYTES", 5)
     with pytest.raises(DocumentError, match="at most 5 bytes, got more"):
         read_document(path)
-
-
-def test_a_half_written_file_of_another_user_s_process_stays(
-    pipeline: Pipeline, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def refuse(process: int, signal: int) -> None:
-        raise PermissionError(1, "Operation not permitted")
-
-    monkeypatch.setattr(os, "kill", refuse)
-    half = tmp_path / ".calibration.json.4711-1f.saving"
-    half.write_text("half")
-    save(pipeline, tmp_path / "calibration.json")
-    assert half.read_text() == "half"
-
-
-def test_where_asking_would_end_a_process_it_is_not_asked(
-    pipeline: Pipeline, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    asked: list[int] = []
-    system = SimpleNamespace(
-        name="nt", getpid=os.getpid, kill=lambda process, signal: asked.append(process)
-    )
-    monkeypatch.setattr(saving, "os", system)
-    half = tmp_path / ".calibration.json.4711-1f.saving"
-    half.write_text("half")
-    save(pipeline, tmp_path / "calibration.json")
-    assert asked == []
-    assert half.exists()

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from algorithms.contract import SensorGeometry, UnsuitableDesignError
-from algorithms.extractors.frames.cameras.blooming_cameras import LineCamera
 from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
 from algorithms.extractors.frames.multi_spot.spot_list import SpotList
 from algorithms.extractors.frames.multi_spot.weighted_spots import WeightedSpots
@@ -107,13 +105,3 @@ def test_spots_one_pixel_thick_have_no_profile_to_be_weighted_by() -> None:
     np.testing.assert_allclose(found, [[31.0, 31.0]] * 2, atol=1e-9)
     weighted = WeightedSpots(holes, blur_px=1.0).extract(frames)
     np.testing.assert_allclose(weighted, [[np.nan, np.nan], [31.0, 31.0]], atol=1e-9)
-
-
-def test_a_camera_of_a_design_has_its_focal_length_centre_and_distortion() -> None:
-    drawn = SensorGeometry(focal_length_mm=4.0, pixel_pitch_mm=0.01, centre_px=(30.0, 20.0))
-    turned = ((0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
-    assert LineCamera.for_sensor(drawn) == LineCamera(4.0, 0.01, (30.0, 20.0))
-    lens = replace(drawn, lens_distortion=(0.1, 0.02))
-    assert LineCamera.for_sensor(lens, turned) == LineCamera(
-        4.0, 0.01, (30.0, 20.0), (0.1, 0.02), turned
-    )

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from algorithms.extractors.frames.multi_spot import aperture_pattern, pattern_memory
+from algorithms.extractors.frames.multi_spot import aperture_pattern
 from algorithms.extractors.frames.multi_spot.image_correlation import ImageCorrelation
 from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
 from algorithms.extractors.frames.multi_spot.pattern_memory import found_once, shared_patterns
@@ -95,21 +95,6 @@ def test_settings_and_parts_of_an_array_are_told_apart():
         assert found_once(array[1:], 1, lambda: "c") == "c"
         assert found_once(array[:, ::2], 1, lambda: "d") == "d"
         assert found_once(array, 1, lambda: "e") == "a"
-
-
-def test_of_more_patterns_than_are_kept_the_one_unused_for_longest_is_forgotten(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(pattern_memory, "_MOST", 2)
-    array = np.zeros((3, 4))
-    array.setflags(write=False)
-    with shared_patterns():
-        assert found_once(array, 1, lambda: "a") == "a"
-        assert found_once(array, 2, lambda: "b") == "b"
-        assert found_once(array, 1, lambda: "c") == "a"
-        assert found_once(array, 3, lambda: "d") == "d"
-        assert found_once(array, 1, lambda: "e") == "a"
-        assert found_once(array, 2, lambda: "f") == "f"
 
 
 def test_patterns_are_shared_until_the_outermost_sharing_ends() -> None:

@@ -8,11 +8,9 @@ from kalman_runs import CUBE, SPACES
 
 from algorithms.angles import sun_from_angles
 from algorithms.contract import Floats, UnusableDataError
-from algorithms.filtering import shared_results
 from algorithms.filtering.filter_calibration import FilterCalibration
 from algorithms.filtering.filters import ExtendedKalman
 from algorithms.filtering.readings import FaceReadings, SpotReadings
-from algorithms.filtering.shared_results import compute_once
 
 NO_FACES = np.empty((0, 3))
 SPOT = SPACES["spot"]
@@ -90,22 +88,3 @@ def test_a_reading_that_no_direction_explains_begins_nothing(read: tuple[float, 
     filtering = ExtendedKalman()
     assert SPOT.start_belief(filtering, TRIED, np.array([60.0, 30.0]), known) is not None
     assert SPOT.start_belief(filtering, TRIED, np.array(read), known) is None
-
-
-def test_of_results_shared_the_oldest_are_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shared_results, "_results", {})
-    monkeypatch.setattr(shared_results, "_KEPT", 3)
-    asked: list[int] = []
-
-    def computed(number: int) -> int:
-        def compute() -> int:
-            asked.append(number)
-            return 10 * number
-
-        return compute_once(["of", number], compute)
-
-    assert [computed(number) for number in (1, 2, 3, 4)] == [10, 20, 30, 40]
-    assert [computed(number) for number in (2, 3, 4)] == [20, 30, 40]
-    assert asked == [1, 2, 3, 4]
-    assert computed(1) == 10
-    assert asked == [1, 2, 3, 4, 1]

@@ -15,9 +15,6 @@ from algorithms.contract import UnusableDataError as Unusable
 from algorithms.models.geometric.panoramic_temperature import WarmCells
 from algorithms.models.multiplex.coded_spacing import CodedSpacing
 from algorithms.models.neural_network.deep_signals import DeepSignals
-from algorithms.models.neural_network.direction_errors import learn_correction, least_squares
-from algorithms.models.neural_network.network_kernel import LINEAR, TANH
-from algorithms.models.neural_network.training import Training, train_network
 from algorithms.models.non_physical.panel_curves import AveragedPanelCurves
 from algorithms.models.non_physical.sigmoid import SigmoidBalance
 from algorithms.models.non_physical.signal_polynomial import SignalPolynomial
@@ -145,28 +142,6 @@ def test_a_curve_that_turns_back_in_the_middle_answers_nothing(
 
 
 # Networks
-
-
-@pytest.mark.parametrize("base", [-1.0, np.nan])
-def test_a_network_corrects_no_directions_that_are_all_wrong(base: float) -> None:
-    sun = field()
-    with pytest.raises(Unusable, match="deep: no sample has a direction that is about right"):
-        learn_correction(base * sun, sun[:, :2], sun, hidden=2, restarts=1, seed=0, by="deep")
-
-
-def test_terms_that_are_nothing_in_every_sample_are_not_settled() -> None:
-    wanted = np.ones((9, 1))
-    np.testing.assert_allclose(least_squares(wanted, wanted, "deep"), [[1.0]], atol=1e-6)
-    with pytest.raises(Unusable, match="deep: the calibration samples do not settle 2 terms"):
-        least_squares(np.zeros((9, 2)), wanted, "deep")
-
-
-def test_training_towards_what_is_not_finite_is_refused() -> None:
-    inputs = np.random.default_rng(2).uniform(-1.0, 1.0, (60, 2))
-    held = np.arange(60) % 5 == 0
-    training = Training((2, 2, 1), (TANH, LINEAR), restarts=2, seed=0)
-    with pytest.raises(Unusable, match="deep: no start of the training gave finite errors"):
-        train_network(inputs, np.full((60, 1), np.nan), held, training, "deep")
 
 
 # Coded masks

@@ -58,18 +58,6 @@ def test_smoothing_is_chosen_on_a_table_that_can_be_solved_as_a_band(
     assert separation_deg(model.predict(spots), sun).max() < 0.01
 
 
-def test_degree_and_smoothing_are_chosen_on_as_many_rows_as_can_be_solved(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    spots, sun = calibration(EVEN, EVEN)
-    sizes = sizes_tried(monkeypatch, blended_polynomials)
-    monkeypatch.setattr(blended_polynomials, "MAX_NODES", 100)
-    model = BlendedPolynomials(**TABLE).fit(spots, sun)
-    assert sizes == [7 * terms for terms in (3, 5, 7, 9, 13)]  # rows of 10 degrees
-    assert model.coefficients_deg_.shape[0] == 19, "rows are as near as asked for"
-    assert separation_deg(model.predict(spots), sun).max() < 0.01
-
-
 def test_degrees_that_samples_do_not_settle_are_not_compared(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
