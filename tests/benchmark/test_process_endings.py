@@ -79,50 +79,6 @@ def test_a_worker_whose_coordinator_has_ended_already_ends_itself_at_once(
     assert killed.signals == [(os.getpid(), signal.SIGKILL)] * 2
 
 
-@pytest.mark.parametrize(
-    ("number", "spoken"), [(signal.SIGTERM, False), (signal.SIGINT, False), (signal.SIGTERM, True)]
-)
-def test_what_does_not_end_in_time_is_ended_hard_and_says_so_once(
-    number: signal.Signals,
-    spoken: bool,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    ended, codes = threading.Event(), []
-    said = threading.Event()
-    if spoken:
-        said.set()
-
-    def end(code: int) -> None:
-        codes.append(code)
-        ended.set()
-
-    monkeypatch.setattr(os, "_exit", end)
-    monkeypatch.setattr(processes, "_tidy_s", [9.0])
-    processes.take_time_to_end(0.0)
-    monkeypatch.setattr(processes, "_said", said)
-    before = signal.set_wakeup_fd(-1)
-    try:
-        processes._end_for_certain.__wrapped__()
-        told = signal.set_wakeup_fd(-1)
-    finally:
-        signal.set_wakeup_fd(before)
-    os.write(told, bytes([signal.SIGCHLD, number]))  # another signal before it asks for nothing
-    assert ended.wait(timeout=60)
-    os.close(told)
-    assert codes == [128 + number]
-    assert capsys.readouterr().err == ("" if spoken else "interrupted\n")
-
-
-def test_a_worker_ends_in_time_without_a_word(monkeypatch: pytest.MonkeyPatch) -> None:
-    watched = []
-    monkeypatch.setattr(processes, "_said", threading.Event())
-    monkeypatch.setattr(processes, "_end_for_certain", lambda: watched.append(True))
-    processes.end_in_time()
-    assert processes._said.is_set()
-    assert watched == [True]
-
-
 def raiser(error: BaseException) -> Callable[[], int]:
     def main() -> NoReturn:
         raise error

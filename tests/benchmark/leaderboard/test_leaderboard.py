@@ -28,7 +28,6 @@ from benchmark.running.pinning import UnversionedChangeError
 from benchmark.sweeps.record import swept
 
 pytestmark = pytest.mark.usefixtures("readings_only", "log")
-CELL = "fake-diodes/noisy/fake-currents/fake-least-squares"
 PRESETS = (Diodes(), Diodes(name="fake-second"))
 PARTS = fake_plan.parts(presets=PRESETS)
 #: Every pipeline under both conditions; what leads on other units and, on all of them, on benches.
@@ -379,8 +378,3 @@ def test_sweeps_stand_in_every_form(made):
     for name in ("leaderboard.md", "leaderboard.html"):
         assert "fake-currents" in FORMATS[name](board).partition("Sweeps")[2], name
     assert "faces,noise,50,fake-currents" in FORMATS["sweeps.csv"](board)
-
-
-def test_no_workers_is_refused(tmp_path):
-    with pytest.raises(ValueError, match=r"workers.*1.*0"):
-        update(tmp_path, 0, parts=PARTS)

@@ -89,11 +89,6 @@ def test_a_condition_s_digest_is_its_own_and_drawn_benches_read_the_first():
         known.condition_digest("nobody", "c")
 
 
-def test_a_component_that_is_not_there_is_named():
-    with pytest.raises(ComponentsError, match="'nobody'"):
-        components().cell_key(cell("nobody"))
-
-
 def test_differences_name_kind_and_component():
     one, two = components(), components(data="x", e="y")
     assert one.differences(one) == []

@@ -96,12 +96,6 @@ def test_a_failure_is_never_what_need_not_be_measured_again_and_a_refusal_is(sto
         assert one.is_scored(cell("b"), components())
 
 
-def test_what_was_never_measured_is_not_known(store):
-    record = Record(store)
-    assert not record.is_scored(cell("a"), components())
-    assert not record.is_pinned(pin().place, components())
-
-
 def test_writing_makes_files_of_the_journal_and_forgets_it(store):
     with open_record(store) as record:
         keep_all(record)
@@ -244,12 +238,6 @@ def test_lines_lost_at_the_end_are_measured_again(store):
     lines = record.journal.read_text().splitlines(keepends=True)
     record.journal.write_text("".join(lines[:-1]))
     assert set(Record(store).scores) == {cell("a")}
-
-
-def test_a_directory_is_no_journal(store):
-    Record(store).journal.mkdir(parents=True)
-    with pytest.raises(StoreError, match="expected a file, got a directory"):
-        Record(store)
 
 
 def test_every_line_is_json_of_its_own(store):

@@ -9,7 +9,7 @@ from benchmark.datasets.pins import bounds_agree
 from benchmark.metrics.score import METRICS
 from benchmark.results.components import ComponentsError
 from benchmark.results.csv_tables import StoreError, format_cell, number, read_csv, text_of
-from benchmark.results.store import NUMBERS, PUBLISHED, Store, UnknownFieldError
+from benchmark.results.store import NUMBERS, Store, UnknownFieldError
 
 TEXT = st.text(st.characters(exclude_categories=("Cc", "Cs", "Zl", "Zp"))).map(
     lambda text: " ".join(text.split())
@@ -96,11 +96,6 @@ def test_a_number_is_spelt_with_the_fewest_digits_that_read_back(value, text):
     assert value is None or isinstance(value, str) or float(text) == value
 
 
-def test_the_results_by_default_are_the_published_ones():
-    assert Store().directory == PUBLISHED
-    assert Store().components_path.is_file()
-
-
 def test_rows_of_numbers_are_short(store):
     write(store, {cell("m"): numbers(0.5, max_deg=2.0, p95_deg=None)})
     header, line = (store.scores_directory / "d.csv").read_text().splitlines()
@@ -127,14 +122,6 @@ def test_writing_the_same_again_touches_no_file(store):
     write(store, scores, [pin(n=4)])
     changed = {path for path, then in before.items() if path.stat().st_mtime_ns != then}
     assert changed == {store.pins_path, store.directory / "manifest.json"}
-
-
-def test_a_new_store_is_empty(store):
-    assert store.rows() == []
-    assert store.query(dataset="x") == []
-    assert store.frame().empty
-    assert (store.scores(), store.pins()) == ({}, {})
-    assert store.components().stages == {}
 
 
 def test_rows_carry_what_is_known_of_what_they_are_of(store):

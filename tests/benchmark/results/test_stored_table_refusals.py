@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from fake_results import cell, components, numbers
 
 from benchmark.results.csv_tables import (
     Reader,
@@ -20,7 +19,6 @@ from benchmark.results.csv_tables import (
     size,
     word,
 )
-from benchmark.results.journal import Journal
 from benchmark.results.store import Store
 
 
@@ -67,59 +65,8 @@ def test_the_ends_of_a_range_belong_to_it_and_an_empty_cell_is_none(
     assert reader(text) == value
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("a,b\n1,2\n3,4", "line 3: the last line is cut off"),
-        ("a,b", "line 1: the last line is cut off"),
-        ("", "line 1: expected the columns a, b; got none"),
-        ("b,a\n", "line 1: expected the columns a, b; got b, a"),
-        ("a,b\n1\n", "line 2: expected 2 cells, got 1"),
-        ('a,b\n1,"2\n', "line 2: not CSV"),
-    ],
-)
-def test_a_table_that_is_damaged_is_refused_by_its_line(
-    text: str, said: str, tmp_path: Path
-) -> None:
-    path = tmp_path / "t.csv"
-    path.write_text(text)
-    with pytest.raises(StoreError, match=rf"t\.csv, {said}"):
-        read_csv(path, {"a": number, "b": number})
-
-
-def test_a_score_without_a_unit_is_refused_by_its_line(tmp_path: Path) -> None:
-    store = Store(tmp_path)
-    store.write({cell("a"): numbers(), cell("b"): numbers()}, [], components())
-    path = store.scores_directory / "d.csv"
-    path.write_text(path.read_text().replace("c,e,b,0,", "c,e,b,,"))
-    with pytest.raises(StoreError, match=r"d\.csv, line 3: expected a number in unit"):
-        store.scores()
-
-
 def test_a_file_where_the_tables_of_scores_should_be_is_refused(tmp_path: Path) -> None:
     store = Store(tmp_path)
     store.scores_directory.touch()
     with pytest.raises(StoreError, match="scores: expected a directory of tables"):
         store.scores()
-
-
-@pytest.mark.parametrize(
-    ("line", "said"),
-    [
-        (b'{"a": 1}\n', "line 2: not a record of the journal"),
-        (b"[1]\n", "line 2: not a record of the journal"),
-        (b'{"a": \xff}\n', "line 2: not UTF-8 text"),
-        (b'{"a": \n', "line 2: not JSON"),
-        (b'{"a": 2, "chain": "0123456789abcdef"}\n', "line 2: not as a runner wrote it"),
-    ],
-)
-def test_a_line_that_no_runner_wrote_is_refused_by_its_number(
-    line: bytes, said: str, tmp_path: Path
-) -> None:
-    journal = Journal(tmp_path / "journal.jsonl")
-    journal.append([{"a": 1}])
-    assert journal.read() == [(1, {"a": 1})]
-    with journal.path.open("ab") as file:
-        file.write(line)
-    with pytest.raises(StoreError, match=rf"journal\.jsonl, {said}"):
-        journal.read()

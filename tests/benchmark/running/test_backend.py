@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import pickle
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
@@ -35,53 +33,6 @@ def tasks(count: int, **named: Any) -> list[Task]:
     ]
 
 
-class Hands:
-    """Two workers that do what they are given here; `seen` is how many tasks each bundle had."""
-
-    def __init__(self) -> None:
-        self.seen: list[Any] = []
-        self.given: list[backend.Work] = []
-
-    def workers(self) -> int:
-        return 2
-
-    def is_free(self) -> bool:
-        return len(self.given) < 2
-
-    def is_busy(self) -> bool:
-        return bool(self.given)
-
-    def give(self, work: backend.Work) -> None:
-        self.given.append(work)
-
-    def take(self) -> backend.Done:
-        work = self.given.pop(0)
-        self.seen.append(len(work.tasks))
-        return work()
-
-
-@pytest.fixture
-def here(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """What is measured in this process; other processes are not to be had."""
-    measured: list[Any] = []
-
-    def measured_here(task: Task, _: Any) -> TaskResult:
-        measured.append(task)
-        return TaskResult(task, (), ())
-
-    monkeypatch.setattr(backend, "measure", measured_here)
-    monkeypatch.setattr(backend, "hands_of", lambda *_: pytest.fail("other processes"))
-    return measured
-
-
-@pytest.mark.parametrize(("count", "workers"), [(1, 1), (1, 2), (3, 1), (0, 1)])
-def test_one_worker_or_one_task_needs_no_other_process(
-    here: list[Any], count: int, workers: int
-) -> None:
-    some = tasks(count)
-    assert [one.task for one in backend.outcomes(some, workers)] == some == here
-
-
 def test_what_a_preset_computes_when_it_is_measured_stays_with_the_worker(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -95,40 +46,6 @@ def test_what_a_preset_computes_when_it_is_measured_stays_with_the_worker(
         done = backend.Work(bundle, Durations(), 1.0)()
         assert len(pickle.dumps(done)) < 10_000
         assert all(task is result.task for task, result, _ in done.timed)
-
-
-def test_two_tasks_of_two_workers_go_to_other_processes(
-    here: list[Any], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    hands = Hands()
-
-    @contextmanager
-    def hands_of(workers: int) -> Iterator[Hands]:
-        hands.seen.append(workers)
-        yield hands
-        hands.seen.append("left")
-
-    monkeypatch.setattr(backend, "hands_of", hands_of)
-    some = [*tasks(5), *tasks(1, unit=1)]
-    assert [one.task for one in backend.outcomes(some, 2)] == some == here
-    assert hands.seen == [2, 5, 1, "left"]
-
-
-def test_a_scheduler_is_asked_though_there_is_one_worker_and_one_task(
-    here: list[Any], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    hands = Hands()
-
-    @contextmanager
-    def connected(address: str) -> Iterator[Hands]:
-        hands.seen.append(address)
-        yield hands
-        hands.seen.append("left")
-
-    monkeypatch.setattr(backend, "connect", connected)
-    some = tasks(1)
-    assert [one.task for one in backend.outcomes(some, 1, "tcp://somewhere:1")] == some == here
-    assert hands.seen == ["tcp://somewhere:1", 1, "left"]
 
 
 @pytest.mark.slow

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from algorithms.contract import Observation
-from benchmark.plan.parts import installed_parts
 from benchmark.running import compiling
 from benchmark.running.compiling import compile_kernels
 
@@ -101,14 +100,3 @@ def test_an_extractor_reads_data_sets_until_it_finds_something_in_one() -> None:
     compiling._Reading(extractor, ((preset("empty"), preset("fits"), preset("spare")),))()
     arrays = ("uint16", True), ("float64", True), ("uint16", False)
     assert read == [(name, *array) for name in ("empty", "fits") for array in arrays]
-
-
-def test_every_data_set_but_those_of_frames_is_read() -> None:
-    """An L of slits and a single hole are both events, and read by kernels of their own."""
-    for reader in compiling._readers(installed_parts()):
-        for presets in reader.kinds:
-            kinds = {preset.observation for preset in presets}
-            assert len(presets) == 1 or kinds == {Observation.FRAMES}
-    (escm,) = [one for one in compiling._readers(installed_parts()) if one.name == "escm"]
-    read = {preset.name for presets in escm.kinds for preset in presets}
-    assert {"event-l-slit", "event-single-aperture"} <= read

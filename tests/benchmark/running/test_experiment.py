@@ -12,7 +12,6 @@ import pytest
 
 from benchmark.contract import UnknownNameError
 from benchmark.experiments import __main__ as command
-from benchmark.plan.parts import Parts
 from benchmark.progress import silent
 from benchmark.results.csv_tables import StoreError
 from benchmark.results.row_file import Row, RowFile
@@ -185,14 +184,3 @@ def test_a_check_that_found_nothing_due_is_not_made_again(
     assert asked == ["looked"]
     assert command.main(["sums", "--check"]) == 0
     assert len(asked) == 2, "another question"
-
-
-def test_what_was_measured_last_is_named_while_measuring(tmp_path: Path) -> None:
-    said: list[tuple[Any, ...]] = []
-    update(Squares(tmp_path), 1, lambda *what: said.append(what))
-    assert said == [(0, 3, ""), (2, 3, "1"), (3, 3, "3")]
-
-
-def test_an_experiment_is_of_the_parts_it_is_given(tmp_path: Path) -> None:
-    parts = Parts({}, {}, {})
-    assert Squares(tmp_path, parts).parts is parts

@@ -63,21 +63,6 @@ def called(monkeypatch):
     return calls, answer
 
 
-@pytest.mark.usefixtures("x86")
-def test_every_library_is_told_and_the_rest_of_the_environment_stays(monkeypatch):
-    monkeypatch.setenv("FAKE_ATLAS_LOG", "somewhere")
-    monkeypatch.setattr(kernels, "_beyond_avx2", lambda: ["X86_V4", "AVX512_ICL"])
-    monkeypatch.setattr(kernels, "_found_by_opencv", lambda: ["AVX512-SKX", "AVX512-COMMON"])
-    monkeypatch.setenv("OPENCV_CPU_DISABLE", "AVX512-ICL")  # by whoever started this process
-    environment = older_environment()
-    assert environment["NPY_DISABLE_CPU_FEATURES"] == "X86_V4 AVX512_ICL"
-    assert environment["OPENBLAS_CORETYPE"] == "Haswell"
-    assert environment["NUMBA_CPU_NAME"] == "haswell"
-    assert environment["OPENCV_CPU_DISABLE"] == "AVX512-COMMON,AVX512-ICL,AVX512-SKX"
-    rest = {name: value for name, value in os.environ.items() if name not in kernels.OLDER}
-    assert {name: value for name, value in environment.items() if name not in kernels.OLDER} == rest
-
-
 def test_every_library_does_as_it_is_told():
     """A new process: none finds code of a later processor than one of 2013, and none complains."""
     if platform.machine().lower() not in {"x86_64", "amd64"}:
@@ -126,11 +111,3 @@ def test_another_family_of_processors_is_told_before_anything_starts(tmp_path, c
     with pytest.raises(NoOlderKernelsError, match="this machine is aarch64"):
         update_with_older_kernels(tmp_path, 1)
     assert called[0] == []
-
-
-def test_only_what_came_after_avx2_is_switched_off(monkeypatch):
-    found = {"SIMD Extensions": {"found": ["X86_V3", "AVX512_SPR", "X86_V4", "ASIMD"]}}
-    monkeypatch.setattr(kernels.np, "show_config", lambda mode: found)
-    assert kernels._beyond_avx2() == ["AVX512_SPR", "X86_V4"]
-    monkeypatch.setattr(kernels.np, "show_config", lambda mode: {"SIMD Extensions": {}})
-    assert kernels._beyond_avx2() == []

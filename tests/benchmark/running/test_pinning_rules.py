@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from typing import Any
 
 import fake_plan
@@ -72,37 +71,6 @@ def test_every_condition_and_split_is_a_place() -> None:
         pinning.conditions_of(parts, ["z", "fake-diode"])
 
 
-def pins_of(preset: Any) -> dict[Any, Any]:
-    made = [
-        made
-        for condition in preset.conditions
-        for made in pinning.generated_pins(preset, condition)
-    ]
-    return by_place(*made)
-
-
-def test_heads_tell_in_samples_and_bounds_what_changed_among_the_first() -> None:
-    preset = Diodes(n=40)
-    pinned = pins_of(preset)
-    assert pinning.changed_heads(pinned, [preset]) == {}
-    other = pinning.changed_heads(pinned, [replace(preset, seed=8)])
-    assert [line.split(":")[0] for line in other["fake-diodes"]] == [
-        f"{condition} {split}"
-        for condition in ("quiet", "noisy")
-        for split in ("calibration", "test", "repeat")
-    ]
-    assert all("head_hash" in line for line in other["fake-diodes"])
-    looser = pinning.changed_heads(pinned, [replace(preset, looseness=1.01)])
-    assert [line.partition(" deg")[0].split(" ")[:3] for line in looser["fake-diodes"]] == [
-        ["quiet", "test:", "head_bound_deg"],
-        ["noisy", "test:", "head_bound_deg"],
-    ]
-    # what comes after the head is not looked at, nor another version, nor what has no pin
-    assert pinning.changed_heads(pinned, [replace(preset, late=0.5)]) == {}
-    assert pinning.changed_heads(pinned, [replace(preset, seed=8, version=2)]) == {}
-    assert pinning.changed_heads({}, [replace(preset, seed=8)]) == {}
-
-
 def test_data_sets_of_other_code_are_those_whose_digest_is_another(tmp_path: Any) -> None:
     parts = fake_plan.parts(presets=(Diodes(), Diodes(name="z")))
     store, now = Store(tmp_path), current(parts)
@@ -115,20 +83,6 @@ def test_data_sets_of_other_code_are_those_whose_digest_is_another(tmp_path: Any
     assert [p.name for p in pinning.presets_of_other_code(store, parts, now)] == ["z"]
     store.write({}, [], Components({**now.stages, "data": "older"}, datasets=now.datasets))
     assert len(pinning.presets_of_other_code(store, parts, now)) == 2
-
-
-@pytest.mark.parametrize(
-    ("known", "said"),
-    [
-        (None, "not pinned"),
-        (pin(version=3), "version 1, pinned 3"),
-        (pin(version=3, data_hash="x"), "version 1, pinned 3"),
-        (pin(), ""),
-        (pin(n=4), "n 3, pinned 4"),
-    ],
-)
-def test_what_is_wrong_with_a_pin_is_its_version_first(known: Any, said: str) -> None:
-    assert pinning._wrong(known, pin()) == said
 
 
 def test_only_what_is_missing_is_generated_and_counted(tmp_path: Any) -> None:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import fake_atlas
 import fake_plan
-import numpy as np
 import pytest
 
 from benchmark.plan.combinations import cells
@@ -142,33 +140,6 @@ def test_a_time_stays_until_all_are_measured_again(
     machine = read_times(tmp_path).machine
     assert machine is not None
     assert (machine.processor, machine.also_on) == ("second", ())
-
-
-@pytest.mark.parametrize(
-    ("values", "batch"),
-    [(1, 2**20), (2**17, 8), (2**17 + 1, 8), (2**16, 16), (2**21, 8)],
-)
-def test_as_many_samples_are_timed_together_as_fill_eight_megabytes(
-    values: int, batch: int
-) -> None:
-    one = SimpleNamespace(observations=np.zeros((1, values), dtype=np.float64))
-    preset: Any = SimpleNamespace(generate=lambda condition, split, n: one)
-    assert times._batch(preset, "quiet") == batch
-
-
-@pytest.mark.parametrize("limit", [1, 12, 13, 25, 10**6])
-def test_weighted_sums_read_every_value_once_a_part_at_a_time(
-    limit: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(times, "_SUMMED_VALUES", limit)
-    frames = np.random.default_rng(1).integers(0, 9, (7, 3, 4)).astype(np.uint16)
-    parts: Any = times.weighted_sums(frames)
-    rows = max(limit // 12, 1)
-    assert [len(part) for part in parts] == [min(rows, 7 - k) for k in range(0, 7, rows)]
-    weights = np.linspace(0.0, 1.0, 12)
-    np.testing.assert_allclose(np.concatenate(parts), frames.reshape(7, 12) @ weights)
-    events = np.zeros((3, 5), dtype=[("x", np.int16), ("t", np.int64)])
-    assert np.concatenate(times.weighted_sums(events)).shape == (3,)  # type: ignore[arg-type]
 
 
 def test_the_reference_loop_gives_the_same_number_each_time() -> None:

@@ -5,15 +5,11 @@ from __future__ import annotations
 import math
 import os
 import signal
-from concurrent.futures import Future
-from types import SimpleNamespace
 
 import pytest
-from joblib.externals.loky.backend.process import LokyProcess
 
-from benchmark.running import workers
 from benchmark.running.cluster import WorkerLostError
-from benchmark.running.workers import LocalHands, as_completed
+from benchmark.running.workers import as_completed
 
 
 def kill(number: float) -> float:
@@ -46,38 +42,3 @@ def test_who_stops_early_can_ask_again() -> None:
     assert next(first) == 2.0
     first.close()
     assert list(as_completed(math.sqrt, [9.0, 16.0], 2)) == [3.0, 4.0]
-
-
-def test_each_worker_has_one_piece_of_work_at_a_time() -> None:
-    done: Future[int] = Future()
-    done.set_result(7)
-    hands = LocalHands(SimpleNamespace(submit=lambda *_: done), 2)
-    given = 0
-    while hands.is_free() and given < 9:
-        hands.give(int)
-        given += 1
-    assert given == 2
-    assert hands.take() == 7
-    assert hands.is_free()
-    assert hands.is_busy()
-    hands.take()
-    assert not hands.is_busy()
-
-
-def test_workers_alone_are_killed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Not what else this process has started, nor a worker that has no number yet."""
-
-    class Worker(LokyProcess):
-        def __init__(self, pid: int | None) -> None:
-            self.number = pid
-
-        @property
-        def pid(self) -> int | None:
-            return self.number
-
-    there = [Worker(11), Worker(None), SimpleNamespace(pid=12), Worker(13)]
-    killed: list[tuple[int, int]] = []
-    monkeypatch.setattr(workers, "active_children", lambda: there)
-    monkeypatch.setattr(os, "kill", lambda *said: killed.append(said))
-    workers._kill()
-    assert killed == [(11, signal.SIGKILL), (13, signal.SIGKILL)]

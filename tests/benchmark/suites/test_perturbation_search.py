@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
@@ -14,9 +13,7 @@ from fake_atlas import Currents, Diodes, FakeSamples, LeastSquares
 from algorithms.contract import UnusableDataError
 from benchmark.contract import Cell
 from benchmark.plan.parts import Parts
-from benchmark.results.store import Store
 from benchmark.running import condition_data
-from benchmark.suites import perturbation
 from benchmark.suites.perturbation import SensitiveCell, search
 
 
@@ -130,10 +127,3 @@ def test_a_cell_that_another_rounding_refuses_is_found_with_the_reason() -> None
     assert before is None
     assert "needs exact steps" in after
     assert one.columns["charged_deg"][1] is None
-
-
-@pytest.fixture
-def command(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """The command on the small data sets, and a record without a score."""
-    monkeypatch.setattr(perturbation, "installed_parts", lambda: PARTS)
-    monkeypatch.setattr(perturbation, "Store", lambda: Store(tmp_path))

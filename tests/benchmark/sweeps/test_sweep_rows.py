@@ -146,11 +146,3 @@ def test_numbers_differ_beyond_what_each_is_known_to(column: str, near: float, f
     assert list(differences([ROW], [{**ROW, column: near}])) == []
     (found,) = differences([ROW], [{**ROW, column: far}])
     assert found == (f"slit/noise/50/fake-lines/{column}", str(ROW[column]), str(far))
-
-
-def rows_of(sweep: str, series: str, **changes: Any) -> list[dict[str, Any]]:
-    values = {"noise": (5.0, 10.0, 100.0), "phase": (0.0, 0.25, 0.5, 0.625, 0.75, 0.875)}[sweep]
-    return [{**ROW, "sweep": sweep, "series": series, "value": v, **changes} for v in values]
-
-
-NOTHING = {"rms": None, "bound": None, "found_fraction": 0.0}
