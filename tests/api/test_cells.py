@@ -1,6 +1,5 @@
 """One spelling of what stands in a cell, for the command line, the service and the deposit."""
 
-import enum
 import math
 from enum import Enum, IntEnum, StrEnum
 
@@ -8,12 +7,6 @@ import numpy as np
 import pytest
 
 from api.cells import cell, plain_value
-
-
-class Verdict(enum.StrEnum):
-    """Words with names."""
-
-    AGREES = "agrees"
 
 
 class Word(StrEnum):

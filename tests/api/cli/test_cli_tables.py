@@ -9,7 +9,6 @@ import pytest
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
-from api.cli.layout import Column
 
 #: The narrowest, which is the hardest; slow are what most terminals have, and others.
 WIDTHS = (40, *[pytest.param(width, marks=pytest.mark.slow) for width in (60, 80, 120, 200)])
@@ -77,14 +76,6 @@ def test_every_row_keeps_its_words_at_every_width(arguments, names, listed, widt
 )
 def test_no_line_is_wider_than_the_terminal(arguments, width):
     assert max(map(len, shown(*arguments, width=width).splitlines())) <= width
-
-
-def cells(*columns):
-    return [Column(name, texts, numeric) for name, texts, numeric in columns]
-
-
-NAMES = ["cmos-single-aperture", "pd-slit"]
-NUMBERS = ["0.001234", "17"]
 
 
 def test_empty_columns_are_left_out_where_there_are_rows():

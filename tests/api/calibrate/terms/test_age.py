@@ -62,8 +62,9 @@ def corrected(tmp_path: Path, signals: Floats, sun: Floats, predict: Any) -> Cor
     return recalibrate([path], SimpleNamespace(settings=made, predict=predict, stated_deg=0.2))
 
 
-@pytest.mark.parametrize("count", [8, 20, 50])
-@pytest.mark.parametrize("dimmed", [{1: 0.7}, {4: 0.5}, {0: 0.9, 3: 0.6}])
+@pytest.mark.parametrize(
+    ("dimmed", "count"), [({0: 0.9, 3: 0.6}, 8), ({4: 0.5}, 20), ({1: 0.7}, 50)]
+)
 def test_dimmed_cells_are_named_and_no_others(
     tmp_path: Path, dimmed: dict[int, float], count: int
 ) -> None:

@@ -16,11 +16,8 @@ from typer.testing import CliRunner
 
 from api.cli import asking
 from api.cli.command_line import app
-from api.cli.commands import rank as ranking
-from api.cli.contract import ContractResult
 from api.service.knowledge import Knowledge
-from benchmark.leaderboard import candidate, check
-from benchmark.leaderboard.candidate import Ranking
+from benchmark.leaderboard import check
 from benchmark.leaderboard.check import Difference
 from benchmark.leaderboard.pages import FORMATS
 from benchmark.results.store import PUBLISHED
@@ -149,18 +146,3 @@ def test_a_condition_that_no_data_set_asked_for_has_leaves_nothing() -> None:
 # ---- rank
 
 NEW, REASON = "voltage-balance", "needs more poses"
-
-
-@pytest.fixture
-def ranked(board: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> Ranking:
-    """A board on which the pipelines of one extractor are new; one of them has no score."""
-    (one,) = board["datasets"]
-    rows = [dict(row) for row in one["rows"] if row["condition"] == "nominal"]
-    pipelines = frozenset((r["extractor"], r["model"]) for r in rows if r["extractor"] == NEW)
-    mine = [row for row in rows if row["extractor"] == NEW]
-    assert len(rows) > len(mine) > 1
-    mine[-1] |= {"reason": REASON, "rank": None, "best_of_extractor": False}
-    found = Ranking({**board, "datasets": [{**one, "rows": rows}]}, pipelines, 3, "On one unit.")
-    monkeypatch.setattr(candidate, "rank", lambda *_, **__: found)
-    monkeypatch.setattr(ranking, "check_contract", lambda _: ContractResult(12, ()))
-    return found

@@ -6,7 +6,6 @@ Files are tested elsewhere; here a fake returns the result that is printed.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -16,18 +15,12 @@ from typer.testing import CliRunner
 from api.cli.command_line import app
 from api.cli.commands import deposit as command
 from api.deposit import against_record
-from api.deposit.archives import uploading
-from api.deposit.archives.contract import Draft
-from api.deposit.archives.uploading import State, UploadResult
 from api.guide import site
 
 
 def sunatlas(*arguments: object) -> Any:
     call = list(map(str, arguments))
     return CliRunner(env={"COLUMNS": "200"}).invoke(app, call, catch_exceptions=False)
-
-
-# ---- compile
 
 
 # ---- guide
@@ -83,44 +76,6 @@ def test_a_difference_fails_with_its_file(differences: Differences, where: str) 
     assert len(differences["asked"]) == (where == "record"), "a damaged bundle is not compared"
     table = sunatlas("deposit", "verify", "a-bundle").stdout
     assert table.startswith("a-bundle: 1 problems\n")
-
-
-SANDBOX = "https://sandbox.zenodo.org"
-OTHER = "https://archive.example"
-TOKEN = "not-a-secret"
-
-
-@pytest.fixture
-def uploaded(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
-    """How an archive was asked to take a bundle; it leaves one file of the draft as it was."""
-    asked: list[dict[str, Any]] = []
-    for name in ("ZENODO_SANDBOX_TOKEN", "ZENODO_TOKEN", "ARCHIVE_TOKEN"):
-        monkeypatch.setenv(name, TOKEN)
-    done = Draft("7", "https://archive.example/7")
-
-    def upload(
-        archive: object,
-        address: str,
-        bundle: Path,
-        *,
-        version_of: str | None,
-        draft: str | None,
-        tell: Callable[[str, State], None],
-    ) -> UploadResult:
-        asked.append(
-            {
-                "kind": type(archive),
-                "address": address,
-                "bundle": bundle,
-                "version_of": version_of,
-                "draft": draft,
-            }
-        )
-        tell("README.md", "sent")
-        return UploadResult(done, {"README.md": "sent"}, ("notes.txt",))
-
-    monkeypatch.setattr(uploading, "upload", upload)
-    return asked
 
 
 # ---- dataset fetch

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from typer.testing import CliRunner
 
-from api.cli.asking import ask
 from api.cli.command_line import app
-from api.cli.commands import studies
-from api.service import studies as service
 from tests.api.conftest import Client
 
 FORMS = ("bibtex", "ris", "csl")
@@ -47,11 +43,3 @@ def test_studies_without_a_title_have_no_reference_and_are_named(atlas: Client) 
     alone = shown(untitled[0], "--format", "ris")
     assert f"of {untitled[0]}: left out" in alone.stderr
     assert untitled[0] not in alone.stdout
-
-
-@pytest.fixture
-def document(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """The service's answer about a study, to be altered."""
-    found = dict(ask(service.study, key=STUDY).document)
-    monkeypatch.setattr(studies, "ask", lambda *_, **__: SimpleNamespace(document=found))
-    return found
