@@ -12,7 +12,7 @@ import pytest
 from algorithms.contract import Observation, SensorGeometry
 from benchmark.datasets import Condition, Preset, preset, units
 from benchmark.datasets.calibration import STANDARD_BENCH
-from benchmark.datasets.card import differences, merge, parameters_of
+from benchmark.datasets.card import parameters_of
 from benchmark.datasets.fields import AngleField, SphereField
 from benchmark.datasets.repeats import Repeats
 from benchmark.seeds import generator
@@ -289,15 +289,6 @@ def test_a_card_says_of_each_condition_what_is_its_own() -> None:
     assert card["splits"]["test"]["samples"] == 11
     assert card["splits"]["repeat"]["samples"] == 12
     assert card["observation"] == "currents"
-
-
-def test_objects_that_name_another_type_stand_whole() -> None:
-    base = {"a": {"type": "X", "b": 1, "c": 2}, "d": {"e": 1, "f": 2}, "g": [1]}
-    other = {"a": {"type": "Y", "b": 1, "c": 3}, "d": {"e": 1, "f": 3}, "g": [2]}
-    found = differences(base, other)
-    assert found == {"a": {"type": "Y", "b": 1, "c": 3}, "d": {"f": 3}, "g": [2]}
-    assert merge(base, found) == other
-    assert base["d"] == {"e": 1, "f": 2}, "what is merged into stays as it is"
 
 
 def test_a_sensor_that_sees_no_earth_is_refused_one() -> None:

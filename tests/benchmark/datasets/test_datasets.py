@@ -28,24 +28,6 @@ NAMES = datasets.names()
 #: The first and the last condition of each; that all are as pinned, and differ, pins check.
 ENDS = [(name, datasets.get(name).conditions[k]) for name in NAMES for k in (0, -1)]
 SPLITS = ("calibration", "test")
-#: Sets of seconds' worth of light: the others state the same in the quick run.
-COSTLY = {
-    "ccd-multi-aperture",
-    "ccd-orbit",
-    "ccd-single-aperture",
-    "cmos-compound-eye",
-    "cmos-encoded",
-    "cmos-encoded-oblique",
-    "cmos-encoded-sizes",
-    "cmos-l-slit",
-    "cmos-multi-aperture",
-    "cmos-multi-aperture-glass",
-    "cmos-single-aperture-thick",
-    "cmos-single-aperture",
-    "cmos-slit",
-    "event-l-slit",
-    "event-single-aperture",
-}
 #: Samples of a split that stand for all of them; that all are as pinned, runs and pins check.
 FEW = 3
 
@@ -188,6 +170,8 @@ KINDS = (
     *("cmos-lens", "cmos-single-aperture", "event-l-slit", "ltf-maskless-cube", "pd-code-dial"),
     *("pd-orbit", "pda-slit", "psd-single-aperture", "pva-maskless-sphere", "qpd-single-aperture"),
 )
+#: Those of them that are simulated in moments: the classes that make samples are the same for all.
+QUICK_KINDS = set(KINDS) - {"cmos-single-aperture", "event-l-slit"}
 
 
 @pytest.mark.slow
@@ -219,7 +203,8 @@ for name in reversed({KINDS}):
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=[pytest.mark.slow] if n in COSTLY else []) for n in NAMES]
+    "name",
+    [pytest.param(n, marks=[pytest.mark.slow] if n not in QUICK_KINDS else []) for n in NAMES],
 )
 def test_generation_depends_on_neither_the_batch_nor_how_much_is_wanted(
     name: str, monkeypatch: pytest.MonkeyPatch
@@ -294,13 +279,6 @@ def test_spots_lie_whole_inside_their_windows_neither_dark_nor_saturated(conditi
     assert np.mean(frames == 0) < 1e-3
 
 
-def test_low_noise_is_the_nominal_unit_with_less_noise() -> None:
-    preset = datasets.get("cmos-single-aperture")
-    low, nominal = preset.fixed_pattern("low-noise"), preset.fixed_pattern("nominal")
-    assert np.array_equal(low["gain"], nominal["gain"])
-    assert preset.setups["low-noise"].sensor.camera == preset.setups["nominal"].sensor.camera
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_bounds_order_with_the_noise(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -327,13 +305,6 @@ def test_bounds_order_with_the_noise(name: str, monkeypatch: pytest.MonkeyPatch)
     assert seen.mean() > 0.8
     assert (low[seen] <= nominal[seen]).all()
     assert (nominal[seen] <= high[seen]).all()
-
-
-def test_round_aperture_condition_has_its_own_geometry() -> None:
-    preset = datasets.get("qpd-single-aperture")
-    assert preset.geometry_for("round-aperture").aperture_shape == "round"
-    assert preset.geometry_for("nominal") == preset.geometry
-    assert preset.geometry.aperture_shape == "square"
 
 
 @pytest.mark.parametrize("name", NAMES)

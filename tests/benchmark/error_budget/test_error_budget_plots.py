@@ -27,10 +27,6 @@ def test_every_leader_stands_at_its_error_bound_and_largest_part(rows):
         assert (text == PARTS[found.leading_part]) == (not found.is_near_bound)
 
 
-def test_nothing_measured_is_said(rows):
-    assert plots.figure([]).texts[-1].get_text() == "nothing is stored"
-
-
 @pytest.mark.slow
 def test_the_file_is_the_same_every_time(rows):
     assert plots.picture(rows) == plots.picture(rows)
