@@ -49,11 +49,6 @@ class Ahead(Model):
         return np.tile([0.0, 0.0, 1.0], (len(features), 1))
 
 
-def test_what_is_said_by_default():
-    assert (ABOUT.studies, ABOUT.labels, ABOUT.needs) == ((), (), ())
-    assert (ABOUT.origin, ABOUT.version) == ("ours", 1)
-
-
 @pytest.mark.parametrize("name", ["", "Bctm", "b_ctm", "b ctm", "-bctm", "bctm-", "b--c"])
 def test_a_name_is_a_slug(name):
     with pytest.raises(ValueError, match="name must be words"):

@@ -26,7 +26,6 @@ from stand_ins import (
 from registry.fitting import KIN, SIMPLEST
 from registry.resolution import Resolution, resolve
 from registry.studies import Facts
-from registry.taxonomy import InvalidValueError
 
 Rows = list[Mapping[str, list[str]]]
 Build = Callable[[Rows], Facts]
@@ -223,11 +222,6 @@ def test_architectures_not_simulated_are_gaps(facts_of: Build) -> None:
         ("architecture", "CMOS + Slit"),
         ("architecture", "CMOS + Lens"),
     ]
-
-
-def test_an_unknown_study_names_the_nearest() -> None:
-    with pytest.raises(InvalidValueError, match="did you mean 'Chang2008'"):
-        resolve("Chang208", {})
 
 
 VALUES = {

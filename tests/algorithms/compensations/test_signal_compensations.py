@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from algorithms.angles import separation_deg
-from algorithms.calibration.saving import stage_document
 from algorithms.compensations.electronics.angular_loss import KELLY, AngularLoss
 from algorithms.compensations.environment.temperature import TemperatureDrift
 from algorithms.compensations.interference.maximum_currents import MaximumCurrents
@@ -179,8 +178,3 @@ def test_three_shared_faces_have_no_solution():
     np.testing.assert_allclose(stage.transform(alone, context_of(sun, field)), alone, rtol=1e-9)
     both = alone + 0.1 * (alone > 0)
     assert np.isnan(stage.transform(both, context_of(sun, field))).all()
-
-
-def test_what_is_learnt_is_kept():
-    stage = MaximumCurrents(CUBE).fit(np.maximum(spread(50) @ NORMALS, 0), spread(50))
-    assert stage_document(stage)["fitted"]["one_sun_"]["shape"] == [6]

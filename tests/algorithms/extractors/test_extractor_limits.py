@@ -9,9 +9,7 @@ from scipy.special import jn_zeros
 from algorithms.contract import SensorGeometry, UnsuitableDesignError
 from algorithms.extractors.frames.multi_spot import mean_shift_kernel
 from algorithms.extractors.frames.multi_spot.aperture_design import design_pattern
-from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
 from algorithms.extractors.frames.multi_spot.spot_list import SpotList
-from algorithms.extractors.frames.threshold_average import MultipleThresholdCentroid
 from algorithms.extractors.frames.windows import follow_spot
 from algorithms.extractors.profiles.linear_phase import FrameLinearPhase
 from algorithms.extractors.profiles.peak_detection import FramePeak
@@ -85,14 +83,6 @@ def test_spectra_reach_to_half_the_sampling(shape, padded):
     waves = np.cos(2.0 * np.pi * np.outer(frequencies, across))
     expected = width * (waves * light).mean(axis=1) * np.sinc(frequencies)
     np.testing.assert_allclose(spectra.reference, [expected], rtol=0, atol=1e-4)
-
-
-def test_published_accuracies_are_the_defaults():
-    assert MultipleThresholdCentroid().accuracy_px == 0.01
-
-
-def test_a_mask_is_intact_unless_said_otherwise():
-    assert MultipleCentroids(((0.0, 0.0, 5.0), (20.0, 3.0, 5.0))).faulty_lines == 0
 
 
 @pytest.mark.parametrize("edge", [20.0, 55.0])

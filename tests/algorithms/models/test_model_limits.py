@@ -19,13 +19,10 @@ from algorithms.models.geometric.detector_faces import (
     UNIT_TOLERANCE,
     directions,
     require_normals,
-    row_sums,
 )
 from algorithms.models.geometric.least_squares import LeastSquaresGeometry
-from algorithms.models.geometric.multisensor_fusion import SixFaces
 from algorithms.models.geometric.panoramic import WeightedCells
 from algorithms.models.geometric.pyramidal import RegularPyramid
-from algorithms.models.geometric.solar_panel import SolarPanels
 from algorithms.models.geometric.standard_projection import StandardProjection
 from algorithms.models.lut.blended_polynomials import BlendedPolynomials
 from algorithms.models.lut.error_tables import (
@@ -98,11 +95,6 @@ def test_a_face_is_dark_up_to_its_share_of_the_largest(share: float, dark: list[
 # Designs
 
 
-@pytest.mark.parametrize("model", PLANAR)
-def test_without_a_centre_the_boresight_is_at_the_origin(model: Any) -> None:
-    assert model(focal_length_mm=2.0, unit_mm=0.5).centre == (0.0, 0.0)
-
-
 def test_a_nominal_projection_is_read_off_the_drawing() -> None:
     sensor = SensorGeometry(
         focal_length_mm=2.0, pixel_pitch_mm=0.01, centre_px=(30.0, 20.0), aperture_width_mm=0.8
@@ -113,35 +105,6 @@ def test_a_nominal_projection_is_read_off_the_drawing() -> None:
     assert balance == {"focal_length_mm": 2.0, "unit_mm": 0.4, "centre": (0.0, 0.0)}
     found = nominal_tangents(np.array([[130.0, 70.0]]), **spot)
     np.testing.assert_allclose(found, [[50 * 0.01 / 2, 100 * 0.01 / 2]])  # alpha goes with y
-
-
-@pytest.mark.parametrize(
-    ("model", "faces"),
-    [
-        (SixFaces, FACES),
-        (SolarPanels, FACES),
-        (RegularPyramid, pyramid(40.0, 5)),
-        (WeightedCells, pyramid(40.0, 8)),
-    ],
-)
-def test_models_of_faces_are_those_of_the_sensor(model: Any, faces: Any) -> None:
-    sensor = SensorGeometry(face_normals=faces, half_fov_deg=20.0)
-    assert model.for_sensor(sensor, FeatureKind.SIGNALS).face_normals == faces
-
-
-@pytest.mark.parametrize("model", [PeriodicCode, FourierPhase])
-def test_models_of_dials_are_those_of_the_sensor(model: Any) -> None:
-    sensor = SensorGeometry(
-        focal_length_mm=2.5,
-        code_bits=4,
-        code_cell_mm=0.3,
-        fine_period_mm=0.6,
-        line_axes=("y", "x"),
-    )
-    made = model.for_sensor(sensor, FeatureKind.SIGNALS)
-    assert (made.bits, made.cell_mm, made.period_mm, made.focal_length_mm, made.axes) == (
-        4, 0.3, 0.6, 2.5, ("y", "x"),
-    )  # fmt: skip
 
 
 @pytest.mark.parametrize(("half_deg", "fits"), [(34.9, True), (35.1, False)])
@@ -187,12 +150,6 @@ def test_normals_are_units_within_the_tolerance(length: float, unit: bool) -> No
 def test_normals_that_do_not_span_space_are_refused(faces: Any) -> None:
     with pytest.raises(UnsuitableDesignError, match="test needs at least three unit"):
         require_normals(faces, "test")
-
-
-def test_sums_are_over_columns() -> None:
-    np.testing.assert_array_equal(
-        row_sums(np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]), [1.0, -1.0, 2.0]), [5.0, 11.0]
-    )
 
 
 @pytest.mark.parametrize(

@@ -141,9 +141,6 @@ def test_a_curve_that_turns_back_in_the_middle_answers_nothing(
     assert np.isnan(model.directions(back, balances, {})).all()
 
 
-# Networks
-
-
 # Coded masks
 
 

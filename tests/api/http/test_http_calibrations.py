@@ -62,9 +62,14 @@ def test_a_file_becomes_report_json_and_code(zipped):
     }
     document = json.loads(zipped["sun_sensor.json"])
     assert document["verdict"]["verdict"] == "good"
+    assert document["model"]["name"] == "homography", "the only one tried"
     assert document["made"]["files"] == ["bench.csv"]
     assert zipped["sun_sensor_report.html"].count("<svg") == 5
     assert "Requirement 2deg@95%,30deg: met." in zipped["sun_sensor_report.html"]
+    listed = dict(line.split("  ")[::-1] for line in zipped["sun_sensor.sha256"].splitlines())
+    assert listed.keys() == zipped.keys() - {"sun_sensor.sha256"}
+    for name, digest in listed.items():
+        assert hashlib.sha256(zipped[name].encode()).hexdigest() == digest
 
 
 def test_the_page_takes_a_form_without_a_script(atlas):
@@ -93,6 +98,7 @@ def test_the_page_keeps_its_fields_beside_an_error(atlas):
     assert "expected a limit, a level" in wrong.text
 
 
+@pytest.mark.slow
 def test_the_page_has_the_report_and_every_file_in_one_archive(atlas):
     made = atlas.post("/calibrate", data={"sample": "yes", "model": "homography"}, files={"x": ""})
     assert made.status_code == 200, made.text[:2000]
@@ -128,12 +134,17 @@ def test_columns_are_previewed_with_role_unit_and_first_values(atlas):
     assert "empty" in refused.json()["detail"]
 
 
-def test_a_model_is_filled_in_by_the_address_and_is_the_only_one_tried(atlas):
-    assert 'name="model" value="homography"' in atlas.get("/calibrate?model=homography").text
+@pytest.mark.slow
+def test_without_an_answer_asked_for_it_is_the_document(atlas):
     files = {"file": ("b.csv", turntable())}
     made = atlas.post(ADDRESS, files=files, data={"model": "homography"})
     assert made.status_code == 200
     assert made.json()["model"]["name"] == "homography"
+
+
+def test_a_model_is_filled_in_by_the_address_and_none_but_those_there_are_is_tried(atlas):
+    assert 'name="model" value="homography"' in atlas.get("/calibrate?model=homography").text
+    files = {"file": ("b.csv", turntable())}
     refused = atlas.post(ADDRESS, files=files, data={"model": "no-such"})
     assert refused.status_code == 422
     assert "no model no-such" in refused.json()["detail"]

@@ -1,6 +1,5 @@
 """Parts of the service on their own: negotiation, validators, the cache, CSV, the nearest word."""
 
-import gzip
 import json
 
 import pytest
@@ -9,7 +8,7 @@ from hypothesis import strategies as st
 
 from api.service.problems import Problem
 from api.web.negotiation import CSV, JSON, accepts_gzip, media_type
-from api.web.representations import Representation, RepresentationCache, matches
+from api.web.representations import matches
 from survey_data.nearest import nearest_name
 
 fuzz = settings(deadline=None, derandomize=True)
@@ -55,24 +54,6 @@ def test_nothing_acceptable_is_a_406(accept):
     assert "text/csv" in refused.value.detail
 
 
-@pytest.mark.parametrize(
-    ("header", "taken"),
-    [
-        (None, False),
-        ("", False),
-        ("gzip", True),
-        ("br, gzip;q=0.8", True),
-        ("*", True),
-        ("gzip;q=0", False),
-        ("gzip;q=0, *", False),
-        ("identity, gzip;q=0.5", False),
-        ("deflate, br", False),
-    ],
-)
-def test_gzip_is_taken_when_the_client_takes_it(header, taken):
-    assert accepts_gzip(header) is taken
-
-
 @fuzz
 @given(st.text(max_size=60))
 def test_any_accept_header_is_answered_or_refused(header):
@@ -98,29 +79,6 @@ def test_any_accept_header_is_answered_or_refused(header):
 )
 def test_if_none_match_is_a_list_compared_weakly(header, same):
     assert matches(header, '"abc"') is same
-
-
-def test_gzip_carries_the_same_bytes_and_no_time():
-    body = b'{"a": 1}' * 200
-    one, two = (Representation(body, "application/json") for _ in range(2))
-    assert gzip.decompress(one.gzip_body) == body
-    assert one.gzip_body == two.gzip_body
-    assert one.digest == two.digest
-
-
-def test_the_cache_forgets_the_least_recently_used_within_its_bounds():
-    cache = RepresentationCache(most=10, most_bytes=250)
-    for name in "abc":
-        cache.put(name, Representation(b"x" * 100, "text/plain"))
-    assert cache.get("a") is None
-    assert cache.get("b") is not None
-    cache.put("d", Representation(b"x" * 100, "text/plain"))
-    assert cache.get("b") is not None
-    assert cache.get("c") is None
-    assert cache.bytes == 200
-    cache.put("huge", Representation(b"x" * 1000, "text/plain"))
-    assert len(cache) == 1
-    assert cache.bytes == 1000
 
 
 @fuzz

@@ -120,7 +120,3 @@ def test_what_the_container_copies_builds_and_serves_with_nothing_beside(tmp_pat
         check=False,
     )
     assert run.stdout.strip() == "served", run.stderr[-2000:]
-
-
-def test_sections_of_the_unit_are_those_of_systemd():
-    assert unit().sections() == ["Unit", "Service", "Install"]

@@ -235,12 +235,6 @@ def test_full_frame_presets_hold_full_frame_sensors() -> None:
         mixed.bound("nominal")
 
 
-@pytest.mark.parametrize("wrong", [0, -1])
-def test_no_samples_have_no_bound(wrong: int) -> None:
-    with pytest.raises(ValueError, match=rf"^n\b.*\b1\b.* {wrong}$"):
-        preset("cmos-encoded").bound("nominal", n=wrong)
-
-
 def test_generation_depends_on_neither_batch_nor_order(monkeypatch: pytest.MonkeyPatch) -> None:
     data = preset("cmos-encoded")
     few = replace(data, directions=replace(data.directions, steps=3, test_samples=7))

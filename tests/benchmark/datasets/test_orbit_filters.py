@@ -107,10 +107,6 @@ def test_every_filter_is_planned_on_every_flight_and_nowhere_else() -> None:
     }
 
 
-def test_the_few_are_filters() -> None:
-    assert set(FILTERS) > FEW
-
-
 @pytest.mark.parametrize(
     "name", [n if n in FEW else pytest.param(n, marks=pytest.mark.slow) for n in FILTERS]
 )

@@ -69,11 +69,6 @@ def test_poses_are_spread_over_the_test_split(count: int) -> None:
     assert np.ptp(np.diff(chosen)) <= 1 if len(chosen) > 2 else True
 
 
-def test_repeats_need_two_passes() -> None:
-    with pytest.raises(ValueError, match="2 passes; got 25 and 1"):
-        Repeats(passes=1)
-
-
 def test_unit_0_is_the_dataset_itself() -> None:
     preset = PRESETS["cmos-single-aperture"]
     assert preset.for_unit(0) is preset

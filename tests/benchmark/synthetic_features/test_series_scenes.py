@@ -115,12 +115,6 @@ def test_suns_of_a_phase_fall_on_it_and_pictures_show_them_there(series: str, ph
     assert 1e-3 < sample.bound < 0.1
 
 
-@pytest.mark.parametrize("series", ["disc", "grid", "slit", "blooming"])
-def test_positions_are_the_estimate_themselves(series: str) -> None:
-    features = np.arange(6.0).reshape(3, 2)
-    assert SERIES[series].estimates(features) is features
-
-
 def test_a_spot_outside_of_the_frame_leaves_it_dark() -> None:
     centres = np.array([[200.0, 30.0], [30.0, -100.0], [30.2, 31.4]])
     beside, below, inside = render(disc(6.0), centres, np.zeros(3), 64)

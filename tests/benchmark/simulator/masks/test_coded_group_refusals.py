@@ -23,10 +23,6 @@ def coded(**changes: float) -> Any:
     return spacing_and_size_coded(4, **{**given, **changes})
 
 
-def test_groups_of_three_holes_stand_side_by_side() -> None:
-    assert len(coded().apertures) == 3 * 4 * 4
-
-
 @pytest.mark.parametrize(
     ("changes", "message"),
     [

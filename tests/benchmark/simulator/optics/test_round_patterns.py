@@ -104,10 +104,6 @@ def test_the_cubic_phase_changes_light_by_its_first_order(apart: float) -> None:
             assert found[i, j] == pytest.approx(expected, abs=2e-5)
 
 
-def test_rims_that_do_not_overlap_leave_nothing() -> None:
-    assert round_intensity(np.zeros(2), np.zeros(3), (1.0, 1.0), apart=2.0).max() == 0.0
-
-
 @pytest.mark.parametrize("displaced", [0.0, 0.3, 1.0, 2.5])
 def test_rims_take_the_light_of_fresnels_shadow(displaced: float) -> None:
     """The integral of its amplitude, damped far out, where it swings about nothing."""
