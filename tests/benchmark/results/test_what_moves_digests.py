@@ -56,13 +56,8 @@ def test_no_stage_reaches_what_only_hands_it_on(stage: str) -> None:
 @pytest.mark.parametrize(
     ("module", "old", "new"),
     [
-        ("benchmark.running.kept_stages", "[:40]", "[:41]"),
-        ("benchmark.results.stage_files", '"zstd"', '"lz4"'),
-        ("benchmark.results.components", '"-".join', '"+".join'),
-        ("benchmark.running.schedule", "_PARTS = 4", "_PARTS = 5"),
         ("benchmark.running.task", "kept.put(PREDICTIONS", "kept.put(FEATURES"),
         ("benchmark.running.condition_data", "kept.put(DATA", "kept.put(TRUTH"),
-        ("files.checked", ', "sha256").digest() ==', ', "sha512").digest() =='),
     ],
 )
 def test_an_edit_of_what_keeps_stages_moves_no_digest(module: str, old: str, new: str) -> None:
@@ -73,7 +68,6 @@ def test_an_edit_of_what_keeps_stages_moves_no_digest(module: str, old: str, new
     ("module", "old", "new", "stages"),
     [
         ("benchmark.seeds", "sha256", "sha512", ["data"]),
-        ("benchmark.running.condition_data", "size > _C", "size < _C", ["features"]),
         ("algorithms.pipeline", "def extract_features(", "def extract_features(*_, ", ["features"]),
         ("benchmark.running.task", "range(BENCHES)", "range(1)", ["predictions"]),
         ("benchmark.metrics.score", "np.arctan2(", "np.hypot(", ["scores"]),
