@@ -24,6 +24,7 @@ from algorithms.contract import Compensation, Floats, Model
 from algorithms.discovery import discover_compensations, discover_models
 from api.calibrate.calibration import Calibration
 from api.calibrate.intervals.places import tangent_axes
+from api.calibrate.intervals.stored import intervals_of, stored_intervals
 from api.calibrate.one_axis.curve import AxisCurve
 from api.calibrate.readings import readings_of
 from api.calibrate.recalibration import Correction
@@ -181,7 +182,7 @@ def document(found: Calibration, command: str = "") -> dict[str, Any]:
             "rms_left_out_deg": number(found.chosen.rms_deg),
             "rms_fitted_deg": number(found.residual_deg),
             "noise_deg": number(found.noise_deg),
-            "intervals": None if found.intervals is None else _plain(found.intervals),
+            "intervals": None if found.intervals is None else stored_intervals(found.intervals),
             "temperature_K": _temperatures(found),
             "fit_spread_deg": number(_rms(found.spread_deg)),
             "sensor": {k: v for k, v in asdict(found.geometry).items() if v is not None},
@@ -286,7 +287,7 @@ def _loaded(stored: dict[str, Any], source: str) -> SavedCalibration:
         ),
         model,
         numbers(fit.get("interval_factor", 1.0), (), "fit.interval_factor", above=0.0).item(),
-        _intervals_of(fit.get("intervals")),
+        intervals_of(fit.get("intervals")),
         None if measured is None else temperatures(measured),
         correction.offset,
         correction.rotation,
@@ -333,33 +334,6 @@ def with_correction(
         "command": command,
     }
     return {**held, DIGEST: digest_of(held)}
-
-
-def _plain(found: Intervals) -> dict[str, Any]:
-    return {
-        name: value.tolist() if isinstance(value, np.ndarray) else value
-        for name, value in vars(found).items()
-    }
-
-
-def _intervals_of(stored: Mapping[str, Any] | None) -> Intervals | None:
-    """Return the intervals that a document holds; ValueError where they are none."""
-    if stored is None:
-        return None
-    axis, rings_deg, sigma_deg = (
-        np.asarray(stored[name], dtype=np.float64) for name in ("axis", "rings_deg", "sigma_deg")
-    )
-    found = Intervals(
-        float(stored["factor"]), float(stored["coverage"]), int(stored["samples"]), axis, rings_deg,
-        int(stored["sectors"]), sigma_deg,
-    )  # fmt: skip
-    shape = (len(found.rings_deg), found.sectors, 2)
-    if found.axis.shape != (3,) or found.sigma_deg.shape != shape:
-        raise ValueError(
-            f"expected intervals of shape {shape} about an axis of 3; got {found.sigma_deg.shape} "
-            f"about {found.axis.shape}"
-        )
-    return found
 
 
 def _temperatures(found: Calibration) -> list[float] | None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from algorithms.contract import Floats
 from api.calibrate.calibration import Calibration
+from api.calibrate.intervals.grazing import Grazing
 
 
 @dataclass(frozen=True)
@@ -83,6 +84,8 @@ class Answers:
         Of each ring: sector m is at the azimuth 360 m / M about the axis, from +x towards +y.
     sigma_deg : ndarray, shape (K, M, 2)
         Of the two axes of `api.calibrate.intervals.places.tangent_axes`.
+    grazing : Grazing
+        By how much it grows where light grazes a face.
     """
 
     form: AngleForm
@@ -90,13 +93,28 @@ class Answers:
     rings_deg: Floats
     sectors: int
     sigma_deg: Floats
+    grazing: Grazing = field(default_factory=Grazing.none)
 
     @property
     def bytes(self) -> int:
         """Size of the constants in double precision."""
         return 8 * sum(np.size(value) for value in self.constants().values())
 
+    @property
+    def operations(self) -> int:
+        """Most operations of what widens one sigma where light grazes a face."""
+        return 45 + 29 * len(self.grazing.normals) if len(self.grazing.normals) else 0
+
+    @property
+    def calls(self) -> int:
+        """Calls of the mathematics library that this takes."""
+        return 4 if len(self.grazing.normals) else 0
+
     def constants(self) -> dict[str, Any]:
+        """Return all constants of an answer."""
+        return {**self.places(), **(self.faces() if len(self.grazing.normals) else {"FACES": 0})}
+
+    def places(self) -> dict[str, Any]:
         """Return what C and Python read: the axes about which places are counted, and the table."""
         start = np.array([1.0, 0.0, 0.0] if abs(self.axis[0]) < 0.9 else [0.0, 1.0, 0.0])
         first = start - (start @ self.axis) * self.axis
@@ -109,13 +127,25 @@ class Answers:
             "SECTORS": int(self.sectors),
         }
 
+    def faces(self) -> dict[str, Any]:
+        """Return what C and Python read of faces that light grazes."""
+        known = self.grazing
+        return {
+            "normals": known.normals,
+            "sine": float(known.sine),
+            "grown": float(known.grown),
+            "FACES": len(known.normals),
+        }
+
 
 def answers_of(found: Calibration) -> Answers:
     """Return the form and the 1-sigma of a calibration; one number where it knows no places."""
     form = _FORMS.get(found.settings.direction.form, _POLAR)
     known = found.intervals
     if known is not None:
-        return Answers(form, known.axis, known.rings_deg, known.sectors, known.sigma_deg)
+        return Answers(
+            form, known.axis, known.rings_deg, known.sectors, known.sigma_deg, known.grazing
+        )
     constant = _constant_deg(found)
     return Answers(
         form, np.array([0.0, 0.0, 1.0]), np.array([0.0, 180.0]), 1, np.full((2, 1, 2), constant)

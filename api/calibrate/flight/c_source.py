@@ -87,7 +87,10 @@ def c_files(  # noqa: PLR0917 - what the files are made of
         "second_angle": second,
         "functions": _functions(program, name),
         "calls": "\n".join(_call(at, step) for at, step in enumerate(program.steps, 1)),
-        "sigma": _constants(answers.constants()),
+        "sigma": _constants(answers.places()),
+        "grazing": "",
+        "grown": "",
+        **(_grazing(answers) if len(answers.grazing.normals) else {}),
         "vectors": str(len(vectors)),
         "vector_data": _vectors(vectors, name),
         "most": repr(_ROUNDING + 1.5 * vectors.largest_deg),
@@ -101,9 +104,19 @@ def c_files(  # noqa: PLR0917 - what the files are made of
 
     return {
         f"{name}.h": fill("header.h"),
-        f"{name}.c": _used(_numbered(fill("source.c"), answers.constants())),
+        f"{name}.c": _used(_numbered(fill("source.c"), answers.places())),
         f"{name}_selftest.c": fill("selftest.c"),
         f"{name}_example.c": fill("example.c"),
+    }
+
+
+def _grazing(answers: Answers) -> dict[str, str]:
+    """Return the function that widens one sigma where light grazes a face, and its call."""
+    constants = answers.faces()
+    body = _numbered((_TEMPLATES / "grazing.c").read_text(encoding="utf-8"), constants)
+    return {
+        "grazing": body.replace("%constants%", _constants(constants)),
+        "grown": "    grazing(sun, sigma);\n",
     }
 
 

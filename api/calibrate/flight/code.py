@@ -121,9 +121,11 @@ class FlightCode:
             )
         lines["Frame"] = "+z is the boresight; the answer is the unit vector from sensor to Sun"
         size = program.bytes + self.answers.bytes
+        operations = program.operations + self.answers.operations
+        calls = program.calls + self.answers.calls
         lines["Cost"] = (
-            f"at most {program.operations} additions, multiplications, divisions and comparisons "
-            f"and {program.calls} calls of libm an answer; {size} bytes of constants in double "
+            f"at most {operations} additions, multiplications, divisions and comparisons "
+            f"and {calls} calls of libm an answer; {size} bytes of constants in double "
             "precision; no heap, nothing kept between calls"
         )
         return lines

@@ -39,7 +39,7 @@ typedef %name%_real real;
 const char %name%_digest[33] = "%digest%";
 
 %functions%
-/* One sigma of the direction, bilinear between rings off an axis and sectors of azimuth. */
+%grazing%/* One sigma of the direction, bilinear between rings off an axis and sectors of azimuth. */
 static void sigma_at(const real sun[3], real sigma[2])
 {
 %sigma%
@@ -83,7 +83,7 @@ static void sigma_at(const real sun[3], real sigma[2])
 
         sigma[k] = ((R(1.0) - share) * inner) + (share * outer);
     }
-}
+%grown%}
 
 %name%_status %name%_solve(const %name%_reading *in, %name%_answer *out)
 {
