@@ -86,6 +86,8 @@ class Answers:
         Of the two axes of `api.calibrate.intervals.places.tangent_axes`.
     grazing : Grazing
         By how much it grows where light grazes a face.
+    rotation : ndarray, shape (3, 3)
+        That takes directions and their 1-sigma to those answered.
     """
 
     form: AngleForm
@@ -94,6 +96,7 @@ class Answers:
     sectors: int
     sigma_deg: Floats
     grazing: Grazing = field(default_factory=Grazing.none)
+    rotation: Floats = field(default_factory=lambda: np.eye(3))
 
     @property
     def bytes(self) -> int:
@@ -101,18 +104,29 @@ class Answers:
         return 8 * sum(np.size(value) for value in self.constants().values())
 
     @property
+    def grazes(self) -> bool:
+        """Whether the 1-sigma grows where light grazes a face."""
+        return len(self.grazing.normals) > 0
+
+    @property
+    def turns(self) -> bool:
+        """Whether answers are turned."""
+        return not np.array_equal(self.rotation, np.eye(3))
+
+    @property
     def operations(self) -> int:
-        """Most operations of what widens one sigma where light grazes a face."""
-        return 45 + 29 * len(self.grazing.normals) if len(self.grazing.normals) else 0
+        """Most operations of what widens the 1-sigma at grazing light and turns answers."""
+        grazing = 45 + 29 * len(self.grazing.normals) if self.grazes else 0
+        return grazing + (170 if self.turns else 0)
 
     @property
     def calls(self) -> int:
-        """Calls of the mathematics library that this takes."""
-        return 4 if len(self.grazing.normals) else 0
+        """Most calls of the mathematics library that this takes."""
+        return 4 * self.grazes + 6 * self.turns
 
     def constants(self) -> dict[str, Any]:
-        """Return all constants of an answer."""
-        return {**self.places(), **(self.faces() if len(self.grazing.normals) else {"FACES": 0})}
+        """Return all constants of an answer but its turn."""
+        return {**self.places(), **(self.faces() if self.grazes else {"FACES": 0})}
 
     def places(self) -> dict[str, Any]:
         """Return what C and Python read: the axes about which places are counted, and the table."""

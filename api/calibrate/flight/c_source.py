@@ -88,9 +88,7 @@ def c_files(  # noqa: PLR0917 - what the files are made of
         "functions": _functions(program, name),
         "calls": "\n".join(_call(at, step) for at, step in enumerate(program.steps, 1)),
         "sigma": _constants(answers.places()),
-        "grazing": "",
-        "grown": "",
-        **(_grazing(answers) if len(answers.grazing.normals) else {}),
+        **_answers(answers),
         "vectors": str(len(vectors)),
         "vector_data": _vectors(vectors, name),
         "most": repr(_ROUNDING + 1.5 * vectors.largest_deg),
@@ -110,14 +108,21 @@ def c_files(  # noqa: PLR0917 - what the files are made of
     }
 
 
-def _grazing(answers: Answers) -> dict[str, str]:
-    """Return the function that widens one sigma where light grazes a face, and its call."""
-    constants = answers.faces()
-    body = _numbered((_TEMPLATES / "grazing.c").read_text(encoding="utf-8"), constants)
-    return {
-        "grazing": body.replace("%constants%", _constants(constants)),
-        "grown": "    grazing(sun, sigma);\n",
-    }
+def _answers(answers: Answers) -> dict[str, str]:
+    """Return what widens one sigma at grazing light and turns answers, and the calls of it."""
+    text = (_TEMPLATES / "answers.c").read_text(encoding="utf-8")
+    pieces = re.split(r"/\* part: (\w+) \*/\n", text)
+    parts = dict(zip(pieces[1::2], pieces[2::2], strict=True))
+    made, calls = "", {"grown": "", "turned": ""}
+    if answers.grazes:
+        calls["grown"] = "    grazing(sun, sigma);\n"
+        faces = answers.faces()
+        made += _numbered(parts["grazing"], faces).replace("%constants%", _constants(faces))
+    if answers.turns:
+        calls["turned"] = "        turned(sun, out->sigma_deg);\n"
+        rotation = {"rotation": answers.rotation}
+        made += parts["turned"].replace("%constants%", _constants(rotation))
+    return {"answers": parts["across"] + made if made else "", **calls}
 
 
 def filled(text: str, texts: Mapping[str, str]) -> str:
