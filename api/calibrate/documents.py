@@ -23,6 +23,8 @@ from algorithms.calibration.saving import (
 from algorithms.contract import Compensation, Floats, Model
 from algorithms.discovery import discover_compensations, discover_models
 from api.calibrate.calibration import Calibration
+from api.calibrate.flight.program import Program
+from api.calibrate.flight.stored import stored_program
 from api.calibrate.intervals.places import tangent_axes
 from api.calibrate.intervals.stored import intervals_of, stored_intervals
 from api.calibrate.one_axis.curve import AxisCurve
@@ -51,7 +53,7 @@ _READ = (1, 2)
 _MEMBERS = frozenset(
     {
         *("schema", "schema_version", "conventions", "settings", "compensations", "model", "fit"),
-        *("selection", "verdict", "found", "excluded", "made", "correction", DIGEST),
+        *("selection", "verdict", "found", "excluded", "made", "flight", "correction", DIGEST),
     }
 )
 #: What a damaged document leads to that fits no class here.
@@ -166,8 +168,10 @@ class SavedCalibration:
         return self.predict(readings.features, readings.context)
 
 
-def document(found: Calibration, command: str = "") -> dict[str, Any]:
-    """Return a calibration as what JSON can say."""
+def document(
+    found: Calibration, command: str = "", program: Program | None = None
+) -> dict[str, Any]:
+    """Return a calibration as what JSON can say, with the program of its code if there is one."""
     stages = list(getattr(found.model, "compensations", ()))
     last = getattr(found.model, "model", found.model)
     held = {
@@ -203,6 +207,8 @@ def document(found: Calibration, command: str = "") -> dict[str, Any]:
             "versions": versions(),
         },
     }
+    if program is not None:
+        held["flight"] = stored_program(program)
     return {**held, DIGEST: digest_of(held)}
 
 
@@ -255,7 +261,7 @@ def load(path: Path) -> SavedCalibration:
                 f"got {stored.get('schema_version')!r}"
             )
         require_whole(stored, _MEMBERS)
-        found = _loaded(stored, path.name)
+        found = of_document(stored, path.name)
         with warnings.catch_warnings():  # of numbers that no row would have
             warnings.simplefilter("ignore", RuntimeWarning)
             columns = {name: np.ones(1) for name in ("temperature_K", "time_s")}
@@ -267,7 +273,8 @@ def load(path: Path) -> SavedCalibration:
     return found
 
 
-def _loaded(stored: dict[str, Any], source: str) -> SavedCalibration:
+def of_document(stored: dict[str, Any], source: str) -> SavedCalibration:
+    """Return the calibration that a document of this version holds."""
     settings, fit = parse_settings(stored["settings"], source), stored["fit"]
     measured = fit.get("temperature_K")
     correction = Corrected.of(stored.get("correction", {}), settings)

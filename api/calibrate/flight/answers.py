@@ -10,6 +10,7 @@ import numpy as np
 from algorithms.contract import Floats
 from api.calibrate.calibration import Calibration
 from api.calibrate.intervals.grazing import Grazing
+from api.calibrate.uncertainty import Intervals
 
 
 @dataclass(frozen=True)
@@ -154,16 +155,19 @@ class Answers:
 
 def answers_of(found: Calibration) -> Answers:
     """Return the form and the 1-sigma of a calibration; one number where it knows no places."""
-    form = _FORMS.get(found.settings.direction.form, _POLAR)
-    known = found.intervals
+    constant = np.nan if found.intervals is not None else _constant_deg(found)
+    return answers_at(found.settings.direction.form, found.intervals, constant)
+
+
+def answers_at(form: str, known: Intervals | None, constant_deg: float) -> Answers:
+    """Return the form of angles and the 1-sigma by place, or everywhere one number."""
+    angles = _FORMS.get(form, _POLAR)
     if known is not None:
         return Answers(
-            form, known.axis, known.rings_deg, known.sectors, known.sigma_deg, known.grazing
+            angles, known.axis, known.rings_deg, known.sectors, known.sigma_deg, known.grazing
         )
-    constant = _constant_deg(found)
-    return Answers(
-        form, np.array([0.0, 0.0, 1.0]), np.array([0.0, 180.0]), 1, np.full((2, 1, 2), constant)
-    )
+    sigma = np.full((2, 1, 2), constant_deg)
+    return Answers(angles, np.array([0.0, 0.0, 1.0]), np.array([0.0, 180.0]), 1, sigma)
 
 
 def _constant_deg(found: Calibration) -> float:
