@@ -156,6 +156,16 @@ def test_a_half_axis_is_found_from_twice_the_scale_that_is_said_to_be_hidden(see
     assert "kink" in [one.about for one in found_in(table(names, currents, stated))]
 
 
+@pytest.mark.parametrize("share", [0.03, 0.06, 0.1])
+def test_wrong_poses_are_no_kink(share):
+    generator = np.random.default_rng(8)
+    at = generator.choice(len(ANGLES), int(share * len(ANGLES)), replace=False)
+    stated = ANGLES.copy()
+    stated[at] = stated[generator.permutation(at)]
+    found = found_in(table(SPOT_NAMES, SPOTS, stated))
+    assert "kink" not in [one.about for one in found]
+
+
 def test_four_tilted_cells_stated_as_quadrants_are_found_as_cells():
     stated = guess(table(QUADRANTS, LIGHT, NARROW))
     assert stated.readings.kind == "quadrants"
