@@ -130,7 +130,7 @@ def intervals(offsets: Floats, sun: Floats, faces: Floats | None = None) -> Inte
         inside[test] = over[test] <= _limits(over[~test], rings[~test], rings[test])
     limits = _limits(over, rings, np.eye(len(grid.rings_deg))) / NORMAL_95
     return Intervals(
-        _limit(over) / NORMAL_95, float(inside.mean()), len(along), grid.axis, grid.rings_deg,
+        limit_of(over) / NORMAL_95, float(inside.mean()), len(along), grid.axis, grid.rings_deg,
         grid.sectors, scale_of(along, sun, grid) * limits[:, :, None], grazing,
     )  # fmt: skip
 
@@ -138,7 +138,7 @@ def intervals(offsets: Floats, sun: Floats, faces: Floats | None = None) -> Inte
 def _limits(over: Floats, rings: Floats, at: Floats) -> Floats:
     """Return the limits (M, 1) that hold 95 % of errors over their scale (N, 2) at weights `at`."""
     profile = quantile_profile(over, rings, 0.95)
-    level = _limit(over / np.exp(rings @ profile)[:, None])
+    level = limit_of(over / np.exp(rings @ profile)[:, None])
     return np.asarray(np.exp(at @ profile)[:, None] * level)
 
 
@@ -151,9 +151,12 @@ def parts_of(sun: Floats, count: int) -> NDArray[np.int64]:
     return np.asarray(order[poses] % count)
 
 
-def _limit(ratio: Floats) -> float:
-    flat = np.sort(ratio.reshape(-1))
-    # as conformal prediction has it: the place that holds 95 % of the next ones too
+def limit_of(sizes: Floats) -> float:
+    """Return the limit that holds 95 % of the next errors, too, from sizes of any shape.
+
+    As conformal prediction has it.
+    """
+    flat = np.sort(sizes.reshape(-1))
     return float(flat[min(int(np.ceil(0.95 * (len(flat) + 1))) - 1, len(flat) - 1)])
 
 

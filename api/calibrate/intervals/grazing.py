@@ -80,10 +80,10 @@ def grazing_of(over: Floats, answers: Floats, normals: Floats) -> Grazing:
             gained = _likelihood(over, np.sqrt(1.0 + grown * shares)) - plain
             if gained > best:
                 best, found = gained, Grazing(normals, sine, grown)
-    return found if not len(found.normals) else _holding(found, over, answers)
+    return found if not len(found.normals) else _held_by(found, over, answers)
 
 
-def _holding(found: Grazing, over: Floats, answers: Floats) -> Grazing:
+def _held_by(found: Grazing, over: Floats, answers: Floats) -> Grazing:
     """Return strips of the same width in which the scale grows by what holds 95 % of errors."""
     shares = _shares(answers, found.normals, found.sine)
     limit = float(np.quantile(over[shares == 0.0], _SHARE))
