@@ -133,6 +133,8 @@ def of_scale(readings: Readings, settings: Settings, known: Scale) -> Iterator[F
     better = settings.readings.kind == "quadrants" or known.followed > FOLLOWED
     better &= known.followed > _BETTER * known.best
     told = known.best < (FOLLOWED if exact else _CLOSELY) and (exact or better)
+    # what the law leaves with a factor is the sensor's own, and a factor may take up as much of it
+    told &= known.followed**2 - known.best**2 > max(known.best**2 - 1.0, 0.0)
     gain = readings.thinned(_MOST).features.size * ((known.followed / known.best) ** 2 - 1.0)
     if not (told and inside and gain > _CERTAIN**2 and off > _LEAST):
         return
