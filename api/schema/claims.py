@@ -47,9 +47,9 @@ class ClaimRow(Shape):
     study: str = Field(description="Key of the study that the survey cites; empty for none.")
     statement: str = Field(description="The survey's statement.")
     verdict: str | None = VERDICT
-    case: str = Field(description="Is the trial the sentence's case?")
     trials: int = Field(description="Planned trials.")
     explanation: str = Field(description="Remarks on the verdict.")
+    case: str = Field(description="Is the trial the sentence's case?")
 
 
 class Claim(ClaimRow):

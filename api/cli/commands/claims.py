@@ -84,8 +84,8 @@ def _one(answer: Document, form: Format) -> None:
         agreed = {True: "says the same", False: "does not say the same of every rule", None: "-"}
         said = agreed[document["second_agrees"]]
         say(f"Second method: {document['second_method']}: {said}")
-    if document["explanation"]:
-        say(document["explanation"])
     for one in document["former"]:
         say(f"Before criterion or data were changed, on {one['measured_on']}:")
         emit(one["rules"], RULES_THEN, form, title=f"Verdict then: {one['verdict']}")
+    if document["explanation"]:
+        say(document["explanation"])
