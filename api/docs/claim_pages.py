@@ -25,8 +25,8 @@ def counts() -> str:
     return (
         f"**{len(entries)} claims: {counted}.** The trial is the sentence's case for "
         f"{cases['its case']}, partly for {cases['partly its case']}. Criteria or data of "
-        f"{len(changed)} were changed after an outcome ({', '.join(map(_link, changed))}); both "
-        f"outcomes are given. {len(second)} were checked by a second method "
+        f"{len(changed)} were changed after an outcome; every outcome is given. These are "
+        f"{', '.join(map(_link, changed))}. {len(second)} were checked by a second method "
         f"({names}); it says the same of every rule for {agree} of them."
     )
 
