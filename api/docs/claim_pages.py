@@ -20,23 +20,26 @@ def counts() -> str:
     second = [entry for entry in entries if entry.agrees is not None]
     names = ", ".join(map(_link, second))
     cases = Counter(entry.review.case for entry in entries)
-    changed = [entry for entry in entries if entry.former]
+    changed = sum(bool(entry.former) for entry in entries)
     agree = sum(bool(entry.agrees) for entry in second)
     return (
         f"**{len(entries)} claims: {counted}.** The trial is the sentence's case for "
         f"{cases['its case']}, partly for {cases['partly its case']}. Criteria or data of "
-        f"{len(changed)} were changed after an outcome; every outcome is given. These are "
-        f"{', '.join(map(_link, changed))}. {len(second)} were checked by a second method "
+        f"{changed} were changed after an outcome; every outcome is given. "
+        f"{len(second)} were checked by a second method "
         f"({names}); it says the same of every rule for {agree} of them."
     )
 
 
 def verdicts() -> str:
-    """List the claims by verdict, linked to their trials."""
+    """List the claims by verdict, and those that were changed, linked to their trials."""
     by_verdict: dict[str, list[str]] = {name: [] for name in tally(_entries())}
     for entry in _entries():
         by_verdict.setdefault(entry.verdict or "not measured", []).append(_link(entry))
-    return "\n".join(f"- **{name}**: {', '.join(links)}" for name, links in by_verdict.items())
+    by_verdict["changed after an outcome"] = [_link(one) for one in _entries() if one.former]
+    return "\n".join(
+        f"- **{name}**: {', '.join(links) or 'none'}" for name, links in by_verdict.items()
+    )
 
 
 def trials() -> str:
