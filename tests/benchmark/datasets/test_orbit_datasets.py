@@ -28,7 +28,6 @@ each = pytest.mark.parametrize(
     "name", [pytest.param(n, marks=() if n in QUICK else pytest.mark.slow) for n in NAMES]
 )
 PRESETS = {name: datasets.get(name) for name in NAMES}
-VECTORS = ("magnetic_field_nT", "nadir", "sun_inertial", "nadir_inertial")
 
 
 class Made(dict[tuple[str, str], Samples]):

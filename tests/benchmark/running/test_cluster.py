@@ -8,9 +8,8 @@ import signal
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from threading import Barrier, BrokenBarrierError, Thread
 from types import SimpleNamespace
-from typing import Any, Self
+from typing import Any
 
 import dask
 import distributed
@@ -249,49 +248,3 @@ def test_an_address_where_nothing_answers_is_named(
     monkeypatch.setattr(dask_cluster, "_PATIENCE_S", 0.2)
     with pytest.raises(ClusterError, match=f"no Dask scheduler answers at {address}"):
         measured(Store(tmp_path), scheduler=address)
-
-
-def test_a_scheduler_without_workers_is_told_from_none(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    class Client:
-        def __init__(self, *_address: str, **_options: Any) -> None: ...
-
-        def __enter__(self) -> Self:
-            return self
-
-        def __exit__(self, *_error: object) -> None: ...
-
-        def wait_for_workers(self, wanted: int, timeout: int) -> None:
-            assert wanted == 1
-            raise TimeoutError(f"none in {timeout} s")
-
-    stand_in = SimpleNamespace(Client=Client)
-    monkeypatch.setattr(dask_cluster, "import_module", lambda name: stand_in)
-    with pytest.raises(ClusterError, match="`dask"):
-        measured(Store(tmp_path), scheduler="tcp://somewhere:1")
-
-
-@pytest.mark.slow
-def test_threads_of_a_worker_measure_one_after_another() -> None:
-    """They share what is kept of a data set, and how many threads linear algebra takes."""
-    both, met = Barrier(2), []
-
-    def measure() -> list[Any]:
-        try:
-            both.wait(timeout=0.2)
-            met.append(True)
-        except BrokenBarrierError:
-            met.append(False)
-            both.reset()
-        return []
-
-    parts = fake_cluster.parts()
-    tasks = tasks_of(cells("fake-a", parts=parts), parts, {})
-    code = dask_cluster.code_of(tasks)
-    threads = [Thread(target=dask_cluster._measure, args=(code, tasks, measure)) for _ in "12"]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert met == [False, False]

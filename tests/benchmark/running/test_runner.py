@@ -1,7 +1,6 @@
 """Measuring: the right numbers, the same with any number of workers, never twice."""
 
 import dataclasses
-import sys
 
 import fake_atlas
 import fake_plan
@@ -10,7 +9,6 @@ import pytest
 
 from benchmark.metrics.score import repeatability_deg
 from benchmark.plan import combinations as plan
-from benchmark.progress import silent, terminal_progress
 from benchmark.results.record import Record
 from benchmark.results.store import Store
 from benchmark.running import cluster, condition_data, runner
@@ -267,39 +265,6 @@ def test_progress_counts_cells_to_the_end(store):
     seen = []
     measure(store, progress=lambda done, total, *_: seen.append((done, total)))
     assert seen == [(0, 4), (1, 4), (2, 4), (3, 4), (4, 4)]
-
-
-def test_the_bar_is_silent_where_standard_error_is_no_terminal(capsys):
-    with terminal_progress() as report:
-        assert report is silent
-        report(1, 2, "x")
-    assert capsys.readouterr().err == ""
-
-
-def test_the_bar_shows_cells_on_a_terminal(monkeypatch, capsys):
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
-    with terminal_progress() as report:
-        report(1, 2, "some dataset")
-    assert "1/2" in capsys.readouterr().err
-
-
-def test_a_worker_lets_go_of_large_data_before_it_generates_more(monkeypatch):
-    preset = fake_atlas.Diodes()
-    held = []
-    generate = fake_atlas.Diodes.generate
-
-    def watched(self, condition, split, n=None):
-        held.append(len(condition_data._kept))
-        return generate(self, condition, split, n)
-
-    monkeypatch.setattr(fake_atlas.Diodes, "generate", watched)
-    for limit, expected in ((2**30, [0, 0, 0, 1, 1, 1]), (1000, [0] * 6)):
-        monkeypatch.setattr(condition_data, "_KEPT_BYTES", limit)
-        condition_data.forget()
-        held.clear()
-        for condition in preset.conditions:
-            condition_data.generated_pins(preset, condition)
-        assert held == expected
 
 
 def test_data_kept_are_those_of_the_same_parameters_and_unit():
