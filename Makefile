@@ -99,6 +99,7 @@ mutants: $(COMPILED) ## try NUMBER=100 small faults in the code, by Cosmic Ray; 
 	$(BIN)/python -m tools.mutants draw out/mutants --number $(or $(NUMBER),100) $(if $(SEED),--seed $(SEED))
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/cosmic-ray exec out/mutants/cosmic-ray.toml out/mutants/session.sqlite
 	$(BIN)/cr-report --surviving-only --show-diff out/mutants/session.sqlite
+	@echo "surviving, %: $$($(BIN)/cr-rate out/mutants/session.sqlite)"
 
 sizes: ## lines of Python and of code, by part
 	@$(PYTHON) -m tools.sizes

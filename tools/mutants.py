@@ -16,7 +16,7 @@ import tomllib
 from pathlib import Path
 
 from cosmic_ray.work_db import WorkDB, use_db
-from cosmic_ray.work_item import WorkerOutcome, WorkResult
+from cosmic_ray.work_item import WorkItem
 
 ROOT = Path(__file__).resolve().parents[1]
 CONFIG = Path(__file__).with_name("cosmic-ray.toml")
@@ -54,17 +54,15 @@ def draw(directory: Path, number: int, seed: int) -> None:
     subprocess.run(command, cwd=ROOT, check=True)
     rng = random.Random(seed)
     with use_db(str(session), WorkDB.Mode.open) as database:
-        of_module: dict[Path, list[str]] = {}
+        of_module: dict[Path, list[WorkItem]] = {}
         for item in database.work_items:
             mutation = item.mutations[0]
             if not _WITHOUT_EFFECT.search(mutation.operator_name):
-                of_module.setdefault(mutation.module_path, []).append(item.job_id)
-        each = [rng.choice(sorted(jobs)) for _, jobs in sorted(of_module.items())]
-        kept = set(rng.sample(each, min(number, len(each))))
-        skipped = WorkResult(worker_outcome=WorkerOutcome.SKIPPED, output="not drawn")
-        for item in list(database.work_items):
-            if item.job_id not in kept:
-                database.set_result(item.job_id, skipped)
+                of_module.setdefault(mutation.module_path, []).append(item)
+        each = [rng.choice(items) for _, items in sorted(of_module.items())]
+        kept = rng.sample(each, min(number, len(each)))
+        database.clear()
+        database.add_work_items(kept)
     sys.stdout.write(f"{len(kept)} mutants, seed {seed}\n")
 
 
