@@ -125,8 +125,8 @@ def frames_table(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
         "frames",
         SampleFile,
         "Samples in this bundle",
-        "Which samples of the standard data sets lie in frames/: the first so many of each split, "
-        "or all, in the nominal condition. The code makes the others.",
+        "Which samples of the standard data sets lie in frames/: every split of the nominal "
+        "condition, whole. The code makes those of other conditions and units.",
         rows,
         primary=("dataset", "condition", "split"),
         foreign={"dataset": ("datasets", "name")},

@@ -147,6 +147,5 @@ class SampleFile(Place):
 
     split: str
     file: str = Field(description="Path in this bundle.")
-    samples: int = Field(description="Samples in the file.")
-    samples_of: int = Field(description="Samples of the whole split.")
+    samples: int = Field(description="Samples in the file, all of the split.")
     data_hash: str
