@@ -217,7 +217,7 @@ def fill(
 
 
 def _write_bibliography(bundle: Path) -> None:
-    for table, name in (("studies", "studies"), ("extension_studies", "later-studies")):
+    for table, name in (("studies", "studies"), ("extension_studies", "unmapped-studies")):
         path = bundle / "survey" / file_name(table)
         with path.open(encoding="utf-8", newline="") as file:
             studies = list(csv.DictReader(file))

@@ -13,6 +13,7 @@ from api.metadata.bundled import FOLDER as CROISSANT
 from api.metadata.citation import repository, unfilled
 from api.metadata.identity import Identity
 from benchmark.datasets.checksums import CHECKSUMS
+from survey_data.editions import editions
 
 BIBLIOGRAPHY = "bibliography"
 """Folder of the references."""
@@ -110,8 +111,8 @@ samples, as Parquet, two files a data set |
 | `{SCRIPT}` | measures scores again from the samples, with that code |
 | `{FRAMES}/<data set>/` | samples of the standard data sets: what a sensor reads, where the Sun \
 stood, the Cramer-Rao bound of each sample, flat and dark readings, a picture, a card |
-| `survey/extension/` | studies after the survey, and confirmations by authors |
-| `{BIBLIOGRAPHY}/` | the identified studies as BibTeX and RIS, and those after the survey |
+| `survey/extension/` | studies the survey does not map, and confirmations by authors |
+| `{BIBLIOGRAPHY}/` | the identified studies as BibTeX and RIS, and those the survey does not map |
 | `datapackage.json` | types, units, keys and meaning of every column \
 ([Data Package v2](https://datapackage.org)) |
 | `ro-crate-metadata.json` | every file in the words of schema.org \
@@ -133,8 +134,8 @@ In a browser: `datasette {DATABASE}`.
 
 ## Editions
 
-The survey's studies are frozen in `survey/*.csv`; later ones stand in `survey/extension/` with the
-same columns. `benchmark/all_studies.csv` has both with their edition, `benchmark/editions.csv` and
+The survey's studies are frozen in `survey/*.csv`; {_extension()} stand in `survey/extension/` with
+the same columns. `benchmark/all_studies.csv` has both with their edition, `benchmark/editions.csv` and
 `CITATION.cff` the version of each: cite the one that was used.
 
 ## Samples
@@ -182,6 +183,16 @@ rocrate-validator validate --profile-identifier ro-crate-1.2 .
 Facts, in `survey/` and `{BIBLIOGRAPHY}/`: CC BY 4.0 (`survey/LICENSE`). Everything else, which
 code measured or made: MIT (`LICENSE`).
 """
+
+
+def _extension() -> str:
+    """Count the studies that the survey does not map, those of its years and later ones."""
+    survey, other = editions()
+    within = other.studies - other.later
+    return (
+        f"{other.studies} studies that it does not map ({within} of its years, up to "
+        f"{survey.last_year}, and {other.later} after them)"
+    )
 
 
 def _unfilled(who: Identity) -> str:
