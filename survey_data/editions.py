@@ -63,13 +63,13 @@ def editions(directory: Path = DATA_DIRECTORY) -> tuple[Edition, Edition]:
     OSError
         A table cannot be read.
     """
-    survey = [name for name in table_names() if name not in EXTENSION_TABLES]
     mapped, others = _years("studies", directory), _years("extension_studies", directory)
     last = max(mapped)
+    tables = [name for name in table_names() if name not in EXTENSION_TABLES]
     title = "Studies the survey does not map"
     return (
-        _edition(SURVEY, "Studies of the survey", mapped, last, survey, directory),
-        _edition(EXTENSION, title, others, last, EXTENSION_TABLES, directory),
+        Edition(SURVEY, "Studies of the survey", *_counts(mapped, last, tables, directory)),
+        Edition(EXTENSION, title, *_counts(others, last, EXTENSION_TABLES, directory)),
     )
 
 
@@ -79,13 +79,13 @@ def _years(table: str, folder: Path) -> list[int]:
         return [int(row["year"] or 0) for row in csv.DictReader(file)]
 
 
-def _edition(
-    name: str, title: str, years: list[int], last: int, tables: Iterable[str], folder: Path
-) -> Edition:
+def _counts(
+    years: list[int], last: int, tables: Iterable[str], folder: Path
+) -> tuple[int, int, int, str]:
+    """Return what an edition says of its studies, of these years, and of its tables."""
     found = hashlib.sha256()
     for file in map(file_name, tables):
         data = (folder / file).read_bytes()
         found.update(f"{file} {len(data)}\n".encode() + data)
     version = f"{descriptor()['version']}+{len(years)}.{found.hexdigest()[:8]}"
-    later = sum(year > last for year in years)
-    return Edition(name, title, len(years), max(years, default=0), later, version)
+    return len(years), max(years, default=0), sum(year > last for year in years), version

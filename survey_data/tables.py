@@ -76,8 +76,8 @@ class SurveyTables:
         Parameters
         ----------
         name : {"survey", "all"}
-            ``all`` has the rows of studies it does not map below the survey's, in `studies`, `attributes`,
-            `roles` and `architectures`.
+            ``all`` has the rows of studies that the survey does not map below its own, in
+            `studies`, `attributes`, `roles` and `architectures`.
         """
         frames = {"studies": self.studies.assign(edition=SURVEY)}
         if name == "all":

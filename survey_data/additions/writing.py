@@ -1,4 +1,4 @@
-"""Adding studies the survey does not map, confirming what is said of them, and taking them away again."""
+"""Adding studies the survey does not map, confirming what is said of them, removing them."""
 
 from __future__ import annotations
 

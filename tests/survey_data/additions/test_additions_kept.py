@@ -1,4 +1,4 @@
-"""Studies the survey does not map in the tables: whole after a kill, by the rules, a version an edition."""
+"""Studies the survey does not map: whole after a kill, by the rules, a version an edition."""
 
 from __future__ import annotations
 
