@@ -60,14 +60,12 @@ def write_code_as_in(bundle: Path, made: Path) -> None:
     The bundle's own archive, but where this checkout packs other files.
     """
     name = archive_of(bundle)
-    taken = None if name is None else bundle / name
-    if taken is None or (ROOT / "pyproject.toml").is_file():
+    if name is None or (ROOT / "pyproject.toml").is_file():
         write_code(made)
-        packed = archive_of(made)
-        if taken is not None and packed == name and _same(taken, made / packed):
-            shutil.copyfile(taken, made / packed)
+        if name is not None and (made / name).is_file() and _same(bundle / name, made / name):
+            shutil.copyfile(bundle / name, made / name)
     else:
-        write_code(made, taken)
+        write_code(made, bundle / name)
 
 
 def _same(one: Path, other: Path) -> bool:

@@ -42,17 +42,8 @@ def main() -> int:
             install(place, Path(temporary))
             ready.touch()
         say(f"installed after {time.monotonic() - started:.0f} s")
-        options = ["--cells", str(asked.cells), "--seed", str(asked.seed)]
-        command = [
-            python_of(place),
-            "-I",
-            "-m",
-            "api.cli.command_line",
-            "deposit",
-            "rescore",
-            HERE,
-            *options,
-        ]
+        command = [python_of(place), "-I", "-m", "api.cli.command_line", "deposit", "rescore"]
+        command += [str(HERE), "--cells", str(asked.cells), "--seed", str(asked.seed)]
         code = subprocess.run(command, check=False).returncode  # noqa: S603 - installed above
     say(f"done after {time.monotonic() - started:.0f} s")
     return code
@@ -70,9 +61,9 @@ def install(place: Path, temporary: Path) -> None:
     venv.create(place, with_pip=True, clear=True)
     pip = [python_of(place), "-I", "-m", "pip", "install", "--quiet"]
     say("installing what the lock file pins")
-    subprocess.run([*pip, "--require-hashes", "-r", lock], check=True)  # noqa: S603 - pip
+    subprocess.run([*pip, "--require-hashes", "-r", str(lock)], check=True)  # noqa: S603 - pip
     say(f"installing {archive.name}")
-    subprocess.run([*pip, "--no-deps", "--no-build-isolation", archive], check=True)  # noqa: S603
+    subprocess.run([*pip, "--no-deps", "--no-build-isolation", str(archive)], check=True)  # noqa: S603
 
 
 def code_archive() -> Path:
@@ -85,10 +76,10 @@ def code_archive() -> Path:
     return archive
 
 
-def python_of(environment: Path) -> Path:
+def python_of(environment: Path) -> str:
     """Return the interpreter of a virtual environment."""
     folder = "Scripts" if os.name == "nt" else "bin"
-    return environment / folder / "python"
+    return str(environment / folder / "python")
 
 
 def say(text: str) -> None:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import csv
 import hashlib
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
@@ -67,28 +67,32 @@ def read_scores(bundle: Path) -> dict[Cell, dict[str, str]]:
     """Return the rows of a bundle's table of scores by cell; FileNotFoundError without one."""
     with (bundle / SCORES).open(encoding="utf-8", newline="") as file:
         return {
-            Cell(*(row[name] for name in _NAMES), unit=int(row["unit"])): row
+            Cell(
+                row["dataset"], row["condition"], row["extractor"], row["model"], int(row["unit"])
+            ): row
             for row in csv.DictReader(file)
         }
 
 
-_NAMES = ("dataset", "condition", "extractor", "model")
+def repeatable(
+    bundle: Path, scores: Mapping[Cell, Mapping[str, str]], parts: Parts | None = None
+) -> list[Cell]:
+    """List the scores that can be measured from a bundle's samples alone, in order.
 
-
-def repeatable(bundle: Path, cells: Iterable[Cell], parts: Parts | None = None) -> list[Cell]:
-    """List the cells that can be measured from a bundle's samples alone, in order.
+    Not those without a number, of models that refuse their calibration.
 
     Parameters
     ----------
     bundle : its directory
-    cells : of its scores
+    scores : its rows by cell
     parts : data sets and implementations; those installed by default
     """
     known, whole = parts or installed_parts(), _whole(bundle)
     return [
         cell
-        for cell in cells
-        if cell.unit == 0
+        for cell, row in scores.items()
+        if row["status"] == "ok"
+        and cell.unit == 0
         and whole.get(cell.dataset) == cell.condition
         and not _needs_flight(known, cell)
     ]

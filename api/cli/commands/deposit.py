@@ -83,7 +83,7 @@ def build(
         "files": rows,
     }
     emit(rows, ("file", "bytes"), form, document=document, title=str(bundle.directory))
-    total = sum(row["bytes"] for row in rows)
+    total = sum((bundle.directory / name).stat().st_size for name in bundle.files)
     typer.echo(f"built {bundle.directory} ({total / 1e6:.0f} MB) and {bundle.archive}", err=True)
     for field in description(bundle.directory).unfilled:
         typer.echo(f"to fill in before an upload, in CITATION.cff: {field}", err=True)
