@@ -135,8 +135,9 @@ In a browser: `datasette {DATABASE}`.
 ## Editions
 
 The survey's studies are frozen in `survey/*.csv`; {_extension()}
-stand in `survey/extension/` with the same columns. `benchmark/all_studies.csv` has both with their edition,
-`benchmark/editions.csv` and `CITATION.cff` the version of each: cite the one that was used.
+stand in `survey/extension/` with the same columns. `benchmark/all_studies.csv` has both with
+their edition, `benchmark/editions.csv` and `CITATION.cff` the version of each: cite the one that
+was used.
 
 ## Samples
 
