@@ -121,7 +121,7 @@ def resolve_later(
     data_sets: Mapping[str, DataSet] | None = None,
     catalogue: Catalogue | None = None,
 ) -> dict[str, Resolution]:
-    """`resolve` of every study after the survey, by key, with relatives among the survey's alone.
+    """`resolve` of studies the survey does not map, by key; relatives are the survey's alone.
 
     Parameters
     ----------

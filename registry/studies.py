@@ -178,7 +178,7 @@ def _facts(edition: Choice) -> Facts:
 
 
 def study_from(rows: Mapping[str, Sequence[Mapping[str, str]]]) -> Study:
-    """Return a study after the survey that is in no table yet.
+    """Return a study the survey does not map that is in no table yet.
 
     Parameters
     ----------

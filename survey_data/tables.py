@@ -76,8 +76,8 @@ class SurveyTables:
         Parameters
         ----------
         name : {"survey", "all"}
-            ``all`` has the rows of later studies below the survey's, in `studies`, `attributes`,
-            `roles` and `architectures`.
+            ``all`` has the rows of studies that the survey does not map below its own, in
+            `studies`, `attributes`, `roles` and `architectures`.
         """
         frames = {"studies": self.studies.assign(edition=SURVEY)}
         if name == "all":
@@ -131,7 +131,7 @@ RESTING = {
     "compensated_models": ("compensation", "model"),
     "method_variants": ("model",),
 }
-#: Tables that an import may so empty, and those of what came after the survey.
+#: Tables that an import may so empty, and those of what the survey does not map.
 MAY_BE_EMPTY = frozenset({*RESTING, *EXTENSION_TABLES})
 
 

@@ -125,8 +125,8 @@ def frames_table(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
         "frames",
         SampleFile,
         "Samples in this bundle",
-        "Which samples of the standard data sets lie in frames/: the first so many of each split, "
-        "or all, in the nominal condition. The code makes the others.",
+        "Which samples of the standard data sets lie in frames/: every split of the nominal "
+        "condition, whole. The code makes those of other conditions and units.",
         rows,
         primary=("dataset", "condition", "split"),
         foreign={"dataset": ("datasets", "name")},
@@ -150,7 +150,7 @@ def _measured_tables(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTab
             "all_studies",
             IdentifiedStudy,
             "Studies of both editions",
-            "The survey's studies and those after it, distinguished by their edition.",
+            "The survey's studies and those it does not map, distinguished by their edition.",
             derived_tables.all_studies(),
             primary=("study",),
             foreign={"edition": ("editions", "edition")},
@@ -159,7 +159,7 @@ def _measured_tables(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTab
             "editions",
             DepositedEdition,
             "Editions of the studies",
-            "The survey's studies, and those after it: each with the version to cite.",
+            "The survey's studies, and those it does not map: each with the version to cite.",
             derived_tables.edition_rows(),
             primary=("edition",),
         ),

@@ -56,6 +56,8 @@ def edition_rows() -> list[Mapping[str, Any]]:
             "edition": one.name,
             "edition_title": one.title,
             "edition_studies": one.studies,
+            "edition_last_year": one.last_year,
+            "edition_later": one.later,
             "edition_version": one.version,
         }
         for one in editions()

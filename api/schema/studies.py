@@ -242,11 +242,13 @@ class Edition(Shape):
     name: Literal["survey", "extension"]
     title: str
     studies: int
+    last_year: int = Field(description="Year of its latest study.")
+    later: int = Field(description="Studies after the latest one of the survey.")
     version: str = Field(description="Version, studies, digits of the tables' SHA-256.")
 
 
 class Editions(Shape):
-    """Studies of the survey, and added ones."""
+    """Studies of the survey, and studies it does not map."""
 
     items: list[Edition]
 

@@ -35,7 +35,7 @@ MEANINGS: Mapping[str, str] = {
     "detail": "Explanation, one sentence.",
     "detector": "Detector, as in the survey's taxonomy.",
     "doi": "Digital object identifier, without resolver.",
-    "edition": "survey: mapped by the survey; extension: added after it.",
+    "edition": "survey: mapped by the survey; extension: a study it does not map.",
     "extractor": "Name of the feature extractor's implementation.",
     "extractor_taxonomy": "Extractor, as in the survey's taxonomy.",
     "extractor_version": "Version of the extractor.",

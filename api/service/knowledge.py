@@ -145,7 +145,7 @@ class Knowledge:
 
 
 class KnowledgeOfAll(Knowledge):
-    """The same knowledge, with the studies after the survey among the others.
+    """The same knowledge, with the studies the survey does not map among the others.
 
     What runs for a study of the survey is what it is without them: none of them is its relative.
 

@@ -11,7 +11,7 @@ import survey_data
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name, primary_key, table_names
 from survey_data.editions import EXTENSION_TABLES
 
-#: Those of the survey; the tables of later studies may be empty (`additions/`).
+#: Those of the survey; the tables of those it does not map may be empty (`additions/`).
 ALL = tuple(name for name in table_names() if name not in EXTENSION_TABLES)
 PRINTED = "study_tables.csv"
 

@@ -117,7 +117,7 @@ def _show(key: str, asked: StudyFormat) -> None:
         say(f"{study['authors'] or 'authors unknown'}, {year}. {study['venue'] or ''}")
         say(study["doi"] or study["url"] or "no DOI known")
         if study["edition"] != "survey":
-            say("Added after the survey, which does not map it.")
+            say("Not mapped by the survey.")
         for one in study["verified"]:
             say(f"Verified by {one['name']} on {one['date']}: {one['confirms']} ({one['source']})")
         say(f"{study['grade']}: {labels.label_of(study['sentence'])}")

@@ -1,4 +1,4 @@
-"""`sunatlas survey add`, `remove` and `verify`: studies after the survey."""
+"""`sunatlas survey add`, `remove` and `verify`: studies the survey does not map."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ def test_a_study_that_is_not_there_cannot_be_taken_away(copy: Any) -> None:
     with pytest.raises(UnknownStudyError, match=rf"study '{first[:-1]}': .* did you mean {first}"):
         remove_study(first[:-1], copy.directory)
     copy.edit("extension_studies", lambda rows: rows.__delitem__(slice(1, None)))
-    with pytest.raises(UnknownStudyError, match="there is no study after the survey"):
+    with pytest.raises(UnknownStudyError, match="there is no study beside the survey"):
         remove_study(first, copy.directory)
 
 

@@ -15,7 +15,7 @@ from api.service import studies as service
 from tests.api.conftest import Client
 
 FORMS = ("bibtex", "ris", "csl")
-#: Mapped by the survey and scored here; added after the survey.
+#: Mapped by the survey and scored here; not mapped by it.
 STUDY, LATER = "Chang2008", "Herman2025c"
 
 
@@ -50,7 +50,7 @@ def test_studies_without_a_title_have_no_reference_and_are_named(atlas: Client) 
 
 
 def test_an_added_study_is_told_from_those_of_the_survey() -> None:
-    said = "Added after the survey, which does not map it.\n"
+    said = "Not mapped by the survey.\n"
     assert said in shown(LATER).stdout
     assert said not in shown(STUDY).stdout
 
