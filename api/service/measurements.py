@@ -85,6 +85,14 @@ class Measurements:
         return found
 
     @cached_property
+    def own_errors(self) -> Mapping[tuple[str, str, str, str], float | None]:
+        """Own error by the same places, degrees; None where no score came of it."""
+        return {
+            place: row["own_deg"] if row["status"] == "ok" else None
+            for place, row in self.score_of.items()
+        }
+
+    @cached_property
     def nominal(self) -> Mapping[tuple[str, str, str], Row]:
         """The same under the first condition of each data set, by data set, extractor and model."""
         first = {name: preset.conditions[0] for name, preset in self.presets.items()}

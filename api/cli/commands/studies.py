@@ -69,10 +69,12 @@ def studies(
 ) -> None:
     """List studies with the grade of each run, or show one.
 
-    Grades: faithful (sensor, condition and methods are the study's own, stated or inferred with a
-    reason), close (one part differs), stand-in (more parts differ), none (not implemented).
-    `sunatlas studies KEY` shows the differences, the information that would remove them, and the
-    basis of each value. State is complete if every value of the study is implemented.
+    Grades: faithful (sensor, condition, methods, calibration and score are the study's own),
+    assumed (nothing known differs, but facts that it takes to judge are unknown), close (one part
+    differs), stand-in (more parts differ), none (not implemented). `sunatlas studies KEY` shows
+    what differs or is unknown, what would raise the grade, and the basis of each value. State is
+    complete if every value of the study is implemented. --published compares the accuracy that
+    studies report with the own error here, worst first.
     """
     if key is None:
         _list(asked, form)
@@ -122,7 +124,8 @@ def _show(key: str, asked: StudyFormat) -> None:
             say(f"Verified by {one['name']} on {one['date']}: {one['confirms']} ({one['source']})")
         say(f"{study['grade']}: {labels.label_of(study['sentence'])}")
         for departure in study["departures"]:
-            say(f"  {departure['part']} settled by: {departure['settled_by']}")
+            way = "unknown" if departure["unknown"] else "differs"
+            say(f"  {departure['part']} {way}; raised by: {departure['settled_by']}")
         typer.echo()
     emit(study["attributes"], columns_of(AttributeValue) if form is Format.CSV else DETAILS, form)
     if form is Format.TABLE:
