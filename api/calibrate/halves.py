@@ -109,6 +109,8 @@ class _Fits:
         part = sample.only(half)
         sun = fitted(scored, part, geometry).predict(sample.features, sample.context)
         again = refits(scored, part, geometry, noise[half], sample, _REFITS)
+        if len(again) < _REFITS:
+            raise UnusableDataError(f"{len(again)} of {_REFITS} refits settle the model")
         field = Hull.of_directions(part.sun, "halves")
         inside = np.isfinite(sun).all(axis=1) & (field.outside(sample.sun) <= 0.0)
         return cls(sun, again - again.mean(axis=0), spread_deg(again), inside)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from api.calibrate.causes.bad_cells import DUPLICATE
 from api.calibrate.exclusions import FOLD, WRONG, Excluded
 from api.calibrate.readings import BEHIND, FAINT_ROWS, NO_SUM, Readings
 
@@ -25,7 +26,8 @@ def unexplained(
 
     Wrong poses are known as such where they lie among others that are right, at most 15 % of all:
     where they gather, the sensor is what does not do as the others say. What another direction
-    reads too is known beyond the stated field of view alone.
+    reads too is known beyond the stated field of view alone. A row that is there twice loses
+    nothing of the field and does not count.
 
     Parameters
     ----------
@@ -37,7 +39,7 @@ def unexplained(
     half_fov_deg, fold_deg : float or None
         Half the field of view as stated, and the smallest off-axis angle that folds.
     """
-    reasons = Counter(one.reason for one in excluded)
+    reasons = Counter(one.reason for one in excluded if one.reason != DUPLICATE)
     dropped = {name: n for name, n in readings.dropped.items() if name != BEHIND}
     out = sum(reasons.values()) + sum(dropped.values())
     whole = len(readings) + out

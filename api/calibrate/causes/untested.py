@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from algorithms.contract import FeatureKind
+from api.calibrate.causes.kinks import largest_unnoticed
 from api.calibrate.causes.laws import UNTESTED, scale_of_angles, settles_scale
 from api.calibrate.causes.light import Dark, changes_answers, level_of_channels
 from api.calibrate.conventions.channels import level_of
@@ -16,6 +17,10 @@ _MOST = 2000
 _DARK = (
     "the level without light: {}; readings with the sensor covered, or at another light level, "
     "would test it"
+)
+_HALF = (
+    "another scale of one half of an axis: noise and the sensor's own distortion hide up to "
+    "{:.2g} %; directions of a second turntable, or more poses, would test it"
 )
 _LAG = (
     "readings that come late by a part of a row: all sweeps go one way, or none is smooth; sweeps "
@@ -32,6 +37,8 @@ def untested_in(readings: Readings, settings: Settings) -> tuple[str, ...]:
     noise = answer_noise_deg(used.features, used.sun)
     if not settles_scale(scale_of_angles(used, settings), used, noise):
         found.append(UNTESTED)
+        if half := largest_unnoticed(readings, settings, noise):
+            found.append(_HALF.format(100.0 * half))
     kind = settings.readings.kind
     if kind == "balance":
         found.append(_DARK.format("the file has balances, not the signals that they are made of"))

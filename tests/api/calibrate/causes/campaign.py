@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import tempfile
 from dataclasses import dataclass
@@ -37,6 +38,13 @@ class Outcome:
     answered: float = float("nan")
     unseen: bool = False
     untested: tuple[str, ...] = ()
+    half: float = 0.0
+
+    @property
+    def hidden(self) -> bool:
+        """Whether the report says that a scale of half an axis as large as this one is not seen."""
+        told = [re.search(r"one half of an axis.* up to ([\d.]+) %", one) for one in self.untested]
+        return any(one and 0.0 < 100.0 * self.half <= float(one[1]) for one in told)
 
     @property
     def false(self) -> bool:
@@ -56,7 +64,7 @@ def outcome(kind: str, fault: str, seed: int) -> Outcome:
     verdict = found.verdict
     return Outcome(
         kind, fault, seed, made.said, verdict.word, verdict.reason, found.chosen.rms_deg, true,
-        answered, made.unseen, verdict.untested,
+        answered, made.unseen, verdict.untested, made.half,
     )  # fmt: skip
 
 
@@ -74,6 +82,7 @@ def main(count: int, first: int, faults: list[str], kinds: list[str]) -> None:
             say(f"{fault or 'clean'} {kind}: {len(good)} good, {len(false)} false\n")
             for one in false if fault else [o for o in every if o.word != "good"] + false:
                 unseen = " cannot be seen" if one.unseen else ""
+                unseen += " said to be hidden" if one.hidden else ""
                 say(
                     f"    {one.seed} {one.said}: {one.word} {one.stated_deg:.3g}, true "
                     f"{one.true_deg:.3g}, answered {one.answered:.2f}{unseen}; "

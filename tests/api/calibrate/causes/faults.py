@@ -69,6 +69,8 @@ class Drawn:
         Level of it in flight.
     unseen : bool
         Whether no file could show the fault: another sensor without it gives the same file.
+    half : float
+        Change of the scale of one half of an axis; zero where there is none.
     """
 
     path: Path
@@ -76,6 +78,7 @@ class Drawn:
     in_flight: Callable[[np.ndarray], np.ndarray]
     light: float = 1.0
     unseen: bool = False
+    half: float = 0.0
 
 
 def drawn(directory: Path, kind: str, fault: str, seed: int) -> Drawn:
@@ -197,6 +200,7 @@ def _scale(kind, readings, angles, made, rng):
         stated[:, 0] *= factor
     else:
         stated[:, 0] = np.where(angles[:, 0] > 0, factor * angles[:, 0], angles[:, 0])
+        made.half = abs(factor - 1.0)
     made.unseen = which in ("all", "first") and kind == "electrodes"
     return readings, stated, f"scale {factor:.3f} of {which}", made
 

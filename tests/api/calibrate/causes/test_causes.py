@@ -13,6 +13,7 @@ from samples import found_in, samples, table
 from api.calibrate.calibration import calibrate
 from api.calibrate.causes.bad_cells import DUPLICATE, without_bad_cells
 from api.calibrate.causes.held_out import parts_of, uncovered
+from api.calibrate.causes.kinks import largest_unnoticed
 from api.calibrate.causes.lag import fraction_late
 from api.calibrate.causes.light import level_of_products, level_of_sum
 from api.calibrate.causes.removed import unexplained
@@ -20,6 +21,7 @@ from api.calibrate.conventions.findings import findings
 from api.calibrate.exclusions import FOLD, WRONG, Excluded
 from api.calibrate.halves import Halves
 from api.calibrate.readings import readings_of
+from api.calibrate.robust import answer_noise_deg
 from api.calibrate.roles import guess
 from api.calibrate.verdict import judge
 
@@ -141,6 +143,29 @@ def test_one_half_of_an_axis_of_another_scale_is_found():
     assert "theta_x_deg above zero seem to be" in found.found
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_a_half_axis_is_found_from_twice_the_scale_that_is_said_to_be_hidden(seed):
+    names = ("x_plus", "x_minus", "y_plus", "y_minus", "theta_x_deg", "theta_y_deg")
+    currents = bench.electrodes(SUN, seed)
+    made = table(names, currents, ANGLES)
+    readings = readings_of(made, guess(made))
+    hidden = largest_unnoticed(readings, guess(made), answer_noise_deg(readings.features, SUN))
+    assert 0.01 < hidden < 0.15
+    half = np.where(ANGLES > 0, (1.0 + 2.0 * hidden) * ANGLES, ANGLES)
+    stated = np.column_stack([half[:, 0], ANGLES[:, 1]])
+    assert "kink" in [one.about for one in found_in(table(names, currents, stated))]
+
+
+@pytest.mark.parametrize("share", [0.03, 0.06, 0.1])
+def test_wrong_poses_are_no_kink(share):
+    generator = np.random.default_rng(8)
+    at = generator.choice(len(ANGLES), int(share * len(ANGLES)), replace=False)
+    stated = ANGLES.copy()
+    stated[at] = stated[generator.permutation(at)]
+    found = found_in(table(SPOT_NAMES, SPOTS, stated))
+    assert "kink" not in [one.about for one in found]
+
+
 def test_four_tilted_cells_stated_as_quadrants_are_found_as_cells():
     stated = guess(table(QUADRANTS, LIGHT, NARROW))
     assert stated.readings.kind == "quadrants"
@@ -170,6 +195,7 @@ def test_a_part_that_intervals_hold_too_little_is_named():
         pytest.param(np.arange(12), FOLD, False, id="a fold"),
         pytest.param(np.arange(120), "saturated at 5 in q1", True, id="saturated"),
         pytest.param(np.arange(160), "saturated at 5 in q1", False, id="most rows"),
+        pytest.param(np.arange(160), DUPLICATE, True, id="rows that are there twice"),
     ],
 )
 def test_rows_are_left_out_for_a_cause_or_the_verdict_says_so(places, reason, named):
