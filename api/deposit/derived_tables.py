@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import survey_data
+from api.service.measurements import Measurements
 from benchmark.plan.combinations import scorable_plan
 from benchmark.plan.shown import data_sets
 from registry.fidelity.runnable import ESSENTIAL
@@ -21,8 +22,9 @@ def resolution() -> list[Mapping[str, Any]]:
     Of both editions, each study's own beside it.
     """
     plan, shown, known, every = scorable_plan(), data_sets(), facts(), facts("all")
-    resolved = resolve_all(plan, data_sets=shown, facts=known)
-    resolved |= resolve_later(plan, known, every, data_sets=shown)
+    scores = Measurements().own_errors
+    resolved = resolve_all(plan, data_sets=shown, facts=known, scores=scores)
+    resolved |= resolve_later(plan, known, every, data_sets=shown, scores=scores)
     return [
         {
             "study": key,

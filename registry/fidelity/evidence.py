@@ -241,5 +241,3 @@ def reason_for_score(study: Study, facts: Facts) -> str:
 def _shown(one: RunnablePipeline, sets: Mapping[str, DataSet]) -> tuple[DataSet, tuple[str, str]]:
     name = one.settings[0].dataset
     return sets.get(name, DataSet(name)), (one.detector, one.mask)
-
-

@@ -56,6 +56,7 @@ TALLIED: Mapping[Grade, str] = {
 }
 """What a count of a grade is followed by."""
 
+
 @dataclass(frozen=True)
 class Fidelity(JsonData):
     """The grade of a study's run, in one sentence and by its departures."""

@@ -10,13 +10,14 @@ import typer
 
 from api.citations import FORMS
 from api.cli import completion
-from api.cli.asking import ask
+from api.cli.asking import ask, knowledge
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, emit, emit_json, say, write
 from api.cli.wrong_call import WrongCallError
 from api.schema.parameters import LARGEST_PAGE
 from api.schema.studies import AttributeValue, StudiesQuery, StudyRow
 from api.schema.table import columns_of
+from api.service import published_accuracy
 from api.service import studies as service
 from benchmark.leaderboard.board import NOMINAL
 from benchmark.leaderboard.summaries import digits
@@ -66,6 +67,13 @@ def studies(
             ),
         ),
     ] = StudyFormat.TABLE,
+    published: Annotated[
+        bool,
+        typer.Option(
+            "--published",
+            help="Compare reported accuracies with own errors here, worst first.",
+        ),
+    ] = False,
 ) -> None:
     """List studies with the grade of each run, or show one.
 
@@ -76,7 +84,13 @@ def studies(
     complete if every value of the study is implemented. --published compares the accuracy that
     studies report with the own error here, worst first.
     """
-    if key is None:
+    if published and (key is not None or asked != {"edition": "survey"} or form in FORMS):
+        raise WrongCallError("--published compares every study of the survey, as a table")
+    if published:
+        rows = published_accuracy.compare(knowledge())
+        title = published_accuracy.say(rows)
+        emit(rows, published_accuracy.COLUMNS, Format(form), document=rows, title=title)
+    elif key is None:
         _list(asked, form)
     elif asked != {"edition": "survey"}:
         raise WrongCallError("a study's key takes no filters beside it")
