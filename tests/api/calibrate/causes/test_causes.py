@@ -20,7 +20,7 @@ from api.calibrate.causes.removed import unexplained
 from api.calibrate.conventions.findings import findings
 from api.calibrate.exclusions import FOLD, WRONG, Excluded
 from api.calibrate.halves import Halves
-from api.calibrate.readings import readings_of
+from api.calibrate.readings import FALLING, readings_of
 from api.calibrate.robust import answer_noise_deg
 from api.calibrate.roles import guess
 from api.calibrate.verdict import judge
@@ -173,6 +173,26 @@ def test_four_tilted_cells_stated_as_quadrants_are_found_as_cells():
     found = findings(readings_of(made, stated), stated)
     assert [one.change for one in found] == [{"readings": {"kind": "channels"}}]
     assert "channels" not in [one.about for one in found_in(table(QUADRANTS, LIGHT, NARROW))]
+
+
+TILTED = bench.sun_of(np.array([[26.0, 0.0], [-13.0, 24.0], [-13.0, -24.0]]))
+
+
+@pytest.mark.parametrize("falls", [False, True])
+@pytest.mark.parametrize("fault", ["none", "wrong poses", "fading lamp"])
+def test_three_cells_that_are_lit_everywhere_fall_only_if_they_do(fault, falls):
+    generator = np.random.default_rng(3)
+    light = SUN @ TILTED.T + generator.normal(0.0, 0.004, (len(SUN), 3))
+    stated = ANGLES.copy()
+    if fault == "wrong poses":
+        at = generator.choice(len(ANGLES), len(ANGLES) // 5, replace=False)
+        stated[at] = stated[generator.permutation(at)]
+    elif fault == "fading lamp":
+        light *= np.linspace(1.0, 0.7, len(SUN))[:, None]
+    signals = 4.0 - light if falls else light
+    made = table(("cell1", "cell2", "cell3", "theta_x_deg", "theta_y_deg"), signals, stated)
+    found = [one.found for one in found_in(made) if one.found.startswith(FALLING)]
+    assert bool(found) is falls
 
 
 def test_a_part_that_intervals_hold_too_little_is_named():
