@@ -142,7 +142,7 @@ def _measured_tables(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTab
             "Resolution of the studies",
             "Runs of each study, with grade: a row per pipeline, data set and condition. Basis of "
             "each part, and the rule that fills it where the study does not state it.",
-            derived_tables.resolution(),
+            derived_tables.resolution(scores),
             primary=("study", *_PLACE, "dataset", "condition", "extractor", "model"),
             foreign={**foreign, "study": ("all_studies", "study")},
         ),

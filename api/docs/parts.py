@@ -10,7 +10,7 @@ import survey_data
 from api.docs.examples import command_line, http_examples
 from api.docs.knowledge import knowledge
 from api.docs.markdown import table as _table
-from api.service import published_accuracy
+from api.service import studies as service
 from benchmark.datasets import coverage as simulated
 from registry.fidelity.evidence import FACTOR, SCORE_FACTOR, UNKNOWN_SHARE
 from registry.fidelity.grading import tally_text
@@ -133,7 +133,7 @@ def resolutions() -> str:
     known = knowledge()
     resolved = known.resolutions
     cells = sum(len(p.settings) for found in resolved.values() for p in found.pipelines)
-    compared = published_accuracy.compare(known)
+    compared = service.compare_accuracy(known)
     counted = (
         f"Runs of {len(resolved)} studies: "
         f"{tally_text(found.fidelity.grade for found in resolved.values())}. They are shown on "
@@ -148,7 +148,7 @@ def resolutions() -> str:
             "What is unknown and keeps runs from being faithful:",
             _table(("part", "unknown", "studies"), _unknown(resolved)),
             "Reported accuracy against the own error of the run, worst first. "
-            + published_accuracy.say(compared),
+            + service.say_comparison(compared),
             _table(
                 (
                     "study",

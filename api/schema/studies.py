@@ -94,7 +94,7 @@ class Headline(PublishedScore):
 class Departure(Shape):
     """A difference between a study and its implementation here."""
 
-    part: Part
+    part: Part = Field(description="Part.")
     value: str
     text: str
     settled_by: str = Field(description="What would remove the difference.")

@@ -10,7 +10,7 @@ import pytest
 
 from algorithms.design import SensorGeometry
 from api.docs.knowledge import knowledge
-from api.service import published_accuracy
+from api.service import studies as service
 from benchmark.plan.shown import data_sets, design
 from registry.fidelity import evidence
 from registry.fidelity.particulars import RunFact, hardware_facts
@@ -139,7 +139,7 @@ def test_a_drawing_says_how_faces_are_arranged() -> None:
 
 
 def test_reported_and_own_errors_are_compared_worst_first() -> None:
-    rows = published_accuracy.compare(knowledge())
+    rows = service.compare_accuracy(knowledge())
     off = [max(row["times"], 1.0 / row["times"]) for row in rows]
     assert all(a >= b for a, b in pairwise(off))
     assert {row["key"] for row in rows} >= {"Soken2023", "Lin2016", "Enright2007a"}
@@ -150,7 +150,7 @@ def test_reported_and_own_errors_are_compared_worst_first() -> None:
     expected = sum(a * b for a, b in zip(x, y, strict=True)) / math.sqrt(
         sum(a * a for a in x) * sum(b * b for b in y)
     )
-    assert f"own error is {expected:.2f} " in published_accuracy.say(rows)
+    assert f"own error is {expected:.2f} " in service.say_comparison(rows)
 
 
 def _ranks(values: list[float]) -> list[float]:

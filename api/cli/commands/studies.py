@@ -17,7 +17,6 @@ from api.cli.wrong_call import WrongCallError
 from api.schema.parameters import LARGEST_PAGE
 from api.schema.studies import AttributeValue, StudiesQuery, StudyRow
 from api.schema.table import columns_of
-from api.service import published_accuracy
 from api.service import studies as service
 from benchmark.leaderboard.board import NOMINAL
 from benchmark.leaderboard.summaries import digits
@@ -87,9 +86,9 @@ def studies(
     if published and (key is not None or asked != {"edition": "survey"} or form in FORMS):
         raise WrongCallError("--published compares every study of the survey, as a table")
     if published:
-        rows = published_accuracy.compare(knowledge())
-        title = published_accuracy.say(rows)
-        emit(rows, published_accuracy.COLUMNS, Format(form), document=rows, title=title)
+        rows = service.compare_accuracy(knowledge())
+        title = service.say_comparison(rows)
+        emit(rows, service.COMPARED, Format(form), document=rows, title=title)
     elif key is None:
         _list(asked, form)
     elif asked != {"edition": "survey"}:
