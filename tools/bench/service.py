@@ -36,8 +36,9 @@ PATH = "/v1/recommendations"
 NEW_MS, REPEATED_MS = 20.0, 3.0
 """What 95 of 100 new questions, and of repeated ones, may take on the development machine."""
 ANSWER_BYTES, OPENAPI_BYTES = 30_000, 200_000
-LINES = 8_834
-"""Lines of `registry` and `api/schema`: 2,000 fewer than they had when answers were bytes."""
+LINES = 9_318
+"""Lines of `registry` and `api/schema`: 1,500 fewer than they had when answers were bytes, with 480
+that grade runs by evidence."""
 #: Questions before those that are measured, and how often one has a requirement of a kind.
 _WARM, _SHARE = 20, 0.35
 #: A connection is kept however long the machine lets its next request wait, s.

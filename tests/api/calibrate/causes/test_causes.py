@@ -10,6 +10,7 @@ import pytest
 from faults import cells
 from samples import found_in, samples, table
 
+from api.calibrate.ambiguity import folded
 from api.calibrate.calibration import calibrate
 from api.calibrate.causes.bad_cells import DUPLICATE, without_bad_cells
 from api.calibrate.causes.held_out import parts_of, uncovered
@@ -275,3 +276,37 @@ def test_limits_hold_the_light_that_was_measured(tmp_path):
     assert found.limits.most_light > 1.5 * total.max()
     assert found.limits.high == (np.inf,) * 4
     assert replace(found.limits) == found.limits
+
+
+def radial(image, seed):
+    """Spots of 500 directions within 70 deg, their radius being the image of the angle."""
+    generator = np.random.default_rng(seed)
+    off = np.arccos(generator.uniform(np.cos(np.radians(70.0)), 1.0, 500))
+    turn = generator.uniform(-np.pi, np.pi, 500)
+    spots = image(off)[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
+    sun = np.column_stack([np.sin(off) * np.cos(turn), np.sin(off) * np.sin(turn), np.cos(off)])
+    return spots + generator.normal(0.0, 0.1, spots.shape), sun, np.degrees(off)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_image_of_a_fisheye_lens_is_taken_for_a_fold(seed):
+    spots, sun, _ = radial(lambda off: 180.0 * off * (1.0 - 0.03 * off**2), seed)
+    assert not folded(spots, sun).any()
+
+
+def test_readings_that_return_beyond_an_angle_are_a_fold():
+    spots, sun, off = radial(lambda off: 200.0 * np.sin(2.0 * off), 0)
+    found = folded(spots, sun)
+    assert found[off > 47.0].mean() > 0.95
+    assert found[off < 15.0].mean() < 0.05
+
+
+def test_a_turntable_that_was_moved_after_half_of_the_rows_is_not_good(tmp_path):
+    """Poses in no order: each half has the whole field, and noise told by neighbours the step."""
+    order = np.random.default_rng(4).permutation(len(ANGLES))
+    stated = ANGLES[order]
+    stated[len(stated) // 2 :, 0] += 2.0
+    path = bench.write(tmp_path / "moved.csv", bench.HEADER, SPOTS[order], stated)
+    found = calibrate([path], models=("homography",))
+    assert found.verdict.word == "model misfit"
+    assert "goes with the order of rows" in found.verdict.reason
