@@ -142,9 +142,10 @@ def _every_run_can_be_judged(frames: Frames) -> Iterator[Problem]:
         if fact == "calibration" and value not in ways:
             message = f"expected one of {', '.join(ways[1:])}, got {value!r}"
             yield problem("run_facts", index, "value", message)
-    for index, (study,) in texts(frames["studies"], "key"):
+    last = len(frames["run_facts"]) - 1
+    for _, (study,) in texts(frames["studies"], "key"):
         for fact in sorted({"calibration", "layout"} - seen.get(study, set())):
-            yield problem("studies", index, "key", f"{study} has no row {fact} in run_facts.csv")
+            yield problem("run_facts", last, "study", f"no row {fact} of the study {study!r}")
 
 
 def _venues_are_of_known_ones(frames: Frames) -> Iterator[Problem]:

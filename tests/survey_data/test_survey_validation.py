@@ -175,6 +175,7 @@ UNKNOWN = {
     "purposes": [("given", "model=Sundial"), ("unless", "mask"), ("purpose", "fun")],
     "compensated_models": [("model", "Sundial"), ("relation", "behind"), ("study", "Nobody1999")],
     "method_variants": [("model", "Sundial"), ("extractor", "Squint"), ("runs_as", "Sundial")],
+    "run_facts": [("fact", "colour"), ("value", "guessed"), ("study", "Nobody1999")],
     "architectures": [("mask", "Sundial")],
     "roles": [("value", "Sundial"), ("role", "admired"), ("study", "Nobody1999")],
     "advice": [("detector", "Sundial"), ("extractor", "Squint"), ("value", "Beauty")],
