@@ -98,7 +98,7 @@ class Departure(Shape):
     value: str
     text: str
     settled_by: str = Field(description="What would remove the difference.")
-    unknown: bool = Field(description="Whether a fact is missing.")
+    unknown: bool = Field(description="A fact is missing.")
 
 
 class StudyRow(Shape):
@@ -266,8 +266,8 @@ class StudiesQuery(CitedQuestion, StudyFilters, SortedQuestion, rows=StudyRow):
     year_min: Annotated[int | None, WHOLE] = Field(None, ge=0, le=9999, description="First year.")
     year_max: Annotated[int | None, WHOLE] = Field(None, ge=0, le=9999, description="To this year.")
     grade: Several[Grade] = several(
-        "Only studies with this grade: faithful (every part is the study's own), assumed (nothing "
-        "known differs, facts are unknown), close (one part differs), stand-in (more), none."
+        "Only studies with this grade: faithful (every part is the study's own), assumed (facts "
+        "are unknown), close (one part differs), stand-in (more), none."
     )
     state: Several[State] = several("Only studies with this state of implementation.")
     q: Annotated[str | None, GIVEN] = Field(
