@@ -53,6 +53,7 @@ class SurveyTables:
     purposes: pd.DataFrame
     compensated_models: pd.DataFrame
     method_variants: pd.DataFrame
+    run_facts: pd.DataFrame
     architectures: pd.DataFrame
     roles: pd.DataFrame
     advice: pd.DataFrame

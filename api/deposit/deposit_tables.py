@@ -114,7 +114,7 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
         _pins(store),
         *([_sweeps(swept)] if swept else []),
         *_curves(curves.published_curves(published), foreign),
-        *_measured_tables(foreign),
+        *_measured_tables(foreign, scores),
         *_claims(ledger(published)),
     ]
 
@@ -133,7 +133,9 @@ def frames_table(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
     )
 
 
-def _measured_tables(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
+def _measured_tables(
+    foreign: Mapping[str, tuple[str, str]], scores: Sequence[Mapping[str, Any]]
+) -> list[MeasuredTable]:
     """Make the tables that follow from facts and plan, with the numbers of none."""
     return [
         _table(
@@ -142,7 +144,7 @@ def _measured_tables(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTab
             "Resolution of the studies",
             "Runs of each study, with grade: a row per pipeline, data set and condition. Basis of "
             "each part, and the rule that fills it where the study does not state it.",
-            derived_tables.resolution(),
+            derived_tables.resolution(scores),
             primary=("study", *_PLACE, "dataset", "condition", "extractor", "model"),
             foreign={**foreign, "study": ("all_studies", "study")},
         ),

@@ -40,7 +40,7 @@ MEANINGS: Mapping[str, str] = {
     "extractor_taxonomy": "Extractor, as in the survey's taxonomy.",
     "extractor_version": "Version of the extractor.",
     "figure": "Name of the figure.",
-    "grade": "Grade of the implementation: faithful, close, stand-in or none.",
+    "grade": "Grade of the implementation: faithful, assumed, close, stand-in or none.",
     "half_fov_deg": "Half field of view of the sensor, degrees.",
     "id": "Identifier.",
     "items": "Items of this page.",

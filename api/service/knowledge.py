@@ -88,7 +88,11 @@ class Knowledge:
         from benchmark.plan.shown import data_sets  # noqa: PLC0415 - likewise
 
         return resolve_all(
-            scorable_plan(), data_sets=data_sets(), catalogue=self.catalogue, facts=self.facts
+            scorable_plan(),
+            data_sets=data_sets(),
+            catalogue=self.catalogue,
+            facts=self.facts,
+            scores=self.measurements.own_errors,
         )
 
     @cached_property
@@ -177,7 +181,10 @@ class KnowledgeOfAll(Knowledge):
 
         ours, facts = self._survey.resolutions, (self._survey.facts, self.facts)
         shown, catalogue = data_sets(), self.catalogue
-        later = resolve_later(scorable_plan(), *facts, data_sets=shown, catalogue=catalogue)
+        scores = self.measurements.own_errors
+        later = resolve_later(
+            scorable_plan(), *facts, data_sets=shown, catalogue=catalogue, scores=scores
+        )
         return {**ours, **later}
 
     @property

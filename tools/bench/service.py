@@ -136,7 +136,7 @@ class Service:
 def track_lines_of_registry_and_schema() -> float:
     """Lines of the code that answers."""
     files = [*(ROOT / "registry").rglob("*.py"), *(ROOT / "api" / "schema").rglob("*.py")]
-    return at_most(8_834, sum(len(file.read_text("utf-8").splitlines()) for file in files))
+    return at_most(9_318, sum(len(file.read_text("utf-8").splitlines()) for file in files))
 
 
 def track_help_over_importing_typer() -> float:
