@@ -78,12 +78,6 @@ def test_an_entry_takes_its_venue_from_the_title_of_the_one_that_it_refers_to(
     assert entries(tmp_path, text % "")["a"] == ("A", "")
 
 
-def test_a_quote_that_is_not_closed_ends_with_the_file(tmp_path: Path) -> None:
-    assert entries(tmp_path, '@article{a, title = "Never {closed} by M\\"uller') == {
-        "a": ("Never closed by Müller", "")
-    }
-
-
 def test_items_of_a_bbl_without_a_label_are_read_and_those_without_a_key_left_out(
     tmp_path: Path,
 ) -> None:
