@@ -75,11 +75,16 @@ def _middle(sun: Floats) -> Floats:
 
 
 def _slopes(features: Floats, sun: Floats, near: NDArray[np.int64]) -> Floats:
-    """Change (N, 2, 2) of readings with direction cosines over tangents, by the nearest poses."""
-    tangents = sun[:, :2] / sun[:, [2]]
-    middle = tangents[near[:, :1]]  # each is its own nearest
-    spread = np.linalg.svd(tangents[near] - tangents[near].mean(axis=1, keepdims=True))[1]
-    design = np.concatenate([np.ones((*near.shape, 1)), tangents[near] - middle], axis=2)
+    """Change (N, 2, 2) of readings with the angle off the boresight, by the nearest poses.
+
+    Over tangents a fisheye lens, whose image goes with the angle, would seem to turn flat.
+    """
+    across = np.linalg.norm(sun[:, :2], axis=1)
+    angle = np.arctan2(across, sun[:, 2]) / np.maximum(across, 1e-12)
+    places = np.where(across > 1e-6, angle, 1.0)[:, None] * sun[:, :2]
+    middle = places[near[:, :1]]  # each is its own nearest
+    spread = np.linalg.svd(places[near] - places[near].mean(axis=1, keepdims=True))[1]
+    design = np.concatenate([np.ones((*near.shape, 1)), places[near] - middle], axis=2)
     aims = features[near]
     weight = np.ones(near.shape)
     fit = np.zeros((len(near), 3, 2))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from api.metadata.identity import identity
 from api.metadata.signposting import headers, landing_of_record
@@ -17,6 +17,9 @@ from api.service.pagination import Page, narrow, order, page
 from benchmark.leaderboard.architectures import architectures as best_of_each
 from benchmark.leaderboard.board import at_field, within_error
 from benchmark.leaderboard.overview import overview as overview_of
+
+if TYPE_CHECKING:
+    from benchmark.leaderboard.findings import Finding
 
 
 def leaderboard(known: Knowledge, query: WholeLeaderboardQuery) -> Document:
@@ -76,3 +79,13 @@ def leaderboard_of_dataset(
     ]
     shown = page(order(rows, query.sort), f"/v1/leaderboard/{dataset}", query)
     return list_document(shown, shown.items, columns_of(LeaderboardRow), fields=query.fields)
+
+
+def findings(known: Knowledge) -> tuple[Finding, ...]:
+    """Return the findings of the published record."""
+    from benchmark.leaderboard.findings import (  # noqa: PLC0415 - needs every experiment
+        Record,
+        findings_of,
+    )
+
+    return findings_of(Record.published(), known.resolutions)

@@ -1,14 +1,13 @@
-"""Headlines of mapped studies beside the same methods here: ``headlines.csv`` and the scores.
+"""Accuracies and precisions that studies publish, beside the same statistic of their methods here.
 
-Accuracy stands beside accuracy, precision beside precision. Typed in the table are the published
-number with what it is, the data set and pipeline that stand for the study's sensor, and the
-sentence on how sensor and noise differ; our number is read in the scores.
+The published number and its kind are facts of the survey; ours is that of what runs for the study,
+under the condition that it is run for. ``headlines.csv`` says of some how sensor and noise differ.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -16,143 +15,175 @@ from types import MappingProxyType
 from typing import Any
 
 from files.strict_csv import read_records
+from registry.fidelity.runnable import RunnablePipeline
+from registry.resolution import Resolution
+from registry.studies import Study
+from survey_data.reported import QUANTITIES, Quantity, ReportedAccuracy
 
 FILE = Path(__file__).parent / "headlines.csv"
-COLUMNS = (
-    *("study", "dataset", "extractor", "model"),
-    *("published_deg", "kind", "statistic", "difference"),
-)
+COLUMNS = ("study", "quantity", "difference")
 
 Row = Mapping[str, Any]
+#: Data set, condition, extractor and model.
+Place = tuple[str, str, str, str]
 
 
 class HeadlineError(ValueError):
     """The table is broken; the message names the line."""
 
 
-@dataclass(frozen=True)
-class Headline:
-    """A number that a study is known for, and what stands for it here.
-
-    Attributes
-    ----------
-    study
-        Key of the mapped study, or the name of a work that is not mapped.
-    dataset, extractor, model
-        What stands for it; empty where nothing here does.
-    published_deg
-        The published number, degrees; None where there is none.
-    kind
-        ``accuracy`` or ``precision``.
-    statistic
-        What the number is: a key of `STATISTICS` of its kind.
-    difference
-        How sensor, noise and bench differ.
-    """
-
-    study: str
-    dataset: str
-    extractor: str
-    model: str
-    published_deg: float | None
-    kind: str
-    statistic: str
-    difference: str
-
-
-def _column(name: str) -> Callable[[Row], float | None]:
-    return lambda row: row[name]
-
-
-def _one_axis(row: Row) -> float | None:
-    spread = row["repeatability_deg"]
-    return None if spread is None else float(spread / math.sqrt(2.0))
-
-
-#: What of a score is comparable with a published number, by kind and statistic. Precision is of one
-#: axis, as studies state it; 99.7 % of the errors lie within what stands beside three sigma.
-STATISTICS: Mapping[tuple[str, str], tuple[str, Callable[[Row], float | None]]] = MappingProxyType(
+#: What of a score stands beside a published accuracy, by its kind; the RMS beside any other.
+_STATISTICS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
-        ("precision", "1 sigma"): ("one axis, 1 sigma", _one_axis),
-        ("accuracy", "3 sigma"): ("99.7 % within", _column("p997_deg")),
-        ("accuracy", "rms"): ("rms", _column("rms_deg")),
-        ("accuracy", "mean"): ("median", _column("median_deg")),
-        ("accuracy", "unspecified"): ("rms", _column("rms_deg")),
+        "3sigma": ("99.7 % within", "p997_deg"),
+        "p95": ("95 % within", "p95_deg"),
+        "max": ("largest", "max_deg"),
+        "mean": ("median", "median_deg"),
     }
 )
 
 
+@dataclass(frozen=True)
+class Headline:
+    """A number that a study publishes, beside ours.
+
+    Attributes
+    ----------
+    study
+        Its key.
+    published
+        The number, and which statistic it is.
+    place
+        The score that stands beside it; None where nothing that runs for the study has one.
+    our_deg
+        The same statistic of the own error on the standard unit; of a precision, one axis.
+    our_statistic
+        What it is.
+    availability
+        Share of the samples that are answered.
+    difference
+        How sensor and noise differ; empty where nothing is said.
+    """
+
+    study: str
+    published: ReportedAccuracy
+    place: Place | None
+    our_deg: float | None
+    our_statistic: str
+    availability: float | None
+    difference: str
+
+    @property
+    def ratio(self) -> float | None:
+        """Ours over the published one; None where nothing is measured."""
+        if self.our_deg is None:
+            return None
+        if self.published.quantity == "precision":
+            return self.our_deg / self.published.rms_deg
+        return self.our_deg / self.published.value_deg
+
+    @property
+    def distance(self) -> float:
+        """How far the two are apart, as the logarithm of a factor."""
+        return math.inf if not self.ratio else abs(math.log(self.ratio))
+
+
 @cache
-def read_headlines(path: Path = FILE) -> tuple[Headline, ...]:
-    """Return the headlines in the order of the table.
+def read_differences(path: Path = FILE) -> Mapping[tuple[str, str], str]:
+    """Return what is said of differences, by study and quantity.
 
     Raises
     ------
     HeadlineError
-        For a broken line, a number that is none, and a kind or statistic that is unknown.
+        For a broken line, an unknown quantity, nothing said, and what is said twice.
     """
     records = read_records(path, list(COLUMNS))
     if records.problems:
         raise HeadlineError("; ".join(map(str, records.problems)))
-    return tuple(_headline(path, line, cells) for line, cells in records.rows)
-
-
-def _headline(path: Path, line: int, cells: list[str]) -> Headline:
-    study, dataset, extractor, model, published, kind, statistic, difference = cells
-    if (kind, statistic) not in STATISTICS:
-        known = ", ".join(" ".join(pair) for pair in STATISTICS)
-        raise HeadlineError(f"{path.name}, line {line}: {kind} {statistic} is none of {known}")
-    try:
-        number = float(published) if published else None
-    except ValueError:
-        number = math.nan
-    if number is not None and not (math.isfinite(number) and number > 0):
-        raise HeadlineError(f"{path.name}, line {line}: {published} is no number of degrees")
-    if not difference:
-        raise HeadlineError(f"{path.name}, line {line}: nothing says how sensor and noise differ")
-    return Headline(study, dataset, extractor, model, number, kind, statistic, difference)
+    found: dict[tuple[str, str], str] = {}
+    for line, (study, quantity, difference) in records.rows:
+        where = f"{path.name}, line {line}"
+        if quantity not in QUANTITIES:
+            raise HeadlineError(f"{where}: {quantity} is none of {', '.join(QUANTITIES)}")
+        if not difference:
+            raise HeadlineError(f"{where}: nothing says how sensor and noise differ")
+        if (study, quantity) in found:
+            raise HeadlineError(f"{where}: {study}, {quantity} stands there already")
+        found[study, quantity] = difference
+    return MappingProxyType(found)
 
 
 def headlines(
-    rows: Iterable[Row], nominal: Mapping[str, str], known: Iterable[Headline] | None = None
-) -> list[dict[str, Any]]:
-    """Set each headline beside the score of what stands for it.
+    scores: Mapping[Place, Row],
+    studies: Iterable[Study],
+    resolutions: Mapping[str, Resolution],
+    differences: Mapping[tuple[str, str], str] | None = None,
+) -> list[Headline]:
+    """Set every published number beside ours, the farthest apart first.
+
+    Of the pipelines that rest on most, the one that is most accurate stands for a study.
 
     Parameters
     ----------
-    rows
-        Score rows as `Store.rows` gives them.
-    nominal
-        The condition compared, by data set.
-    known
-        The headlines; those of the published table by default.
-
-    Returns
-    -------
-    list of dict
-        In the order of the table, with its columns and ``our_deg`` (None where nothing is
-        measured), ``our_statistic``, ``ratio`` (ours over the published one), ``bound_deg`` and
-        ``availability``. Our accuracy is the own error: that of a perfect bench.
+    scores
+        Rows of the standard unit by data set, condition, extractor and model.
+    studies
+        Mapped studies.
+    resolutions
+        What runs for each, by key.
+    differences
+        As `read_differences` gives them, by default the table's.
     """
-    scores = {
-        (row["dataset"], row["extractor"], row["model"]): row
-        for row in rows
-        if row["unit"] == 0 and row["condition"] == nominal.get(row["dataset"])
-    }
-    return [
-        _beside(one, scores.get((one.dataset, one.extractor, one.model)))
-        for one in (read_headlines() if known is None else known)
+    said = read_differences() if differences is None else differences
+    found = [
+        _beside(study, published, scores, resolutions[study.key].strongest_pipelines, said)
+        for study in studies
+        for quantity in QUANTITIES
+        if (published := study.report(quantity)) is not None
     ]
+    return sorted(found, key=lambda one: (-one.distance, one.study, one.published.quantity))
 
 
-def _beside(one: Headline, score: Row | None) -> dict[str, Any]:
-    named, read = STATISTICS[one.kind, one.statistic]
-    ours = None if score is None else read(score)
-    return {
-        **{name: getattr(one, name) for name in COLUMNS},
-        "our_deg": ours,
-        "our_statistic": named,
-        "ratio": None if ours is None or one.published_deg is None else ours / one.published_deg,
-        "bound_deg": None if score is None else score["bound_deg"],
-        "availability": None if score is None else score["availability"],
-    }
+def rank_correlation(rows: Iterable[Headline]) -> tuple[float, int]:
+    """Return Spearman's correlation of published and our accuracies, and of how many studies."""
+    from scipy.stats import spearmanr  # noqa: PLC0415 - SciPy, at the first use
+
+    found = accuracies(rows)
+    published = [one.published.value_deg for one in found]
+    ours = [float(one.our_deg) for one in found if one.our_deg is not None]
+    return float(spearmanr(published, ours).statistic), len(found)
+
+
+def accuracies(rows: Iterable[Headline]) -> list[Headline]:
+    """Return those of an accuracy that is measured here."""
+    return [one for one in rows if one.published.quantity == "accuracy" and one.our_deg is not None]
+
+
+def _beside(
+    study: Study,
+    published: ReportedAccuracy,
+    scores: Mapping[Place, Row],
+    pipelines: Iterable[RunnablePipeline],
+    said: Mapping[tuple[str, str], str],
+) -> Headline:
+    named, column, divisor = _statistic(published.quantity, published.statistic.kind)
+    measured = [
+        (row[column] / divisor, place, row["availability"])
+        for place in map(_first_setting, pipelines)
+        if (row := scores.get(place)) is not None and row[column] is not None
+    ]
+    ours, at, answered = min(measured, default=(None, None, None))
+    difference = said.get((study.key, published.quantity), "")
+    return Headline(study.key, published, at, ours, named, answered, difference)
+
+
+def _statistic(quantity: Quantity, kind: str) -> tuple[str, str, float]:
+    """Return what stands beside a number: its name, its column, and what that is divided by."""
+    if quantity == "precision":
+        return "one axis, 1 sigma", "repeatability_deg", math.sqrt(2.0)
+    return *_STATISTICS.get(kind, ("rms", "rms_deg")), 1.0
+
+
+def _first_setting(pipeline: RunnablePipeline) -> Place:
+    at = pipeline.settings[0]
+    return at.dataset, at.condition, pipeline.extractor, pipeline.model

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from algorithms.angles import angles_from_sun
 from algorithms.contract import FeatureKind, Floats
@@ -21,6 +22,8 @@ _SHARE = 0.05
 _LEAST = 0.01
 #: Standard errors by which a kink may seem smaller than it is, 19 times of 20.
 _SMALLER = 2.0
+#: Medians of what a smooth function leaves beyond which a pose is wrong, and rounds to settle them.
+_OFF, _ROUNDS = 6.0, 10
 
 
 @dataclass(frozen=True)
@@ -106,24 +109,22 @@ def _bend(readings: Readings, angle: Floats) -> _Bend:
     """
     features = readings.features
     scaled = (features - features.mean(axis=0)) / np.maximum(features.std(axis=0), 1e-12) / 2.0
-    design = np.linalg.qr(terms(scaled, degree_for(len(angle), features.shape[1])))[0]
+    design = terms(scaled, degree_for(len(angle), features.shape[1]))
     tangents = readings.sun[:, :2] / readings.sun[:, 2:]
     along = [abs(float(np.corrcoef(angle, tangents[:, at])[0, 1])) for at in (0, 1)]
     tangent = tangents[:, int(np.argmax(along))]
     # what images tangents is smoother over them than over angles
-    forms = [(np.var(_rest(design, form)) / np.var(form), form) for form in (angle, tangent)]
-    used = min(forms, key=lambda one: one[0])[1]
-    hinge_left, left = _rest(design, np.maximum(used, 0.0)), _rest(design, used)
-    kept = np.abs(left) <= 6.0 * np.median(np.abs(left))
-    other = tangents[:, int(np.argmin(along))]
+    forms = [(form, _smooth(design, form)) for form in (angle, tangent)]
+    used, inside = min(forms, key=lambda one: _share_left(design, *one))
+    hinge_left = _rest(design[inside], np.maximum(used, 0.0)[inside])
+    left = _rest(design[inside], used[inside])
+    other = tangents[inside, int(np.argmin(along))]
     block = np.argsort(np.argsort(other)) * _BLOCKS // len(other)
-    whole = _ratio(hinge_left[kept], left[kept])
-    without = np.array(
-        [_ratio(hinge_left[kept & (block != n)], left[kept & (block != n)]) for n in range(_BLOCKS)]
-    )
+    whole = _ratio(hinge_left, left)
+    without = np.array([_ratio(hinge_left[block != n], left[block != n]) for n in range(_BLOCKS)])
     scatter = float(np.sum((without - without.mean()) ** 2))
-    rest = float(np.var(left[kept] - whole * hinge_left[kept]))
-    of_hinge = max(float(np.var(hinge_left[kept])), 1e-300)
+    rest = float(np.var(left - whole * hinge_left))
+    of_hinge = max(float(np.var(hinge_left)), 1e-300)
     return _Bend(
         whole,
         float(np.sqrt((_BLOCKS - 1) / _BLOCKS * scatter)),
@@ -132,8 +133,25 @@ def _bend(readings: Readings, angle: Floats) -> _Bend:
     )
 
 
+def _smooth(design: Floats, column: Floats) -> NDArray[np.bool_]:
+    """Return which values (N,) a smooth function follows: a wrong pose is off it, and no kink."""
+    kept = np.ones(len(column), dtype=np.bool_)
+    for _ in range(_ROUNDS):
+        fit = np.linalg.lstsq(design[kept], column[kept], rcond=None)[0]
+        size = np.abs(column - design @ fit)
+        now = size <= _OFF * np.median(size)
+        if np.array_equal(now, kept) or now.sum() < 2 * design.shape[1]:
+            break
+        kept = now
+    return kept
+
+
+def _share_left(design: Floats, column: Floats, kept: NDArray[np.bool_]) -> float:
+    return float(np.var(_rest(design[kept], column[kept])) / np.var(column[kept]))
+
+
 def _rest(design: Floats, column: Floats) -> Floats:
-    return np.asarray(column - design @ (design.T @ column))
+    return np.asarray(column - design @ np.linalg.lstsq(design, column, rcond=None)[0])
 
 
 def _ratio(hinge: Floats, left: Floats) -> float:

@@ -25,14 +25,10 @@ from api.calibrate.settings import AngleForm, Settings
 
 #: What a law leaves, over the noise, to be followed.
 FOLLOWED = 1.3
-#: The same with a factor where the law is not exact: the sensor's own distortion is like one.
-_CLOSELY = 1.1
 #: Range of factors of angles that are tried, and the smallest change that is reported.
 _FACTORS, _LEAST = (0.7, 1.4), 0.003
 #: Standard deviations from which a factor is reported, and the step that gives its error.
 _CERTAIN, _STEP = 6.0, 0.01
-#: What a law leaves without a factor, over that with it, where it is not exact.
-_BETTER = 1.15
 _WITHIN_DEG = 75.0
 #: Stands for what a law leaves of samples that do not tell.
 _NONE = 1e6
@@ -54,6 +50,9 @@ class Scale:
     ----------
     followed : float
         What the law leaves with the angles as stated, over the noise.
+    bent : float
+        The same where the sensor may depart from the law by a term of its own: cells by the square
+        of the cosine, cameras by radial distortion.
     best : float
         The same with the best factor.
     factor : float
@@ -65,6 +64,7 @@ class Scale:
     """
 
     followed: float
+    bent: float
     best: float
     factor: float
     error: float
@@ -84,7 +84,8 @@ def scale_of_angles(readings: Readings, settings: Settings) -> Scale:
         return law(features, turned(factor), noise)
 
     as_stated = law(features, used.sun, noise)
-    best = Scale(as_stated, as_stated, 1.0, np.inf, "")
+    bent = law(features, used.sun, noise, bent=True)
+    best = Scale(as_stated, bent, as_stated, 1.0, np.inf, "")
     if as_stated >= _NONE:
         return best
     error = np.inf
@@ -96,7 +97,7 @@ def scale_of_angles(readings: Readings, settings: Settings) -> Scale:
         if not np.isfinite(error):  # of all angles, which come first
             error = _error_of_factor(of_factor, found, used)
         if found.fun < best.best:
-            best = Scale(as_stated, float(found.fun), float(found.x), np.inf, axis)
+            best = replace(best, best=float(found.fun), factor=float(found.x), axis=axis)
     return replace(best, error=error)
 
 
@@ -121,22 +122,16 @@ def _error_of_factor(left: Callable[[float], float], found: Any, readings: Readi
     return float(np.sqrt(2.0 * found.fun**2 / count / bend)) if bend > 0 else float("inf")
 
 
-def of_scale(readings: Readings, settings: Settings, known: Scale) -> Iterator[Finding]:
+def of_scale(readings: Readings, known: Scale) -> Iterator[Finding]:
     """Yield the factor of the angles with which a law is followed that is broken without.
 
-    The laws of cells and of cameras are exact. That of quadrants, or another sensor's, may be off
-    by a small cause that a factor takes up too.
+    A factor that explains no more than a departure of the sensor from the law is not told from it.
     """
-    exact = readings.kind is FeatureKind.SIGNALS or settings.readings.kind in ("spot", "frames")
     inside = _FACTORS[0] + 0.02 < known.factor < _FACTORS[1] - 0.02
     off = abs(known.factor - 1.0)
-    better = settings.readings.kind == "quadrants" or known.followed > FOLLOWED
-    better &= known.followed > _BETTER * known.best
-    told = known.best < (FOLLOWED if exact else _CLOSELY) and (exact or better)
-    # what the law leaves with a factor is the sensor's own, and a factor may take up as much of it
-    told &= known.followed**2 - known.best**2 > max(known.best**2 - 1.0, 0.0)
-    gain = readings.thinned(_MOST).features.size * ((known.followed / known.best) ** 2 - 1.0)
-    if not (told and inside and gain > _CERTAIN**2 and off > _LEAST):
+    if not (
+        known.best < FOLLOWED and inside and off > _LEAST and _gains(known.bent, known, readings)
+    ):
         return
     law = "cells" if readings.kind is FeatureKind.SIGNALS else "a projection"
     yield Finding(
@@ -154,7 +149,15 @@ def settles_scale(known: Scale, readings: Readings, noise_deg: float) -> bool:
     """Say whether a law tells the scale of the angles as well as single answers are."""
     off = np.degrees(np.arccos(np.clip(readings.sun[:, 2], -1.0, 1.0)))
     moved = 2.0 * known.error * float(np.sqrt(np.mean(off**2)))
-    return known.followed < FOLLOWED and moved < noise_deg
+    # a factor explains something, but so would the sensor's own departure from the law
+    unclear = _gains(known.followed, known, readings)
+    return known.followed < FOLLOWED and moved < noise_deg and not unclear
+
+
+def _gains(left: float, known: Scale, readings: Readings) -> bool:
+    """Say whether the best factor leaves certainly less than what is left without it."""
+    count = readings.thinned(_MOST).features.size
+    return count * ((left / known.best) ** 2 - 1.0) > _CERTAIN**2
 
 
 def _scaled(
@@ -164,9 +167,9 @@ def _scaled(
     form = cast("AngleForm", settings.direction.form)
     if readings.angles is None:
         angles = angles_from_sun(readings.sun)
-        if not np.isfinite(angles).all():
-            return
-        yield "all angles", lambda factor: sun_from_angles(_near_circle(angles * factor))
+        if np.isfinite(angles).all():
+            yield "all angles", lambda factor: sun_from_angles(_near_circle(angles * factor))
+        yield "angles off the axis", partial(_off_axis, readings.sun)
         return
     stated = readings.angles
     if form.startswith("azimuth"):
@@ -188,11 +191,23 @@ def _times(stated: Floats, which: NDArray[np.int64], form: AngleForm) -> Callabl
     return lambda factor: sun_of_angles(_near_circle(stated * (1 + which * (factor - 1))), form)
 
 
+def _off_axis(sun: Floats, factor: float) -> Floats:
+    """Return directions (N, 3) whose angles from the boresight are multiplied by a factor."""
+    off = np.arctan2(np.hypot(sun[:, 0], sun[:, 1]), sun[:, 2])
+    turn = np.arctan2(sun[:, 1], sun[:, 0])
+    return np.column_stack(
+        [np.sin(factor * off) * np.cos(turn), np.sin(factor * off) * np.sin(turn),
+         np.cos(factor * off)]
+    )  # fmt: skip
+
+
 def _near_circle(angles: Floats) -> Floats:
     return np.clip(angles, -89.0, 89.0)
 
 
-def _left_of_projection(features: Floats, sun: Floats, noise: Floats) -> float:
+def _left_of_projection(
+    features: Floats, sun: Floats, noise: Floats, *, bent: bool = False
+) -> float:
     """Return the RMS, over the noise, of what a projection of the directions leaves of readings."""
     front = sun[:, 2] > np.cos(np.radians(_WITHIN_DEG))
     if front.sum() < 20:
@@ -201,26 +216,29 @@ def _left_of_projection(features: Floats, sun: Floats, noise: Floats) -> float:
     middle, width = np.median(seen, axis=0), max(float(np.std(seen)), 1e-300)
     aims = (seen - middle) / width
     columns = np.column_stack([np.ones(len(aims)), tangents])
+    if bent:
+        columns = np.column_stack([columns, tangents * (tangents**2).sum(axis=1)[:, None]])
+    terms = columns.shape[1]
     below = np.ones(len(aims))
     weight = np.ones(len(aims))
     size = np.zeros(len(aims))
     for _ in range(_ROUNDS):
         root = np.sqrt(weight) / below
-        block = np.zeros((2, len(aims), 8))
+        block = np.zeros((2, len(aims), 2 * terms + 2))
         for axis in (0, 1):
-            block[axis, :, 3 * axis : 3 * axis + 3] = columns
-            block[axis, :, 6:] = -aims[:, [axis]] * tangents
-        design = (block * root[:, None]).reshape(-1, 8)
+            block[axis, :, terms * axis : terms * (axis + 1)] = columns
+            block[axis, :, 2 * terms :] = -aims[:, [axis]] * tangents
+        design = (block * root[:, None]).reshape(-1, 2 * terms + 2)
         fit = np.linalg.lstsq(design, (aims.T * root).reshape(-1), rcond=1e-12)[0]
-        below = 1.0 + tangents @ fit[6:]
+        below = 1.0 + tangents @ fit[2 * terms :]
         below = np.where(np.abs(below) > 0.05, below, 0.05)
-        made = (columns @ fit[:6].reshape(2, 3).T) / below[:, None]
+        made = (columns @ fit[: 2 * terms].reshape(2, terms).T) / below[:, None]
         size = np.sqrt(np.mean(((made - aims) * width / noise) ** 2, axis=1))
         weight = 1.0 / np.maximum(size, max(float(np.median(size)), 1e-12))
     return _trimmed(size)
 
 
-def _left_of_cells(features: Floats, sun: Floats, noise: Floats) -> float:
+def _left_of_cells(features: Floats, sun: Floats, noise: Floats, *, bent: bool = False) -> float:
     """Return the RMS, over the noise, of what cosines leave of lit cells' signals."""
     left = []
     for signal, of_one in zip(features.T, noise, strict=True):
@@ -233,6 +251,8 @@ def _left_of_cells(features: Floats, sun: Floats, noise: Floats) -> float:
             fit = np.linalg.lstsq(sun[lit], signal[lit], rcond=1e-12)[0]
             normal = fit / (np.linalg.norm(fit) or 1.0)
         used = design[lit] if linear else sun[lit]
+        if bent:
+            used = np.column_stack([used, (sun[lit] @ normal) ** 2])
         fit = np.linalg.lstsq(used, signal[lit], rcond=1e-12)[0]
         free = len(used) / max(len(used) - used.shape[1], 1)
         left.append(free**0.5 * _trimmed(np.abs(signal[lit] - used @ fit) / of_one))

@@ -17,18 +17,16 @@ from api.calibrate.causes.light import (
     level_of_channels,
     level_of_products,
     level_of_sum,
-    plane_of,
 )
 from api.calibrate.conventions.finding import MUCH_BETTER, Finding
 from api.calibrate.face_normals import face_normals
 from api.calibrate.readings import FALLING, Readings, quadrant_balances
-from api.calibrate.robust import robust_map
+from api.calibrate.robust import least_absolute, robust_map
 from api.calibrate.settings import Settings
 
-#: Correlation of a face's readings with the light on its other side that says they are inverted.
-_FALLING = 0.5
-#: By how much a face's readings go better with the light on the one side than on the other.
-_SURER = 0.1
+#: What a cell whose readings fall with the light leaves, over what one whose readings rise leaves,
+#: from which they fall.
+_FALLING = 0.3
 #: Share of the spread of four readings that planes of the direction leave of plain cells, and of
 #: the product of their slopes, which quadrants under one opening would show.
 _PLAIN, _OF_PRODUCT = 0.05, 0.2
@@ -101,26 +99,23 @@ def _stated_as(dark: Dark, settings: Settings) -> tuple[float, ...]:
 
 
 def _falling_faces(readings: Readings) -> bool:
-    """Say whether all channels' readings, flat over the dark part of the field, fall over the lit.
+    """Say whether the readings of all channels fall when light rises.
 
-    Of a cell that is lit everywhere, whose signal is a plane of the direction, the part that goes
-    with the direction is negative.
+    A channel looks along the direction with which its readings change. They rise from a level with
+    the light on that side of it, or fall to one with the light on the other; a cell that is lit
+    everywhere does the first with light along, the second with light against it.
     """
     sun = readings.sun
+    level = np.ones(len(sun))
     for signal in readings.features.T:
-        _, slope, linear = plane_of(signal, sun)
-        if linear:
-            if not np.median(sun @ slope) < 0:
-                return False
-            continue
-        mean = ((signal - np.median(signal))[:, None] * sun).mean(axis=0)
-        towards = sun @ (mean / (np.linalg.norm(mean) or 1.0))
-        with np.errstate(invalid="ignore"):
-            rises, falls = (
-                abs(np.corrcoef(signal, np.maximum(side, 0.0))[0, 1])
-                for side in (towards, -towards)
-            )
-        if not falls > max(rises + _SURER, _FALLING):
+        # least squares: least absolute values would follow a half without light alone
+        slope = np.linalg.lstsq(np.column_stack([level, sun]), signal, rcond=1e-12)[0][1:]
+        along = sun @ (slope / (np.linalg.norm(slope) or 1.0))
+        rising, falling_off = (
+            least_absolute(np.column_stack([level, side]), signal)
+            for side in (np.maximum(along, 0.0), np.minimum(along, 0.0))
+        )
+        if not falling_off < _FALLING * rising:
             return False
     return True
 

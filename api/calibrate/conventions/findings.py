@@ -83,7 +83,7 @@ def findings(
             found += _of_runs(readings)
             found += _of_sensor(readings, settings, noise)
     if not any(one.certain for one in found):
-        found += of_scale(readings, settings, scale_of_angles(readings, settings))
+        found += of_scale(readings, scale_of_angles(readings, settings))
         found += of_kinks(readings, settings, noise)
     return sorted(found, key=lambda one: (not one.certain, _ORDER.index(one.about)))
 

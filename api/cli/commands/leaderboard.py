@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from api.cli import completion
+from api.cli import completion, findings
 from api.cli.boards import architectures_text, overview_text
 from api.cli.measuring import (
     AVAILABLE_WORKERS,
@@ -27,6 +27,7 @@ from benchmark.results.store import PUBLISHED
 from benchmark.results.unchanged import KeptAnswer
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
+app.command("findings")(findings.findings)
 
 COLUMNS = (
     *("rank", "group", "dataset", "condition", "extractor", "model", "own_deg", "low_deg"),

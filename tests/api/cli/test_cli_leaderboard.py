@@ -4,12 +4,15 @@ import csv
 import io
 import json
 import re
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from api.cli.boards import architectures_text
 from api.cli.command_line import app
+from api.cli.findings import NAMES
+from benchmark.leaderboard.findings import KEYS
 
 COLUMNS, LINES = 80, 45
 
@@ -179,3 +182,25 @@ def test_a_call_that_asks_for_two_things_is_refused_in_a_line(arguments, says):
     assert shown.exit_code == 2
     assert says in shown.stderr
     assert shown.stderr.count("\n") == 1
+
+
+def test_findings_are_those_of_the_readme_and_come_with_their_pairs():
+    readme = (Path(__file__).parents[3] / "README.md").read_text("utf-8")
+    said = " ".join(sunatlas("findings").split())
+    estimates = json.loads(sunatlas("findings", "--format", "json"))
+    named = list(dict.fromkeys(row["finding"] for row in estimates))
+    assert len(named) == 5
+    for place, name in enumerate(named, start=1):
+        (line,) = [line for line in readme.splitlines() if f"findings {name}`" in line]
+        title = line.removeprefix(f"{place}. **").partition("**")[0]
+        assert f"{place}. {title}" in said
+        pairs = list(csv.DictReader(io.StringIO(sunatlas("findings", name, "--format", "csv"))))
+        most = max(row["n"] for row in estimates if row["finding"] == name)
+        assert len(pairs) >= most
+
+
+def test_a_finding_that_there_is_not_is_refused():
+    done = CliRunner().invoke(app, ["leaderboard", "findings", "albedo"])
+    assert done.exit_code == 2
+    assert "no finding 'albedo'; expected one of methods, constants" in done.stderr
+    assert NAMES == KEYS

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import dataclasses
 import math
 from collections.abc import Mapping, Sequence
@@ -28,6 +29,7 @@ from api.docs.field_plots import PlottedPipeline
 from benchmark.claims.judgement import Judgement
 from benchmark.claims.ledger import Entry
 from benchmark.claims.rules import Claim, Rule, claims
+from survey_data.descriptor import DATA_DIRECTORY
 
 RULE = Rule("one", "share of frames found", "linear", ">", 0.5, math.nan, timed=False)
 HOLDS = Judgement(RULE, 0.75, 0.7, 0.8, 20, "holds")
@@ -175,38 +177,71 @@ ARCHITECTURE = {"detector": "CMOS", "mask": "Slit", "dataset": "one"}
 
 
 @pytest.mark.parametrize(
-    ("own_deg", "rows", "lines"),
+    ("own_deg", "rows", "used"),
     [
-        (None, [], 0),
-        (0.2, [{"own_deg": 0.2, "studies": []}], 4),
-        (0.2, [{"own_deg": 0.2, "studies": []}, {"own_deg": 0.3, "studies": ["A2001"]}], 5),
+        (None, [], []),
+        (0.2, [{"own_deg": 0.2, "studies": []}], []),
+        (0.2, [{"own_deg": 0.2, "studies": []}, {"own_deg": 0.3, "studies": ["A2001"]}], [0.3]),
     ],
 )
 def test_an_architecture_is_drawn_with_what_is_known_of_it(
     own_deg: float | None,
     rows: Sequence[Mapping[str, Any]],
-    lines: int,
+    used: list[float],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """`lines`: to the bound, the bound, built sensors, the best; and the best that a study used."""
+    """Built sensors on either side of the bound, the best, and the best that a study used."""
     measured = {**ARCHITECTURE, "own_deg": own_deg, "bound_deg": own_deg and own_deg / 10}
+    built = {("CMOS", "Slit"): [0.5, 0.01], ("CCD", "Slit"): [0.4]}
     monkeypatch.setattr(front, "_architectures", lambda: [measured])
-    monkeypatch.setattr(front, "_build", lambda: {"one": [0.5]})
+    monkeypatch.setattr(front, "_built", lambda: built)
     monkeypatch.setattr(front, "_boards", lambda: {"one": rows})
     (axes,) = front.figure().axes
     drawn = [line for line in axes.lines if np.size(line.get_xdata())]
-    assert len(drawn) == lines
+    marked: dict[tuple[Any, str], list[float]] = {}
+    for line in drawn:
+        place = line.get_marker(), str(line.get_fillstyle())
+        marked[place] = [*marked.get(place, []), *np.atleast_1d(line.get_xdata()).tolist()]
     assert [text.get_text() for text in axes.get_yticklabels()] == ["CMOS, Slit"]
-    used = [line for line in drawn if line.get_fillstyle() == "none"]
-    assert [np.mean(line.get_xdata()) for line in used] == ([0.3] if lines == 5 else [])  # type: ignore[arg-type]
+    assert marked.get(("o", "none"), []) == used
+    if own_deg is None:
+        assert not drawn
+        return
+    assert marked["^", "full"] == [0.5]
+    assert marked["^", "none"] == [0.01], "below the bound of the simulated sensor"
+    assert marked["o", "full"] == [0.2]
 
 
-def test_earth_albedo_that_was_not_measured_has_no_numbers(
-    claim: Claim, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    albedo = dataclasses.replace(claim, id="C29")
-    monkeypatch.setattr(front, "_ledger", lambda: (entry(albedo),))
-    assert "was not measured on digital and analog sensors" in front._light_of_the_earth()
+def test_built_sensors_stand_with_their_own_detector_and_mask() -> None:
+    """Independent of the figure: rows of the hardware table, read as text."""
+    with (DATA_DIRECTORY / "hardware.csv").open(encoding="utf-8", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["accuracy_deg"]]
+    seen = [row for row in rows if row["basis"] == "page"]
+    found = front._built()
+    assert sum(map(len, found.values())) == len(seen)
+    for detector, mask in found:
+        beside = [row for row in seen if (row["detector"], row["mask"]) == (detector, mask)]
+        assert len(found[detector, mask]) == len(beside)
+    assert ("CCD", "Single-Ap.") not in found, "TU Delft's and TNO's are CMOS chips"
+
+
+def test_every_built_sensor_below_its_bound_is_drawn_open() -> None:
+    bounds = {(row["detector"], row["mask"]): row["bound_deg"] for row in front._architectures()}
+    below = [
+        error
+        for place, errors in front._built().items()
+        for error in errors
+        if error < bounds.get(place, 0.0)
+    ]
+    (axes,) = front.figure().axes
+    drawn = [
+        float(error)
+        for line in axes.lines
+        if (line.get_marker(), line.get_fillstyle()) == ("^", "none")
+        for error in np.atleast_1d(line.get_xdata())
+    ]
+    assert sorted(drawn) == sorted(below)
+    assert "below the bound" in axes.get_xlabel()
 
 
 def test_a_pipeline_without_a_pinned_bench_error_has_a_dash(

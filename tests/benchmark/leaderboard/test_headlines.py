@@ -1,116 +1,184 @@
-"""Headlines of mapped studies: the table, and our number beside each."""
+"""Published numbers beside ours: every one, like beside like, the farthest apart first."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
+import pandas as pd
 import pytest
 
-from benchmark import datasets
+from api.service.knowledge import Knowledge
 from benchmark.leaderboard.headlines import (
     COLUMNS,
     Headline,
     HeadlineError,
+    accuracies,
     headlines,
-    read_headlines,
+    rank_correlation,
+    read_differences,
 )
-from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.store import PUBLISHED
+from registry.resolution import Resolution
+from registry.studies import Study
+from survey_data.reported import Quantity, reported_accuracies
 from survey_data.tables import load
-
-NOMINAL = {"fake": "nominal"}
 
 
 def score(**more: Any) -> dict[str, Any]:
     return {
-        "dataset": "fake", "condition": "nominal", "unit": 0, "extractor": "e", "model": "m",
-        "rms_deg": 0.1, "median_deg": 0.09, "p997_deg": 0.3, "repeatability_deg": 0.02,
-        "bound_deg": 0.01, "availability": 0.9, **more,
+        "rms_deg": 0.1, "median_deg": 0.09, "p95_deg": 0.2, "p997_deg": 0.3, "max_deg": 0.5,
+        "repeatability_deg": 0.02, "availability": 0.9, **more,
     }  # fmt: skip
 
 
-def headline(kind: str, statistic: str, published: float | None = 0.2) -> Headline:
-    return Headline("A2000", "fake", "e", "m", published, kind, statistic, "None.")
+def study(key: str, published: Mapping[tuple[Quantity, str], float]) -> Study:
+    """A study that publishes these numbers by quantity and kind."""
+    found = {q: reported_accuracies(q, value, kind) for (q, kind), value in published.items()}
+    return cast("Study", SimpleNamespace(key=key, report=found.get))
 
 
-def beside(one: Headline, *rows: dict[str, Any]) -> dict[str, Any]:
-    (found,) = headlines(rows, NOMINAL, [one])
+def resolution(*settings: tuple[str, str]) -> Resolution:
+    """What runs on these data sets and conditions, a pipeline each."""
+    runs = [
+        SimpleNamespace(
+            extractor="e",
+            model="m",
+            settings=(SimpleNamespace(dataset=dataset, condition=condition),),
+        )
+        for dataset, condition in settings
+    ]
+    return cast("Resolution", SimpleNamespace(strongest_pipelines=runs))
+
+
+def beside(quantity: Quantity, kind: str, published: float = 0.2, **more: Any) -> Headline:
+    (found,) = headlines(
+        {("fake", "hot", "e", "m"): score(**more)},
+        [study("A2000", {(quantity, kind): published})],
+        {"A2000": resolution(("fake", "hot"), ("fake", "nominal"))},
+        {},
+    )
     return found
 
 
 @pytest.mark.parametrize(
-    ("kind", "statistic", "expected"),
+    ("quantity", "kind", "expected"),
     [
         ("accuracy", "rms", 0.1),
+        ("accuracy", "1sigma", 0.1),
         ("accuracy", "unspecified", 0.1),
-        ("accuracy", "3 sigma", 0.3),
+        ("accuracy", "3sigma", 0.3),
+        ("accuracy", "p95", 0.2),
+        ("accuracy", "max", 0.5),
         ("accuracy", "mean", 0.09),
-        ("precision", "1 sigma", 0.02 / math.sqrt(2.0)),
+        ("precision", "1sigma", 0.02 / math.sqrt(2.0)),
     ],
 )
-def test_a_number_stands_beside_its_own_kind(kind: str, statistic: str, expected: float) -> None:
-    found = beside(headline(kind, statistic), score())
-    assert found["our_deg"] == pytest.approx(expected)
-    assert found["ratio"] == pytest.approx(expected / 0.2)
+def test_a_number_stands_beside_its_own_kind(
+    quantity: Quantity, kind: str, expected: float
+) -> None:
+    found = beside(quantity, kind)
+    assert found.our_deg == pytest.approx(expected)
+    assert found.ratio == pytest.approx(expected / 0.2)
+    assert found.place == ("fake", "hot", "e", "m"), "of the conditions measured, the study's own"
 
 
-def test_other_units_and_conditions_are_not_compared() -> None:
-    other = score(unit=1, rms_deg=9.0), score(condition="aged", rms_deg=9.0)
-    assert beside(headline("accuracy", "rms"), *other)["our_deg"] is None
-    assert beside(headline("accuracy", "rms"), score(), *other)["our_deg"] == 0.1
+def test_what_is_not_measured_has_no_ratio_and_stands_first() -> None:
+    assert beside("precision", "1sigma", repeatability_deg=None).ratio is None
+    rows = headlines(
+        {("fake", "nominal", "e", "m"): score()},
+        [
+            study("Near", {("accuracy", "rms"): 0.11}),
+            study("None", {("accuracy", "rms"): 0.2}),
+            study("Far", {("accuracy", "rms"): 0.001}),
+            study("Below", {("accuracy", "rms"): 3.0}),
+            study("Silent", {}),
+        ],
+        {
+            **dict.fromkeys(("Near", "Far", "Below", "Silent"), resolution(("fake", "nominal"))),
+            "None": resolution(("other", "nominal")),
+        },
+        {("Near", "accuracy"): "Alike."},
+    )
+    assert [row.study for row in rows] == ["None", "Far", "Below", "Near"]
+    assert [row.difference for row in rows] == ["", "", "", "Alike."]
 
 
-def test_what_is_not_measured_or_not_published_has_no_ratio() -> None:
-    assert beside(headline("accuracy", "rms"))["ratio"] is None
-    assert beside(headline("accuracy", "rms", None), score())["ratio"] is None
-    assert beside(headline("precision", "1 sigma"), score(repeatability_deg=None))["ratio"] is None
+def test_ranks_that_fall_together_correlate() -> None:
+    known = [study(f"S{n}", {("accuracy", "rms"): n + 1.0}) for n in range(4)]
+    ours = (0.1, 0.3, 0.2, 0.9)
+    scores = {(f"S{n}", "nominal", "e", "m"): score(rms_deg=our) for n, our in enumerate(ours)}
+    rows = headlines(scores, known, {s.key: resolution((s.key, "nominal")) for s in known}, {})
+    correlation, count = rank_correlation(rows)
+    by_hand = 1 - 6 * (0 + 1 + 1 + 0) / (4 * 15)
+    assert correlation == pytest.approx(by_hand)
+    assert count == 4
 
 
-def test_every_headline_names_a_mapped_study_and_a_score_that_is_published() -> None:
-    """But for a product of a mapped one's kind, and a network that nothing here stands for."""
-    nominal = {name: datasets.get(name).conditions[0] for name in datasets.names()}
-    found = headlines(Store(PUBLISHED).rows(), nominal)
-    mapped = set(load().studies["key"])
-    assert {row["study"] for row in found} - mapped == {
-        "Mini-FSS (family of Boslooper2017)",
-        "sparse CNN",
-    }
-    assert [row["study"] for row in found if row["our_deg"] is None] == ["sparse CNN"]
-    assert {row["study"] for row in found if row["published_deg"] is None} == {"Boslooper2017"}
+@pytest.fixture(scope="module")
+def published() -> Sequence[Headline]:
+    known = Knowledge()
+    scores = known.measurements.score_of
+    return headlines(scores, known.facts.studies.values(), known.resolutions)
 
 
-def test_published_figures_are_those_of_the_facts_where_they_have_one() -> None:
-    """Independent of the table: what the mapping keeps of the study, accuracies as accuracies."""
+def test_every_published_number_of_the_mapping_is_there(published: Sequence[Headline]) -> None:
+    """Independent of the table: what the facts keep of each study."""
     attributes = load().attributes
     for quantity in ("accuracy", "precision"):
-        named = attributes[attributes["attribute"] == f"{quantity}_deg"]
-        facts = named.set_index("study")["value"].astype(float)
-        for one in read_headlines():
-            if one.published_deg is None or one.study not in facts.index:
-                continue
-            same = [
-                h.published_deg
-                for h in read_headlines()
-                if (h.study, h.kind) == (one.study, quantity)
-            ]
-            if same:
-                assert any(h == pytest.approx(facts[one.study], rel=0.02) for h in same), one
+        facts = attributes[attributes["attribute"] == f"{quantity}_deg"].set_index("study")["value"]
+        found = {row.study: row for row in published if row.published.quantity == quantity}
+        assert {key: row.published.value_deg for key, row in found.items()} == {
+            key: float(value) for key, value in facts.items()
+        }
+
+
+def test_ours_are_those_of_the_published_scores(published: Sequence[Headline]) -> None:
+    """Independent of the store: the files, read by pandas."""
+    for row in accuracies(published):
+        assert row.place is not None
+        dataset, condition, extractor, model = row.place
+        scores = pd.read_csv(PUBLISHED / "scores" / f"{dataset}.csv")
+        same = (scores[["condition", "extractor", "model"]] == [condition, extractor, model]).all(
+            axis=1
+        )
+        kinds = {"3sigma": "p997_deg", "p95": "p95_deg", "max": "max_deg", "mean": "median_deg"}
+        column = kinds.get(row.published.statistic.kind, "rms_deg")
+        assert scores[same & (scores["unit"] == 0)][column].tolist() == [row.our_deg]
+
+
+def test_the_farthest_apart_come_first_and_ranks_are_those_of_pandas(
+    published: Sequence[Headline],
+) -> None:
+    distances = [row.distance for row in published]
+    assert distances == sorted(distances, reverse=True)
+    both = pd.DataFrame(
+        [(row.published.value_deg, row.our_deg) for row in accuracies(published)]
+    ).rank()
+    correlation, count = rank_correlation(published)
+    assert correlation == pytest.approx(both[0].corr(both[1]))
+    assert count == len(both)
+
+
+def test_a_difference_is_said_of_a_number_that_is_there(published: Sequence[Headline]) -> None:
+    there = {(row.study, row.published.quantity) for row in published}
+    assert set(read_differences()) <= there
 
 
 @pytest.mark.parametrize(
-    ("line", "said"),
+    ("lines", "said"),
     [
-        ("A,d,e,m,0.1,accuracy,typical,x", "accuracy.*1"),
-        ("A,d,e,m,-0.1,accuracy,rms,x", "-0.1 is no number of degrees"),
-        ("A,d,e,m,tenth,accuracy,rms,x", "line 2: tenth is no number of degrees"),
-        ("A,d,e,m,nan,accuracy,rms,x", "nan is no number of degrees"),
-        ("A,d,e,m,0.1,accuracy,rms,", "line 2: .*differ"),
-        ("A,d,e,m,0.1,accuracy,rms", "row 2, column difference"),
+        (["A,size,x"], "line 2: size is none of accuracy, precision"),
+        (["A,accuracy,"], "line 2: .*differ"),
+        (["A,accuracy"], "row 2, column difference"),
+        (["A,accuracy,x", "A,accuracy,y"], "line 3: A, accuracy stands there already"),
     ],
 )
-def test_a_broken_line_is_named(tmp_path: Path, line: str, said: str) -> None:
+def test_a_broken_line_is_named(tmp_path: Path, lines: Sequence[str], said: str) -> None:
     path = tmp_path / "headlines.csv"
-    path.write_text(f"{','.join(COLUMNS)}\n{line}\n", "utf-8")
+    path.write_text("\n".join([",".join(COLUMNS), *lines, ""]), "utf-8")
     with pytest.raises(HeadlineError, match=said):
-        read_headlines(path)
+        read_differences(path)

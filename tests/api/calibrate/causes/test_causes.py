@@ -10,6 +10,7 @@ import pytest
 from faults import cells
 from samples import found_in, samples, table
 
+from api.calibrate.ambiguity import folded
 from api.calibrate.calibration import calibrate
 from api.calibrate.causes.bad_cells import DUPLICATE, without_bad_cells
 from api.calibrate.causes.held_out import parts_of, uncovered
@@ -20,7 +21,7 @@ from api.calibrate.causes.removed import unexplained
 from api.calibrate.conventions.findings import findings
 from api.calibrate.exclusions import FOLD, WRONG, Excluded
 from api.calibrate.halves import Halves
-from api.calibrate.readings import readings_of
+from api.calibrate.readings import FALLING, readings_of
 from api.calibrate.robust import answer_noise_deg
 from api.calibrate.roles import guess
 from api.calibrate.verdict import judge
@@ -156,6 +157,16 @@ def test_a_half_axis_is_found_from_twice_the_scale_that_is_said_to_be_hidden(see
     assert "kink" in [one.about for one in found_in(table(names, currents, stated))]
 
 
+@pytest.mark.parametrize("share", [0.03, 0.06, 0.1])
+def test_wrong_poses_are_no_kink(share):
+    generator = np.random.default_rng(8)
+    at = generator.choice(len(ANGLES), int(share * len(ANGLES)), replace=False)
+    stated = ANGLES.copy()
+    stated[at] = stated[generator.permutation(at)]
+    found = found_in(table(SPOT_NAMES, SPOTS, stated))
+    assert "kink" not in [one.about for one in found]
+
+
 def test_four_tilted_cells_stated_as_quadrants_are_found_as_cells():
     stated = guess(table(QUADRANTS, LIGHT, NARROW))
     assert stated.readings.kind == "quadrants"
@@ -163,6 +174,26 @@ def test_four_tilted_cells_stated_as_quadrants_are_found_as_cells():
     found = findings(readings_of(made, stated), stated)
     assert [one.change for one in found] == [{"readings": {"kind": "channels"}}]
     assert "channels" not in [one.about for one in found_in(table(QUADRANTS, LIGHT, NARROW))]
+
+
+TILTED = bench.sun_of(np.array([[26.0, 0.0], [-13.0, 24.0], [-13.0, -24.0]]))
+
+
+@pytest.mark.parametrize("falls", [False, True])
+@pytest.mark.parametrize("fault", ["none", "wrong poses", "fading lamp"])
+def test_three_cells_that_are_lit_everywhere_fall_only_if_they_do(fault, falls):
+    generator = np.random.default_rng(3)
+    light = SUN @ TILTED.T + generator.normal(0.0, 0.004, (len(SUN), 3))
+    stated = ANGLES.copy()
+    if fault == "wrong poses":
+        at = generator.choice(len(ANGLES), len(ANGLES) // 5, replace=False)
+        stated[at] = stated[generator.permutation(at)]
+    elif fault == "fading lamp":
+        light *= np.linspace(1.0, 0.7, len(SUN))[:, None]
+    signals = 4.0 - light if falls else light
+    made = table(("cell1", "cell2", "cell3", "theta_x_deg", "theta_y_deg"), signals, stated)
+    found = [one.found for one in found_in(made) if one.found.startswith(FALLING)]
+    assert bool(found) is falls
 
 
 def test_a_part_that_intervals_hold_too_little_is_named():
@@ -245,3 +276,26 @@ def test_limits_hold_the_light_that_was_measured(tmp_path):
     assert found.limits.most_light > 1.5 * total.max()
     assert found.limits.high == (np.inf,) * 4
     assert replace(found.limits) == found.limits
+
+
+def radial(image, seed):
+    """Spots of 500 directions within 70 deg, their radius being the image of the angle."""
+    generator = np.random.default_rng(seed)
+    off = np.arccos(generator.uniform(np.cos(np.radians(70.0)), 1.0, 500))
+    turn = generator.uniform(-np.pi, np.pi, 500)
+    spots = image(off)[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
+    sun = np.column_stack([np.sin(off) * np.cos(turn), np.sin(off) * np.sin(turn), np.cos(off)])
+    return spots + generator.normal(0.0, 0.1, spots.shape), sun, np.degrees(off)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_image_of_a_fisheye_lens_is_taken_for_a_fold(seed):
+    spots, sun, _ = radial(lambda off: 180.0 * off * (1.0 - 0.03 * off**2), seed)
+    assert not folded(spots, sun).any()
+
+
+def test_readings_that_return_beyond_an_angle_are_a_fold():
+    spots, sun, off = radial(lambda off: 200.0 * np.sin(2.0 * off), 0)
+    found = folded(spots, sun)
+    assert found[off > 47.0].mean() > 0.95
+    assert found[off < 15.0].mean() < 0.05

@@ -1,0 +1,42 @@
+"""Five findings of the published record, each paired, with intervals and what is left out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from benchmark.error_budget.record import RECORD as ERROR_BUDGET
+from benchmark.leaderboard.findings.benches import benches
+from benchmark.leaderboard.findings.constants import constants
+from benchmark.leaderboard.findings.finding import Estimate, Finding
+from benchmark.leaderboard.findings.methods import methods
+from benchmark.leaderboard.findings.poses import poses
+from benchmark.leaderboard.findings.record import Record
+from benchmark.leaderboard.findings.sources import sources
+from benchmark.learning_curves.record import published_curves
+from registry.resolution import Resolution
+
+__all__ = ["KEYS", "Estimate", "Finding", "Record", "findings_of"]
+
+KEYS = ("methods", "constants", "benches", "sources", "poses")
+
+
+def findings_of(record: Record, resolutions: Mapping[str, Resolution]) -> tuple[Finding, ...]:
+    """Return the five findings, in the order of `KEYS`.
+
+    Parameters
+    ----------
+    record
+        The published scores.
+    resolutions
+        What runs for each study of the survey, by key.
+    """
+    architectures = {
+        cell.dataset: (row["detector"], row["mask"]) for cell, row in record.rows.items()
+    }
+    return (
+        methods(record, resolutions),
+        constants(record),
+        benches(record),
+        sources(ERROR_BUDGET.read(), architectures),
+        poses(published_curves()),
+    )
