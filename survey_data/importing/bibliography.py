@@ -34,13 +34,14 @@ from survey_data.importing.offered_files import offered_text
 from survey_data.problems import SurveyImportError
 
 SUFFIXES = (".bib", ".bbl", ".ris", ".json")
-_MOST_BYTES = 20_000_000
+_MOST_BYTES = 2_000_000  # thousands of entries; TeX takes half a minute for a million letters
 _LONGEST_FIELD = 20_000
 #: Fields that name where a work is published, first of these that is there.
 _VENUES = (
     *("journal", "journaltitle", "booktitle", "series", "school", "institution"),
     *("howpublished", "publisher"),
 )
+_TEXTS = (*_VENUES, "title", "year", "date", "volume", "number", "issue", "pages")
 _BIBTEX_KINDS = {
     "article": "journal",
     **dict.fromkeys(("inproceedings", "conference", "incollection"), "conference"),
@@ -190,7 +191,7 @@ def _bbl(text: str, _: str) -> Iterator[Entry]:
 
 def _of_tex(key: str, kind: str, said: Mapping[str, str], line: int) -> Entry:
     authors = split_multiple_persons_names(said.get("author", ""))
-    fields = {name: _plain(text) for name, text in said.items() if name not in ("doi", "url")}
+    fields = {name: _plain(said[name]) for name in _TEXTS if name in said}
     links = {name: re.sub(r"[{}\\]|\burl\{", "", said.get(name, "")) for name in ("doi", "url")}
     is_arxiv = "arxiv" in (said.get("archiveprefix") or said.get("eprinttype", "")).casefold()
     preprint = re.search(r"[0-9]{4}\.[0-9]{4,5}", said.get("eprint", "")) if is_arxiv else None
