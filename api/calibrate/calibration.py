@@ -10,7 +10,7 @@ import numpy as np
 
 from algorithms.angles import separation_deg
 from algorithms.chain import Scored
-from algorithms.contract import Floats, Model, SensorGeometry, UnusableDataError
+from algorithms.contract import FeatureKind, Floats, Model, SensorGeometry, UnusableDataError
 from api.calibrate.causes.applying import applied_to, one_plane, read_as
 from api.calibrate.causes.bad_cells import joined_levels
 from api.calibrate.causes.held_out import Part, parts_of
@@ -20,6 +20,7 @@ from api.calibrate.causes.removed import unexplained
 from api.calibrate.causes.untested import untested_in
 from api.calibrate.conventions.finding import Finding
 from api.calibrate.exclusions import WRONG, Excluded, excluded_of, kept_by_model, sound_of
+from api.calibrate.face_normals import face_normals
 from api.calibrate.halves import halves
 from api.calibrate.intervals.left_out import errors_left_out
 from api.calibrate.one_axis.calibrated import calibration_of_axis
@@ -313,7 +314,8 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
     patterns = patterns_in(np.asarray(chosen.offsets), compared)
     removed = sound.only(~kept & ~wrong)
     left_out = errors_left_out(same, chosen, compared, geometry, model, removed)
-    stated_sigma = intervals(*left_out)
+    faces = face_normals(readings)[0] if readings.kind is FeatureKind.SIGNALS else None
+    stated_sigma = intervals(*left_out, faces)
     verdict = judge(
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
         *next_poses(readings.sun),

@@ -23,7 +23,10 @@ from algorithms.calibration.saving import (
 from algorithms.contract import Compensation, Floats, Model
 from algorithms.discovery import discover_compensations, discover_models
 from api.calibrate.calibration import Calibration
+from api.calibrate.flight.program import Program
+from api.calibrate.flight.stored import stored_program
 from api.calibrate.intervals.places import tangent_axes
+from api.calibrate.intervals.stored import intervals_of, stored_intervals
 from api.calibrate.one_axis.curve import AxisCurve
 from api.calibrate.readings import readings_of
 from api.calibrate.recalibration import Correction
@@ -50,7 +53,7 @@ _READ = (1, 2)
 _MEMBERS = frozenset(
     {
         *("schema", "schema_version", "conventions", "settings", "compensations", "model", "fit"),
-        *("selection", "verdict", "found", "excluded", "made", "correction", DIGEST),
+        *("selection", "verdict", "found", "excluded", "made", "flight", "correction", DIGEST),
     }
 )
 #: What a damaged document leads to that fits no class here.
@@ -165,8 +168,10 @@ class SavedCalibration:
         return self.predict(readings.features, readings.context)
 
 
-def document(found: Calibration, command: str = "") -> dict[str, Any]:
-    """Return a calibration as what JSON can say."""
+def document(
+    found: Calibration, command: str = "", program: Program | None = None
+) -> dict[str, Any]:
+    """Return a calibration as what JSON can say, with the program of its code if there is one."""
     stages = list(getattr(found.model, "compensations", ()))
     last = getattr(found.model, "model", found.model)
     held = {
@@ -181,7 +186,7 @@ def document(found: Calibration, command: str = "") -> dict[str, Any]:
             "rms_left_out_deg": number(found.chosen.rms_deg),
             "rms_fitted_deg": number(found.residual_deg),
             "noise_deg": number(found.noise_deg),
-            "intervals": None if found.intervals is None else _plain(found.intervals),
+            "intervals": None if found.intervals is None else stored_intervals(found.intervals),
             "temperature_K": _temperatures(found),
             "fit_spread_deg": number(_rms(found.spread_deg)),
             "sensor": {k: v for k, v in asdict(found.geometry).items() if v is not None},
@@ -202,6 +207,8 @@ def document(found: Calibration, command: str = "") -> dict[str, Any]:
             "versions": versions(),
         },
     }
+    if program is not None:
+        held["flight"] = stored_program(program)
     return {**held, DIGEST: digest_of(held)}
 
 
@@ -254,7 +261,7 @@ def load(path: Path) -> SavedCalibration:
                 f"got {stored.get('schema_version')!r}"
             )
         require_whole(stored, _MEMBERS)
-        found = _loaded(stored, path.name)
+        found = of_document(stored, path.name)
         with warnings.catch_warnings():  # of numbers that no row would have
             warnings.simplefilter("ignore", RuntimeWarning)
             columns = {name: np.ones(1) for name in ("temperature_K", "time_s")}
@@ -266,7 +273,8 @@ def load(path: Path) -> SavedCalibration:
     return found
 
 
-def _loaded(stored: dict[str, Any], source: str) -> SavedCalibration:
+def of_document(stored: dict[str, Any], source: str) -> SavedCalibration:
+    """Return the calibration that a document of this version holds."""
     settings, fit = parse_settings(stored["settings"], source), stored["fit"]
     measured = fit.get("temperature_K")
     correction = Corrected.of(stored.get("correction", {}), settings)
@@ -286,7 +294,7 @@ def _loaded(stored: dict[str, Any], source: str) -> SavedCalibration:
         ),
         model,
         numbers(fit.get("interval_factor", 1.0), (), "fit.interval_factor", above=0.0).item(),
-        _intervals_of(fit.get("intervals")),
+        intervals_of(fit.get("intervals")),
         None if measured is None else temperatures(measured),
         correction.offset,
         correction.rotation,
@@ -333,33 +341,6 @@ def with_correction(
         "command": command,
     }
     return {**held, DIGEST: digest_of(held)}
-
-
-def _plain(found: Intervals) -> dict[str, Any]:
-    return {
-        name: value.tolist() if isinstance(value, np.ndarray) else value
-        for name, value in vars(found).items()
-    }
-
-
-def _intervals_of(stored: Mapping[str, Any] | None) -> Intervals | None:
-    """Return the intervals that a document holds; ValueError where they are none."""
-    if stored is None:
-        return None
-    axis, rings_deg, sigma_deg = (
-        np.asarray(stored[name], dtype=np.float64) for name in ("axis", "rings_deg", "sigma_deg")
-    )
-    found = Intervals(
-        float(stored["factor"]), float(stored["coverage"]), int(stored["samples"]), axis, rings_deg,
-        int(stored["sectors"]), sigma_deg,
-    )  # fmt: skip
-    shape = (len(found.rings_deg), found.sectors, 2)
-    if found.axis.shape != (3,) or found.sigma_deg.shape != shape:
-        raise ValueError(
-            f"expected intervals of shape {shape} about an axis of 3; got {found.sigma_deg.shape} "
-            f"about {found.axis.shape}"
-        )
-    return found
 
 
 def _temperatures(found: Calibration) -> list[float] | None:

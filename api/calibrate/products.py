@@ -4,20 +4,31 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from algorithms.calibration.documents import DIGEST
 from api.calibrate.calibration import Calibration
 from api.calibrate.certificate.certificate import certificate
-from api.calibrate.documents import document, versions
+from api.calibrate.documents import (
+    SavedCalibration,
+    document,
+    of_document,
+    versions,
+    with_correction,
+)
 from api.calibrate.flight.code import FlightCode, flight_code
+from api.calibrate.flight.corrected import corrected_code
 from api.calibrate.flight.names import c_name
 from api.calibrate.flight.program import NoCodeError
 from api.calibrate.one_axis.curve import AxisCurve
+from api.calibrate.recalibration import Correction, poses_of
+from api.calibrate.report.correction import correction_report, outcomes_of
 from api.calibrate.report.page import Asked, report
+from api.calibrate.report.requirement import Judged, Requirement
 from files.directories import replace_in_directory
 
 #: Ends of the names that were written before there was a list of them.
@@ -42,31 +53,82 @@ def products(
     `tell` gets a sentence of what the code adds to the model, or why there is none.
     """
     prefix = c_name(name)
-    held = document(found, command)
-    made = {f"{prefix}.json": json.dumps(held, indent=1, allow_nan=False) + "\n"}
-    code = ""
-    try:
-        made_code = _code(found)
-    except NoCodeError as error:
-        made[f"{prefix}_no_code.txt"] = f"No code was written: {error}.\n"
-        tell(f"none: {error}")
-    else:
-        code = made_code.sentence
-        tell(code)
-        said = {
-            "Files": ", ".join(found.sources),
-            "Data SHA-256": found.digest,
-            "Model": f"{found.chosen.name}, {found.chosen.rms_deg:.3g} deg RMS on samples left out",
-            "Verdict": f"{found.verdict.word}: {found.verdict.reason}",
-            "Readings": _readings(found),
-            "Command": command,
-            "Versions": ", ".join(f"{name} {number}" for name, number in versions().items()),
-        }
-        made |= made_code.files(prefix, said, held[DIGEST])
+    code = _or_none(lambda: _code(found))
+    program = None if isinstance(code, NoCodeError) else code.program
+    held = document(found, command, program)
+    said = {
+        "Files": ", ".join(found.sources),
+        "Data SHA-256": found.digest,
+        "Model": f"{found.chosen.name}, {found.chosen.rms_deg:.3g} deg RMS on samples left out",
+        "Verdict": f"{found.verdict.word}: {found.verdict.reason}",
+        "Readings": _readings(found),
+    }
+    made, sentence = _with_code(held, code, prefix, {**said, **_made_by(command)}, tell)
     if asked is not None and asked.certificate:
         made[asked.certificate] = certificate(found, command)
-    made[f"{prefix}_report.html"] = report(found, command, code, asked or Asked())
+    made[f"{prefix}_report.html"] = report(found, command, sentence, asked or Asked())
     return made | {f"{prefix}.sha256": _listed(made)}
+
+
+def corrected_products(  # noqa: PLR0917 - what a correction and its files are made of
+    old: SavedCalibration,
+    found: Correction,
+    files: Sequence[Path],
+    name: str,
+    command: str = "",
+    requirements: Sequence[Requirement] = (),
+    *,
+    tell: Callable[[str], None] = lambda _: None,
+) -> tuple[dict[str, str], list[Judged]]:
+    """Return the text of every file of a corrected calibration by its name, as `products` does.
+
+    And for each requirement whether the poses of the correction meet it, each while left out.
+    """
+    prefix = c_name(name)
+    held = with_correction(old, found, files, command)
+    saved = of_document(held, prefix)
+    poses = poses_of(files, saved)
+    code = _or_none(lambda: corrected_code(saved, poses))
+    said = {
+        "Files": ", ".join(path.name for path in files),
+        "Corrects": f"calibration with SHA-256 {old.document[DIGEST]}",
+        "Correction": found.sentence(),
+    }
+    made, sentence = _with_code(held, code, prefix, {**said, **_made_by(command)}, tell)
+    outcomes = outcomes_of(found, poses, requirements)
+    made[f"{prefix}_report.html"] = correction_report(
+        found, poses, outcomes, {**said, "Flight code": sentence or "none", **_made_by(command)}
+    )
+    return made | {f"{prefix}.sha256": _listed(made)}, outcomes
+
+
+def _or_none(make: Callable[[], FlightCode]) -> FlightCode | NoCodeError:
+    try:
+        return make()
+    except NoCodeError as error:
+        return error
+
+
+def _with_code(
+    held: Mapping[str, Any],
+    code: FlightCode | NoCodeError,
+    prefix: str,
+    said: Mapping[str, str],
+    tell: Callable[[str], None],
+) -> tuple[dict[str, str], str]:
+    """Return the texts of a document and its code, and what is said of the code."""
+    made = {f"{prefix}.json": json.dumps(held, indent=1, allow_nan=False) + "\n"}
+    if isinstance(code, NoCodeError):
+        made[f"{prefix}_no_code.txt"] = f"No code was written: {code}.\n"
+        tell(f"none: {code}")
+        return made, ""
+    tell(code.sentence)
+    return made | code.files(prefix, said, held[DIGEST]), code.sentence
+
+
+def _made_by(command: str) -> dict[str, str]:
+    numbers = ", ".join(f"{name} {number}" for name, number in versions().items())
+    return {"Command": command, "Versions": numbers}
 
 
 def _code(found: Calibration) -> FlightCode:

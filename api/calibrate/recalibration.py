@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -83,6 +83,8 @@ class Correction:
         Poses that the old calibration answers, and that the corrected one does not.
     stated_deg : float
         RMS error of the old calibration by its own document; NaN where it states none.
+    errors_deg : ndarray, shape (N,)
+        Of each pose as in `after`; NaN where it is not answered.
     """
 
     kinds: tuple[Kind, ...]
@@ -95,6 +97,7 @@ class Correction:
     samples: int
     unanswered: int = 0
     stated_deg: float = float("nan")
+    errors_deg: Floats = field(default_factory=lambda: np.zeros(0), repr=False, compare=False)
 
     @property
     def explained(self) -> bool:
@@ -103,7 +106,7 @@ class Correction:
 
     def as_data(self) -> dict[str, Any]:
         """Return all of it as JSON has it, None for what is no number."""
-        held = asdict(self)
+        held = {name: value for name, value in asdict(self).items() if name != "errors_deg"}
         stated = self.stated_deg if np.isfinite(self.stated_deg) else None
         errors = {
             name: {key: value if np.isfinite(value) else None for key, value in held[name].items()}
@@ -154,9 +157,7 @@ def recalibrate(paths: Sequence[Path], old: Any) -> Correction:
         raise UnusableDataError(
             "the old calibration is one of a single axis, which is not corrected: calibrate anew"
         )
-    readings = joined(
-        [readings_of(read_table(path, old.settings.file), old.settings) for path in paths]
-    )
+    readings = poses_of(paths, old)
     known = np.isfinite(old.predict(readings.features, readings.context)).all(axis=1)
     if known.sum() < _FEWEST:
         raise UnusableDataError(
@@ -187,6 +188,14 @@ def recalibrate(paths: Sequence[Path], old: Any) -> Correction:
         int(known.sum()),
         int((~held).sum()),
         float(getattr(old, "stated_deg", "nan")),
+        np.where(held, errors, np.nan),
+    )
+
+
+def poses_of(paths: Sequence[Path], old: Any) -> Readings:
+    """Return the readings of files by the settings of a saved calibration."""
+    return joined(
+        [readings_of(read_table(path, old.settings.file), old.settings) for path in paths]
     )
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from algorithms.chain import Scored
 from algorithms.contract import Floats, SensorGeometry, UnusableDataError
+from api.calibrate.intervals.grazing import Grazing, grazing_of
 from api.calibrate.intervals.local_scale import quantile_profile, scale_of
 from api.calibrate.intervals.places import Grid, bilinear, tangent_axes
 from api.calibrate.readings import Readings
@@ -53,6 +54,8 @@ class Intervals:
     sigma_deg : ndarray, shape (K, M, 2)
         Half width of the 95 % interval over 1.96, of the two axes of `tangent_axes`. In the first
         ring, a point, all sectors are the same.
+    grazing : Grazing
+        By how much it grows where light grazes a face.
     """
 
     factor: float
@@ -62,6 +65,7 @@ class Intervals:
     rings_deg: Floats
     sectors: int
     sigma_deg: Floats
+    grazing: Grazing = field(default_factory=Grazing.none)
 
     def at(self, sun: Floats) -> Floats:
         """Return the 1-sigma (N, 2) of two tangent axes at directions (N, 3), degrees.
@@ -69,7 +73,7 @@ class Intervals:
         Bilinear between centres, periodic in azimuth, constant beyond the last ring; NaN of NaN.
         """
         grid = Grid(self.axis, self.rings_deg, self.sectors)
-        return bilinear(grid.weights(sun), self.sigma_deg)
+        return bilinear(grid.weights(sun), self.sigma_deg) * self.grazing.times(sun)
 
 
 def tangent_offsets(offsets: Floats, sun: Floats) -> Floats:
@@ -89,8 +93,11 @@ def covariance_of(sigma_deg: Floats, sun: Floats) -> Floats:
     return np.asarray(np.einsum("nai,naj->nij", axes, axes))
 
 
-def intervals(offsets: Floats, sun: Floats) -> Intervals | None:
+def intervals(offsets: Floats, sun: Floats, faces: Floats | None = None) -> Intervals | None:
     """Return the 1-sigma by place from errors (N, 3) of samples left out; None for too few.
+
+    Of sensors with faces, whose normals are (P, 3), errors where light grazes one of them are first
+    brought to the size of those around.
 
     The scale of errors is estimated by place; what it is multiplied by, from samples that told
     nothing of it: the scale of a fifth of the samples is that of the other four. A fifth is made of
@@ -98,10 +105,19 @@ def intervals(offsets: Floats, sun: Floats) -> Intervals | None:
     """
     along = tangent_offsets(offsets, sun)
     known = np.isfinite(along).all(axis=1)
-    along, sun = along[known], sun[known]
+    along, sun, offsets = along[known], sun[known], offsets[known]
     if len(along) < FEWEST:
         return None
     grid = Grid.over(sun)
+    grazing = Grazing.none()
+    if faces is not None:
+        answers = sun + offsets
+        answers /= np.linalg.norm(answers, axis=1)[:, None]
+        over = np.maximum(np.abs(along), _LEAST) / bilinear(
+            grid.weights(sun), scale_of(along, sun, grid)
+        )
+        grazing = grazing_of(over, answers, faces)
+        along = along / grazing.times(answers)
     rings, _ = grid.weights(sun)
     tests = [parts_of(sun, _FOLDS) == number for number in range(_FOLDS)]
     over, inside = np.empty_like(along), np.empty(along.shape, dtype=np.bool_)
@@ -114,15 +130,15 @@ def intervals(offsets: Floats, sun: Floats) -> Intervals | None:
         inside[test] = over[test] <= _limits(over[~test], rings[~test], rings[test])
     limits = _limits(over, rings, np.eye(len(grid.rings_deg))) / NORMAL_95
     return Intervals(
-        _limit(over) / NORMAL_95, float(inside.mean()), len(along), grid.axis, grid.rings_deg,
-        grid.sectors, scale_of(along, sun, grid) * limits[:, :, None],
+        limit_of(over) / NORMAL_95, float(inside.mean()), len(along), grid.axis, grid.rings_deg,
+        grid.sectors, scale_of(along, sun, grid) * limits[:, :, None], grazing,
     )  # fmt: skip
 
 
 def _limits(over: Floats, rings: Floats, at: Floats) -> Floats:
     """Return the limits (M, 1) that hold 95 % of errors over their scale (N, 2) at weights `at`."""
     profile = quantile_profile(over, rings, 0.95)
-    level = _limit(over / np.exp(rings @ profile)[:, None])
+    level = limit_of(over / np.exp(rings @ profile)[:, None])
     return np.asarray(np.exp(at @ profile)[:, None] * level)
 
 
@@ -135,9 +151,12 @@ def parts_of(sun: Floats, count: int) -> NDArray[np.int64]:
     return np.asarray(order[poses] % count)
 
 
-def _limit(ratio: Floats) -> float:
-    flat = np.sort(ratio.reshape(-1))
-    # as conformal prediction has it: the place that holds 95 % of the next ones too
+def limit_of(sizes: Floats) -> float:
+    """Return the limit that holds 95 % of the next errors, too, from sizes of any shape.
+
+    As conformal prediction has it.
+    """
+    flat = np.sort(sizes.reshape(-1))
     return float(flat[min(int(np.ceil(0.95 * (len(flat) + 1))) - 1, len(flat) - 1)])
 
 

@@ -26,6 +26,9 @@ _SHARE, _CHANCE = 0.05, 1e-4
 _BEYOND = 2.0
 #: Named beside the others, and no misfit: a bench and a sensor may be worse at the edge.
 GROWING = "the angle off the boresight: the size of errors grows with it"
+#: Patterns that neighbouring poses share; others, as a drift, are in what neighbours differ by, and
+#: the noise told by them holds the pattern.
+_OF_PLACE = ("the direction", "the fraction", GROWING)
 _NEXT = 20
 #: Steps between poses from which a hole in the field is said.
 _GAP = 5.0
@@ -112,6 +115,7 @@ def judge(  # noqa: PLR0917 - the numbers it is made of
     floor = np.hypot(noise if np.isfinite(noise) else 0.0, floor_deg)
     apart = split.ratio > _RATIO and split.chance < _RATIO_CHANCE
     smooth = [one for one in patterns if one.share > 0.25 and one.name != GROWING]
+    drifts = [one for one in smooth if not one.name.startswith(_OF_PLACE)]
     if not residual_deg <= _BEYOND * max(rms_deg, floor):
         word: Word = "model misfit"
         reason = (
@@ -137,6 +141,12 @@ def judge(  # noqa: PLR0917 - the numbers it is made of
             if apart
             else f"residuals of {residual_deg:.3g} deg are more than the noise of {floor:.3g} deg"
         ) + (f", and go with {smooth[0].name}" if smooth else "")
+    elif drifts:
+        word = "model misfit"
+        reason = (
+            f"{100 * drifts[0].share:.0f} % of the residuals' variance, which is "
+            f"{residual_deg:.3g} deg RMS, goes with {drifts[0].name}"
+        )
     else:
         word = "good"
         reason = (

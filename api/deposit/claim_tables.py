@@ -14,6 +14,8 @@ def verdicts(entries: Sequence[Entry]) -> list[Mapping[str, Any]]:
         {
             "claim": entry.claim.id,
             "claim_verdict": entry.verdict,
+            "claim_case": entry.review.case,
+            "claim_sentence": entry.review.sentence,
             "measured_on": entry.claim.measured_on,
             "replicate": entry.claim.replicate,
             "second_method": entry.claim.second,

@@ -98,7 +98,7 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
         "error-budget": measured_facts.error_budget,
         "poses": curves.counts,
         "tallies": measured_facts.tallies,
-        "refuted": measured_facts.refuted_claims,
+        "not-reproduced": measured_facts.claims_not_reproduced,
         "useful": measured_facts.reproduced_claims,
     },
     "guide/glossary.md": {"terms": words.terms, "abbreviations": words.abbreviations},

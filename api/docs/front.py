@@ -84,12 +84,14 @@ def tallies() -> str:
     """Count claims by verdict and studies by grade of their run."""
     entries = _ledger()
     counted = ", ".join(f"{number} {name}" for name, number in tally(entries).items() if number)
+    own = sum(entry.review.case == "its case" for entry in entries)
     resolved = knowledge().resolutions
     grades = [resolution.fidelity.grade for resolution in resolved.values()]
     measured = sum(_is_measured(resolution) for resolution in resolved.values())
     return (
         f"- **Claims.** {len(entries)} statements of the survey about algorithms, tested: "
-        f"{counted} ([docs/claims.md](docs/claims.md)).\n"
+        f"{counted}. The trials of {own} are the case of the survey's sentence, the others in "
+        "part; nothing is refuted by another case ([docs/claims.md](docs/claims.md)).\n"
         f"- **Studies.** {len(resolved)} studies, run here: {tally_text(grades)}. Faithful: "
         "sensor, condition and methods are the study's own, stated or inferred with a reason. "
         "Close: one of these differs. Stand-in: more differ. "

@@ -13,7 +13,7 @@ from benchmark.error_budget.record import RECORD as ERROR_BUDGET
 from benchmark.error_budget.sentences import NEAR, PARTS, verdict
 
 #: A selection of reproduced claims that affect a design.
-USEFUL = ("C04", "C15", "C24", "C29", "C32", "C34", "C45", "C46", "C47", "C51", "C53")
+USEFUL = ("C04", "C11", "C15", "C16", "C21", "C24", "C29", "C34", "C47", "C51", "C53")
 
 
 def findings() -> str:
@@ -26,12 +26,12 @@ def tallies() -> str:
     return _from_guide(front.tallies())
 
 
-def refuted_claims() -> str:
-    """List refuted claims, each with its first criterion that fails."""
+def claims_not_reproduced() -> str:
+    """List claims of which no criterion holds, each with its first criterion that fails."""
     return _criteria(
         (entry, next(rule for rule in entry.rules if rule.result == "fails"))
         for entry in ledger()
-        if entry.verdict == "refuted"
+        if entry.verdict in {"not reproduced here", "refuted"}
     )
 
 

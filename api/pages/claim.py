@@ -19,10 +19,11 @@ router = PageRouter()
 
 EVERY = 500
 VERDICTS = {
-    "reproduced": "Reproduced: our measurement agrees with the statement.",
-    "partly": "Partly reproduced: some criteria hold, others do not.",
-    "refuted": "Refuted: our measurement contradicts the statement.",
-    "not testable here": "Not testable on simulated sensors.",
+    "reproduced": "Every criterion holds.",
+    "partly": "Some criteria hold, others do not.",
+    "not reproduced here": "No criterion holds, and the trial is not wholly the sentence's case.",
+    "refuted": "No criterion holds, and the trial is the sentence's own case.",
+    "not testable": "The trials cannot decide.",
     "not measured": "Not measured yet.",
 }
 RESULTS = {
@@ -37,7 +38,8 @@ async def claims(known: Known, query: Annotated[ClaimsQuery, Query()]) -> View:
     """List the claims with their verdicts and the number of each verdict."""
     answer = service.claims(known, query.model_copy(update={"limit": EVERY}))
     every = tally(known.measurements.claims.values())
-    return View("claims.html", answer, asked=query, verdicts=VERDICTS, every=every)
+    changed = sum(bool(entry.former) for entry in known.measurements.claims.values())
+    return View("claims.html", answer, asked=query, verdicts=VERDICTS, every=every, changed=changed)
 
 
 @router.page("/claims/{id}")

@@ -7,33 +7,29 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from api.schema.base import Listing, Shape, SortedQuestion
-from api.schema.parameters import (
-    GIVEN,
-    Several,
-    several,
-)
+from api.schema.parameters import GIVEN, Several, several
 from api.schema.words import ClaimVerdict
 
 RuleResult = Literal["holds", "fails", "open"]
+VERDICT = Field(
+    description="refuted: no criterion holds on the sentence's own case; not reproduced here: "
+    "none holds on another; null: not measured."
+)
+MEASURED_ON = Field(description="Data, sensors and methods.")
 
 
 class ClaimRule(Shape):
     """A criterion of a claim."""
 
     rule: str
-    statistic: str = Field(description="Statistic computed in every trial.")
+    statistic: str = Field(description="Statistic of every trial.")
     decides: str = Field(description="Threshold of the statistic.")
-    result: RuleResult = Field(
-        description=(
-            "holds or fails: the 95 % interval is on one side of the threshold; open: it "
-            "includes the threshold."
-        )
-    )
+    result: RuleResult = Field(description="open: the 95 % interval includes the threshold.")
     estimate: float | None = Field(description="Mean over the trials; geometric mean for ratios.")
-    low: float | None = Field(description="Lower end of the 95 % interval of the mean.")
-    high: float | None = Field(description="Upper end of the 95 % interval of the mean.")
-    trials: int = Field(description="Number of trials with a result.")
-    timed: bool = Field(description="Whether it is a ratio of run times.")
+    low: float | None = Field(description="Lower end of the 95 % interval.")
+    high: float | None = Field(description="Upper end of the 95 % interval.")
+    trials: int = Field(description="Trials with a result.")
+    timed: bool = Field(description="Is it a ratio of run times?")
 
 
 class CheckedRule(ClaimRule):
@@ -50,26 +46,21 @@ class ClaimRow(Shape):
     section_name: str = Field(description="Name of the section, with printed number.")
     study: str = Field(description="Key of the study that the survey cites; empty for none.")
     statement: str = Field(description="The survey's statement.")
-    verdict: str | None = Field(
-        description=(
-            "reproduced: every criterion holds; partly: some hold; refuted: none holds "
-            "and at least one fails; not testable here: all undecided; null: not "
-            "measured."
-        )
-    )
-    trials: int = Field(description="Number of planned trials.")
-    explanation: str = Field(description="Explanation of the verdict, or remarks.")
+    verdict: str | None = VERDICT
+    trials: int = Field(description="Planned trials.")
+    explanation: str = Field(description="Remarks on the verdict.")
+    case: str = Field(description="Is the trial the sentence's case?")
 
 
 class Claim(ClaimRow):
-    """A statement of the survey with its verdict."""
+    """A claim with its verdict."""
 
-    measured_on: str = Field(description="Data, sensors and methods.")
+    measured_on: str = MEASURED_ON
     replicate: Literal["unit", "seed"] = Field(description="What differs between trials.")
-    rules: list[ClaimRule] = Field(description="Criteria that decide the claim.")
-    second_method: str = Field(description="Second method of the check; empty if none.")
-    second_agrees: bool | None = Field(description="Whether all its verdicts are the same.")
-    second: list[ClaimRule] = Field(description="Results of the criteria by the second method.")
+    rules: list[ClaimRule] = Field(description="Criteria.")
+    second_method: str = Field(description="Second method; empty for none.")
+    second_agrees: bool | None = Field(description="Whether it agrees.")
+    second: list[ClaimRule] = Field(description="Results by the second method.")
 
 
 class Claims(Listing):
@@ -82,20 +73,32 @@ class Claims(Listing):
 class ClaimLine(Shape):
     """A line of a claim's plot."""
 
-    across: list[float | str] = Field(description="Positions on the horizontal axis.")
+    across: list[float | str] = Field(description="Horizontal positions.")
     median: list[float | None] = Field(description="Median of the trials.")
     low: list[float | None] = Field(description="Minimum of the trials.")
     high: list[float | None] = Field(description="Maximum of the trials.")
 
 
-class ClaimDetail(Claim):
-    """A claim with the results of all trials."""
+class FormerOutcome(Shape):
+    """An outcome before a change."""
 
-    how_to_test: str = Field(description="Test method, stated before measuring.")
-    values: dict[str, list[float | None]] = Field(description="Statistic by trial and criterion.")
+    measured_on: str = MEASURED_ON
+    verdict: str | None = VERDICT
+    rules: list[ClaimRule] = Field(description="Criteria.")
+
+
+class ClaimDetail(Claim):
+    """A claim in full."""
+
+    sentence: str = Field(description="The survey's sentence.")
+    line: int = Field(description="Its line.")
+    reason: str = Field(description="Reason of the case.")
+    former: list[FormerOutcome] = Field(description="Former outcomes, oldest first.")
+    how_to_test: str = Field(description="Test plan.")
+    values: dict[str, list[float | None]] = Field(description="By criterion and trial.")
     second_values: dict[str, list[float | None]] = Field(description="The same, second method.")
-    across: str = Field(description="Quantity on the horizontal axis.")
-    up: str = Field(description="Quantity on the vertical axis.")
+    across: str = Field(description="Horizontal axis.")
+    up: str = Field(description="Vertical axis.")
     lines: dict[str, ClaimLine] = Field(description="Lines of the plot, by name.")
 
 
@@ -107,10 +110,6 @@ class ClaimsQuery(SortedQuestion, rows=ClaimRow):
     verdict: Several[ClaimVerdict] = several("Only claims with this verdict.")
     q: Annotated[
         str | None,
-        Field(
-            min_length=1,
-            max_length=200,
-            description="Search words; all must occur in the claim, its study or its section.",
-        ),
+        Field(min_length=1, max_length=200, description="Words in claim, study or section."),
         GIVEN,
     ] = None

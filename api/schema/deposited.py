@@ -117,7 +117,9 @@ class ClaimVerdict(Shape):
     """A claim of the survey with its verdict."""
 
     claim: str
-    claim_verdict: str = Field(description="reproduced, partly, refuted or not testable here.")
+    claim_verdict: str = Field(description="Its verdict, as `GET /v1/claims` has it.")
+    claim_case: str = Field(description="Whether the trial is the sentence's case.")
+    claim_sentence: str = Field(description="The survey's sentence, word for word.")
     measured_on: str = Field(description="Data, sensors and methods of the trials.")
     replicate: str = Field(description="Difference between trials: sensor unit or seed.")
     second_method: str = Field(description="Second method of the check.")

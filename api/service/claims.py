@@ -38,6 +38,10 @@ def detail(entry: Entry) -> dict[str, Any]:
     outcome = entry.outcome
     return {
         **entry.to_dict(),
+        "sentence": entry.review.quotation,
+        "line": int(entry.review.line),
+        "reason": entry.review.reason,
+        "former": [asdict(one) for one in entry.former],
         "how_to_test": entry.claim.how_to_test,
         "values": dict(outcome.values) if outcome else {},
         "second_values": dict(outcome.second) if outcome else {},

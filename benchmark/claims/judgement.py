@@ -4,7 +4,8 @@ Of every rule's statistic the mean over trials is taken with Student's 95 % inte
 where the rule says so). A rule *holds* where the whole interval is on its side of the limit,
 *fails* where the whole interval is on the other, and is *open* between. A claim is reproduced where
 all of its rules hold, partly where some do, refuted where none holds and one fails; where all are
-open, these trials cannot tell, and it is not testable here.
+open, these trials cannot decide, and it is not testable. What is published depends on the second
+reading, too (`review.published`).
 """
 
 from __future__ import annotations
@@ -79,7 +80,7 @@ def verdict(rules: Iterable[Judgement]) -> Verdict:
         return "reproduced"
     if "holds" in results:
         return "partly"
-    return "refuted" if "fails" in results else "not testable here"
+    return "refuted" if "fails" in results else "not testable"
 
 
 def _interval(values: np.ndarray[tuple[int], np.dtype[np.float64]]) -> tuple[float, float, float]:

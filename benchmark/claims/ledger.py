@@ -9,8 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from benchmark.claims.former import FormerOutcome, former_outcomes
 from benchmark.claims.judgement import Judgement, judge, verdict
 from benchmark.claims.outcomes import RECORD, Outcome, read_outcomes
+from benchmark.claims.review import Review, published, reviews
 from benchmark.claims.rules import DIRECTORY, VERDICTS, Claim, Verdict, claims, rows_of
 from benchmark.claims.verification import contradictions
 from benchmark.results.store import PUBLISHED
@@ -32,7 +34,11 @@ class Entry:
     claim
         What is said, and what decides it.
     verdict
-        None where it was not measured.
+        By the trials and by whether they are the sentence's case; None where it was not measured.
+    review
+        The sentence, and whether the trial is its case.
+    former
+        Outcomes before its criteria or data were changed, oldest first.
     rules, second
         As measured, and by the second method; of the second one those rules that it measures.
     explanation
@@ -43,6 +49,8 @@ class Entry:
 
     claim: Claim
     verdict: Verdict | None
+    review: Review
+    former: tuple[FormerOutcome, ...]
     rules: tuple[Judgement, ...]
     second: tuple[Judgement, ...]
     explanation: str
@@ -67,6 +75,7 @@ class Entry:
             "statement": said.statement,
             "verdict": self.verdict,
             "explanation": self.explanation,
+            "case": self.review.case,
             "measured_on": said.measured_on,
             "trials": said.trials,
             "replicate": said.replicate,
@@ -115,10 +124,10 @@ def unexplained_claims(entries: Iterable[Entry]) -> tuple[str, ...]:
 
 def _entry(claim: Claim, outcome: Outcome | None, written: tuple[str, str]) -> Entry:
     about, said = written
+    review, former = reviews()[claim.id], former_outcomes().get(claim.id, ())
     if outcome is None:
-        untestable = about == "not testable here"
         rules = tuple(judge(rule, ()) for rule in claim.rules)
-        return Entry(claim, "not testable here" if untestable else None, rules, (), said, None)
+        return Entry(claim, None, review, former, rules, (), said, None)
     if wrong := next(contradictions(claim, outcome), ""):
         raise LedgerError(
             f"{RECORD.name}: {claim.id}: {wrong}; measure it again with "
@@ -126,13 +135,13 @@ def _entry(claim: Claim, outcome: Outcome | None, written: tuple[str, str]) -> E
         )
     rules = tuple(judge(rule, outcome.values[rule.name]) for rule in claim.rules)
     second = tuple(judge(claim.rule(name), values) for name, values in outcome.second.items())
-    found = verdict(rules)
+    found = published(verdict(rules), review.case)
     if about and about != found:
         raise LedgerError(
             f"{claim.id} is explained as {about!r} and comes out as {found!r}: read the numbers "
             f"and write its line in {EXPLANATIONS.name} anew"
         )
-    return Entry(claim, found, rules, second, said, outcome)
+    return Entry(claim, found, review, former, rules, second, said, outcome)
 
 
 def _explanations(path: Path) -> Mapping[str, tuple[str, str]]:

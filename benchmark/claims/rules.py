@@ -21,7 +21,7 @@ DIRECTORY = Path(__file__).resolve().parent
 #: How the trials of a statistic are averaged: as they are, or their logarithms (ratios, errors).
 Scale = Literal["linear", "log"]
 Relation = Literal["<", "<=", ">", ">=", "within"]
-Verdict = Literal["reproduced", "partly", "refuted", "not testable here"]
+Verdict = Literal["reproduced", "partly", "not reproduced here", "refuted", "not testable"]
 #: Every verdict, best for the survey first.
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 #: What a trial has of its own: another unit of the sensor, or other random draws.

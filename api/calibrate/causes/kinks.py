@@ -116,8 +116,9 @@ def _bend(readings: Readings, angle: Floats) -> _Bend:
     # what images tangents is smoother over them than over angles
     forms = [(form, _smooth(design, form)) for form in (angle, tangent)]
     used, inside = min(forms, key=lambda one: _share_left(design, *one))
-    hinge_left = _rest(design[inside], np.maximum(used, 0.0)[inside])
     left = _rest(design[inside], used[inside])
+    # of the smooth angle: errors of the stated one would go with themselves
+    hinge_left = _rest(design[inside], np.maximum(used[inside] - left, 0.0))
     other = tangents[inside, int(np.argmin(along))]
     block = np.argsort(np.argsort(other)) * _BLOCKS // len(other)
     whole = _ratio(hinge_left, left)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from algorithms.contract import Floats
 from api.calibrate.calibration import Calibration
+from api.calibrate.intervals.grazing import Grazing
+from api.calibrate.uncertainty import Intervals
 
 
 @dataclass(frozen=True)
@@ -83,6 +85,10 @@ class Answers:
         Of each ring: sector m is at the azimuth 360 m / M about the axis, from +x towards +y.
     sigma_deg : ndarray, shape (K, M, 2)
         Of the two axes of `api.calibrate.intervals.places.tangent_axes`.
+    grazing : Grazing
+        By how much it grows where light grazes a face.
+    rotation : ndarray, shape (3, 3)
+        That takes directions and their 1-sigma to those answered.
     """
 
     form: AngleForm
@@ -90,13 +96,40 @@ class Answers:
     rings_deg: Floats
     sectors: int
     sigma_deg: Floats
+    grazing: Grazing = field(default_factory=Grazing.none)
+    rotation: Floats = field(default_factory=lambda: np.eye(3))
 
     @property
     def bytes(self) -> int:
         """Size of the constants in double precision."""
         return 8 * sum(np.size(value) for value in self.constants().values())
 
+    @property
+    def grazes(self) -> bool:
+        """Whether the 1-sigma grows where light grazes a face."""
+        return len(self.grazing.normals) > 0
+
+    @property
+    def turns(self) -> bool:
+        """Whether answers are turned."""
+        return not np.array_equal(self.rotation, np.eye(3))
+
+    @property
+    def operations(self) -> int:
+        """Most operations of what widens the 1-sigma at grazing light and turns answers."""
+        grazing = 45 + 29 * len(self.grazing.normals) if self.grazes else 0
+        return grazing + (170 if self.turns else 0)
+
+    @property
+    def calls(self) -> int:
+        """Most calls of the mathematics library that this takes."""
+        return 4 * self.grazes + 6 * self.turns
+
     def constants(self) -> dict[str, Any]:
+        """Return all constants of an answer but its turn."""
+        return {**self.places(), **(self.faces() if self.grazes else {"FACES": 0})}
+
+    def places(self) -> dict[str, Any]:
         """Return what C and Python read: the axes about which places are counted, and the table."""
         start = np.array([1.0, 0.0, 0.0] if abs(self.axis[0]) < 0.9 else [0.0, 1.0, 0.0])
         first = start - (start @ self.axis) * self.axis
@@ -109,17 +142,32 @@ class Answers:
             "SECTORS": int(self.sectors),
         }
 
+    def faces(self) -> dict[str, Any]:
+        """Return what C and Python read of faces that light grazes."""
+        known = self.grazing
+        return {
+            "normals": known.normals,
+            "sine": float(known.sine),
+            "grown": float(known.grown),
+            "FACES": len(known.normals),
+        }
+
 
 def answers_of(found: Calibration) -> Answers:
     """Return the form and the 1-sigma of a calibration; one number where it knows no places."""
-    form = _FORMS.get(found.settings.direction.form, _POLAR)
-    known = found.intervals
+    constant = np.nan if found.intervals is not None else _constant_deg(found)
+    return answers_at(found.settings.direction.form, found.intervals, constant)
+
+
+def answers_at(form: str, known: Intervals | None, constant_deg: float) -> Answers:
+    """Return the form of angles and the 1-sigma by place, or everywhere one number."""
+    angles = _FORMS.get(form, _POLAR)
     if known is not None:
-        return Answers(form, known.axis, known.rings_deg, known.sectors, known.sigma_deg)
-    constant = _constant_deg(found)
-    return Answers(
-        form, np.array([0.0, 0.0, 1.0]), np.array([0.0, 180.0]), 1, np.full((2, 1, 2), constant)
-    )
+        return Answers(
+            angles, known.axis, known.rings_deg, known.sectors, known.sigma_deg, known.grazing
+        )
+    sigma = np.full((2, 1, 2), constant_deg)
+    return Answers(angles, np.array([0.0, 0.0, 1.0]), np.array([0.0, 180.0]), 1, sigma)
 
 
 def _constant_deg(found: Calibration) -> float:

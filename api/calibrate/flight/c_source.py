@@ -87,7 +87,8 @@ def c_files(  # noqa: PLR0917 - what the files are made of
         "second_angle": second,
         "functions": _functions(program, name),
         "calls": "\n".join(_call(at, step) for at, step in enumerate(program.steps, 1)),
-        "sigma": _constants(answers.constants()),
+        "sigma": _constants(answers.places()),
+        **_answers(answers),
         "vectors": str(len(vectors)),
         "vector_data": _vectors(vectors, name),
         "most": repr(_ROUNDING + 1.5 * vectors.largest_deg),
@@ -101,10 +102,27 @@ def c_files(  # noqa: PLR0917 - what the files are made of
 
     return {
         f"{name}.h": fill("header.h"),
-        f"{name}.c": _used(_numbered(fill("source.c"), answers.constants())),
+        f"{name}.c": _used(_numbered(fill("source.c"), answers.places())),
         f"{name}_selftest.c": fill("selftest.c"),
         f"{name}_example.c": fill("example.c"),
     }
+
+
+def _answers(answers: Answers) -> dict[str, str]:
+    """Return what widens one sigma at grazing light and turns answers, and the calls of it."""
+    text = (_TEMPLATES / "answers.c").read_text(encoding="utf-8")
+    pieces = re.split(r"/\* part: (\w+) \*/\n", text)
+    parts = dict(zip(pieces[1::2], pieces[2::2], strict=True))
+    made, calls = "", {"grown": "", "turned": ""}
+    if answers.grazes:
+        calls["grown"] = "    grazing(sun, sigma);\n"
+        faces = answers.faces()
+        made += _numbered(parts["grazing"], faces).replace("%constants%", _constants(faces))
+    if answers.turns:
+        calls["turned"] = "        turned(sun, out->sigma_deg);\n"
+        rotation = {"rotation": answers.rotation}
+        made += parts["turned"].replace("%constants%", _constants(rotation))
+    return {"answers": parts["across"] + made if made else "", **calls}
 
 
 def filled(text: str, texts: Mapping[str, str]) -> str:

@@ -55,6 +55,8 @@ class FlightCode:
         Rows that the model answers and the code does not, by status.
     rows : int
         Rows that were compared.
+    judged_on : str
+        What these rows are of.
     """
 
     program: Program
@@ -65,6 +67,7 @@ class FlightCode:
     largest_deg: float
     flagged: Mapping[str, int]
     rows: int
+    judged_on: str = "rows of the calibration"
 
     @property
     def words(self) -> str:
@@ -77,7 +80,7 @@ class FlightCode:
         refused = ", ".join(f"{count} {name}" for name, count in self.flagged.items())
         return (
             f"{self.words}: adds {self.added_deg:.2g} deg RMS to the model, at most "
-            f"{self.largest_deg:.2g} deg, on {self.rows} rows of the calibration"
+            f"{self.largest_deg:.2g} deg, on {self.rows} {self.judged_on}"
             + (f"; {sum(self.flagged.values())} of them refused ({refused})" if refused else "")
         )
 
@@ -121,9 +124,11 @@ class FlightCode:
             )
         lines["Frame"] = "+z is the boresight; the answer is the unit vector from sensor to Sun"
         size = program.bytes + self.answers.bytes
+        operations = program.operations + self.answers.operations
+        calls = program.calls + self.answers.calls
         lines["Cost"] = (
-            f"at most {program.operations} additions, multiplications, divisions and comparisons "
-            f"and {program.calls} calls of libm an answer; {size} bytes of constants in double "
+            f"at most {operations} additions, multiplications, divisions and comparisons "
+            f"and {calls} calls of libm an answer; {size} bytes of constants in double "
             "precision; no heap, nothing kept between calls"
         )
         return lines
@@ -168,31 +173,58 @@ def flight_code(found: Calibration) -> FlightCode:
     raw = np.empty((len(used), len(columns)))
     raw[:, steps[0].constants["place"]] = raw_readings(used, settings.readings)
     kelvin = used.context.get("temperature_K", np.zeros(len(used)))
-    return _judged(found, program, allowed, raw, kelvin)
-
-
-def _judged(
-    found: Calibration, program: Program, limits: RawLimits, raw: Floats, kelvin: Floats
-) -> FlightCode:
-    """Compare a program with the model, row by row; NoCodeError where it adds too much."""
-    used = found.readings.thinned(_JUDGED)
     model = found.model.predict(used.features, used.context)
+    return judged_code(
+        program, answers_of(found), allowed, raw, kelvin, model, found.chosen.rms_deg
+    )
+
+
+def judged_code(  # noqa: PLR0917 - what code is made of
+    program: Program,
+    answers: Answers,
+    limits: RawLimits,
+    raw: Floats,
+    kelvin: Floats,
+    model: Floats,
+    rms_deg: float,
+) -> FlightCode:
+    """Return code by a program whose answers are those of a model on raw rows.
+
+    Parameters
+    ----------
+    program : Program
+    answers : Answers
+    limits : RawLimits
+        Of the program's first step.
+    raw : ndarray, shape (N, K)
+        In the file's order.
+    kelvin : ndarray, shape (N,)
+    model : ndarray, shape (N, 3)
+        Before the turn of the answers; NaN where there is none.
+    rms_deg : float
+        Of the model.
+
+    Raises
+    ------
+    NoCodeError
+        If the program answers none of the rows or adds more than a tenth of the model's error.
+    """
     _, sun, status = run(program.steps, raw, kelvin)
     off = separation_deg(sun, model)
     both = np.isfinite(off)
     if not both.any():
         raise NoCodeError("the code answers none of the calibration's rows that the model answers")
     added = float(np.sqrt(np.mean(off[both] ** 2)))
-    if not added <= _MOST_ADDED * found.chosen.rms_deg:
+    if not added <= _MOST_ADDED * rms_deg:
         raise NoCodeError(
             f"{program.words} would add {added:.3g} deg to a model that errs "
-            f"{found.chosen.rms_deg:.3g} deg, more than a tenth of it"
+            f"{rms_deg:.3g} deg, more than a tenth of it"
         )
     lost = status[np.isfinite(model[:, 0]) & (status != 0)]
     counts = {STATUSES[one]: int((lost == one).sum()) for one in np.unique(lost)}
     return FlightCode(
-        program, answers_of(found), vectors_of(program, raw, kelvin, model), limits, added,
-        float(off[both].max()), counts, len(used),
+        program, answers, vectors_of(program, raw, kelvin, model), limits, added,
+        float(off[both].max()), counts, len(raw),
     )  # fmt: skip
 
 

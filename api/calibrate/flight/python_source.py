@@ -45,9 +45,11 @@ def python_module(
         first=answers.form.python[0],
         second=answers.form.python[1],
         form=answers.form.words,
-        functions="\n\n\n".join(_sources(program)),
+        functions="\n\n\n".join(_sources(program, answers)),
         steps=steps,
         sigma=_mapping(answers.constants()),
+        rotation=f"ROTATION = {_array(answers.rotation)}\n" if answers.turns else "",
+        turned=_TURNED if answers.turns else "",
         values=_array(vectors.values),
         temperature=_array(vectors.temperature),
         directions=_array(vectors.sun),
@@ -56,10 +58,11 @@ def python_module(
     )
 
 
-def _sources(program: Program) -> list[str]:
+def _sources(program: Program, answers: Answers) -> list[str]:
     """Return the source of the steps and of what they call, as they stand in the runtime."""
     texts = {name: inspect.getsource(one).rstrip() for name, one in step_functions().items()}
-    wanted = [step.name for step in program.steps] + ["tangent_sigma"]
+    wanted = [*(step.name for step in program.steps), "tangent_sigma"]
+    wanted += ["turned"] if answers.turns else []
     for name in wanted:
         called = re.findall(r"\b(\w+)\(", texts[name])
         wanted += [other for other in called if other in texts and other not in wanted]
@@ -79,6 +82,7 @@ def _array(values: Any) -> str:
     return f"np.array({text})"
 
 
+_TURNED = "        found, sigma = turned(found, sigma, ROTATION)\n"
 _MODULE = '''"""From raw readings of a Sun sensor to the Sun. Written by sunatlas calibrate."""
 
 {said}
@@ -101,7 +105,7 @@ STEPS = [
     {steps},
 ]
 SIGMA = {sigma}
-
+{rotation}
 
 def solve(readings, temperature=None):
     """Directions of raw readings, and what is known of them.
@@ -136,9 +140,9 @@ def solve(readings, temperature=None):
             values, found, said = step(values, found, kelvin, constants)
             status = np.where(status == 0, said, status)
         found = np.where((status == 0)[:, None], found, np.nan)
-        x, y, z = found.T
-        angles_deg = np.degrees(np.column_stack([{first}, {second}]))
         sigma = tangent_sigma(found, SIGMA)
+{turned}        x, y, z = found.T
+        angles_deg = np.degrees(np.column_stack([{first}, {second}]))
     sigma[status != 0] = np.nan
     return {{"sun": found, "angle_deg": angles_deg, "sigma_deg": sigma, "status": status}}
 

@@ -183,4 +183,31 @@ def tangent_sigma(sun: Floats, c: Any) -> Any:
     table = c["table"]
     inner = (1.0 - rest) * table[ring, here] + rest * table[ring, beside]
     outer = (1.0 - rest) * table[ring + 1, here] + rest * table[ring + 1, beside]
-    return (1.0 - share) * inner + share * outer
+    found = (1.0 - share) * inner + share * outer
+    return found * grazing(sun, c) if c["FACES"] else found
+
+
+def grazing(sun: Floats, c: Any) -> Any:
+    """Return what 1-sigma (N, 2) grows by where light grazes a face."""
+    near = np.maximum(1.0 - (sun @ c["normals"].T / c["sine"]) ** 2, 0.0)
+    shares = [(near * (axis @ c["normals"].T) ** 2).sum(axis=1) for axis in across(sun)]
+    return np.sqrt(1.0 + c["grown"] * np.column_stack(shares))
+
+
+def across(sun: Floats) -> Any:
+    """Return two unit vectors (N, 3) square to directions (N, 3)."""
+    start = np.where(np.abs(sun[:, [0]]) < 0.9, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
+    first = np.cross(sun, start)
+    first = first / np.sqrt((first**2).sum(axis=1))[:, None]
+    return first, np.cross(sun, first)
+
+
+def turned(sun: Floats, sigma: Floats, rotation: Floats) -> Any:
+    """Return directions (N, 3) turned, and 1-sigma (N, 2) along the two axes of the new ones."""
+    found = sun @ rotation.T
+    before = [axis @ rotation.T for axis in across(sun)]
+    parts = [
+        sum((sigma[:, j] * (axis * before[j]).sum(axis=1)) ** 2 for j in range(2))
+        for axis in across(found)
+    ]
+    return found, np.sqrt(np.column_stack(parts))

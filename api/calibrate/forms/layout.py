@@ -37,6 +37,22 @@ class Layout:
     names: tuple[str, ...] = ()
     unit_cells: tuple[str, ...] = ()
 
+    @property
+    def header_row(self) -> int:
+        """Number of the row of names in the file, the first is 1; 0 for none."""
+        return 0 if self.header is None else self.header + 1
+
+    def notes(self) -> list[str]:
+        """Return what is said of the header and of units."""
+        said = []
+        if self.header is None:
+            said.append("there is no header: columns are called column_1, column_2, ...")
+        elif self.header > 0:
+            said.append(f"the header is row {self.header_row}")
+        if self.units is not None:
+            said.append(f"row {self.units + 1} holds units")
+        return said
+
 
 def is_comment(line: str) -> bool:
     """Say whether a line is a comment: it starts with ``#``, ``%``, ``//``, ``;`` or ``!``."""

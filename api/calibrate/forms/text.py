@@ -101,8 +101,9 @@ def cells_of_text(data: bytes, source: str, stated: FileSettings, most_rows: int
     decimal = stated.decimal or ("," if separator != "," and _decimal_commas(body) else ".")
     between = int(comment.sum()) - int(layout.header is not None and comment[layout.header])
     notes = _notes(encoding, separator, decimal, layout, between)
-    header = 0 if layout.header is None else layout.header + 1
-    return Cells(frame, layout.names, layout.unit_cells, rows, decimal, header, tuple(notes))
+    return Cells(
+        frame, layout.names, layout.unit_cells, rows, decimal, layout.header_row, tuple(notes)
+    )
 
 
 def _split(lines: Sequence[str], separator: str, source: str) -> list[list[str]]:
@@ -179,12 +180,7 @@ def _notes(encoding: str, separator: str, decimal: str, layout: Layout, comments
     said = [f"text in {encoding.upper()}, cells separated by {word}"]
     if decimal == ",":
         said.append("numbers have decimal commas")
-    if layout.header is None:
-        said.append("there is no header: columns are called column_1, column_2, ...")
-    elif layout.header > 0:
-        said.append(f"the header is row {layout.header + 1}")
-    if layout.units is not None:
-        said.append(f"row {layout.units + 1} holds units")
+    said += layout.notes()
     if comments:
         said.append(f"{comments} comment line{'s' if comments > 1 else ''} left out")
     return said

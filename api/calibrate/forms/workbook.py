@@ -52,18 +52,12 @@ def cells_of_workbook(data: bytes, source: str, stated: FileSettings, most_rows:
     places = np.arange(len(frame))
     blank = (frame == "").all(axis=1).to_numpy(dtype=np.bool_)
     kept = (places >= layout.data) & ~blank
-    notes = []
-    if len(sheets) > 1:
-        notes.append(f"sheet {name} of {', '.join(texts)} was read")
-    if layout.header is None:
-        notes.append("there is no header: columns are called column_1, column_2, ...")
-    elif layout.header > 0:
-        notes.append(f"the header is row {layout.header + 1}")
-    if layout.units is not None:
-        notes.append(f"row {layout.units + 1} holds units")
+    sheet = [f"sheet {name} of {', '.join(texts)} was read"] if len(sheets) > 1 else []
     body = frame[kept].reset_index(drop=True)
-    header = 0 if layout.header is None else layout.header + 1
-    return Cells(body, layout.names, layout.unit_cells, places[kept] + 1, ".", header, tuple(notes))
+    notes = (*sheet, *layout.notes())
+    return Cells(
+        body, layout.names, layout.unit_cells, places[kept] + 1, ".", layout.header_row, notes
+    )
 
 
 def _numbers_in(sheet: pd.DataFrame) -> float:

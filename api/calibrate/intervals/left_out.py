@@ -42,34 +42,21 @@ def errors_left_out(  # noqa: PLR0917 - what was fitted, and to what
     ndarray, ndarray
         Predicted minus true direction, NaN where not answered, and the true direction.
     """
-    offsets = with_rim(scored, chosen, used, geometry)
+    offsets = _with_rim(scored, chosen, used, geometry)
     if not len(removed):
         return offsets, used.sun
     beside = model.predict(removed.features, removed.context) - removed.sun
     return np.vstack([offsets, beside]), np.vstack([used.sun, removed.sun])
 
 
-def with_rim(scored: Scored, chosen: Candidate, used: Readings, geometry: SensorGeometry) -> Floats:
+def _with_rim(
+    scored: Scored, chosen: Candidate, used: Readings, geometry: SensorGeometry
+) -> Floats:
     """Return predicted minus true direction (N, 3) of every sample when it was left out.
 
     Models are compared without the rim of the field, to which no fit should be continued. But
     errors are largest there: a third of the rim's poses is left out at a time, so that its
     neighbours on the rim stay.
-
-    Parameters
-    ----------
-    scored : Scored
-        The model that was chosen.
-    chosen : Candidate
-        What it did on the samples compared on.
-    used : Readings
-        These samples.
-    geometry : SensorGeometry
-
-    Returns
-    -------
-    ndarray, shape (N, 3)
-        NaN where not answered.
     """
     offsets = np.array(chosen.offsets)
     rim = np.flatnonzero(fold_of(used)[0] < 0)

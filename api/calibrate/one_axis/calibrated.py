@@ -18,7 +18,7 @@ from api.calibrate.one_axis.curve import AxisCurve, angles_in, plane_of
 from api.calibrate.readings import Readings
 from api.calibrate.selection import Candidate
 from api.calibrate.table import Table
-from api.calibrate.uncertainty import NORMAL_95, Intervals
+from api.calibrate.uncertainty import NORMAL_95, Intervals, limit_of
 from api.calibrate.verdict import Verdict, Word
 
 #: Blocks of neighbouring poses along the sweep, every fifth of which is left out together.
@@ -288,8 +288,8 @@ def _intervals(
     if len(off) < _FEWEST_FOR_INTERVALS:
         return None
     half = np.arange(len(off)) % 2 == 0
-    within = [float((off[test] <= _limit(off[~test])).mean()) for test in (half, ~half)]
-    sigma = _limit(off) / NORMAL_95
+    within = [float((off[test] <= limit_of(off[~test])).mean()) for test in (half, ~half)]
+    sigma = limit_of(off) / NORMAL_95
     return Intervals(
         sigma / candidate.rms_deg,
         float(np.mean(within)),
@@ -299,11 +299,6 @@ def _intervals(
         4,
         np.full((2, 4, 2), sigma),
     )
-
-
-def _limit(ratio: Floats) -> float:
-    ordered = np.sort(ratio)
-    return float(ordered[min(int(np.ceil(0.95 * (len(ordered) + 1))) - 1, len(ordered) - 1)])
 
 
 def _spread(readings: Readings, noise: float, target: Target) -> Floats:

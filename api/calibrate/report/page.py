@@ -58,7 +58,9 @@ class Asked:
 def outcomes(found: Calibration, asked: Asked) -> list[Judged]:
     """Return for each requirement whether it is met."""
     errors = Errors.of(found) if asked.requirements else None
-    return [judged(one, found, errors) for one in asked.requirements if errors is not None]
+    return [
+        judged(one, found.readings.sun, errors) for one in asked.requirements if errors is not None
+    ]
 
 
 def report(
@@ -82,6 +84,44 @@ def report(
     today : date, optional
         Of the report; by default today in UTC.
     """
+    wanted = asked or Asked()
+    errors = Errors.of(found)
+    drawn = pictures(found, errors, wanted.requirements)
+    counted = Counter(one.reason for one in found.excluded)
+    return (
+        templates()
+        .get_template("report.html")
+        .render(
+            found=found,
+            verdict=found.verdict,
+            outcomes=[judged(one, found.readings.sun, errors) for one in wanted.requirements],
+            compared=wanted.compared,
+            axes=by_axis(errors),
+            bands=by_band(errors),
+            runs=by_run(errors)[:_LISTED_RUNS],
+            temperatures=by_temperature(errors),
+            field=field_of(found.readings.sun),
+            fewest=fewest_for(THREE_SIGMA),
+            tested=int(errors.known.sum()),
+            rows=selection_table(found),
+            refused=_refused(found),
+            pictures={title: Markup(svg) for title, svg in drawn.items()},  # noqa: S704 - drawn here
+            excluded=counted.most_common(),
+            listed=found.excluded[:_LISTED],
+            settings=_settings(found),
+            files=_files(found),
+            versions=versions(),
+            code=code,
+            command=command,
+            today=(today or dt.datetime.now(dt.UTC).date()).isoformat(),
+            coverage_factor=COVERAGE_FACTOR,
+            unstated=UNSTATED,
+        )
+    )
+
+
+def templates() -> Environment:
+    """Return what makes reports of their templates."""
     environment = Environment(
         loader=FileSystemLoader(_TEMPLATES),
         autoescape=True,
@@ -90,38 +130,7 @@ def report(
         lstrip_blocks=True,
     )
     environment.filters.update(deg=_deg, percent=_percent, short=_short)
-    wanted = asked or Asked()
-    errors = Errors.of(found)
-    drawn = pictures(found, errors, wanted.requirements)
-    counted = Counter(one.reason for one in found.excluded)
-    return environment.get_template(
-        "report.html"
-    ).render(
-        found=found,
-        verdict=found.verdict,
-        outcomes=[judged(one, found, errors) for one in wanted.requirements],
-        compared=wanted.compared,
-        axes=by_axis(errors),
-        bands=by_band(errors),
-        runs=by_run(errors)[:_LISTED_RUNS],
-        temperatures=by_temperature(errors),
-        field=field_of(found.readings.sun),
-        fewest=fewest_for(THREE_SIGMA),
-        tested=int(errors.known.sum()),
-        rows=selection_table(found),
-        refused=_refused(found),
-        pictures={title: Markup(svg) for title, svg in drawn.items()},  # noqa: S704 - drawn here
-        excluded=counted.most_common(),
-        listed=found.excluded[:_LISTED],
-        settings=_settings(found),
-        files=_files(found),
-        versions=versions(),
-        code=code,
-        command=command,
-        today=(today or dt.datetime.now(dt.UTC).date()).isoformat(),
-        coverage_factor=COVERAGE_FACTOR,
-        unstated=UNSTATED,
-    )
+    return environment
 
 
 def _refused(found: Calibration) -> dict[str, list[str]]:

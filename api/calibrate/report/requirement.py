@@ -9,7 +9,6 @@ import numpy as np
 
 from algorithms.calibration.hull import Hull
 from algorithms.contract import Floats, UnusableDataError
-from api.calibrate.calibration import Calibration
 from api.calibrate.report.errors import THREE_SIGMA, Errors, fewest_for, field_of, level, ray
 
 _FORM = re.compile(
@@ -128,8 +127,8 @@ def requirement(text: str) -> Requirement:
     return Requirement(text.strip(), limit, share, half)
 
 
-def judged(asked: Requirement, found: Calibration, errors: Errors) -> Judged:
-    """Return whether a calibration meets a requirement on poses that were left out.
+def judged(asked: Requirement, sun: Floats, errors: Errors) -> Judged:
+    """Return whether a calibration by poses (M, 3) meets a requirement on those left out.
 
     A pose that the fitted model does not answer counts as an error above the limit.
     """
@@ -153,7 +152,7 @@ def judged(asked: Requirement, found: Calibration, errors: Errors) -> Judged:
         return Judged(asked, "not shown", np.nan, len(size), reason)
     if achieved > asked.limit_deg:
         return Judged(asked, "not met", achieved, len(size))
-    short = None if asked.half_angle_deg is None else _short_of(half, found.readings.sun)
+    short = None if asked.half_angle_deg is None else _short_of(half, sun)
     if short is not None:
         reason = f"poses do not reach {half:g} deg off axis at azimuth {short:.0f} deg"
         return Judged(asked, "not shown", achieved, len(size), reason)

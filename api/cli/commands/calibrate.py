@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -45,9 +46,10 @@ def calibrate(
         Path | None,
         typer.Option(
             help=(
-                "Correct this calibration (JSON of an earlier run) with the poses of the files "
-                "instead of fitting a new one: by a rotation or an offset, if that is clearly "
-                "better."
+                "Correct this calibration (JSON of an earlier run) with a few new poses instead of "
+                "fitting a new one: by gains, offsets, a scale or a turn, if poses left out show "
+                "that it is better. The files are read by its settings; of the other options, only "
+                "--out, --name and --require go with it."
             )
         ),
     ] = None,
@@ -97,8 +99,8 @@ def calibrate(
 
     Reads the file, detects its conventions and wrong poses, and compares all applicable models by
     cross-validation. Writes a report (HTML), the calibration (JSON), a Python module and C99 code:
-    all files or none, even if it is killed. The exit code is 0 if the verdict is "good" and every
-    requirement is met, otherwise 3.
+    all files or none, even if it is killed. The exit code is 0 if the verdict is "good" (with
+    --onto, if the correction explains the poses) and every requirement is met, otherwise 3.
     """
     from api.calibrate.calibration import calibrate as run  # noqa: PLC0415 - SciPy
     from api.calibrate.flight.names import c_name  # noqa: PLC0415 - as above
@@ -111,6 +113,19 @@ def calibrate(
     from benchmark.progress import terminal_progress  # noqa: PLC0415 - Rich, where it is shown
     from files.atomic import replace_file  # noqa: PLC0415 - as above
 
+    if onto is not None:
+        _refuse_beside_onto(
+            {
+                "--config": config,
+                "--init": init,
+                "--certificate": certificate,
+                "--factory": factory,
+                "--apply": apply,
+                "--thorough": thorough,
+                "--model": model,
+            }
+        )
+        return _correct(files, onto, out, name, _checked(require or [], out))
     if init is not None:
         table = read_table(table_in(files[0]) if files[0].is_dir() else files[0])
         replace_file(init, template_of(table))
@@ -119,8 +134,6 @@ def calibrate(
         )
         return 0
     requirements = _checked(require or [], out)
-    if onto is not None:
-        return _correct(files, onto, out, name)
     settings = None if config is None else read_settings(config)
     command = shlex.join(["sunatlas", *sys.argv[1:]])
     with terminal_progress("calibrating") as report:
@@ -182,22 +195,38 @@ def _compared(found: Any, files: list[Path], factory: Path | None) -> Any:
     return compared_with(factory, found, read_sources(files, found.settings).tables)
 
 
-def _correct(files: list[Path], onto: Path, out: Path, name: str) -> int:
-    """Write an old calibration with the correction that a few new poses show."""
-    import json  # noqa: PLC0415 - one use
+def _refuse_beside_onto(options: Mapping[str, Any]) -> None:
+    given = [name for name, value in options.items() if value]
+    if given:
+        raise WrongCallError(
+            f"--onto corrects a calibration by its own settings and model; leave out "
+            f"{', '.join(given)}"
+        )
 
-    from api.calibrate.documents import load, with_correction  # noqa: PLC0415 - SciPy
-    from api.calibrate.products import write_set  # noqa: PLC0415 - as above
+
+def _correct(
+    files: list[Path], onto: Path, out: Path, name: str, requirements: tuple[Any, ...]
+) -> int:
+    """Write an old calibration with the correction that a few new poses show, and its code."""
+    from api.calibrate.documents import load  # noqa: PLC0415 - SciPy
+    from api.calibrate.products import corrected_products, write_set  # noqa: PLC0415 - as above
     from api.calibrate.recalibration import recalibrate  # noqa: PLC0415 - as above
 
     old = load(onto)
     found = recalibrate(files, old)
     typer.echo(found.sentence())
-    stated = with_correction(old, found, files, shlex.join(["sunatlas", *sys.argv[1:]]))
-    text = json.dumps(stated, indent=1, allow_nan=False) + "\n"
-    (written,) = write_set({f"{name}.json": text}, out, name)
-    typer.echo(f"wrote {written}; C and Python written with {onto.name} lack this correction")
-    return 0 if found.explained else 3
+    command = shlex.join(["sunatlas", *sys.argv[1:]])
+    code: list[str] = []
+    texts, outcomes = corrected_products(
+        old, found, files, name, command, requirements, tell=code.append
+    )
+    written = write_set(texts, out, name)
+    for sentence in code:
+        typer.echo(f"code: {sentence}")
+    typer.echo(f"wrote {', '.join(path.name for path in written)} in {out}")
+    for one in outcomes:
+        typer.echo(f"requirement {one.requirement.text}: {one.word} - {one.sentence}")
+    return 0 if found.explained and all(one.word == "met" for one in outcomes) else 3
 
 
 def _print(found: Any, code: list[str], written: list[Path], out: Path) -> None:

@@ -18,7 +18,8 @@ from api.service.documents import Document
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
-RULES = ("rule", "statistic", "decides", "estimate", "low", "high", "trials", "result")
+RULES_THEN = ("rule", "statistic", "decides", "estimate", "low", "high", "result")
+RULES = (*RULES_THEN[:-1], "trials", "result")
 
 
 @app.command()
@@ -40,9 +41,10 @@ def claims(
     """Show claims of the survey, with verdicts.
 
     Each claim was tested on at least five sensor units or seeds. Reproduced: every criterion holds
-    with 95 % confidence. Partly: some hold. Refuted: none holds and at least one fails. Not
-    testable here: the tests cannot decide. With an ID, its criteria and results are shown; JSON has
-    every trial. Methods and plots are in docs/claims.md.
+    with 95 % confidence. Partly: some hold. Refuted: none holds, and the trial is the case of the
+    survey's sentence. Not reproduced here: none holds, on another case. Not testable: the tests
+    cannot decide. With an ID, its criteria and results are shown; JSON has every trial. Methods
+    and plots are in docs/claims.md.
     """
     if claim is not None:
         if asked:
@@ -73,12 +75,17 @@ def _one(answer: Document, form: Format) -> None:
         return
     say(f"{document['id']} {document['statement']}", "    ")
     by = f", {document['study']}" if document["study"] else ""
-    say(f"The survey, {document['section_name']}{by}.")
+    say(f"The survey, {document['section_name']}{by}, line {document['line']}:")
+    say(f"\u201c{document['sentence']}\u201d", "    ")
+    say(f"The trial is {document['case']}. {document['reason']}")
     say(f"Tried on {document['measured_on']}; {document['trials']} {document['replicate']}s")
     emit(document["rules"], RULES, form, title=f"Verdict: {document['verdict'] or 'not measured'}")
     if document["second_method"]:
         agreed = {True: "says the same", False: "does not say the same of every rule", None: "-"}
         said = agreed[document["second_agrees"]]
         say(f"Second method: {document['second_method']}: {said}")
+    for one in document["former"]:
+        say(f"Before criterion or data were changed, on {one['measured_on']}:")
+        emit(one["rules"], RULES_THEN, form, title=f"Verdict then: {one['verdict']}")
     if document["explanation"]:
         say(document["explanation"])

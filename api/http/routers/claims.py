@@ -18,9 +18,8 @@ router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class
 
 @router.get("/claims", summary="Claims of the survey, tested", response_model=Claims | Selected)
 async def claims(known: Known, query: Annotated[ClaimsQuery, Query()]) -> Answer:
-    """List the claims of the survey about algorithms with their verdicts.
+    """List claims of the survey with their verdicts.
 
-    Each claim is tested with stated criteria; those of eleven were changed after a first result.
     CSV: a row per claim.
     """
     return Answer.of(service.claims(known, query))

@@ -46,15 +46,15 @@ def test_a_turned_sensor_is_corrected_by_twelve_poses_one_of_them_wrong(old, tmp
     out = tmp_path / "out"
     command = typer.main.get_command(app)
     status = command.main(
-        [str(path), "--onto", str(old), "--out", str(out), "--name", "new"], standalone_mode=False
+        [str(path), "--onto", str(old), "--out", str(out), "--name", "later"], standalone_mode=False
     )
     assert status == 0
-    answered = load(out / "new.json").predict(bench.spots(FRESH, 3))
+    answered = load(out / "later.json").predict(bench.spots(FRESH, 3))
     assert np.nanmean(separation_deg(answered, FRESH @ turn.T)) < 0.02
     # and once more, back again
     back = few(tmp_path / "back.csv", bench.spots(SUN, 4))
     command.main(
-        [str(back), "--onto", str(out / "new.json"), "--out", str(out), "--name", "back"],
+        [str(back), "--onto", str(out / "later.json"), "--out", str(out), "--name", "back"],
         standalone_mode=False,
     )
     answered = load(out / "back.json").predict(bench.spots(FRESH, 5))

@@ -19,7 +19,7 @@ WIDTHS = (40, *[pytest.param(width, marks=pytest.mark.slow) for width in (60, 80
 #: What says which row it is, in the JSON of the command, and where that lists the rows.
 TABLES = (
     (("studies", "--detector", "Event"), ("key",), None),
-    (("claims", "--verdict", "refuted"), ("id", "verdict"), "items"),
+    (("claims", "--verdict", "partly"), ("id", "verdict"), "items"),
     (("curves", "--dataset", "cmos-l-slit"), ("dataset", "extractor", "model"), "items"),
     (("leaderboard",), ("detector", "mask", "extractor"), "items"),
     (("leaderboard", "--each"), ("dataset", "condition", "extractor", "model"), "items"),

@@ -26,8 +26,10 @@ from api.docs import (
     parts,
 )
 from api.docs.field_plots import PlottedPipeline
+from benchmark.claims.former import former_outcomes
 from benchmark.claims.judgement import Judgement
 from benchmark.claims.ledger import Entry
+from benchmark.claims.review import reviews
 from benchmark.claims.rules import Claim, Rule, claims
 from survey_data.descriptor import DATA_DIRECTORY
 
@@ -39,7 +41,8 @@ FAILS = Judgement(RULE, 0.25, 0.2, 0.3, 20, "fails")
 def entry(claim: Claim, **members: Any) -> Entry:
     """A claim that was not measured, but for the members given."""
     nothing: dict[str, Any] = {"verdict": None, "rules": (), "second": (), "outcome": None}
-    return Entry(**{"claim": claim, "explanation": "", **nothing, **members})
+    read: dict[str, Any] = {"review": reviews()["C01"], "former": former_outcomes()["C02"]}
+    return Entry(**{"claim": claim, "explanation": "", **read, **nothing, **members})
 
 
 @pytest.fixture
@@ -73,6 +76,10 @@ def test_claims_are_told_with_and_without_measurements(
     assert "Second method, a closed form: the same numbers." in same
     assert line.format("0.25 [0.2, 0.3]", "fails") not in same
     assert line.format("0.25 [0.2, 0.3]", "fails") in other
+    for said in (without, same, other):
+        assert f"> {reviews()['C01'].quotation} (line {reviews()['C01'].line})" in said
+        assert said.count("Before a change, measured on ") == 2
+        assert ": 1.002 [1.001, 1.003]; > 1: **holds**" in said
     assert "**3 claims: " in claim_pages.counts()
     assert "2 were checked by a second method ([C99](#c99), [C99](#c99))" in claim_pages.counts()
     assert "- **not measured**: [C98](#c98)" in claim_pages.verdicts()

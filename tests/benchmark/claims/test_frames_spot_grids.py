@@ -1,10 +1,9 @@
-"""Grids of the experiments: which spots are there, where they fall, and what crossings are."""
+"""Grids of the experiments: which spots are there, and where they fall."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from benchmark.claims.experiments.frames.c45_hough_lines import crossings
 from benchmark.claims.experiments.frames.spot_grids import (
     SIDE,
     grid_frames,
@@ -45,18 +44,3 @@ def test_the_design_names_the_apertures_that_cast_the_spots() -> None:
     assert design.pixel_pitch_mm is not None
     places = np.array(design.apertures)[:, :2] / design.pixel_pitch_mm
     np.testing.assert_allclose(places, offsets_px(3), atol=1e-9)
-
-
-def test_crossings_are_where_two_slanted_lines_meet() -> None:
-    y, x = np.indices((96, 96))
-    truth = np.array([[50.3, 45.8]])
-    frame = np.zeros((96, 96))
-    for slope, along, across in ((0.1, y - 45.8, x - 50.3), (-0.05, x - 50.3, y - 45.8)):
-        away = np.abs(across - slope * along) / np.hypot(1.0, slope)
-        frame = np.maximum(frame, np.clip(2.5 - away, 0.0, 1.0) * (np.abs(along) < 25.0))
-    np.testing.assert_allclose(crossings(frame[None]), truth, atol=0.15)
-
-
-def test_crossings_of_darkness_are_none() -> None:
-    noise = np.random.default_rng(0).standard_normal((1, 96, 96))
-    assert np.isnan(crossings(noise)).all()

@@ -95,7 +95,7 @@ def test_what_has_no_logarithm_decides_where_all_trials_agree(values, interval, 
         ("ho", "partly"),
         ("ff", "refuted"),
         ("fo", "refuted"),
-        ("oo", "not testable here"),
+        ("oo", "not testable"),
     ],
 )
 def test_verdicts(results, expected):

@@ -39,7 +39,7 @@ typedef %name%_real real;
 const char %name%_digest[33] = "%digest%";
 
 %functions%
-/* One sigma of the direction, bilinear between rings off an axis and sectors of azimuth. */
+%answers%/* One sigma of the direction, bilinear between rings off an axis and sectors of azimuth. */
 static void sigma_at(const real sun[3], real sigma[2])
 {
 %sigma%
@@ -83,7 +83,7 @@ static void sigma_at(const real sun[3], real sigma[2])
 
         sigma[k] = ((R(1.0) - share) * inner) + (share * outer);
     }
-}
+%grown%}
 
 %name%_status %name%_solve(const %name%_reading *in, %name%_answer *out)
 {
@@ -107,6 +107,10 @@ static void sigma_at(const real sun[3], real sigma[2])
         out->sigma_deg[i] = R(0.0);
     }
 %calls%
+    if (status == %NAME%_OK)
+    {
+        sigma_at(sun, out->sigma_deg);
+%turned%    }
     for (i = 0; i < 3; i++)
     {
         out->sun[i] = (status == %NAME%_OK) ? sun[i] : R(0.0);
@@ -119,7 +123,6 @@ static void sigma_at(const real sun[3], real sigma[2])
 
         out->angle_deg[0] = %first_angle% * DEGREES;
         out->angle_deg[1] = %second_angle% * DEGREES;
-        sigma_at(sun, out->sigma_deg);
     }
     return status;
 }

@@ -1,8 +1,9 @@
 """C16: what light from the Earth does to the basic fusion model (Allgeier2009).
 
 Calibrated on the ground, the photodiode cube is tested on the same Suns with and without the
-sunlit Earth in view; `basic` knows of neither the Earth nor the photodiodes' response. The plot
-shows beside it what albedo does where that response is a plain cosine, which no rule asks for.
+sunlit Earth in view; `basic` does not model the Earth. Its response is a plain cosine, as the
+survey states of these equations. The plot shows beside it what albedo does where the response is
+Kelly's, of which `basic` knows nothing either.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ def trial(number: int) -> Trial:
         for response, both in (("Kelly response", kelly), ("cosine", cosine))
         for earth, found in zip(("black", "sunlit"), both, strict=True)
     }
-    return Trial({"limited": ratio(rms(kelly[1]), rms(kelly[0]))}, lines)
+    return Trial({"limited": ratio(rms(cosine[1]), rms(cosine[0]))}, lines)
 
 
 def _errors(number: int, without: str, with_albedo: str) -> tuple[Floats, Floats]:

@@ -2,10 +2,12 @@
 
 Wang2019's pyramid is meant to be immune to interference that all faces see alike, and to noise of
 zero mean. The same currents, with a constant, or with a random part of zero mean, added after the
-calibration, go through the printed three rows (`pyramidal`) and through the two rows in which a
-constant cancels (`pyramidal-constant`), each calibrated without interference. Errors are taken over
-the samples that both answer without interference; a direction that one gives up counts as its
-worst answered one, so that silence is no merit.
+calibration, go through the printed three rows (`pyramidal`), which are least squares over the
+faces, and through the two rows in which a constant cancels (`pyramidal-constant`), each calibrated
+without interference. Measured is the angle by which the interference moves an answer, so that the
+faces' angular response, which both leave, does not count. Samples are those that both answer
+without interference; a direction that one gives up counts as its farthest moved one, so that
+silence is no merit.
 """
 
 from __future__ import annotations
@@ -32,16 +34,16 @@ METHODS: dict[str, Scored] = {"pyramidal": RegularPyramid, "pyramidal-constant":
 def trial(number: int) -> Trial:
     """Measure one unit."""
     seen = ConditionView(pd_maskless_pyramid.PRESET, "nominal", number)
-    features, sun = seen.features(DirectSignals, "test"), seen.samples("test").sun
+    features = seen.features(DirectSignals, "test")
     models = {n: seen.calibrate(DirectSignals, method).model for n, method in METHODS.items()}
-    clean = {n: separation(model.predict(features), sun) for n, model in models.items()}
-    both = np.isfinite(list(clean.values())).all(axis=0)
+    clean = {n: model.predict(features) for n, model in models.items()}
+    both = np.isfinite(list(clean.values())).all(axis=(0, 2))
     full = float(np.max(features))
     noise = generator("claims", "C18", number).standard_normal(features.shape)
     added = {"constant": np.ones_like(features), "zero mean": noise}
     found = {
         (kind, name): [
-            _error(model, features[both] + share * full * shape[both], sun[both])
+            _moved(model, features[both] + share * full * shape[both], clean[name][both])
             for share in SHARES
         ]
         for kind, shape in added.items()
@@ -49,15 +51,16 @@ def trial(number: int) -> Trial:
     }
     at = SHARES.index(JUDGED)
     values = {
-        rule: ratio(found[kind, "pyramidal"][at], found[kind, "pyramidal-constant"][at])
+        rule: ratio(found[kind, "pyramidal-constant"][at], found[kind, "pyramidal"][at])
         for rule, kind in (("constant", "constant"), ("zero-mean", "zero mean"))
     }
-    lines = {f"{name}, {kind}": (SHARES, errors) for (kind, name), errors in found.items()}
+    lines = {f"{name}, {kind}": (SHARES, moved) for (kind, name), moved in found.items()}
     return Trial(values, lines)
 
 
-def _error(model: Model, features: Floats, sun: Floats) -> float:
-    errors = separation(model.predict(features), sun)
-    if not np.isfinite(errors).any():
+def _moved(model: Model, features: Floats, clean: Floats) -> float:
+    """RMS angle in degrees from the answers without interference."""
+    moved = separation(model.predict(features), clean)
+    if not np.isfinite(moved).any():
         return float("nan")
-    return rms(np.where(np.isfinite(errors), errors, np.nanmax(errors)))
+    return rms(np.where(np.isfinite(moved), moved, np.nanmax(moved)))

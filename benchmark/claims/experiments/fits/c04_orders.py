@@ -1,13 +1,11 @@
 """C04: what polynomials beyond the 11th order add (Chang2006).
 
-Each unit is calibrated with every order of `polynomial-1d` and tested on the Suns of its data set;
-of the two data sets' errors the geometric mean is taken. The second method fits Chebyshev
-polynomials of the same orders with NumPy alone and is scored in the same way.
+Each unit of the study's photodiodes under slits is calibrated with every order of `polynomial-1d`
+and tested on the Suns of the data set. The second method fits Chebyshev polynomials of the same
+orders with NumPy alone and is scored in the same way.
 """
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 
@@ -17,18 +15,16 @@ from algorithms.extractors.currents.photodiode import VoltageBalance
 from algorithms.models.non_physical.polynomial import AxisPolynomial
 from benchmark.claims.benches import ConditionView, ratio, rms, separation
 from benchmark.claims.experiment import Trial
-from benchmark.datasets.standard import psd_single_aperture, qpd_single_aperture
+from benchmark.datasets.standard import pd_slit
 
 ORDERS = range(1, 16)
 
 
 def trial(number: int) -> Trial:
-    """Measure one unit of both sensors."""
-    seen = [
-        ConditionView(m.PRESET, unit=number) for m in (qpd_single_aperture, psd_single_aperture)
-    ]
-    ours = [math.sqrt(math.prod(_error(s, order) for s in seen)) for order in ORDERS]
-    chebyshev = [math.sqrt(math.prod(_chebyshev(s, order) for s in seen)) for order in ORDERS]
+    """Measure one unit."""
+    seen = ConditionView(pd_slit.PRESET, unit=number)
+    ours = [_error(seen, order) for order in ORDERS]
+    chebyshev = [_chebyshev(seen, order) for order in ORDERS]
     lines = {"polynomial-1d": (tuple(ORDERS), ours), "numpy.polynomial": (tuple(ORDERS), chebyshev)}
     return Trial(_statistics(ours), lines, _statistics(chebyshev))
 

@@ -3,7 +3,8 @@
 Units of a quadrant photodiode behind a square aperture and behind a round one are calibrated with
 `sigmoid`, six numbers an axis, and with `polynomial-1d` of order 5, as many. Errors and run times
 (of 20,000 rows) are geometric means over both apertures. The polynomial gives angles of balances,
-the sigmoid balances of angles: it is inverted for every answer.
+the sigmoid balances of angles: it is inverted for every answer. The polynomial's error is drawn
+beside the sigmoid's and decides nothing: the survey does not compare them.
 """
 
 from __future__ import annotations
@@ -28,7 +29,6 @@ def trial(number: int) -> Trial:
     sigmoids, curves, costs = zip(*(_aperture(c, number) for c in CONDITIONS), strict=True)
     return Trial(
         {
-            "fits": ratio(geometric(sigmoids), geometric(curves)),
             "well": geometric(sigmoids) / HALF_FIELD_DEG,
             "costs": geometric(costs),
         },

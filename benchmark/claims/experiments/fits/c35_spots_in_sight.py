@@ -60,7 +60,7 @@ def trial(number: int) -> Trial:
     return Trial(
         {
             "field": ratio(_answered(wide), _answered(narrow)),
-            "accuracy": ratio(rms(wide), rms(narrow)),
+            "accuracy": ratio(rms(narrow), rms(wide)),
         },
         {
             name: (PLACES, [rms(found, asked.whole), rms(found, ~asked.whole)])

@@ -1,10 +1,10 @@
-"""C45: lines by votes beside the thresholded centroid, in noise and with pixels missing (Liu2016).
+"""C45: the blooming line found by votes, in noise and with pixels missing (Liu2016).
 
-Overexposed crosses of two slits in 96 x 96 px, turned by up to 10 deg: arms of 24 px to each side,
-3 px wide, all at the converter's end but for their rims. `hough-lines` finds one line in a frame
-and the Sun on it by its halo, which a slit has not: the line across is found in the transposed
-frame, and the truth is where both meet. The cross is symmetric, so its thresholded centroid is
-there, too. Missing pixels read the dark level.
+The camera of `ccd-lens`, whose saturated Sun spills charge along its columns, looks at Suns
+anywhere in the image but for a rim of 40 px. `hough-lines` finds the line and the Sun on it. Truth
+is the place on the detector where the Sun's centre falls, so that no calibration enters. Missing
+pixels read the converter's pedestal; noise is added as shares of its range. The plot has the
+thresholded centroid beside it, which takes the line for a part of the Sun.
 """
 
 from __future__ import annotations
@@ -17,77 +17,58 @@ from algorithms.extractors.frames.centroid import ThresholdedCentroid
 from benchmark.claims.benches import ratio
 from benchmark.claims.experiment import Sketch, Trial
 from benchmark.claims.experiments.frames.single_discs import error_px
+from benchmark.datasets.standard.ccd_lens import PRESET
 from benchmark.seeds import generator
-from benchmark.synthetic_features.shapes import EDGE_PX, Shape, render
+from benchmark.simulator.readout.noise import NoiseStreams
+from benchmark.simulator.scene import Scene
+from benchmark.simulator.sensors.blooming import BloomingSensor
 
 SKETCH = Sketch()
 
 MISSING = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4)
 NOISES = (0.01, 0.02, 0.05, 0.1)
-_FRAMES, _SIZE_PX, _RANGE_PX, _TURN = 100, 96, 12.0, np.radians(10.0)
-_ARM_PX, _HALF_PX, _OVEREXPOSED = 24.0, 1.5, 1.5
-_REACH_PX = _ARM_PX + 6.0 * EDGE_PX
-#: The turn is known to be small; everything else is as it ships.
-LINES = HoughLines(tilt_deg=20.0)
+_FRAMES, _RIM_PX, _STRAY = 100, 40.0, 0.02
 
 
 def trial(number: int) -> Trial:
-    """Measure one draw of crosses, noise and missing pixels."""
+    """Measure one draw of Suns, fixed pattern, noise and missing pixels."""
+    sensor = PRESET.condition("nominal").sensor
+    if not isinstance(sensor, BloomingSensor):
+        raise TypeError(f"{PRESET.name} has no blooming lines; got {type(sensor).__name__}")
+    pixels = sensor.camera.detector
     rng = generator("claims", "C45", number)
-    centres = (_SIZE_PX - 1) / 2.0 + rng.uniform(-_RANGE_PX, _RANGE_PX, (_FRAMES, 2))
-    light = render(_CROSS, centres, rng.uniform(-_TURN, _TURN, _FRAMES), _SIZE_PX)
-    light = np.minimum(_OVEREXPOSED * light, 1.0)
+    places = rng.uniform(_RIM_PX, pixels.columns - 1.0 - _RIM_PX, (_FRAMES, 2))
+    scene = Scene(sensor.camera.sun_of(places), np.ones(_FRAMES), np.full(_FRAMES, _STRAY))
+    streams = NoiseStreams(
+        *(generator("claims", "C45", number, name) for name in ("noise", "counts"))
+    )
+    seen = sensor.observe(scene, sensor.fixed_pattern("claims", "C45", number), streams)
+    light, full = np.asarray(seen, dtype=np.float64), float(2**pixels.bits - 1)
     noise, lot = rng.standard_normal(light.shape), rng.random(light.shape)
 
     def frames(share: float, missing: float) -> Floats:
-        # the converter ends where the light is one
-        return np.where(lot < missing, 0.0, np.minimum(light + share * noise, 1.0))
+        loud = np.clip(light + share * full * noise, 0.0, full)
+        return np.where(lot < missing, pixels.offset_dn, loud)
 
-    gaps = [frames(NOISES[0], missing) for missing in MISSING]
-    loud = [frames(share, 0.0) for share in NOISES]
-    bctm = ThresholdedCentroid()
-    errors = {
-        "hough-lines": [error_px(crossings(f), centres) for f in gaps],
-        "bctm": [error_px(bctm.extract(f), centres) for f in gaps],
-        "hough-lines, no gaps, noise across": [error_px(crossings(f), centres) for f in loud],
-        "bctm, no gaps, noise across": [error_px(bctm.extract(f), centres) for f in loud],
-    }
+    methods = [m.for_sensor(PRESET.geometry) for m in (HoughLines, ThresholdedCentroid)]
+    gaps = [[m.extract(frames(0.0, missing)) for missing in MISSING] for m in methods]
+    loud = [[m.extract(frames(share, 0.0)) for share in NOISES] for m in methods]
+    (voted, _), (voted_loud, _) = (
+        [[error_px(one, places) for one in along] for along in kind] for kind in (gaps, loud)
+    )
     at = MISSING.index(0.2)
-    voted, summed, voted_loud, summed_loud = errors.values()
-    found = 1.0 - float(np.isnan(crossings(gaps[at])).any(axis=1).mean())
-    values = {
-        "gaps": ratio(ratio(summed[at], summed[0]), ratio(voted[at], voted[0])),
-        "noise": ratio(
-            ratio(summed_loud[-1], summed_loud[0]), ratio(voted_loud[-1], voted_loud[0])
-        ),
-        "found": found,
-    }
-    places = (MISSING, MISSING, NOISES, NOISES)
-    lines = {
-        name: (where, along) for (name, along), where in zip(errors.items(), places, strict=True)
-    }
-    return Trial(values, lines)
-
-
-def crossings(frames: Floats) -> Floats:
-    """Where the line along the columns meets the one along the rows, (N, 2); NaN without one."""
-    x0, y0, x1, y1 = LINES.lines(frames)[:, :4].T
-    v0, u0, v1, u1 = LINES.lines(np.ascontiguousarray(frames.transpose(0, 2, 1)))[:, :4].T
-    # x = a + b y along the columns, y = c + d x along the rows
-    b, d = (x1 - x0) / (y1 - y0), (v1 - v0) / (u1 - u0)
-    a, c = x0 - b * y0, v0 - d * u0
-    x = (a + b * c) / (1.0 - b * d)
-    return np.column_stack([x, c + d * x])
-
-
-def _light(x: Floats, y: Floats, turn: float) -> Floats:
-    from scipy.special import ndtr  # noqa: PLC0415 - SciPy where frames are drawn
-
-    cosine, sine = np.cos(turn), np.sin(turn)
-    u, v = np.abs(x * cosine + y * sine), np.abs(y * cosine - x * sine)
-    upright = ndtr((_HALF_PX - u) / EDGE_PX) * ndtr((_ARM_PX - v) / EDGE_PX)
-    flat = ndtr((_ARM_PX - u) / EDGE_PX) * ndtr((_HALF_PX - v) / EDGE_PX)
-    return np.asarray(np.maximum(upright, flat))
-
-
-_CROSS = Shape(_light, _HALF_PX, _ARM_PX, _REACH_PX)
+    return Trial(
+        {
+            "gaps": ratio(voted[at], voted[0]),
+            "noise": ratio(voted_loud[-1], voted_loud[0]),
+            "found": 1.0 - float(np.isnan(gaps[0][at]).any(axis=1).mean()),
+        },
+        {
+            f"{name}{what}": (across, [error_px(one, places) for one in along])
+            for what, across, kind in (
+                ("", MISSING, gaps),
+                (", no gaps, noise across", NOISES, loud),
+            )
+            for name, along in zip(("hough-lines", "bctm"), kind, strict=True)
+        },
+    )

@@ -3,8 +3,9 @@
 A share of the disc's area is corrupted: a third of it in one round gap of no light on the disc, a
 third in single dead pixels of the disc, and a third as a round glint as bright as the Sun that
 touches the disc's rim or lies up to 6 px beyond it. Noise is 1 % of the peak. The rules compare
-discs that are clean with those of which 20 % is corrupted. As the circle is a known one, votes
-count for radii from 6 to 10 px; as it ships, with any radius, the method is a line of its own.
+discs that are clean with those of which 20 % is corrupted. Known is that the image is a circle;
+its radius is not, as the survey states, and votes count for any radius, as the method ships. With
+votes for radii from 6 to 10 px alone the method is a line of its own.
 """
 
 from __future__ import annotations
@@ -41,8 +42,8 @@ def trial(number: int) -> Trial:
     """Measure one draw of discs, corruption and noise."""
     drawn = single("C46", number)
     methods = {
-        "hough-circle": HoughCircle(smallest_px=6.0, largest_px=10.0),
-        "hough-circle, any radius": ship(HoughCircle),
+        "hough-circle": ship(HoughCircle),
+        "hough-circle, radius known": HoughCircle(smallest_px=6.0, largest_px=10.0),
         "bctm": ship(ThresholdedCentroid),
     }
     lines: dict[str, list[float]] = {name: [] for name in methods}

@@ -2,14 +2,12 @@
 
 Each gap is calibrated twice with the model `qpd`: with the gap as drawn (of a round spot it is
 then fitted), and with none at all. All else is fitted alike. Faizullin2017's aperture is round,
-the data set's nominal one square: both are measured, and the geometric mean of their ratios is the
-statistic. Behind the square one the gap changes the balance's scale and nothing else, which the
-focal length's fit takes up; only the round one can tell.
+and the statistic is of a round one. The plot shows the data set's nominal square one beside it,
+where the gap changes the balance's scale and nothing else, which the focal length's fit takes up.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -31,14 +29,14 @@ SKETCH = Sketch()
 
 def trial(number: int) -> Trial:
     """Measure one unit with each gap behind both apertures."""
-    lines, by_gap = {}, dict.fromkeys(GAPS_MM, 1.0)
+    lines, by_gap = {}, {}
     for shape, condition in SHAPES.items():
         errors = [_errors(gap, condition, number) for gap in GAPS_MM]
         without, with_it = zip(*errors, strict=True)
         lines[f"{shape}, without"] = (GAPS_MM, without)
         lines[f"{shape}, with"] = (GAPS_MM, with_it)
-        for gap, (bare, compensated) in zip(GAPS_MM, errors, strict=True):
-            by_gap[gap] *= math.sqrt(ratio(bare, compensated))
+        by_gap = {gap: ratio(*both) for gap, both in zip(GAPS_MM, errors, strict=True)}
+    # the round aperture's, which is the last
     values = {"reduces": by_gap[NOMINAL], "wider": ratio(by_gap[WIDE], by_gap[NOMINAL])}
     return Trial(values, lines)
 

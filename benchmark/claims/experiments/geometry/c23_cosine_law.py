@@ -1,6 +1,6 @@
 """C23: incidence from one photodiode's signal, by the cosine law and by Kelly's (Yousefian2017).
 
-One converter of the cube, of Kelly's response, is turned from 0 to 85 deg off the Sun, whose
+One photodiode of the cube, of Kelly's response, is turned from 0 to 85 deg off the Sun, whose
 strength is known (the law's alpha_s). Its reading at normal incidence, the mean of 25, is the unit
 of signal. Each law turns every reading into an angle. The second method needs no sensor: the angle
 by the cosine law of a noiseless Kelly signal, over incidences spaced evenly.
@@ -14,7 +14,7 @@ from algorithms.compensations.electronics.angular_loss import KELLY
 from algorithms.contract import Floats
 from benchmark.claims.benches import middles, ratio, rms, rms_within
 from benchmark.claims.experiment import Trial
-from benchmark.datasets.standard import ltf_maskless_cube
+from benchmark.datasets.standard import pd_maskless_cube
 from benchmark.seeds import generator
 from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
@@ -27,10 +27,10 @@ _UNIT = np.array(KELLY) / sum(KELLY)
 
 
 def trial(number: int) -> Trial:
-    """Measure one converter of its own gain and noise."""
+    """Measure one photodiode of its own gain and noise."""
     from algorithms.models.physics_informed.faces_kernel import invert  # noqa: PLC0415 - Numba
 
-    setup = ltf_maskless_cube.PRESET.condition("kelly")
+    setup = pd_maskless_cube.PRESET.condition("nominal")
     rng = generator("claims", "C23", number, "incidence")
     incidence = EDGES_DEG[-1] * rng.random(_SAMPLES)
     incidence[:_NORMAL] = 0.0

@@ -299,3 +299,14 @@ def test_readings_that_return_beyond_an_angle_are_a_fold():
     found = folded(spots, sun)
     assert found[off > 47.0].mean() > 0.95
     assert found[off < 15.0].mean() < 0.05
+
+
+def test_a_turntable_that_was_moved_after_half_of_the_rows_is_not_good(tmp_path):
+    """Poses in no order: each half has the whole field, and noise told by neighbours the step."""
+    order = np.random.default_rng(4).permutation(len(ANGLES))
+    stated = ANGLES[order]
+    stated[len(stated) // 2 :, 0] += 2.0
+    path = bench.write(tmp_path / "moved.csv", bench.HEADER, SPOTS[order], stated)
+    found = calibrate([path], models=("homography",))
+    assert found.verdict.word == "model misfit"
+    assert "goes with the order of rows" in found.verdict.reason

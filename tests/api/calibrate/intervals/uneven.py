@@ -22,12 +22,12 @@ Drawn = np.random.Generator
 
 @dataclass(frozen=True)
 class Uneven:
-    """A sensor: its columns, the light on it, what it reads, and a model for it."""
+    """A sensor: its columns, the light on it, what it reads, and models for it."""
 
     names: tuple[str, ...]
     poses: Callable[[int, Drawn], np.ndarray]
     read: Callable[[np.ndarray, Drawn], np.ndarray]
-    model: str
+    models: tuple[str, ...]
     kind: str = ""
 
     def table(self, count: int, drawn: Drawn) -> Table:
@@ -103,11 +103,13 @@ def tilted(sun: np.ndarray, drawn: Drawn) -> np.ndarray:
 
 
 SENSORS = {
-    "spots": Uneven(("x_px", "y_px"), square(50.0), spots, "homography"),
-    "quadrants": Uneven(("q1", "q2", "q3", "q4"), square(30.0), quadrants, "qpd"),
+    "spots": Uneven(("x_px", "y_px"), square(50.0), spots, ("homography",)),
+    "quadrants": Uneven(("q1", "q2", "q3", "q4"), square(30.0), quadrants, ("qpd",)),
     "electrodes": Uneven(
-        ("x_plus", "x_minus", "y_plus", "y_minus"), square(52.0), electrodes, "polynomial-2d"
+        ("x_plus", "x_minus", "y_plus", "y_minus"), square(52.0), electrodes, ("polynomial-2d",)
     ),
-    "faces": Uneven(("xp", "xm", "yp", "ym", "zp", "zm"), ball, faces, "assembled-faces"),
-    "tilted": Uneven(("p1", "p2", "p3", "p4"), cone(45.0), tilted, "assembled-faces", "channels"),
+    "faces": Uneven(("xp", "xm", "yp", "ym", "zp", "zm"), ball, faces, ("assembled-faces",)),
+    "tilted": Uneven(
+        ("p1", "p2", "p3", "p4"), cone(45.0), tilted, ("assembled-faces",), "channels"
+    ),
 }

@@ -158,7 +158,7 @@ def test_a_requirement_is_met_not_met_or_not_shown(camera: Calibration) -> None:
         "0.11deg@3sigma": "met",
         "0.11deg@3sigma,10deg": "not shown",  # 30 poses
     }
-    made = {text: judged(requirement(text), found, errors) for text in words}
+    made = {text: judged(requirement(text), found.readings.sun, errors) for text in words}
     assert {text: one.word for text, one in made.items()} == words
     assert made["0.11deg@95%,39deg"].margin_deg == pytest.approx(0.01)
     assert made["0.09deg@95%,39deg"].margin_deg == pytest.approx(-0.01)

@@ -178,25 +178,55 @@ def test_a_finding_says_whether_it_was_applied_or_would_be(
     assert f"found: {finding.found}{then}\n" in sunatlas("calibrate", "a.csv").stdout
 
 
-def test_a_corrected_calibration_is_written_beside_the_old_one(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+@pytest.mark.parametrize(
+    ("explained", "words", "code"), [(True, ["met"], 0), (True, ["not met"], 3), (False, [], 3)]
+)
+def test_a_corrected_calibration_is_written_with_its_code(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, explained: bool, words: list[str], code: int
 ) -> None:
-    old = tmp_path / "old.json"
+    found = SimpleNamespace(sentence=lambda: "turned by 0.7 deg", explained=explained)
     asked: list[object] = []
 
-    def recalibrate(files: list[Path], onto: object) -> Any:
-        asked.append((files, onto))
-        return SimpleNamespace(sentence=lambda: "turned by 0.7 deg", explained=True)
+    def corrected(*args: object, tell: Any) -> Any:
+        asked.append(args[:4])
+        tell("polynomials: adds 0 deg")
+        judged = [
+            SimpleNamespace(requirement=one, word=word, sentence="0.1 of 1 deg")
+            for one, word in zip(args[5], words, strict=True)
+        ]
+        return {"again.json": "{}\n", "again.c": "\n"}, judged
 
     monkeypatch.setattr(documents, "load", lambda path: f"loaded {path}")
-    monkeypatch.setattr(recalibration, "recalibrate", recalibrate)
-    monkeypatch.setattr(documents, "with_correction", lambda onto, *_: {"corrected": onto})
-    out = tmp_path / "new" / "out"
-    shown = sunatlas("calibrate", "few.csv", "--onto", old, "--out", out, "--name", "again")
-    assert shown.exit_code == 0, shown.stderr
-    assert shown.stdout == (
-        f"turned by 0.7 deg\nwrote {out / 'again.json'}; C and Python written with old.json lack "
-        "this correction\n"
-    )
-    assert asked == [([Path("few.csv")], f"loaded {old}")]
-    assert json.loads((out / "again.json").read_text()) == {"corrected": f"loaded {old}"}
+    monkeypatch.setattr(recalibration, "recalibrate", lambda *_: found)
+    monkeypatch.setattr(products, "corrected_products", corrected)
+    old, out = tmp_path / "old.json", tmp_path / "new" / "out"
+    wanted = ["--require", "1deg@rms"] if words else []
+    call = ("calibrate", "few.csv", "--onto", old, "--out", out, "--name", "again", *wanted)
+    shown = sunatlas(*call)
+    assert shown.exit_code == code, shown.stderr
+    assert shown.stdout.splitlines() == [
+        "turned by 0.7 deg",
+        "code: polynomials: adds 0 deg",
+        f"wrote again.json, again.c in {out}",
+        *(f"requirement 1deg@rms: {word} - 0.1 of 1 deg" for word in words),
+    ]
+    assert asked == [(f"loaded {old}", found, [Path("few.csv")], "again")]
+    assert (out / "again.json").read_text() == "{}\n"
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        *(("--config", "a.toml"), ("--init", "a.toml"), ("--certificate", "a.xml")),
+        *(("--factory", "a.csv"), ("--apply",), ("--thorough",), ("--model", "lsq")),
+    ],
+)
+def test_options_that_a_correction_does_not_take_are_refused_by_name(
+    given: tuple[str, ...], tmp_path: Path
+) -> None:
+    call = ("calibrate", "few.csv", "--onto", "old.json", "--out", tmp_path / "out", *given)
+    shown = sunatlas(*call)
+    assert shown.exit_code == 2
+    assert shown.stderr.rstrip().endswith(f"leave out {given[0]}")
+    assert not (tmp_path / "out").exists()
+    assert not Path(given[-1]).exists()

@@ -1,0 +1,106 @@
+"""The second reading of every claim: the sentence of the survey, and whether the trial is its case.
+
+`claims_review.csv` has a row a claim. A quotation is word for word from the survey's LaTeX source,
+in the line that is named; `context` is what names the sensor where the sentence does not.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Literal, get_args
+
+from benchmark.claims.rules import DIRECTORY, RulesError, Verdict, rows_of
+
+#: Whether sensor, condition and comparison of the trial are those of the sentence.
+Case = Literal["its case", "partly its case", "not its case"]
+
+REVIEW = DIRECTORY / "claims_review.csv"
+COLUMNS = (
+    "claim",
+    "line",
+    "sentence",
+    "context_line",
+    "context",
+    "detector",
+    "mask",
+    "trial",
+    "trial_detector",
+    "trial_mask",
+    "case",
+    "verdict",
+    "reason",
+)
+
+_CITATIONS = re.compile(r"\s*\\cite\{[^}]*\}")
+_MATHS = (("^{\\circ}", "°"), ("^{-1/2}", "^-1/2"), ("4\\pi", "4π"), ("$", ""))
+
+
+@dataclass(frozen=True)
+class Review:
+    """What the second reading of a claim found.
+
+    Attributes
+    ----------
+    line, sentence
+        Of the survey's source, word for word.
+    context_line, context
+        Words that name the sensor where the sentence does not; empty for none.
+    detector, mask
+        Values of the taxonomy that these words allow, or "any".
+    trial
+        Data sets, or the module that draws the readings.
+    trial_detector, trial_mask
+        Those of the trial.
+    case
+        Whether the trial is the sentence's case.
+    verdict
+        As published.
+    reason
+        Of the case.
+    """
+
+    line: str
+    sentence: str
+    context_line: str
+    context: str
+    detector: tuple[str, ...]
+    mask: tuple[str, ...]
+    trial: tuple[str, ...]
+    trial_detector: tuple[str, ...]
+    trial_mask: tuple[str, ...]
+    case: Case
+    verdict: str
+    reason: str
+
+    @property
+    def quotation(self) -> str:
+        """The sentence without marks of LaTeX."""
+        said = _CITATIONS.sub("", self.sentence)
+        for mark, plain in _MATHS:
+            said = said.replace(mark, plain)
+        return said
+
+
+def published(found: Verdict, case: Case) -> Verdict:
+    """Return the verdict on the survey's sentence: nothing refutes it but its own case."""
+    return "not reproduced here" if found == "refuted" and case != "its case" else found
+
+
+@cache
+def reviews(path: Path = REVIEW) -> Mapping[str, Review]:
+    """Return the reading of each claim; RulesError for a claim twice or a word that is none."""
+    found: dict[str, Review] = {}
+    for row in rows_of(path, COLUMNS):
+        if row["claim"] in found or row["case"] not in get_args(Case):
+            raise RulesError(f"{path.name}: {row['claim']} twice, or with case {row['case']!r}")
+        lists = {
+            name: tuple(row[name].split("; "))
+            for name in ("detector", "mask", "trial", "trial_detector", "trial_mask")
+        }
+        rest = {name: row[name] for name in COLUMNS if name != "claim" and name not in lists}
+        found[row["claim"]] = Review(**rest, **lists)  # type: ignore[arg-type] # words checked above
+    return found
