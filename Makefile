@@ -24,7 +24,7 @@ export NUMBA_NUM_THREADS = 1
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help install serve guide test test-browser test-slow test-all coverage lint bench load mutants faults faults-kills faults-load leaderboard docs lock clean
+.PHONY: help install serve guide test test-browser test-slow test-all coverage lint bench load mutants sizes leaderboard docs lock clean
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -82,26 +82,27 @@ lint: $(DEVELOPING) ## ruff, mypy (strict), the floors, prose, the guide without
 	$(BIN)/python -m tools.prose
 	$(BIN)/sunatlas guide build --strict --out out/guide
 
-bench: $(COMPILED) ## every speed and accuracy limit, as ratios measured in the same run; lists the broken ones (SEED=N repeats its frames)
-	$(BIN)/python -m tools.bench $(if $(SEED),--seed $(SEED))
+ASV := $(BIN)/asv
+ASVCONF := --config tools/asv.conf.json
+bench: $(COMPILED) ## speed and accuracy beside other code, by asv (BENCH=regex; SEED=N draws other frames)
+	$(ASV) machine $(ASVCONF) --yes
+	$(ASV) run $(ASVCONF) --environment existing:same --show-stderr \
+		--set-commit-hash $$(git rev-parse HEAD) $(if $(BENCH),--bench "$(BENCH)")
 
-load: $(COMPILED) ## thousands of random requests, then 200 clients at once, against a running service
-	$(BIN)/python -m tools.load $(if $(SEED),--seed $(SEED))
+URL ?= http://127.0.0.1:$(PORT)
+load: ## 200 users for a minute on the service at URL, by Locust (`pip install locust` first)
+	locust -f tools/locustfile.py --headless -H $(URL) -u 200 -r 50 -t 60s --only-summary
 
-mutants: $(COMPILED) ## put small faults into the code, one at a time; list those that no test notices
-	mkdir -p out
-	$(BIN)/python -m tools.mutation --workers $(WORKERS) --report out/mutants.md
+# In place: nothing may be changed meanwhile. `git diff` shows a mutant that a hard kill left.
+mutants: $(COMPILED) ## try NUMBER=100 small faults in the code, by Cosmic Ray; list those that no test notices
+	git diff --quiet
+	$(BIN)/python -m tools.mutants draw out/mutants --number $(or $(NUMBER),100) $(if $(SEED),--seed $(SEED))
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/cosmic-ray exec out/mutants/cosmic-ray.toml out/mutants/session.sqlite
+	$(BIN)/cr-report --surviving-only --show-diff out/mutants/session.sqlite
+	@echo "surviving, %: $$($(BIN)/cr-rate out/mutants/session.sqlite)"
 
-faults: $(COMPILED) ## try a thousand damaged files on every reader (minutes); renews docs/faults.md
-	$(BIN)/python -m tools.faults --report docs/faults.md
-
-faults-kills: $(COMPILED) ## kill every writing command 300 times at moments drawn by SEED, and let pairs write at once
-	mkdir -p out
-	$(BIN)/python -m tools.faults.kills --report out/faults-kills.md $(if $(SEED),--seed $(SEED))
-
-MINUTES ?= 60
-faults-load: $(COMPILED) ## 20 mixed requests a second on the service for MINUTES=60
-	$(BIN)/python -m tools.faults.load --minutes $(MINUTES) --report out/faults-load.md $(if $(SEED),--seed $(SEED))
+sizes: ## lines of Python and of code, by part
+	@$(PYTHON) -m tools.sizes
 
 leaderboard: $(SERVING) ## bring scores and leaderboard up to date with code and data
 	$(BIN)/sunatlas leaderboard update --workers $(WORKERS)

@@ -5,17 +5,22 @@ ahead of the same model, the model alone is left out. One that is stated beside 
 planned ahead of runs ahead of the model of its equation, else ahead of the simplest. One that its
 model carries out itself runs with that (`compensated_models.csv`). A model that the study carries
 out in a way of its own runs so, where an implementation does (`method_variants.csv`).
+
+The standard projection is run with its constants fitted (`FITTED`), as the survey describes a
+geometric calibration (model:geo), but for a study that states that it takes them from its drawing.
+What a study only compares is no model of its compensations.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from registry.catalogue import Catalogue
-from registry.fidelity.particulars import MethodVariant
+from registry.fidelity.particulars import DRAWN, MethodVariant
 from registry.studies import Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture, Pair, Plan
 
@@ -35,6 +40,10 @@ KIN: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {"Neural network": ("Polynomial",), "LUT": ("Polynomial",)}
 )
 """By category of models, what stands in before the simplest: a curve fitted to the same data."""
+
+FITTED: Mapping[str, tuple[str, ...]] = MappingProxyType({"spm": ("pinhole", "lsq")})
+"""What runs instead of an implementation that takes its constants from the drawing, where they are
+fitted: the first of them that there is behind the same compensations."""
 
 COMPENSATIONS = "Physics-Informed"
 """The category whose models compensate: without them the study's model runs bare."""
@@ -65,6 +74,7 @@ class FittedPipeline:
     extractor: ChosenMethod
     model: ChosenMethod
     datasets: tuple[str, ...]
+    stages: tuple[str, ...]
 
 
 class PipelinesOfStudy:
@@ -138,7 +148,10 @@ class PipelinesOfStudy:
         """Return the pipelines of the first extractors that any model fits."""
         for group in self._extractors(study, near="extractor" in near):
             found = [
-                FittedPipeline(extractor, model, tuple(pairs[extractor.name, model.name]))
+                FittedPipeline(
+                    *(extractor, model, tuple(pairs[extractor.name, model.name])),
+                    self._stages_of(study)[model.name],
+                )
                 for extractor in group
                 for model in models(study, [m for e, m in pairs if e == extractor.name])
             ]
@@ -161,6 +174,7 @@ class PipelinesOfStudy:
                     ChosenMethod(extractor, runs, variant=variant),
                     ChosenMethod(model, (value, *within), variant=variant),
                     tuple(datasets),
+                    self._stages[model],
                 )
                 for (extractor, model), datasets in pairs.items()
                 if extractor in extractors and self._is_of(model, variant)
@@ -220,10 +234,17 @@ class PipelinesOfStudy:
             if value != NO_IMPLEMENTATION_STATED and not self.facts.within(study.key, value)
             for kind in self._kinds_of(study, value)
         }
+        known = self._stages_of(study)
         usable = {
-            name: self._stages[name]
+            name: known[name]
             for name in planned
-            if all(stage in of for stage in self._stages[name][:-1])
+            if name in known and all(stage in of for stage in known[name][:-1])
+        }
+        compared = {v for v in set(of.values()) if study.role("model", v) == "compared"}
+        usable = {
+            name: own
+            for name, own in usable.items()
+            if len(own) == 1 or of.get(own[-1]) not in compared
         }
         behind_stated = {
             model for value in set(of.values()) for model in self.facts.behind(study.key, value)
@@ -257,7 +278,8 @@ class PipelinesOfStudy:
 
         A compensation is no model to stand in for where the study states another.
         """
-        bare = {n: self._stages[n] for n in planned if len(self._stages[n]) == 1}
+        known = self._stages_of(study)
+        bare = {n: known[n] for n in planned if n in known and len(known[n]) == 1}
         of = [v for v in study.of("model") if v != NO_IMPLEMENTATION_STATED]
         category = self.catalogue.taxonomy.category
         models = [v for v in of if category("model", v) != COMPENSATIONS] or of
@@ -294,8 +316,9 @@ class PipelinesOfStudy:
     def _chosen_method(
         self, study: Study, name: str, of: Mapping[str, str], stands_for: str = ""
     ) -> ChosenMethod:
-        run = [of[stage] for stage in self._stages[name] if stage in of]
-        unsaid = next((of[s] for s in self._stages[name] if of.get(s, s) != s), "")
+        own = self._stages_of(study)[name]
+        run = [of[stage] for stage in own if stage in of]
+        unsaid = next((of[s] for s in own if of.get(s, s) != s), "")
         missed = next(filter(None, (self.facts.variant(study.key, value) for value in run)), None)
         if missed and self._is_of(name, missed):
             missed = None
@@ -303,6 +326,26 @@ class PipelinesOfStudy:
         return ChosenMethod(
             name, tuple(dict.fromkeys((*run, *carried))), stands_for, unsaid, None, missed
         )
+
+    def _stages_of(self, study: Study) -> Mapping[str, tuple[str, ...]]:
+        """Return the stages of models as they run for a study: projections with fitted constants.
+
+        A study of the least-squares model has both, that and what it is a refinement of.
+        """
+        if "LSQ" in study.of("model") or self.facts.calibration(study.key) == DRAWN:
+            return self._stages
+        return self._fitted_stages
+
+    @cached_property
+    def _fitted_stages(self) -> Mapping[str, tuple[str, ...]]:
+        found = dict(self._stages)
+        for name, own in self._stages.items():
+            ahead, end = name[: -len(name.split(" + ")[-1])], name.split(" + ")[-1]
+            fitted = [ahead + form for form in FITTED.get(end, ()) if ahead + form in found]
+            if fitted:
+                found[fitted[0]] = own
+                del found[name]
+        return found
 
     def _kinds_of(self, study: Study, value: str) -> tuple[str, ...]:
         """Return the kinds that run for a model of a study: the one of its variant, if any."""

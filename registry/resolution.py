@@ -11,26 +11,35 @@ has a cell. What is decided here, because the mapping does not say it:
   it there: its score is not the study's own.
 - A study is shown under what it is run for (`registry.fidelity.purposes`). Where its own sensor
   does not show that, it stands on the nearest that does, if it is nearer to the study so.
-- How near its run is to the study is graded (`registry.fidelity.grading`).
+- How near its run is to the study is graded (`registry.fidelity.grading`), by what is known of its
+  sensor, calibration and accuracy too (`registry.fidelity.evidence`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Literal
 
 from registry import catalogue as implementations
 from registry import studies as registered
 from registry.catalogue import Catalogue
-from registry.fidelity.grading import Fidelity, fidelity
+from registry.fidelity import evidence
+from registry.fidelity.evidence import Scores
+from registry.fidelity.gaps import (
+    architecture_gaps,
+    empty_cells,
+    method_gaps,
+    nearest_gaps,
+)
+from registry.fidelity.grading import Fidelity, fidelity, graded
 from registry.fidelity.particulars import Purpose
 from registry.fidelity.purposes import PURPOSES, DataSet, DatasetCondition, purposes, settings
-from registry.fidelity.runnable import ESSENTIAL, Gap, RunnablePipeline, strongest
-from registry.fitting import ChosenMethod, FittedPipeline, PipelinesOfStudy, stages
+from registry.fidelity.runnable import Gap, RunnablePipeline, strongest
+from registry.fitting import ChosenMethod, FittedPipeline, PipelinesOfStudy
 from registry.sensors import BASES, SENSOR, Basis, Part, Sensor, cell, sensors
-from registry.studies import METHODS, Facts, Study
+from registry.studies import Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture, Plan
 
 State = Literal["complete", "partial", "none"]
@@ -50,6 +59,7 @@ class Resolution:
     state: State
     pipelines: tuple[RunnablePipeline, ...]
     gaps: tuple[Gap, ...]
+    leading: tuple[RunnablePipeline, ...] = ()
 
     @property
     def best_pipeline(self) -> RunnablePipeline | None:
@@ -58,8 +68,12 @@ class Resolution:
 
     @property
     def strongest_pipelines(self) -> Sequence[RunnablePipeline]:
-        """The pipelines that rest on most, whose first settings the study is judged by."""
-        return strongest(self.pipelines)
+        """The pipelines whose first settings the study is judged by.
+
+        Of those whose methods it does not only compare, on a sensor that differs least from its own
+        and best is made after it, those that rest on most.
+        """
+        return self.leading or strongest(self.pipelines)
 
     def to_dict(self) -> dict[str, object]:
         """As in the HTTP answer."""
@@ -79,6 +93,7 @@ def resolve(
     data_sets: Mapping[str, DataSet] | None = None,
     catalogue: Catalogue | None = None,
     facts: Facts | None = None,
+    scores: Scores | None = None,
 ) -> Resolution:
     """Every pipeline of a study that is planned, and every gap.
 
@@ -93,11 +108,13 @@ def resolve(
         missing shows its nominal condition alone.
     catalogue, facts : optional
         What is implemented and the studies; ours and the survey's by default.
+    scores : optional
+        Own errors measured here, for its grade; without them no score is asked for.
     """
     known = facts or registered.facts()
     found = known.study(study) if isinstance(study, str) else study
     fitting = PipelinesOfStudy(plan, catalogue or implementations.catalogue(), known)
-    return _resolve(found, fitting, data_sets or {})
+    return _resolve(found, fitting, data_sets or {}, scores)
 
 
 def resolve_all(
@@ -106,11 +123,13 @@ def resolve_all(
     data_sets: Mapping[str, DataSet] | None = None,
     catalogue: Catalogue | None = None,
     facts: Facts | None = None,
+    scores: Scores | None = None,
 ) -> dict[str, Resolution]:
     """`resolve` of every study, by key."""
     known = facts or registered.facts()
     fitting = PipelinesOfStudy(plan, catalogue or implementations.catalogue(), known)
-    return {key: _resolve(study, fitting, data_sets or {}) for key, study in known.studies.items()}
+    sets = data_sets or {}
+    return {key: _resolve(one, fitting, sets, scores) for key, one in known.studies.items()}
 
 
 def resolve_later(
@@ -120,28 +139,87 @@ def resolve_later(
     *,
     data_sets: Mapping[str, DataSet] | None = None,
     catalogue: Catalogue | None = None,
+    scores: Scores | None = None,
 ) -> dict[str, Resolution]:
-    """`resolve` of every study after the survey, by key, with relatives among the survey's alone.
+    """`resolve` of studies the survey does not map, by key; relatives are the survey's alone.
 
     Parameters
     ----------
-    plan, data_sets, catalogue : as of `resolve`
+    plan, data_sets, catalogue, scores : as of `resolve`
     survey, every : facts of the survey, and of both editions
     """
     later = (study for key, study in every.studies.items() if key not in survey.studies)
     fitting = PipelinesOfStudy(plan, catalogue or implementations.catalogue(), survey)
-    return {study.key: _resolve(study, fitting, data_sets or {}) for study in later}
+    return {study.key: _resolve(study, fitting, data_sets or {}, scores) for study in later}
 
 
 def _resolve(
-    study: Study, fitting: PipelinesOfStudy, data_sets: Mapping[str, DataSet]
+    study: Study,
+    fitting: PipelinesOfStudy,
+    data_sets: Mapping[str, DataSet],
+    scores: Scores | None,
 ) -> Resolution:
+    found, ran = _place(study, fitting, data_sets)
+    if not found.pipelines:
+        return found
+    facts, wanted = fitting.facts, found.fidelity.purposes
+    leading = _leading(study, facts, found.pipelines, data_sets)
+    methods = found.fidelity.departures
+    missing = any(one.part == "model" and not one.unknown for one in methods)
+    departures = (
+        *evidence.identity(study),
+        *evidence.sensor(study, facts, leading, data_sets),
+        *evidence.parts(study, facts),
+        *methods,
+        # of a model that does not run its calibration is no second difference
+        *(
+            ()
+            if missing
+            else evidence.calibration(study, facts, leading, data_sets, fitting.catalogue)
+        ),
+        *(() if scores is None else evidence.score(study, facts, leading, scores)),
+    )
+    pipelines = found.pipelines
+    grade = graded(
+        *(study, facts, departures, wanted), pipelines=pipelines, leading=leading, ran=ran
+    )
+    return replace(found, fidelity=grade, leading=tuple(leading))
+
+
+def _leading(
+    study: Study,
+    facts: Facts,
+    pipelines: Sequence[RunnablePipeline],
+    data_sets: Mapping[str, DataSet],
+) -> Sequence[RunnablePipeline]:
+    """Return the pipelines that a study is judged by: see `Resolution.strongest_pipelines`."""
+
+    def differs(one: RunnablePipeline) -> tuple[int, bool]:
+        at = data_sets.get(one.settings[0].dataset, DataSet(one.settings[0].dataset))
+        others = evidence.differing(study, facts, at, (one.detector, one.mask))
+        return len(others), study.key not in at.follows
+
+    own = [
+        one
+        for one in pipelines
+        if study.role("extractor", one.extractor_taxonomy) != "compared"
+        and study.role("model", one.model_taxonomy) != "compared"
+    ]
+    numbers = {one: differs(one) for one in own or pipelines}
+    least = min(numbers.values())
+    return strongest([one for one, number in numbers.items() if number == least])
+
+
+def _place(
+    study: Study, fitting: PipelinesOfStudy, data_sets: Mapping[str, DataSet]
+) -> tuple[Resolution, Sequence[FittedPipeline]]:
+    """Resolve a study on its own sensor, or on the nearest that shows what it is run for."""
     facts = fitting.facts
     on = sensors(study, facts, fitting.plan, lambda pair: fitting.count_own_methods(study, pair))
     wanted = purposes(study, facts)
     own = _resolve_all(study, on, fitting, data_sets, wanted)
-    shown = all(departure.part != "condition" for departure in own.fidelity.departures)
-    if not wanted or (own.pipelines and shown):
+    shown = all(departure.part != "condition" for departure in own[0].fidelity.departures)
+    if not wanted or (own[0].pipelines and shown):
         return own
     elsewhere = (
         _resolve_all(study, (sensor,), fitting, data_sets, wanted)
@@ -150,7 +228,8 @@ def _resolve(
     return min((own, *elsewhere), key=_remoteness)
 
 
-def _remoteness(found: Resolution) -> tuple[bool, int]:
+def _remoteness(one: tuple[Resolution, Sequence[FittedPipeline]]) -> tuple[bool, int]:
+    found, _ = one
     return not found.pipelines, len(found.fidelity.departures)
 
 
@@ -186,27 +265,30 @@ def _resolve_all(
     fitting: PipelinesOfStudy,
     data_sets: Mapping[str, DataSet],
     wanted: Mapping[Purpose, str],
-) -> Resolution:
-    """Resolve a study on given sensors."""
+) -> tuple[Resolution, Sequence[FittedPipeline]]:
+    """Resolve a study on given sensors; return what ran beside it."""
     fitted = fitting.pipelines_by_architecture(study, (sensor.architecture for sensor in on))
     pipelines = tuple(
         _pipeline(
             *(study, sensor, one, fitting.catalogue),
-            at=settings(study, wanted, one.datasets, data_sets),
+            at=settings(
+                *(study, wanted, one.datasets, data_sets),
+                lambda at: evidence.distance(study, fitting.facts, at),
+            ),
         )
         for sensor in on
         for one in fitted[sensor.architecture]
     )
     ran = [one for found in fitted.values() for one in found]
     gaps = (
-        *_empty_cells(study, pipelines),
-        *_architecture_gaps(study, fitting.plan, pipelines),
-        *_method_gaps(study, ran, on, fitting),
-        *_nearest_gaps(study),
+        *empty_cells(study, pipelines),
+        *architecture_gaps(study, fitting.plan, pipelines),
+        *method_gaps(study, ran, on, fitting),
+        *nearest_gaps(study),
     )
     state: State = "none" if not pipelines else "partial" if gaps else "complete"
     grade = fidelity(study, fitting.facts, pipelines, ran, wanted)
-    return Resolution(study.key, grade, state, pipelines, gaps)
+    return Resolution(study.key, grade, state, pipelines, gaps), ran
 
 
 def _pipeline(
@@ -216,7 +298,7 @@ def _pipeline(
     catalogue: Catalogue,
     at: tuple[DatasetCondition, ...],
 ) -> RunnablePipeline:
-    extractor, model = catalogue.extractors[one.extractor.name], catalogue.models[one.model.name]
+    extractor = catalogue.extractors[one.extractor.name]
     parts = {
         "detector": sensor.detector,
         "mask": sensor.mask,
@@ -228,8 +310,8 @@ def _pipeline(
         extractor=one.extractor.name,
         model=one.model.name,
         extractor_taxonomy=extractor.about.taxonomy,
-        model_taxonomy=model.about.taxonomy,
-        stages=stages(model),
+        model_taxonomy=one.stages[-1],
+        stages=one.stages,
         datasets=one.datasets,
         settings=at,
         basis=MappingProxyType({a: part.basis for a, part in parts.items()}),
@@ -262,101 +344,3 @@ def _stand_in(attribute: str, chosen: ChosenMethod) -> str:
     if chosen.stands_for == NO_IMPLEMENTATION_STATED:
         return f"the survey states no {attribute}; the simplest that fits the sensor is used"
     return f"used instead of {chosen.stands_for}, which is not implemented for this sensor"
-
-
-def _empty_cells(study: Study, pipelines: Sequence[RunnablePipeline]) -> list[Gap]:
-    """Return a gap for each essential attribute without a value, with what fills it."""
-    gaps = []
-    for attribute in ESSENTIAL:
-        if study.of(attribute):
-            continue
-        known = [p.assumed for p in pipelines if attribute in p.assumed]
-        rules = dict.fromkeys(rule[attribute] for rule in known)
-        filled = f"; filled: {' and '.join(rules)}" if rules else ""
-        gaps.append(Gap(attribute, "", f"the mapping states no value{filled}"))
-    return gaps
-
-
-def _architecture_gaps(
-    study: Study, plan: Plan, pipelines: Sequence[RunnablePipeline]
-) -> list[Gap]:
-    """Return a gap for every detector and mask that no pipeline shows, with the reason."""
-    gaps = [
-        Gap("architecture", f"{detector} + {mask}", "no data set simulates this architecture")
-        for detector, mask in study.architectures
-        if (detector, mask) not in plan
-        and not all(
-            any(getattr(p, attribute) == value for p in pipelines)
-            for attribute, value in zip(SENSOR, (detector, mask), strict=True)
-        )
-    ]
-    for attribute, at in zip(SENSOR, (0, 1), strict=True):
-        for value in study.of(attribute):
-            simulated = [pair for pair in study.architectures if pair[at] == value and pair in plan]
-            if simulated and not any(getattr(p, attribute) == value for p in pipelines):
-                where = _join(" + ".join(pair) for pair in simulated)
-                reason = f"none of the study's methods fits a data set of {where}"
-                gaps.append(Gap(attribute, value, reason))
-    return gaps
-
-
-def _method_gaps(
-    study: Study, ran: Sequence[FittedPipeline], on: Sequence[Sensor], fitting: PipelinesOfStudy
-) -> list[Gap]:
-    """Return a gap for every extractor and model that no pipeline runs as it is stated."""
-    where = _join(dict.fromkeys(" + ".join(sensor.architecture) for sensor in on))
-    gaps = []
-    for attribute in METHODS:
-        run = {value for one in ran for value in getattr(one, attribute).runs}
-        for value in study.of(attribute):
-            if value in run or (value == NO_IMPLEMENTATION_STATED and ran):
-                continue
-            reason = _why_not(attribute, value, where, fitting)
-            instead = dict.fromkeys(
-                getattr(one, attribute).name
-                for one in ran
-                if getattr(one, attribute).stands_for == value
-            )
-            if instead:
-                reason += f"; {_join(instead)} is used instead"
-            gaps.append(Gap(attribute, value, reason))
-    return gaps
-
-
-def _nearest_gaps(study: Study) -> list[Gap]:
-    """Return a gap for every value that is only the nearest to what the study has."""
-    return [
-        Gap(attribute, value, f"the study has {name.name}, to which this is the nearest known here")
-        for (attribute, value), name in study.names.items()
-        if name.is_nearest
-    ]
-
-
-def _why_not(attribute: str, value: str, where: str, fitting: PipelinesOfStudy) -> str:
-    """Say why nothing runs a value: nothing implements it, or it fits no data set."""
-    known = fitting.catalogue
-    kinds = fitting.kinds(attribute, value)
-    if value == NO_IMPLEMENTATION_STATED:
-        return f"no simple {attribute} fits the study's other methods"
-    asked: list[set[str]] = []
-    if attribute == "extractor":
-        extractors = [cls for kind in kinds for cls in known.extractors_for(kind)]
-        reads = {str(cls.about.observation) for cls in extractors}
-    else:
-        models = [m for m in known.models.values() if set(stages(m)) & set(kinds)]
-        reads = {str(kind) for m in models for kind in m.about.accepts}
-        asked = [{*m.about.needs, *m.about.context} for m in models]
-    if not reads:
-        listed = value if kinds == (value,) else f"any of {', '.join(kinds)}"
-        return f"no {attribute} implements {listed}"
-    if not where:
-        return "no data set simulates an architecture of the study"
-    needs = sorted(set.intersection(*asked)) if asked else []
-    return (
-        f"reads {_join(sorted(reads))}{' and needs ' * bool(needs)}{', '.join(needs)}; "
-        f"no data set of {where} offers that to it with the study's other methods"
-    )
-
-
-def _join(words: Iterable[str]) -> str:
-    return " or ".join(words)

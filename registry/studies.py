@@ -16,10 +16,13 @@ from registry.fidelity.particulars import (
     CompensatedModel,
     MethodVariant,
     PurposeRule,
+    RunFact,
     compensated_model,
     conditions,
+    hardware_facts,
     method_variant,
     purpose_rule,
+    run_fact,
 )
 from registry.mapping.advice import Advice
 from registry.mapping.mapping_tables import Tables, rows_of
@@ -103,6 +106,12 @@ class Facts:
     purposes: tuple[PurposeRule, ...] = ()
     compensated_models: tuple[CompensatedModel, ...] = ()
     variants: tuple[MethodVariant, ...] = ()
+    run_facts: Mapping[str, tuple[RunFact, ...]] = field(default_factory=dict)
+    """Study -> what its run is judged by beyond its values."""
+
+    def calibration(self, study: str) -> str:
+        """Say how a study comes by the constants of its model; empty where that is not known."""
+        return next((f.value for f in self.run_facts.get(study, ()) if f.fact == "calibration"), "")
 
     def variant(self, study: str, model: str) -> MethodVariant | None:
         """Return what is said of how a study carries out one of its models."""
@@ -136,7 +145,7 @@ class Facts:
 _TABLES = (
     *("studies", "attributes", "taxonomy", "model_families", "roles", "architectures"),
     *("defaults", "advice", "feature_assessment", "aliases"),
-    *("purposes", "compensated_models", "method_variants"),
+    *("purposes", "compensated_models", "method_variants", "run_facts", "hardware"),
     *EXTENSION_TABLES,
 )
 
@@ -178,7 +187,7 @@ def _facts(edition: Choice) -> Facts:
 
 
 def study_from(rows: Mapping[str, Sequence[Mapping[str, str]]]) -> Study:
-    """Return a study after the survey that is in no table yet.
+    """Return a study the survey does not map that is in no table yet.
 
     Parameters
     ----------
@@ -293,7 +302,18 @@ def facts_from(tables: Tables) -> Facts:
         tuple(map(purpose_rule, rows_of(tables.purposes))),
         tuple(map(compensated_model, rows_of(tables.compensated_models))),
         tuple(map(method_variant, rows_of(tables.method_variants))),
+        _run_facts(tables),
     )
+
+
+def _run_facts(tables: Tables) -> Mapping[str, tuple[RunFact, ...]]:
+    """Return what runs are judged by, by study: its own rows, then what hardware says of it."""
+    found: dict[str, tuple[RunFact, ...]] = {}
+    rows = map(run_fact, rows_of(getattr(tables, "run_facts", ())))
+    built = (f for row in rows_of(getattr(tables, "hardware", ())) for f in hardware_facts(row))
+    for one in (*rows, *built):
+        found[one.study] = (*found.get(one.study, ()), one)
+    return MappingProxyType(found)
 
 
 def _names(tables: Tables) -> dict[str, dict[tuple[str, str], NameInStudy]]:

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from survey_data.findings.report import FidelityReport, fidelity
     from survey_data.importing.columns import ColumnMapping, match_columns
     from survey_data.importing.identities import BibliographyPlan, import_bibliography
-    from survey_data.importing.plan import Difference, ImportPlan, differences, plan_import
-    from survey_data.importing.table_import import apply_import, import_table
+    from survey_data.importing.plan import Difference, ImportPlan, plan_import
+    from survey_data.importing.table_import import import_table
     from survey_data.importing.table_reader import read_table
     from survey_data.problems import SurveyDataError, SurveyImportError
     from survey_data.tables import SurveyTables, load
@@ -33,8 +33,6 @@ __all__ = [
     "SurveyDataError",
     "SurveyImportError",
     "SurveyTables",
-    "apply_import",
-    "differences",
     "fidelity",
     "import_bibliography",
     "import_table",
@@ -56,8 +54,6 @@ _HOMES = {
     "SurveyDataError": "problems",
     "SurveyImportError": "problems",
     "SurveyTables": "tables",
-    "apply_import": "importing.table_import",
-    "differences": "importing.plan",
     "fidelity": "findings.report",
     "import_bibliography": "importing.identities",
     "import_table": "importing.table_import",

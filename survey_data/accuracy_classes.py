@@ -9,6 +9,8 @@ import pandas as pd
 
 #: Bases of what the survey or its authors print: it stands even where it contradicts the limits.
 PRINTED = frozenset({"survey-table", "authors-table", "survey-text"})
+#: How a number of three digits may lie beside the limit that it is.
+_ROUNDED = (0.995, 1.0, 1.005)
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,8 @@ def class_disagreements(
     """Yield the row of each class that its study's number contradicts, and the two.
 
     Numbers are compared as printed, whatever their kind; a study without one, or with a cell that
-    is no angle, contradicts nothing.
+    is no angle, contradicts nothing. A number that is the limit of two classes, as
+    rounded, contradicts neither: "better than one arcminute" is written 0.0167, of the finer.
     """
     known = attributes[attributes["value"].notna()]
     reported = known[known["attribute"] == "accuracy_deg"]
@@ -73,7 +76,7 @@ def class_disagreements(
             continue
         degrees = float(str(number.degrees))
         by_limits = _within(classes, degrees)
-        if by_limits != row.value:
+        if row.value not in {_within(classes, degrees * by) for by in _ROUNDED}:
             printed = not PRINTED.isdisjoint({row.basis, number.basis})
             yield (
                 index,

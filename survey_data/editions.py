@@ -1,12 +1,15 @@
-"""The editions of the facts: the survey's studies, frozen, and those that came after it.
+"""The editions of the facts: the survey's studies, frozen, and studies that it does not map.
 
-The survey's tables are what its counts and findings are checked on, and stay as they are. Later
-studies stand in tables of the same columns in `extension/`; the edition ``all`` is both together.
+The survey's tables are what its counts and findings are checked on, and stay as they are. Studies
+that it does not map stand in tables of the same columns in `extension/`, some of its own years and
+some later; the edition ``all`` is both together.
 """
 
 from __future__ import annotations
 
+import csv
 import hashlib
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -27,7 +30,7 @@ SURVEY, EXTENSION = "survey", "extension"
 """Edition of a single study."""
 
 FOLDER = "extension"
-"""Folder of the tables of later studies."""
+"""Folder of the tables of studies that the survey does not map."""
 
 BY_STUDY = ("studies", "attributes", "roles", "architectures")
 """Tables of studies, which the extension has of its own."""
@@ -40,12 +43,15 @@ class Edition(JsonData):
     """An edition as it is cited.
 
     ``version`` is that of the data package, then the number of studies and the first digits of the
-    SHA-256 of the edition's tables: it changes with every cell and with nothing else.
+    SHA-256 of the edition's tables: it changes with every cell and with nothing else. `last_year`
+    is that of its latest study, and `later` counts those after the survey's latest.
     """
 
     name: str
     title: str
     studies: int
+    last_year: int
+    later: int
     version: str
 
 
@@ -57,22 +63,29 @@ def editions(directory: Path = DATA_DIRECTORY) -> tuple[Edition, Edition]:
     OSError
         A table cannot be read.
     """
-    survey = [name for name in table_names() if name not in EXTENSION_TABLES]
+    mapped, others = _years("studies", directory), _years("extension_studies", directory)
+    last = max(mapped)
+    tables = [name for name in table_names() if name not in EXTENSION_TABLES]
+    title = "Studies the survey does not map"
     return (
-        _edition(SURVEY, "Studies of the survey", "studies", survey, directory),
-        _edition(
-            EXTENSION, "Studies after the survey", "extension_studies", EXTENSION_TABLES, directory
-        ),
+        Edition(SURVEY, "Studies of the survey", *_counts(mapped, last, tables, directory)),
+        Edition(EXTENSION, title, *_counts(others, last, EXTENSION_TABLES, directory)),
     )
 
 
-def _edition(
-    name: str, title: str, table: str, tables: list[str] | tuple[str, ...], folder: Path
-) -> Edition:
+def _years(table: str, folder: Path) -> list[int]:
+    """Return the year of each study of a table, 0 where it is unknown."""
+    with (folder / file_name(table)).open(encoding="utf-8", newline="") as file:
+        return [int(row["year"] or 0) for row in csv.DictReader(file)]
+
+
+def _counts(
+    years: list[int], last: int, tables: Iterable[str], folder: Path
+) -> tuple[int, int, int, str]:
+    """Return what an edition says of its studies, of these years, and of its tables."""
     found = hashlib.sha256()
     for file in map(file_name, tables):
         data = (folder / file).read_bytes()
         found.update(f"{file} {len(data)}\n".encode() + data)
-    rows = (folder / file_name(table)).read_bytes().count(b"\n") - 1  # one record a line
-    version = f"{descriptor()['version']}+{rows}.{found.hexdigest()[:8]}"
-    return Edition(name, title, rows, version)
+    version = f"{descriptor()['version']}+{len(years)}.{found.hexdigest()[:8]}"
+    return len(years), max(years, default=0), sum(year > last for year in years), version

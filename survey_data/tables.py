@@ -53,6 +53,7 @@ class SurveyTables:
     purposes: pd.DataFrame
     compensated_models: pd.DataFrame
     method_variants: pd.DataFrame
+    run_facts: pd.DataFrame
     architectures: pd.DataFrame
     roles: pd.DataFrame
     advice: pd.DataFrame
@@ -76,8 +77,8 @@ class SurveyTables:
         Parameters
         ----------
         name : {"survey", "all"}
-            ``all`` has the rows of later studies below the survey's, in `studies`, `attributes`,
-            `roles` and `architectures`.
+            ``all`` has the rows of studies that the survey does not map below its own, in
+            `studies`, `attributes`, `roles` and `architectures`.
         """
         frames = {"studies": self.studies.assign(edition=SURVEY)}
         if name == "all":
@@ -131,7 +132,7 @@ RESTING = {
     "compensated_models": ("compensation", "model"),
     "method_variants": ("model",),
 }
-#: Tables that an import may so empty, and those of what came after the survey.
+#: Tables that an import may so empty, and those of what the survey does not map.
 MAY_BE_EMPTY = frozenset({*RESTING, *EXTENSION_TABLES})
 
 

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tools import commit_subject
+from tools import commit_subject, prose, sizes
+from tools.bench.paired import OverLimitError, at_most, ratio
 from tools.lock_beyond import PIN, beyond
 
 ROOT = Path(__file__).parents[1]
@@ -97,3 +98,59 @@ def test_actions_of_others_are_pinned_by_digest_with_their_version() -> None:
     assert len(used) > 20
     for use in used:
         assert use.startswith("./") or re.fullmatch(r"\S+@[0-9a-f]{40} # v\d+\.\d+\.\d+", use)
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("An answer without a Sun is a false Sun.", "false detection"),
+        ("It stands for a sensor.", "represents"),
+        ("The error is the the largest.", "repeated"),
+    ],
+)
+def test_a_fault_of_prose_is_named(text: str, fault: str) -> None:
+    assert fault in " ".join(prose.faults(text))
+    assert prose.faults("The error is small.") == []
+
+
+def test_prose_is_read_without_code_and_marks() -> None:
+    page = "# Title\n\nOne *line*\nand [more](a.md) of `code`.\n\n```sh\nls\n```\n\n- item\n"
+    said = [text for _, text in prose.markdown(page)]
+    assert said == ["Title", "One line\nand more of ….", "item"]
+    page = "<p>Errors of {{ name }} are <b>small</b>.</p>{% if a %}<style>p {}</style>{% endif %}"
+    assert prose.template(page).splitlines()[0] == "Errors of … are small."
+
+
+def test_lines_of_code_are_those_without_blanks_comments_and_docstrings() -> None:
+    source = (
+        '"""Module."""\n\n# why\ndef f(x):\n    """Say."""\n    return (\n        x  # it\n    )\n'
+    )
+    assert sizes.code_lines(source) == 4
+
+
+def test_a_figure_above_its_limit_or_without_a_number_is_no_result() -> None:
+    assert at_most(2.0, 2.0) == 2.0
+    assert at_most(None, 9.0) == 9.0
+    for value in (2.1, float("nan")):
+        with pytest.raises(OverLimitError):
+            at_most(2.0, value)
+
+
+def test_a_ratio_is_of_the_best_times() -> None:
+    now = [0.0]
+    spent = iter([9.0, 9.0, 2.0, 6.0, 1.0, 5.0])
+
+    def step() -> None:
+        now[0] += next(spent)
+
+    assert ratio(step, step, repeats=2, clock=lambda: now[0]) == 5.0
+
+
+@pytest.mark.parametrize("module", ["registry/answer.py", "algorithms/models/filters.py"])
+def test_a_mutant_is_tried_with_the_tests_that_import_its_module_first(module: str) -> None:
+    pytest.importorskip("cosmic_ray")
+    from tools import mutants
+
+    first, *others = mutants.tests_of(module)
+    assert module.removesuffix(".py").rpartition("/")[2] in first.read_text("utf-8")
+    assert len(set(others)) == len(others) > 3

@@ -18,6 +18,7 @@ from typing import Any
 
 import survey_data
 from api.citations import bibtex, ris
+from api.deposit.code_archive import archive_of, write_code
 from api.deposit.crate import CRATE, crate
 from api.deposit.database import DATABASE, write_database
 from api.deposit.deposit_tables import MeasuredTable, frames_table, measured_tables, read_descriptor
@@ -91,6 +92,7 @@ def build(
     survey: Path = SURVEY,
     published: Path = PUBLISHED,
     frames: Sequence[str] | None = None,
+    code: Path | None = None,
     progress: ProgressCallback = silent,
 ) -> Bundle:
     """Build the bundle at `out` and its zip at `out`.zip, both or neither.
@@ -101,12 +103,15 @@ def build(
     survey : directory of the survey's tables and their datapackage.json
     published : directory of the published results
     frames : data sets of which samples go along; all by default
+    code : source distribution that goes along; made of this checkout by default
     progress : called as ``progress(done, total, what)`` in data sets, then tables and zip
 
     Raises
     ------
     DepositError
         Where `out` holds anything but an earlier bundle, or the survey's tables have problems.
+    CodeArchiveError
+        Where there is no code to put in.
     FileNotFoundError
         Where there are no published results, or a licence is missing.
     ValueError
@@ -130,6 +135,7 @@ def build(
     total = len(names) + 2
     with replace_all(out, archive) as (bundle, zipped):
         bundle.mkdir()
+        write_code(bundle, code)
         exported = write_frames(
             bundle, names, pins, lambda done, _, what, _share=None: progress(done, total, what)
         )
@@ -157,7 +163,7 @@ def fill(
     *,
     other_forms: Callable[[Path, Mapping[str, Any]], None] = write_other_forms,
 ) -> None:
-    """Write all of a bundle beside the samples that lie in it.
+    """Write all of a bundle beside the samples and the code that lie in it.
 
     Parameters
     ----------
@@ -176,7 +182,9 @@ def fill(
     for table in measured:
         _write(bundle / "benchmark" / f"{table.name}.csv", table.text)
     errors = write_errors(bundle, sources.published_folder)
-    descriptor = package(bundle, who, described, measured, exported, errors=errors)
+    descriptor = package(
+        bundle, who, described, measured, exported, errors=errors, code=archive_of(bundle)
+    )
     _write_json(bundle / DESCRIPTOR, descriptor)
     other_forms(bundle, descriptor)
     for name, document in documents(bundle, who, descriptor).items():
@@ -209,7 +217,7 @@ def fill(
 
 
 def _write_bibliography(bundle: Path) -> None:
-    for table, name in (("studies", "studies"), ("extension_studies", "later-studies")):
+    for table, name in (("studies", "studies"), ("extension_studies", "unmapped-studies")):
         path = bundle / "survey" / file_name(table)
         with path.open(encoding="utf-8", newline="") as file:
             studies = list(csv.DictReader(file))

@@ -17,11 +17,13 @@ _MEDIA_TYPES = {
     ".bib": "application/x-bibtex",
     ".cff": "application/yaml",
     ".csv": "text/csv",
+    ".gz": "application/gzip",
     ".json": "application/json",
     ".md": "text/markdown",
     ".npz": "application/zip",
     ".parquet": "application/vnd.apache.parquet",
     ".png": "image/png",
+    ".py": "text/x-python",
     ".ris": "application/x-research-info-systems",
     ".sqlite": "application/vnd.sqlite3",
     ".txt": "text/plain",
@@ -31,6 +33,7 @@ _NAMES = {
     "card.json": "Card of a data set: what the arrays are",
     "calibration.npz": "Samples to calibrate with",
     "test.npz": "Samples to test with",
+    "repeat.npz": "Samples of poses held still",
     "references.npz": "Flat and dark readings",
 }
 _LICENCES = {
@@ -50,8 +53,8 @@ _KINDS = {
     "datapackage.json": "Types, units, keys and meaning of every column (Data Package v2).",
     "sun-sensor-atlas.sqlite": "Every table in one SQLite file, with keys.",
     "studies.bib": "The identified studies as BibTeX.",
-    "later-studies.bib": "The studies after the survey as BibTeX.",
-    "later-studies.ris": "The studies after the survey as RIS.",
+    "unmapped-studies.bib": "The studies the survey does not map as BibTeX.",
+    "unmapped-studies.ris": "The studies the survey does not map as RIS.",
     "studies.ris": "The identified studies as RIS.",
     "card.json": "Card",
     "checksums-sha256.txt": "Checksums",
@@ -59,6 +62,8 @@ _KINDS = {
     "references.npz": "Flat and dark readings",
     "calibration.csv": "Table of the calibration split",
     "test.csv": "Table of the test split",
+    "repeat.csv": "Table of the repeat split",
+    "rescore.py": "Installs the code and measures scores again from the samples.",
 }
 
 

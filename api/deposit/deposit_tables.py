@@ -114,7 +114,7 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
         _pins(store),
         *([_sweeps(swept)] if swept else []),
         *_curves(curves.published_curves(published), foreign),
-        *_measured_tables(foreign),
+        *_measured_tables(foreign, scores),
         *_claims(ledger(published)),
     ]
 
@@ -125,15 +125,17 @@ def frames_table(rows: Sequence[Mapping[str, Any]]) -> MeasuredTable:
         "frames",
         SampleFile,
         "Samples in this bundle",
-        "Which samples of the standard data sets lie in frames/: the first so many of each split, "
-        "or all, in the nominal condition. The code makes the others.",
+        "Which samples of the standard data sets lie in frames/: every split of the nominal "
+        "condition, whole. The code makes those of other conditions and units.",
         rows,
         primary=("dataset", "condition", "split"),
         foreign={"dataset": ("datasets", "name")},
     )
 
 
-def _measured_tables(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTable]:
+def _measured_tables(
+    foreign: Mapping[str, tuple[str, str]], scores: Sequence[Mapping[str, Any]]
+) -> list[MeasuredTable]:
     """Make the tables that follow from facts and plan, with the numbers of none."""
     return [
         _table(
@@ -142,7 +144,7 @@ def _measured_tables(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTab
             "Resolution of the studies",
             "Runs of each study, with grade: a row per pipeline, data set and condition. Basis of "
             "each part, and the rule that fills it where the study does not state it.",
-            derived_tables.resolution(),
+            derived_tables.resolution(scores),
             primary=("study", *_PLACE, "dataset", "condition", "extractor", "model"),
             foreign={**foreign, "study": ("all_studies", "study")},
         ),
@@ -150,7 +152,7 @@ def _measured_tables(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTab
             "all_studies",
             IdentifiedStudy,
             "Studies of both editions",
-            "The survey's studies and those after it, distinguished by their edition.",
+            "The survey's studies and those it does not map, distinguished by their edition.",
             derived_tables.all_studies(),
             primary=("study",),
             foreign={"edition": ("editions", "edition")},
@@ -159,7 +161,7 @@ def _measured_tables(foreign: Mapping[str, tuple[str, str]]) -> list[MeasuredTab
             "editions",
             DepositedEdition,
             "Editions of the studies",
-            "The survey's studies, and those after it: each with the version to cite.",
+            "The survey's studies, and those it does not map: each with the version to cite.",
             derived_tables.edition_rows(),
             primary=("edition",),
         ),

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import survey_data
+from benchmark.metrics.ranking import own_errors
 from benchmark.plan.combinations import scorable_plan
 from benchmark.plan.shown import data_sets
 from registry.fidelity.runnable import ESSENTIAL
@@ -15,14 +16,20 @@ from survey_data.editions import editions
 from survey_data.findings.publications import publications
 
 
-def resolution() -> list[Mapping[str, Any]]:
+def resolution(rows: Sequence[Mapping[str, Any]] = ()) -> list[Mapping[str, Any]]:
     """Return a row for each study, pipeline and setting (data set, condition) used for the study.
 
     Of both editions, each study's own beside it.
+
+    Parameters
+    ----------
+    rows : published scores of all units, which grades take errors from; without them no score is
+        asked for
     """
     plan, shown, known, every = scorable_plan(), data_sets(), facts(), facts("all")
-    resolved = resolve_all(plan, data_sets=shown, facts=known)
-    resolved |= resolve_later(plan, known, every, data_sets=shown)
+    scores = own_errors(rows) if rows else None
+    resolved = resolve_all(plan, data_sets=shown, facts=known, scores=scores)
+    resolved |= resolve_later(plan, known, every, data_sets=shown, scores=scores)
     return [
         {
             "study": key,
@@ -56,6 +63,8 @@ def edition_rows() -> list[Mapping[str, Any]]:
             "edition": one.name,
             "edition_title": one.title,
             "edition_studies": one.studies,
+            "edition_last_year": one.last_year,
+            "edition_later": one.later,
             "edition_version": one.version,
         }
         for one in editions()

@@ -30,6 +30,7 @@ def package(
     exported: Sequence[Mapping[str, Any]] = (),
     *,
     errors: Sequence[Mapping[str, str]] = (),
+    code: str | None = None,
 ) -> dict[str, Any]:
     """Describe the tables and samples that lie in `directory`.
 
@@ -39,8 +40,9 @@ def package(
     identity : of the project
     survey : the survey's own descriptor, paths relative to its directory
     measured : the measured tables
-    exported : of each file of samples dataset, condition, split, file, samples, samples_of
+    exported : of each file of samples dataset, condition, split, file, samples
     errors : of each file of errors name, title, description, path
+    code : path of the archive of the code
     """
     resources = [
         _locate(directory, f"survey/{resource['path']}", {**resource, "licenses": [CC_BY]})
@@ -66,6 +68,7 @@ def package(
     ]
     resources += [_of_samples(directory, row) for row in exported]
     resources += [_of_errors(directory, row) for row in errors]
+    resources += [] if code is None else [_of_code(directory, code)]
     return {
         "$schema": PROFILE,
         "name": NAME,
@@ -94,23 +97,20 @@ def _contributor(author: Author) -> dict[str, Any]:
 
 
 def _of_samples(directory: Path, row: Mapping[str, Any]) -> dict[str, Any]:
-    file = directory / row["file"]
     return {
         "name": f"frames-{row['dataset']}-{row['split']}",
         "title": f"{row['dataset']}, {row['condition']}, {row['split']}",
-        "description": f"The first {row['samples']} of {row['samples_of']} samples; what the "
-        "arrays are stands in card.json of the data set.",
+        "description": f"All {row['samples']} samples; what the arrays are stands in card.json of "
+        "the data set.",
         "path": row["file"],
         "format": "npz",
         "mediatype": "application/zip",
         "licenses": [MIT],
-        "bytes": file.stat().st_size,
-        "hash": f"sha256:{sha256(file)}",
+        **_digest(directory / row["file"]),
     }
 
 
 def _of_errors(directory: Path, row: Mapping[str, str]) -> dict[str, Any]:
-    file = directory / row["path"]
     return {
         **row,
         # As the media type has it: frictionless takes "parquet" for a table, reads every row of it
@@ -118,18 +118,30 @@ def _of_errors(directory: Path, row: Mapping[str, str]) -> dict[str, Any]:
         "format": "vnd.apache.parquet",
         "mediatype": "application/vnd.apache.parquet",
         "licenses": [MIT],
-        "bytes": file.stat().st_size,
-        "hash": f"sha256:{sha256(file)}",
+        **_digest(directory / row["path"]),
     }
+
+
+def _of_code(directory: Path, path: str) -> dict[str, Any]:
+    return {
+        "name": "code",
+        "title": "Code as an archive",
+        "description": "Source distribution of the version that made this bundle, with its lock "
+        "file; `rescore.py` installs it and measures scores again.",
+        "path": path,
+        "format": "tar.gz",
+        "mediatype": "application/gzip",
+        "licenses": [MIT],
+        **_digest(directory / path),
+    }
+
+
+def _digest(file: Path) -> dict[str, Any]:
+    return {"bytes": file.stat().st_size, "hash": f"sha256:{sha256(file)}"}
 
 
 def _locate(directory: Path, path: str, resource: Mapping[str, Any]) -> dict[str, Any]:
     file = directory / path
-    described = {
-        **resource,
-        "path": path,
-        "bytes": file.stat().st_size,
-        "hash": f"sha256:{sha256(file)}",
-    }
+    described = {**resource, "path": path, **_digest(file)}
     schema = described.pop("schema")
     return {**described, "schema": schema}

@@ -93,11 +93,31 @@ def tallies() -> str:
         f"{counted}. The trials of {own} are the case of the survey's sentence, the others in "
         "part; nothing is refuted by another case ([docs/claims.md](docs/claims.md)).\n"
         f"- **Studies.** {len(resolved)} studies, run here: {tally_text(grades)}. Faithful: "
-        "sensor, condition and methods are the study's own, stated or inferred with a reason. "
-        "Close: one of these differs. Stand-in: more differ. "
-        f"{measured} have a measured score ([docs/survey.md](docs/survey.md), `sunatlas studies "
-        "KEY`)."
+        "sensor, condition, methods, calibration and score are the study's own. Assumed: nothing "
+        "known differs, but facts that it takes to judge are unknown. Close: one part differs. "
+        f"Stand-in: more differ. They make {_cells(resolved)} distinct cells (a pipeline on a data "
+        f"set under a condition); {_without_model()} studies have no model in the survey, and one "
+        f"is chosen here; {measured} have a measured score ([docs/survey.md](docs/survey.md), "
+        "`sunatlas studies KEY`)."
     )
+
+
+def _cells(resolved: Mapping[str, Resolution]) -> int:
+    """Count the cells that studies are judged by, one that several share once."""
+    return len(
+        {
+            (at.dataset, at.condition, pipeline.extractor, pipeline.model)
+            for resolution in resolved.values()
+            for pipeline in resolution.strongest_pipelines
+            for at in pipeline.settings[:1]
+        }
+    )
+
+
+def _without_model() -> int:
+    """Count the studies that the survey lists no model for."""
+    studies = knowledge().facts.studies.values()
+    return sum("None" in study.of("model") for study in studies)
 
 
 def _is_measured(resolution: Resolution) -> bool:

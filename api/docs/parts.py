@@ -10,7 +10,9 @@ import survey_data
 from api.docs.examples import command_line, http_examples
 from api.docs.knowledge import knowledge
 from api.docs.markdown import table as _table
+from api.service import studies as service
 from benchmark.datasets import coverage as simulated
+from registry.fidelity.evidence import FACTOR, SCORE_FACTOR, UNKNOWN_SHARE
 from registry.fidelity.grading import tally_text
 from registry.fidelity.purposes import PURPOSES
 from registry.fidelity.runnable import ESSENTIAL
@@ -131,6 +133,7 @@ def resolutions() -> str:
     known = knowledge()
     resolved = known.resolutions
     cells = sum(len(p.settings) for found in resolved.values() for p in found.pipelines)
+    compared = service.compare_accuracy(known)
     counted = (
         f"Runs of {len(resolved)} studies: "
         f"{tally_text(found.fidelity.grade for found in resolved.values())}. They are shown on "
@@ -140,8 +143,25 @@ def resolutions() -> str:
         (
             counted,
             RULES,
-            "What keeps studies from being faithful, and what would settle it:",
-            _table(("departure", "settled by", "studies"), _departures(resolved)),
+            "What differs of runs that are close or a stand-in, and what would raise them:",
+            _table(("study", "grade", "differs", "raised by"), _differences(resolved)),
+            "What is unknown and keeps runs from being faithful:",
+            _table(("part", "unknown", "studies"), _unknown(resolved)),
+            "Reported accuracy against the own error of the run, worst first. "
+            + service.say_comparison(compared),
+            _table(
+                (
+                    "study",
+                    "grade",
+                    "reported, deg",
+                    "kind",
+                    "RMS, deg",
+                    "here, deg",
+                    "times",
+                    "why",
+                ),
+                (_compared(row) for row in compared),
+            ),
             "What studies are run for, by the rules of `survey_data/purposes.csv`:",
             _table(("purpose", "rule", "studies"), _by_purpose(resolved)),
             "What the parts of a pipeline rest on, by studies (of several, that of most evidence):",
@@ -151,34 +171,53 @@ def resolutions() -> str:
 
 
 RULES = (
-    "A run has five parts: sensor, condition, extractor, model and compensations. A part departs "
-    "from the study where the sensor is recalled, chosen by a rule or a relative's, or a stated "
-    "sensor is missing; where no data set of the sensor shows what the study is run for; where a "
-    "stated extractor, model or compensation runs in none of its pipelines, or only as another "
-    "variant; where the study states none and what stands there was chosen here; where the survey "
-    "does not state the kind of a compensation (ECM) and one was chosen; and where a compensation "
-    "runs ahead of a model that neither the study nor the survey's equation names. What is "
-    "inferred with a reason, or implied by the survey's definition of a method, does not depart. "
-    "No departure is faithful, one close, more a stand-in."
+    "A part of a run departs from the study where it differs, or where what it would have to be "
+    "compared with is unknown. It differs where a stated sensor is missing or the run stands on "
+    "another one: another detector or mask, another arrangement or number of faces or openings, a "
+    f"dimension further off than a factor of {FACTOR:g}, a stated part left out; where no data "
+    "set of the sensor shows what the study is run for; where a stated extractor, model or "
+    "compensation does not run, or only as another variant; where the study calibrates and the "
+    "run does not, or in flight and the run on a bench; and where the own error is further off "
+    f"the accuracy that it reports than a factor of {SCORE_FACTOR:g}, without a reason in "
+    "`survey_data/run_facts.csv`. It is unknown where the title, the extractor, the model or the "
+    "way to its constants is not known, the sensor is recalled or chosen, or "
+    f"{UNKNOWN_SHARE:.0%} or more of the facts that its kind of sensor has are not known. Nothing "
+    "that departs is faithful, unknown parts alone assumed, one that differs close, more a "
+    "stand-in."
 )
 
 
-def _ranked_departures(resolved: Mapping[str, Resolution]) -> list[tuple[str, Resolution]]:
-    """Return the studies that are not faithful, those with most departures first, then by key."""
-    weak = [(key, found) for key, found in resolved.items() if found.fidelity.grade != "faithful"]
-    return sorted(
-        weak, key=lambda item: (bool(item[1].pipelines), -len(item[1].fidelity.departures), item[0])
+def _differences(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
+    """List what differs of each run, those of which most differs first."""
+    found = {
+        key: [one for one in resolution.fidelity.departures if not one.unknown]
+        for key, resolution in resolved.items()
+    }
+    for key in sorted(found, key=lambda key: (-len(found[key]), key)):
+        for at, one in enumerate(found[key]):
+            first = (key, resolved[key].fidelity.grade) if at == 0 else ("", "")
+            yield *first, one.text, one.settled_by
+
+
+def _unknown(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
+    """Count what is unknown by part and what would settle it, the most studies first."""
+    studies: dict[tuple[str, str], set[str]] = {}
+    for key, found in resolved.items():
+        for one in found.fidelity.departures:
+            if one.unknown:
+                says = "dimensions" if one.value == "dimensions" else one.settled_by
+                studies.setdefault((one.part, says), set()).add(key)
+    for (part, says), keys in sorted(studies.items(), key=lambda item: (-len(item[1]), item[0])):
+        yield part, says, str(len(keys))
+
+
+def _compared(row: Mapping[str, Any]) -> Sequence[str]:
+    """Write a row of reported and own error."""
+    numbers = (f"{row[name]:.3g}" for name in ("rms_deg", "own_deg", "times"))
+    return (
+        *(row["key"], row["grade"], f"{row['reported_deg']:g}", row["kind"]),
+        *(*numbers, row["reason"]),
     )
-
-
-def _departures(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:
-    """List every departure with its studies, those of the weakest first."""
-    studies: dict[tuple[str, str], list[str]] = {}
-    for key, found in _ranked_departures(resolved):
-        for departure in found.fidelity.departures:
-            studies.setdefault((departure.text, departure.settled_by), []).append(key)
-    for (text, settled_by), keys in studies.items():
-        yield text, settled_by, ", ".join(keys)
 
 
 def _by_purpose(resolved: Mapping[str, Resolution]) -> Iterable[Sequence[str]]:

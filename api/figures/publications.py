@@ -47,8 +47,8 @@ def _kinds() -> Mapping[str, str]:
 def _venues() -> Mapping[str, str]:
     """Return the venue of each study whose venue is known.
 
-    Of a study after the survey, the venue is what stands before the first comma or colon of it, so
-    that volumes of a journal and numbers of a repository count together.
+    Of a study that the survey does not map, the venue is what stands before its first comma or
+    colon, so that volumes of a journal and numbers of a repository count together.
     """
     tables = _tables()
     found = dict(zip(tables.venues["study"], tables.venues["venue"], strict=True))

@@ -49,8 +49,6 @@ CHAPTERS: dict[str, tuple[str, ...]] = {
         "guide/add-a-data-set",
         "guide/add-a-study",
         "architecture",
-        "faults",
-        "faults-kills",
     ),
     "Decisions": _decisions(),
 }

@@ -27,6 +27,7 @@ _SAID = {
     "card.json": "What the arrays are, and all that they depend on.",
     "calibration": "Samples to calibrate with.",
     "test": "Samples to test with.",
+    "repeat": "Samples of poses held still, for repeatability.",
     "references": "Flat and dark readings.",
 }
 

@@ -1,8 +1,8 @@
-"""Who made the work: the authors as CITATION.cff names them, and whether they may be published.
+"""Who made the work and where its code is, as CITATION.cff says, and whether it may be archived.
 
-CITATION.cff is the one file in which a person fills in authors and ORCIDs; the bundle, the
-archive's forms and the RO-Crate take them from it. An archive keeps names for good, so that
-placeholders are refused before anything is published.
+CITATION.cff is the one file in which a person fills in authors, ORCIDs and repository; the bundle,
+the archive's forms and the RO-Crate take them from it. An archive keeps names for good, so that
+what is missing or a placeholder is refused before anything is sent.
 """
 
 from __future__ import annotations
@@ -28,6 +28,11 @@ _PLACEHOLDER = re.compile(
     r"anonymous|unknown|nobody|somebody|none|john doe|jane doe|x{2,}|[.?_<>*-]+",
     re.IGNORECASE,
 )
+
+
+_REPOSITORY = re.compile(r"https://([a-z0-9-]+\.)+[a-z]{2,}/\S+", re.IGNORECASE)
+#: Names of hosts that are nobody's (RFC 2606).
+_NOBODY = re.compile(r"https://([^/]*\.)?(example(\.\w+)?|invalid|test|localhost)/", re.IGNORECASE)
 
 
 class CitationError(ValueError):
@@ -85,6 +90,34 @@ def authors(text: str, where: str | Path) -> tuple[Author, ...]:
     if not isinstance(listed, list):
         raise CitationError(f"{where}: expected a list of authors")
     return tuple(_author(entry, f"{where}, author {n}") for n, entry in enumerate(listed, start=1))
+
+
+def repository(text: str) -> str | None:
+    """Return the `repository-code` of a CITATION.cff; None where it has none."""
+    return str((yaml.safe_load(text) or {}).get("repository-code") or "").strip() or None
+
+
+def unfilled(listed: Sequence[Author], address: str | None) -> list[str]:
+    """Say which fields of a CITATION.cff an archive demands and does not find; empty where none.
+
+    Parameters
+    ----------
+    listed : its authors
+    address : its repository, or None
+    """
+    return [
+        *(f"authors: {said}" for said in author_problems(listed)),
+        *(f"repository-code: {said}" for said in repository_problems(address)),
+    ]
+
+
+def repository_problems(address: str | None) -> list[str]:
+    """Say why an address is not that of a public repository; empty where it may be."""
+    if address is None:
+        return ["missing; expected the address of the public repository"]
+    if not _REPOSITORY.fullmatch(address) or _NOBODY.match(address):
+        return [f"{address!r} is no address of a public repository (https://...)"]
+    return []
 
 
 def persistent(text: str) -> str | None:

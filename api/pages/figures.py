@@ -81,7 +81,7 @@ async def figures(known: Known, _asked: Annotated[None, NO_PARAMETERS] = None) -
         answer,
         matrix=MATRIX,
         counted=number_of_studies(),
-        later=known.editions[1].studies,
+        unmapped=known.editions[1].studies,
     )
 
 

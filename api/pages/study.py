@@ -113,6 +113,7 @@ async def study(known: Known, key: Annotated[StudyKey, Path()]) -> View:
         grades=GRADES,
         purposes=PURPOSES,
         identities=IDENTITIES,
+        last_mapped=known.editions[0].last_year,
         edition=next(one for one in known.editions if one.name == answer.document["edition"]),
         claims=claims,
         verdicts={e.claim.id: e.verdict for e in known.measurements.claims.values()},

@@ -88,6 +88,8 @@ class DepositedEdition(Shape):
     edition: str
     edition_title: str = Field(description="Name of the edition.")
     edition_studies: int = Field(description="Number of its studies.")
+    edition_last_year: int = Field(description="Year of its latest study.")
+    edition_later: int = Field(description="Studies after the latest one of the survey.")
     edition_version: str = Field(description="Version, studies, digits of the SHA-256.")
 
 
@@ -149,6 +151,5 @@ class SampleFile(Place):
 
     split: str
     file: str = Field(description="Path in this bundle.")
-    samples: int = Field(description="Samples in the file.")
-    samples_of: int = Field(description="Samples of the whole split.")
+    samples: int = Field(description="Samples in the file, all of the split.")
     data_hash: str

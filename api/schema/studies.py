@@ -16,13 +16,14 @@ from api.schema.parameters import (
 )
 from api.schema.table import AS_TEXT, ColumnEach
 from registry.fidelity.particulars import Purpose
+from registry.fidelity.runnable import Part
 from registry.sensors import Basis
 from registry.taxonomy import ATTRIBUTES
 
 REPORTED = ("accuracy_deg", "accuracy_kind", "precision_deg", "precision_kind", "fov_deg")
 """Attributes of studies that are numbers, and the statistics of these."""
 State = Literal["complete", "partial", "none"]
-Grade = Literal["faithful", "close", "stand-in", "none"]
+Grade = Literal["faithful", "assumed", "close", "stand-in", "none"]
 
 
 def _filter(attribute: str, more: str = "") -> Any:
@@ -93,12 +94,11 @@ class Headline(PublishedScore):
 class Departure(Shape):
     """A difference between a study and its implementation here."""
 
-    part: Literal["sensor", "condition", "extractor", "model", "compensation"] = Field(
-        description="Part of the sensor or method."
-    )
+    part: Part = Field(description="Part.")
     value: str
     text: str
-    settled_by: str = Field(description="Information needed to remove the difference.")
+    settled_by: str = Field(description="What would remove the difference.")
+    unknown: bool = Field(description="A fact is missing.")
 
 
 class StudyRow(Shape):
@@ -113,9 +113,7 @@ class StudyRow(Shape):
     doi: str
     url: str = Field(description="Address; empty if unknown.")
     identity: str = Field(description="Whether a public page confirms author, year and topic.")
-    grade: Grade = Field(
-        description="Grade of the implementation: faithful, close, stand-in or none."
-    )
+    grade: Grade = Field(description="Grade of the implementation.")
     state: State = Field(description="complete: every value is implemented; partial: some; none.")
     values: Annotated[dict[str, list[str]], ColumnEach((*ATTRIBUTES, *REPORTED))] = Field(
         description="Values by attribute of the taxonomy."
@@ -242,11 +240,13 @@ class Edition(Shape):
     name: Literal["survey", "extension"]
     title: str
     studies: int
+    last_year: int = Field(description="Year of its latest study.")
+    later: int = Field(description="Studies after the latest one of the survey.")
     version: str = Field(description="Version, studies, digits of the tables' SHA-256.")
 
 
 class Editions(Shape):
-    """Studies of the survey, and added ones."""
+    """Studies of the survey, and studies it does not map."""
 
     items: list[Edition]
 
@@ -268,9 +268,8 @@ class StudiesQuery(CitedQuestion, StudyFilters, SortedQuestion, rows=StudyRow):
     year_min: Annotated[int | None, WHOLE] = Field(None, ge=0, le=9999, description="First year.")
     year_max: Annotated[int | None, WHOLE] = Field(None, ge=0, le=9999, description="To this year.")
     grade: Several[Grade] = several(
-        "Only studies with this grade: faithful (every part is the study's own, "
-        "stated or inferred with a reason), close (one part differs), stand-in (more "
-        "parts differ), none (not implemented)."
+        "Only studies with this grade: faithful (every part is the study's own), assumed (facts "
+        "are unknown), close (one part differs), stand-in (more), none."
     )
     state: Several[State] = several("Only studies with this state of implementation.")
     q: Annotated[str | None, GIVEN] = Field(

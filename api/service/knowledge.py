@@ -88,7 +88,11 @@ class Knowledge:
         from benchmark.plan.shown import data_sets  # noqa: PLC0415 - likewise
 
         return resolve_all(
-            scorable_plan(), data_sets=data_sets(), catalogue=self.catalogue, facts=self.facts
+            scorable_plan(),
+            data_sets=data_sets(),
+            catalogue=self.catalogue,
+            facts=self.facts,
+            scores=self.measurements.own_errors,
         )
 
     @cached_property
@@ -145,7 +149,7 @@ class Knowledge:
 
 
 class KnowledgeOfAll(Knowledge):
-    """The same knowledge, with the studies after the survey among the others.
+    """The same knowledge, with the studies the survey does not map among the others.
 
     What runs for a study of the survey is what it is without them: none of them is its relative.
 
@@ -177,7 +181,10 @@ class KnowledgeOfAll(Knowledge):
 
         ours, facts = self._survey.resolutions, (self._survey.facts, self.facts)
         shown, catalogue = data_sets(), self.catalogue
-        later = resolve_later(scorable_plan(), *facts, data_sets=shown, catalogue=catalogue)
+        scores = self.measurements.own_errors
+        later = resolve_later(
+            scorable_plan(), *facts, data_sets=shown, catalogue=catalogue, scores=scores
+        )
         return {**ours, **later}
 
     @property

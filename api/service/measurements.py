@@ -15,7 +15,7 @@ from benchmark.datasets.pins import Pin
 from benchmark.leaderboard.board import build
 from benchmark.leaderboard.scope import Studied, studies_of_pipelines
 from benchmark.learning_curves import record as curves
-from benchmark.metrics.ranking import spreads
+from benchmark.metrics.ranking import own_errors, spreads
 from benchmark.results import record_manifest, samples
 from benchmark.results.pipelines import pipelines, standard_benches
 from benchmark.results.store import PUBLISHED, Store
@@ -83,6 +83,11 @@ class Measurements:
             place = (cell.dataset, cell.condition, cell.extractor, cell.model)
             found[place] = {**row, "own_deg": own[cell].own_deg}
         return found
+
+    @cached_property
+    def own_errors(self) -> Mapping[tuple[str, str, str, str], float | None]:
+        """Own error by the same places, degrees; None where no score came of it."""
+        return own_errors(self._every_unit)
 
     @cached_property
     def nominal(self) -> Mapping[tuple[str, str, str], Row]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmark.datasets.samples import Samples
 from files.csv_writing import csv_text
 
 Arrays = Mapping[str, NDArray[Any]]
@@ -45,6 +46,22 @@ def read_archive(path: Path) -> dict[str, NDArray[Any]]:
             return {name: archive[name] for name in archive.files}
     except (OSError, EOFError, zipfile.BadZipFile, ValueError, AttributeError) as error:
         raise ValueError(f"{path}: not an archive of arrays ({error})") from error
+
+
+def samples_of(arrays: Arrays) -> Samples:
+    """Return the samples that the arrays of a split are, as its data set made them."""
+    context = {
+        name.removeprefix("context."): array
+        for name, array in arrays.items()
+        if name.startswith("context.")
+    }
+    return Samples(
+        arrays["observations"],
+        arrays["sun"],
+        arrays.get("origin_px"),
+        context or None,
+        arrays.get("true_sun"),
+    )
 
 
 def columns_of(arrays: Arrays) -> dict[str, NDArray[Any]]:

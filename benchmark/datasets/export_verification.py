@@ -19,10 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmark import datasets
-from benchmark.datasets import Preset, Samples, UnknownDatasetError
+from benchmark.datasets import Preset, UnknownDatasetError
 from benchmark.datasets.checksums import CHECKSUMS, differences, read_checksums, sha256
 from benchmark.datasets.export import CARD, ExportError, card_of, export, read_card
-from benchmark.datasets.export_arrays import read_archive, table_text
+from benchmark.datasets.export_arrays import read_archive, samples_of, table_text
 from benchmark.datasets.pins import BOUND_TOLERANCE, Pin, Place, bounds_agree
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.metrics.score import store
@@ -179,7 +179,7 @@ def _wrong_arrays(
         return
     if entry["kind"] == "references":
         return
-    found, count, rms = samples_hash(_samples(arrays)), len(arrays["sun"]), _rms(arrays)
+    found, count, rms = samples_hash(samples_of(arrays)), len(arrays["sun"]), _rms(arrays)
     if found != entry["data_hash"]:
         yield f"hash of the data is {found}, the card says {_short(entry['data_hash'])}"
     elif entry["samples"] != count or any(len(array) != count for array in arrays.values()):
@@ -199,7 +199,7 @@ def _unpinned(
             yield f"hash of the data is {entry['data_hash']}, of the published {pin.data_hash}"
         elif pin.split == "test" and not bounds_agree(pin.bound_deg, _rms(arrays)):
             yield f"bound_rms_deg is {_rms(arrays)}, of the published {pin.bound_deg}"
-    elif entry["samples"] >= HEAD and (head := head_hash(_samples(arrays))) != pin.head_hash:
+    elif entry["samples"] >= HEAD and (head := head_hash(samples_of(arrays))) != pin.head_hash:
         yield f"hash of the first {HEAD} samples is {head}, of the published {pin.head_hash}"
 
 
@@ -304,21 +304,6 @@ def _rms(arrays: Mapping[str, NDArray[Any]]) -> float | None:
     """Return the root mean square of the bounds of observable samples; None for none."""
     seen = arrays["bound_deg"][arrays["observable"]]
     return store(float(np.sqrt(np.mean(seen**2)))) if seen.size else None
-
-
-def _samples(arrays: Mapping[str, NDArray[Any]]) -> Samples:
-    context = {
-        name.removeprefix("context."): array
-        for name, array in arrays.items()
-        if name.startswith("context.")
-    }
-    return Samples(
-        arrays["observations"],
-        arrays["sun"],
-        arrays.get("origin_px"),
-        context or None,
-        arrays.get("true_sun"),
-    )
 
 
 def _short(value: Any) -> str:

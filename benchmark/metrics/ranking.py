@@ -136,6 +136,24 @@ def spreads(rows: Iterable[Row]) -> dict[Cell, UnitErrors]:
     }
 
 
+def own_errors(rows: Iterable[Row]) -> dict[tuple[str, str, str, str], float | None]:
+    """Return own errors, degrees, by data set, condition, extractor and model; rows of all units.
+
+    None where a pipeline has no score on the standard unit.
+    """
+    known = list(rows)
+    scored = {
+        (row["dataset"], row["condition"], row["extractor"], row["model"])
+        for row in known
+        if row["unit"] == 0 and row["status"] == "ok"
+    }
+    places = {
+        (cell.dataset, cell.condition, cell.extractor, cell.model): errors.own_deg
+        for cell, errors in spreads(known).items()
+    }
+    return {place: own if place in scored else None for place, own in places.items()}
+
+
 def rank_board(rows: Sequence[Row], spread: Sequence[UnitErrors]) -> RankedBoard:
     """Order the rows of a board, and group what is not distinguished.
 

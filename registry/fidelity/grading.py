@@ -1,20 +1,23 @@
-"""How near what runs of a study is to the study: faithful, close or a stand-in, by stated rules.
+"""How near what runs of a study is to the study: faithful, assumed, close or a stand-in, by rules.
 
-A study's run has five parts: its sensor, the condition it is shown under, its extractors, its
-models and its compensations. A part departs from the study where
+A study's run has parts: title, sensor, condition, extractors, models, compensations, calibration
+and score. A part departs from the study where it *differs*, or where what it would have to be
+compared with is *unknown*. It differs where
 
-- the sensor is recalled, chosen by a rule or a relative's, or one of its stated sensors is missing;
+- a stated sensor is missing, or the run stands on another one;
 - none of its settings shows what the study is run for (`registry.fidelity.purposes`);
 - an extractor, a model or a compensation that it states runs in none of its pipelines;
-- it states none, and what stands there was chosen here;
 - the taxonomy has only the nearest value to its method (`Study.names`);
 - only another variant of a method runs than the study's (`method_variants.csv`);
-- the kind of a compensation is not stated (ECM), and one of its kinds was chosen here;
-- a compensation runs ahead of a model that neither the study nor the survey's equation names.
+- facts of sensor, calibration or accuracy contradict it (`registry.fidelity.evidence`).
+
+It is unknown where the sensor is recalled, chosen by a rule or a relative's; where the study states
+no extractor or model, or not which kind of compensation, or not what stands behind it, and what
+stands there was chosen here; and where such facts are missing.
 
 What is inferred with a reason, or implied by the survey's definition of a method that the study
-uses, does not depart. No departure is *faithful*, one *close*, more a *stand-in*. Several values
-that are missing are several departures.
+uses, does not depart. Nothing that departs is *faithful*, unknown parts alone *assumed*, one that
+differs *close*, more a *stand-in*.
 """
 
 from __future__ import annotations
@@ -26,17 +29,18 @@ from typing import Literal
 from files.json_data import JsonData
 from registry.fidelity.particulars import Purpose
 from registry.fidelity.purposes import PURPOSES
-from registry.fidelity.runnable import RunnablePipeline, strongest
-from registry.fitting import COMPENSATIONS, ChosenMethod, FittedPipeline
+from registry.fidelity.runnable import Departure, Part, RunnablePipeline, strongest
+from registry.fitting import COMPENSATIONS, FITTED, ChosenMethod, FittedPipeline
 from registry.sensors import BASES, SENSOR
 from registry.studies import METHODS, Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED
 from survey_data.editions import SURVEY
 
-Grade = Literal["faithful", "close", "stand-in", "none"]
+Grade = Literal["faithful", "assumed", "close", "stand-in", "none"]
 
 GRADES: Mapping[Grade, str] = {
-    "faithful": "sensor, condition and methods are the study's own, stated or inferred",
+    "faithful": "sensor, condition, methods, calibration and score are the study's own",
+    "assumed": "nothing known differs, and facts that it takes to judge are unknown",
     "close": "one part differs from the study",
     "stand-in": "more than one part differs from the study",
     "none": "nothing of it runs",
@@ -45,26 +49,12 @@ GRADES: Mapping[Grade, str] = {
 
 TALLIED: Mapping[Grade, str] = {
     "faithful": "faithful",
+    "assumed": "assumed",
     "close": "close",
     "stand-in": "stand-in",
     "none": "cannot run",
 }
 """What a count of a grade is followed by."""
-
-Part = Literal["sensor", "condition", "extractor", "model", "compensation"]
-
-
-@dataclass(frozen=True)
-class Departure(JsonData):
-    """A part of a study's run that is not the study's own.
-
-    ``text`` says what departs, as a clause; ``settled_by`` what would make the part the study's.
-    """
-
-    part: Part
-    value: str
-    text: str
-    settled_by: str
 
 
 @dataclass(frozen=True)
@@ -84,7 +74,7 @@ def tally(grades: Iterable[Grade]) -> dict[Grade, int]:
 
 
 def tally_text(grades: Iterable[Grade]) -> str:
-    """Say how many there are of each grade: `90 faithful, 30 close, 8 stand-in, 1 cannot run`."""
+    """Say how many there are of each grade: `9 faithful, 80 assumed, ...`."""
     return ", ".join(f"{n} {TALLIED[grade]}" for grade, n in tally(grades).items())
 
 
@@ -112,12 +102,40 @@ def fidelity(
         *_condition(pipelines, wanted),
         *_methods(study, facts, ran),
     )
-    grade: Grade = ("faithful", "close")[len(departures)] if len(departures) < 2 else "stand-in"
+    leading = strongest(pipelines)
+    return graded(study, facts, departures, wanted, pipelines=pipelines, leading=leading, ran=ran)
+
+
+def graded(
+    study: Study,
+    facts: Facts,
+    departures: Sequence[Departure],
+    wanted: Mapping[Purpose, str],
+    *,
+    pipelines: Sequence[RunnablePipeline],
+    leading: Sequence[RunnablePipeline],
+    ran: Sequence[FittedPipeline],
+) -> Fidelity:
+    """Return the grade that departures make, and the sentence that says them.
+
+    Parameters
+    ----------
+    study, facts, wanted, pipelines, ran : as of `fidelity`
+    departures : all of them
+    leading : the pipelines that the study is judged by
+    """
+    differ = sum(not one.unknown for one in departures)
+    grade: Grade = "close" if differ == 1 else "stand-in"
+    if not differ:
+        grade = "assumed" if departures else "faithful"
     running = {v for one in ran for a in METHODS for v in getattr(one, a).runs}
-    said = _sentence(study, facts, pipelines, departures, running)
-    return Fidelity(grade, said, departures, wanted)
+    more = len(pipelines) - 1
+    said = _sentence(study, facts, (leading[0], more), departures, running)
+    return Fidelity(grade, said, tuple(departures), wanted)
 
 
+#: What runs a projection whose constants are fitted.
+PROJECTIONS = frozenset(form for forms in FITTED.values() for form in forms)
 _NOTHING = "Nothing of it runs: no data set simulates a sensor that its methods fit."
 
 
@@ -139,6 +157,8 @@ def _sensor(study: Study, pipelines: Sequence[RunnablePipeline]) -> list[Departu
                 f"its {what} {'are' if len(weak) > 1 else 'is'} {said} ({reasons})",
                 f"the study's own statement of its {' and '.join(weak)}"
                 + (f", and a data set of {_sensor_of(study)}" if _move(study, best) else ""),
+                not _move(study, best)
+                and not any(study.has_nearest(a, getattr(best, a)) for a in weak),
             )
         ]
     return [
@@ -211,7 +231,7 @@ def _not_stated(
         who = "the survey" if study.edition == SURVEY else "its row"
         text = f"{who} states no {attribute}, so {_names(chosen)} is chosen"
         part: Part = "extractor" if attribute == "extractor" else "model"
-        yield Departure(part, "None", text, f"the {attribute} that the study uses, if any")
+        yield Departure(part, "None", text, f"the {attribute} that the study uses, if any", True)
 
 
 def _nearest_departure(
@@ -247,12 +267,11 @@ def _stated_departures(
         yield Departure(part, value, text, f"an implementation of {value} as the study has it")
     elif all(one.unsaid == value for one in running):
         text = f"the kind of its {name} is chosen, {_names(running)}"
-        yield Departure(part, value, text, f"what the study says of its {value}")
+        yield Departure(part, value, text, f"what the study says of its {value}", True)
     elif compensates and all(one.stands_for for one in running):
         text = f"the model behind its {name} is assumed: {_names(running)}"
-        yield Departure(
-            "model", _BEHIND, text, "the model that the study combines with this compensation"
-        )
+        settled = "the model that the study combines with this compensation"
+        yield Departure("model", _BEHIND, text, settled, True)
 
 
 def _names(chosen: Sequence[ChosenMethod]) -> str:
@@ -262,12 +281,12 @@ def _names(chosen: Sequence[ChosenMethod]) -> str:
 def _sentence(
     study: Study,
     facts: Facts,
-    pipelines: Sequence[RunnablePipeline],
+    shown: tuple[RunnablePipeline, int],
     departures: Sequence[Departure],
     running: Collection[str],
 ) -> str:
-    """Say in one sentence what runs where, and what is missing or chosen."""
-    best = strongest(pipelines)[0]
+    """Say in one sentence what runs where beside how many more, and what is missing or chosen."""
+    best, more = shown
     stated = [
         _small(facts.taxonomy.name(attribute, value))
         for attribute in METHODS
@@ -275,12 +294,13 @@ def _sentence(
         if value in running and not study.has_nearest(attribute, value)
     ]
     at = best.settings[0]
-    more = len(pipelines) - 1
     lead = f"Implemented as {best.extractor} + {best.model} on {at.dataset} ({at.condition})"
     if more:
         lead += f" and {more} more pipeline{'s' * (more > 1)}"
     if stated:
         lead += f": {_list_items(stated)}"
+    if best.model.split(" + ")[-1] in PROJECTIONS and best.model_taxonomy == "SPM":
+        lead += " (projection, constants fitted)"
     if departures:
         return f"{lead}; {'; '.join(departure.text for departure in departures)}."
     inferred = [a for a in SENSOR if best.basis[a] in ("inferred", "implied")]

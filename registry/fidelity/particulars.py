@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Literal, cast
 
 Purpose = Literal["albedo", "temperature", "flight"]
+
+DRAWN = "drawn"
+"""How a study comes by its constants that takes them from its drawing."""
 
 Conditions = tuple[tuple[str, str], ...]
 """Attributes with the values that a study must have, all of them."""
@@ -57,6 +60,46 @@ class MethodVariant:
     basis: str
     source: str
     note: str
+
+
+@dataclass(frozen=True)
+class RunFact:
+    """Something that a run is judged by: how constants are had, what the sensor is like."""
+
+    study: str
+    fact: str
+    value: str
+    basis: str
+    source: str
+    note: str
+
+
+def run_fact(row: Mapping[str, str]) -> RunFact:
+    """Return a row of `run_facts.csv`."""
+    return RunFact(**{name: row[name] for name in RunFact.__match_args__})
+
+
+#: Columns of `hardware.csv` by what a run is judged by.
+_OF_HARDWARE = {
+    "count_of_apertures": "openings",
+    "aperture_or_slit_um": "opening_um",
+    "focal_or_height_mm": "height_mm",
+    "pixel_pitch_um": "pitch_um",
+    "array_px": "array_px",
+    "fov_full_deg": "fov_deg",
+    "detector": "detector",
+    "mask": "mask",
+}
+
+
+def hardware_facts(row: Mapping[str, str]) -> Iterable[RunFact]:
+    """Give what a row of `hardware.csv` says of a study's sensor, if it was seen on a page."""
+    if not row["study"] or row["basis"] != "page":
+        return
+    for column, fact in _OF_HARDWARE.items():
+        value = row[column].partition("x")[0] if column == "array_px" else row[column]
+        if value and not (fact == "openings" and float(value) == 0.0):
+            yield RunFact(row["study"], fact, value, "page", row["source"], row["id"])
 
 
 def conditions(text: str) -> Conditions:

@@ -7,8 +7,8 @@ shows is read from it (`DataSet`): nothing here knows a study or a data set by i
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from files.json_data import JsonData
 from registry.fidelity.particulars import Conditions, Purpose
@@ -32,13 +32,15 @@ class DataSet:
     """What the plan knows of a data set beside its architecture.
 
     `conditions` in order, the nominal one first; `context` its columns beside features; `follows`
-    the keys of the studies that it is made after.
+    the keys of the studies that it is made after; `design` what its sensor is like, by the names of
+    `registry.fidelity.evidence`.
     """
 
     name: str
     conditions: tuple[str, ...] = ("nominal",)
     context: frozenset[str] = frozenset()
     follows: tuple[str, ...] = ()
+    design: Mapping[str, float | str] = field(default_factory=dict, hash=False)
 
     @property
     def flies(self) -> bool:
@@ -75,12 +77,14 @@ def settings(
     wanted: Collection[Purpose],
     names: Iterable[str],
     data_sets: Mapping[str, DataSet],
+    distance: Callable[[DataSet], float] = lambda _: 0.0,
 ) -> tuple[DatasetCondition, ...]:
     """Return where a pipeline stands for a study: data sets under conditions, the first one first.
 
     Those that show most of its purposes; among these data sets made after the study, then flights
     for a study with a purpose and benches for others, then what shows its first purpose, then by
-    name. Where none shows any, the first condition of each.
+    how far its sensor is from the study's, then by name. Where none shows any, the first condition
+    of each.
 
     Parameters
     ----------
@@ -88,6 +92,7 @@ def settings(
     wanted : what it is run for
     names : data sets that the pipeline is planned on
     data_sets : what each of them shows; one that is missing has a nominal condition alone
+    distance : how far a data set's sensor is from the study's
     """
     known = [data_sets.get(name, DataSet(name)) for name in names]
     shown: dict[tuple[str, str], list[Purpose]] = {}
@@ -108,6 +113,7 @@ def settings(
             study.key not in one.follows,
             one.flies != bool(wanted),
             [order.index(purpose) for purpose in served],
+            distance(one),
             name,
             one.conditions.index(condition),
         )

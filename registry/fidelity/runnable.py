@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
 from files.json_data import JsonData
 from registry.fidelity.purposes import DatasetCondition
@@ -40,6 +41,26 @@ class RunnablePipeline(JsonData):
     def strength(self) -> list[int]:
         """What its parts rest on as ranks, the weakest first: smaller is better."""
         return sorted((BASES.index(basis) for basis in self.basis.values()), reverse=True)
+
+
+Part = Literal[
+    "identity", "sensor", "condition", "extractor", "model", "compensation", "calibration", "score"
+]
+
+
+@dataclass(frozen=True)
+class Departure(JsonData):
+    """A part of a study's run that is not the study's own, or that cannot be judged.
+
+    ``text`` says what departs, as a clause; ``settled_by`` what would make the part the study's;
+    ``unknown`` whether a fact is missing, rather than that the run differs.
+    """
+
+    part: Part
+    value: str
+    text: str
+    settled_by: str
+    unknown: bool = False
 
 
 @dataclass(frozen=True)

@@ -66,7 +66,7 @@ class Study:
     ``values`` holds the stated values only; an attribute whose cell is empty is absent from it
     and stands in ``unknown`` with the note beside the empty cell. ``roles`` are those of
     (attribute, value), where one is known; ``combinations`` says which detector goes with which
-    mask where not every one goes with every other. ``names`` are what a study after the survey
+    mask where not every one goes with every other. ``names`` are what a study outside the survey
     calls its values of (attribute, value); ``verifications`` who confirmed what is said here.
     """
 

@@ -1,1 +1,1 @@
-"""Studies after the survey: read from a template or a bibliography, added, confirmed, removed."""
+"""Studies the survey does not map: read from a file, added, confirmed, removed."""

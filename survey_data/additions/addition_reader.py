@@ -11,6 +11,7 @@ from survey_data.additions.faults import Fault, FaultsError, one_of
 from survey_data.additions.toml_lines import TomlDocument
 from survey_data.additions.vocabulary import Definition, Vocabulary
 from survey_data.descriptor import column_types
+from survey_data.importing.values import states_nothing
 from survey_data.sources import fault as source_fault
 from survey_data.validation.provenance import TOLD
 from survey_data.validation.rules import number_fault
@@ -18,12 +19,14 @@ from survey_data.validation.rules import number_fault
 Row = Mapping[str, str]
 
 _LONGEST = 5000
-_CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\x85\u2028\u2029\ufffd]")
+_CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\x85\u2028\u2029\ud800-\udfff\ufffd]")
 _RESOLVER = re.compile(r"^(?:https?://(?:dx\.)?doi\.org/|doi:\s*)", re.IGNORECASE)
 #: Keys of a value beside the columns of its row.
 _BESIDE = ("name", "nearest", "role", "role_note")
 _ARCHITECTURE = "architecture"
 _FLAG = "nearest"
+#: Note of a role whose file says nothing of why; the table of roles has one in every row.
+_NO_REASON = "No reason stated."
 METHODS = ("model", "extractor")
 
 
@@ -129,7 +132,9 @@ def read_addition(
 
 def _study(reader: _Reader, columns: Sequence[str], publication: Row) -> dict[str, str]:
     given = reader.document.values
-    found = {column: publication.get(column, "") for column in columns}
+    stated = {column: publication.get(column, "") for column in columns if column not in given}
+    found = {column: reader.text(said, column) for column, said in stated.items()}
+    found = {column: found.get(column, "") for column in columns}
     for column in columns:
         if column == "authors" and isinstance(given.get(column), list):
             found[column] = _authors(reader, given[column])
@@ -218,6 +223,9 @@ def _check_value(reader: _Reader, definition: Definition, cells: Row, at: int) -
         if value not in definition.words:
             near = reader.vocabulary.spellings.get(name, ())
             message = f"{name} {value!r}: {one_of(value, definition.words, near)}"
+            if states_nothing(value):
+                listed = one_of(value, definition.words, guess=False)
+                message = f"{name} {value!r}: {listed}; what is not stated has the basis unknown"
     elif wrong := number_fault(value, definition.minimum, definition.maximum):
         message = f"{name}: {wrong}"
     if message:
@@ -264,7 +272,7 @@ def _role(
     """Give the row of a method's role."""
     attribute = row["attribute"]
     said = reader.cells(table, ("role", "role_note"), attribute, at)
-    reason = said["role_note"] or row["note"]
+    reason = said["role_note"] or row["note"] or _NO_REASON
     if not said["role"]:
         if said["role_note"]:
             reader.fault("role_note without a role", attribute, at, "role_note")
@@ -272,8 +280,6 @@ def _role(
     reader.word(said["role"], reader.vocabulary.roles, attribute, at, "role")
     if attribute not in METHODS or not row["value"]:
         reader.fault(f"role: only of a value of {' and '.join(METHODS)}", attribute, at, "role")
-    elif not reason:
-        reader.fault(f"{attribute}: a role needs a role_note", attribute, at, "role")
     of = {column: row[column] for column in ("study", "attribute", "value")}
     evidence = {"basis": row["basis"], "source": row["source"], "note": reason}
     yield "roles", {**of, "role": said["role"], **evidence}

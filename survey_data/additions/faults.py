@@ -45,7 +45,9 @@ class FaultsError(SurveyImportError):
         ]
 
 
-def one_of(value: object, words: Iterable[str], near: Iterable[str] = ()) -> str:
+def one_of(
+    value: object, words: Iterable[str], near: Iterable[str] = (), *, guess: bool = True
+) -> str:
     """Say of which words a value should have been, and which of them is most like it.
 
     Parameters
@@ -53,11 +55,12 @@ def one_of(value: object, words: Iterable[str], near: Iterable[str] = ()) -> str
     value : what was given
     words : what is allowed
     near : further spellings, written ``spelling=word``
+    guess : whether to name the most alike
     """
     allowed = list(words)
     spelt = dict(each.rsplit("=", 1) for each in near)
     meant = nearest_name(str(value), [*allowed, *spelt], cutoff=0.5)
-    hint = f", did you mean {spelt.get(meant, meant)}?" if meant else ""
+    hint = f", did you mean {spelt.get(meant, meant)}?" if meant and guess else ""
     listed = ", ".join(allowed[:_MOST_LISTED]) + (", ..." if len(allowed) > _MOST_LISTED else "")
     return f"expected one of {listed}{hint}"
 

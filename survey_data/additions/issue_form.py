@@ -68,7 +68,7 @@ def form(known: Vocabulary) -> str:
     body.append(_input("note"))
     document = {
         "name": "A study is missing",
-        "description": "A study that came after the survey, or that it does not have.",
+        "description": "A study that the survey does not map.",
         "title": "Study: ",
         "labels": ["study"],
         "body": body,

@@ -1,4 +1,4 @@
-"""Adding studies after the survey, confirming what is said of them, and taking them away again."""
+"""Adding studies the survey does not map, confirming what is said of them, removing them."""
 
 from __future__ import annotations
 
@@ -161,7 +161,7 @@ def _require_later(key: str, directory: Path) -> None:
     if any(row["key"] == key for row in tables.studies):
         raise UnknownStudyError(f"{key} is a study of the survey, whose tables stay as they are")
     raise UnknownStudyError(
-        f"study {key!r}: {one_of(key, later)}" if later else "there is no study after the survey"
+        f"study {key!r}: {one_of(key, later)}" if later else "there is no study beside the survey's"
     )
 
 

@@ -1,51 +1,83 @@
-"""Reading a bibliography: BibTeX, or the .bbl that BibTeX makes of one, into entries by key."""
+"""Reading publications: BibTeX, the .bbl that BibTeX makes of it, RIS and CSL JSON."""
 
 from __future__ import annotations
 
+import logging
 import re
-import unicodedata
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from files.reading import FileRefusedError, read_bytes
+import rispy
+from bibtexparser.middlewares import RemoveEnclosingMiddleware
+from bibtexparser.middlewares.names import (
+    parse_single_name_into_parts,
+    split_multiple_persons_names,
+)
+from bibtexparser.model import (
+    Block,
+    DuplicateBlockKeyBlock,
+    DuplicateFieldKeyBlock,
+    Field,
+    ParsingFailedBlock,
+    String,
+)
+from bibtexparser.model import Entry as BibtexEntry
+from bibtexparser.splitter import Splitter
+from pylatexenc.latex2text import LatexNodes2Text
+from rispy.config import TAG_KEY_MAPPING
+
+from files.reading import FileRefusedError
+from files.strict_json import parse_json
+from survey_data.importing.offered_files import offered_text
 from survey_data.problems import SurveyImportError
 
+SUFFIXES = (".bib", ".bbl", ".ris", ".json")
+_MOST_BYTES = 2_000_000  # thousands of entries; TeX takes half a minute for a million letters
+_LONGEST_FIELD = 20_000
 #: Fields that name where a work is published, first of these that is there.
 _VENUES = (
     *("journal", "journaltitle", "booktitle", "series", "school", "institution"),
     *("howpublished", "publisher"),
 )
-_KINDS = {
+_TEXTS = (*_VENUES, "title", "year", "date", "volume", "number", "issue", "pages")
+_BIBTEX_KINDS = {
     "article": "journal",
-    "inproceedings": "conference",
-    "conference": "conference",
-    "incollection": "conference",
-    "phdthesis": "thesis",
-    "mastersthesis": "thesis",
-    "thesis": "thesis",
-    "techreport": "report",
-    "report": "report",
+    **dict.fromkeys(("inproceedings", "conference", "incollection"), "conference"),
+    **dict.fromkeys(("phdthesis", "mastersthesis", "thesis"), "thesis"),
+    **dict.fromkeys(("techreport", "report"), "report"),
 }
-_ACCENTS = {
-    "`": "\u0300", "'": "\u0301", "^": "\u0302", "~": "\u0303", '"': "\u0308", "c": "\u0327",
-    "v": "\u030c", "u": "\u0306", "H": "\u030b", "=": "\u0304", ".": "\u0307", "k": "\u0328",
-    "r": "\u030a", "d": "\u0323", "b": "\u0331",
-}  # fmt: skip
-_LETTERS = {
-    "ss": "ß", "o": "ø", "O": "Ø", "l": "ł", "L": "Ł", "ae": "æ", "AE": "Æ", "oe": "œ", "OE": "Œ",
-    "aa": "å", "AA": "Å", "dh": "ð", "DH": "Ð", "dj": "đ", "DJ": "Đ", "th": "þ", "TH": "Þ",
-    "i": "ı", "j": "ȷ",
-}  # fmt: skip
-_MOST_BYTES = 20_000_000
+_RIS_KINDS = {
+    **dict.fromkeys(("JOUR", "JFULL", "EJOUR", "MGZN"), "journal"),
+    **dict.fromkeys(("CONF", "CPAPER"), "conference"),
+    **dict.fromkeys(("UNPB", "INPR"), "preprint"),
+    "THES": "thesis",
+    "RPRT": "report",
+}
+_CSL_KINDS = {
+    "article-journal": "journal",
+    "paper-conference": "conference",
+    "thesis": "thesis",
+    "report": "report",
+    "article": "preprint",
+    "preprint": "preprint",
+}
+_BRACED = r"\{((?:[^{}]++|\{(?:[^{}]++|\{[^{}]*+\})*+\})*+)\}"
+_BBL_ITEM = re.compile(rf"\\bibitem\s*(?:\[(?:[^\[\]{{}}]++|{_BRACED})*+\]\s*)?{_BRACED}")
+_BBL_FIELD = re.compile(rf"\\(?:bibinfo\s*\{{(\w+)\}}|(doi|url)|href)\s*{_BRACED}")
+_TEX = LatexNodes2Text(math_mode="text")
+# Both warn of what they pass over; what matters of it is raised here.
+for _library in ("bibtexparser", "pylatexenc"):
+    logging.getLogger(_library).setLevel(logging.CRITICAL)
 
 
 @dataclass(frozen=True)
 class Entry:
     """What a bibliography says of a key; a text is empty where it says nothing.
 
-    ``authors`` are separated by semicolons, ``kind`` is a type of the table of studies; ``line``
-    is where the entry starts.
+    ``authors`` are separated by semicolons, ``venue`` ends with volume, number and pages, ``kind``
+    is a type of the table of studies; ``line`` is where the entry starts, 1 in RIS and CSL JSON.
     """
 
     key: str
@@ -55,209 +87,262 @@ class Entry:
     venue: str
     kind: str
     doi: str
-    line: int
+    line: int = 1
     url: str = ""
 
 
 def read_bibliography(path: str | Path) -> tuple[Entry, ...]:
-    """Read the entries of a BibTeX or .bbl file, in its order.
+    """Read the entries of a bibliography in its order; BibTeX or .bbl for any other suffix.
 
     Raises
     ------
     SurveyImportError
-        The file cannot be read, or holds no entry; it names what was expected.
+        The file cannot be read, an entry is broken, or there is none.
     """
     where = Path(path)
+    text = offered_text(where, _MOST_BYTES)
+    read: Callable[[str, str], Iterable[Entry]]
+    if where.suffix.casefold() == ".ris":
+        read, expected = _ris, "RIS (TY  - ...)"
+    elif where.suffix.casefold() == ".json":
+        read, expected = _csl, "CSL JSON"
+    else:
+        read = _bbl if "\\bibitem" in text else _bibtex
+        expected = "BibTeX (@article{...) or a .bbl (\\bibitem...)"
     try:
-        text = read_bytes(where, _MOST_BYTES).decode("utf-8-sig")
-    except FileNotFoundError as error:
-        raise SurveyImportError(f"cannot read {where}: {error.strerror}") from error
-    except FileRefusedError as error:
-        raise SurveyImportError(f"cannot read {where}: {error.reason}") from error
-    except UnicodeDecodeError as error:
-        raise SurveyImportError(f"{where.name} is not UTF-8 text") from error
-    found = _items(text) if "\\bibitem" in text else _records(text)
-    entries = tuple(found)
+        entries = tuple(read(text, where.name))
+    except RecursionError as error:
+        raise SurveyImportError(f"{where.name} is nested too deeply") from error
     if not entries:
-        raise SurveyImportError(
-            f"{where.name} holds no entry: expected BibTeX (@article{{...) or a .bbl (\\bibitem...)"
-        )
+        raise SurveyImportError(f"{where.name} holds no entry: expected {expected}")
     return entries
 
 
-@dataclass(frozen=True)
-class _Record:
-    """An entry of BibTeX as it stands: its type, key, fields and line."""
-
-    kind: str
-    key: str
-    fields: dict[str, str]
-    line: int
-
-
-def _records(text: str) -> Iterator[Entry]:
+def _bibtex(text: str, name: str) -> Iterator[Entry]:
     """Give the entries of BibTeX, abbreviations and cross-references resolved."""
+    blocks = [_sound(block, name) for block in Splitter(text).split().blocks]
     strings: dict[str, str] = {}
-    records: list[_Record] = []
-    for start in re.finditer(r"@(\w+)\s*[{(]\s*", text):
-        kind = start[1].casefold()
-        if kind == "string":
-            strings |= _fields(text, start.end(), strings)
-        key = re.compile(r"([^\s,{}()=]+)\s*,").match(text, start.end())
-        if kind not in {"comment", "string", "preamble"} and key is not None:
-            line = text.count("\n", 0, start.start()) + 1
-            records.append(_Record(kind, key[1], _fields(text, key.end(), strings), line))
-    parents = {record.key.casefold(): record for record in reversed(records)}
-    for record in records:
-        fields = _inherited(record, parents)
-        yield _entry(record.key, record.kind, fields, record.line)
+    records: list[tuple[BibtexEntry, dict[str, str]]] = []
+    for block in blocks:
+        if isinstance(block, String):
+            said = _PLAIN.transform_string(block, None)  # type: ignore[arg-type]
+            strings[block.key.casefold()] = _joined(said, strings, name)
+    for block in blocks:
+        if isinstance(block, BibtexEntry) and block.key:
+            fields: dict[str, str] = {}
+            for each in _PLAIN.transform_entry(block, None).fields:  # type: ignore[arg-type]
+                fields.setdefault(each.key.casefold(), _joined(each, strings, name))
+            records.append((block, fields))
+    parents = {block.key.casefold(): fields for block, fields in reversed(records)}
+    for block, fields in records:
+        parent = parents.get(fields.get("crossref", "").strip().casefold(), {})
+        taken = {"booktitle" if key == "title" else key: said for key, said in parent.items()}
+        line = (block.start_line or 0) + 1
+        yield _of_tex(block.key, block.entry_type, taken | fields, line)
 
 
-def _inherited(record: _Record, parents: Mapping[str, _Record]) -> dict[str, str]:
-    """Return an entry's fields with those that it takes from the one that it refers to."""
-    parent = parents.get(record.fields.get("crossref", "").strip().casefold())
-    if parent is None or parent is record:
-        return record.fields
-    taken = {name: value for name, value in parent.fields.items() if name != "title"}
-    if parent.fields.get("title"):
-        taken.setdefault("booktitle", parent.fields["title"])
-    return taken | record.fields
+_PLAIN = RemoveEnclosingMiddleware()
 
 
-def _fields(text: str, at: int, strings: Mapping[str, str]) -> dict[str, str]:
-    """Return the fields of an entry, the first of each name, up to the brace that closes it."""
-    fields: dict[str, str] = {}
-    name = re.compile(r"\s*,?\s*([A-Za-z][\w:-]*)\s*=")
-    while match := name.match(text, at):
-        value, at = _value(text, match.end(), strings)
-        fields.setdefault(match[1].casefold(), value)
-    return fields
+def _sound(block: Block, name: str) -> Block:
+    """Return a block, or the one behind a warning of keys that stand twice; refuse a broken one."""
+    if isinstance(block, DuplicateBlockKeyBlock | DuplicateFieldKeyBlock):
+        return block.ignore_error_block or block
+    if isinstance(block, ParsingFailedBlock):
+        why = " ".join(str(getattr(block.error, "abort_reason", block.error)).split())
+        line = (block.start_line or 0) + 1
+        raise SurveyImportError(f"{name}, line {line}: a broken entry of BibTeX: {why}")
+    return block
 
 
-def _value(text: str, at: int, strings: Mapping[str, str]) -> tuple[str, int]:
-    """Return a field's value, parts joined by # put together, and where it ends."""
-    parts = []
-    join = re.compile(r"\s*#")
-    while True:
-        while text[at : at + 1].isspace():
-            at += 1
-        if text[at : at + 1] == "{":
-            end = _closing(text, at)
-            part, at = text[at + 1 : end], end + 1
-        elif text[at : at + 1] == '"':
-            end = _closing_quote(text, at)
-            part, at = text[at + 1 : end], end + 1
-        else:
-            word = re.compile(r"[^,})#\s]*").match(text, at)
-            part = word[0] if word else ""
-            at += len(part)
-            part = strings.get(part.casefold(), part)
-        parts.append(part)
-        joined = join.match(text, at)
-        if joined is None:
-            return "".join(parts), at
-        at = joined.end()
+def _joined(said: Field | String, strings: Mapping[str, str], name: str) -> str:
+    """Return a value with its abbreviations replaced and the parts that # joins put together."""
+    text = str(said.value)
+    if said.enclosing == "no-enclosing":
+        parts = re.findall(rf'"([^"]*)"|{_BRACED}|([^\s#"{{}}]+)', text)
+        text = ""
+        for quoted, braced, word in parts:
+            text += quoted or braced or strings.get(word.casefold(), word)
+            if len(text) > _LONGEST_FIELD:
+                break
+    if len(text) > _LONGEST_FIELD:
+        line = (said.start_line or 0) + 1
+        message = f"{name}, line {line}: {said.key} is longer than {_LONGEST_FIELD} characters"
+        raise SurveyImportError(message)
+    return text
 
 
-def _closing(text: str, at: int) -> int:
-    """Return where the brace that opens at `at` is closed; the end of the text if nowhere."""
-    depth = 0
-    for place in range(at, len(text)):
-        if text[place] in "{}" and text[place - 1 : place] != "\\":
-            depth += 1 if text[place] == "{" else -1
-            if depth == 0:
-                return place
-    return len(text)
-
-
-def _closing_quote(text: str, at: int) -> int:
-    depth = 0
-    for place in range(at + 1, len(text)):
-        if text[place] in "{}":
-            depth += 1 if text[place] == "{" else -1
-        elif text[place] == '"' and depth == 0 and text[place - 1] != "\\":
-            return place
-    return len(text)
-
-
-def _items(text: str) -> Iterator[Entry]:
+def _bbl(text: str, _: str) -> Iterator[Entry]:
     """Give the entries of a .bbl whose style marks its fields by 'bibinfo'."""
-    for start in re.finditer(r"\\bibitem\s*", text):
-        at = start.end()
-        if text[at : at + 1] == "[":
-            at = _closing_label(text, at) + 1
-        opened = text.find("{", at)
-        key_end = _closing(text, opened) if opened >= 0 else -1
-        if key_end < 0:
-            continue
-        end = text.find("\\bibitem", key_end)
-        body = text[key_end + 1 : end if end >= 0 else len(text)]
+    items = list(_BBL_ITEM.finditer(text))
+    ends = (*(item.start() for item in items[1:]), len(text))
+    for item, end in zip(items, ends, strict=False):
         fields: dict[str, str] = {}
-        for mark in re.finditer(r"\\(?:bibinfo\s*\{(\w+)\}|(doi|url)|href)\s*\{", body):
-            value = body[mark.end() : _closing(body, mark.end() - 1)]
-            name = mark[1] or mark[2] or "url"
-            if name == "author" and "author" in fields:
-                fields["author"] += f" and {value}"
+        for mark in _BBL_FIELD.finditer(text, item.end(), end):
+            field = mark[1] or mark[2] or "url"
+            if field == "author" and "author" in fields:
+                fields["author"] += f" and {mark[3]}"
             else:
-                fields.setdefault(name, value)
-        yield _entry(
-            text[opened + 1 : key_end].strip(),
-            "article" if "journal" in fields else "inproceedings" * ("booktitle" in fields),
-            fields,
-            text.count("\n", 0, start.start()) + 1,
-        )
+                fields.setdefault(field, mark[3])
+        kind = "article" if "journal" in fields else "inproceedings" * ("booktitle" in fields)
+        line = text.count("\n", 0, item.start()) + 1
+        yield _of_tex(item[2].strip(), kind, fields, line)
 
 
-def _closing_label(text: str, at: int) -> int:
-    """Return where the bracket of a label is closed, braces in it aside."""
-    depth = 0
-    for place in range(at, len(text)):
-        if text[place] in "{}":
-            depth += 1 if text[place] == "{" else -1
-        elif text[place] == "]" and depth == 0:
-            return place
-    return len(text)
-
-
-def _entry(key: str, kind: str, fields: Mapping[str, str], line: int) -> Entry:
-    year = re.search(r"[0-9]{4}", fields.get("year", "") or fields.get("date", ""))
-    doi = re.search(r"10\.[0-9]{4,9}/[^\s{}]+", _plain(fields.get("doi") or fields.get("url", "")))
-    is_arxiv = "arxiv" in (fields.get("archiveprefix") or fields.get("eprinttype", "")).casefold()
-    preprint = re.search(r"[0-9]{4}\.[0-9]{4,5}", fields.get("eprint", "")) if is_arxiv else None
-    authors = [_natural(_plain(name)) for name in re.split(r"\s+and\s+", fields.get("author", ""))]
-    return Entry(
-        key=key,
-        title=_plain(fields.get("title", "")).rstrip(".,"),
-        authors="; ".join(name for name in authors if name),
-        year=year[0] if year else "",
-        venue=next((_plain(fields[name]) for name in _VENUES if fields.get(name)), ""),
-        kind="preprint" if kind != "article" and preprint else _KINDS.get(kind, "unknown"),
-        doi=doi[0].rstrip(".,;") if doi else f"10.48550/arXiv.{preprint[0]}" if preprint else "",
-        line=line,
-        url=_plain(fields.get("url", "")),
+def _of_tex(key: str, kind: str, said: Mapping[str, str], line: int) -> Entry:
+    authors = split_multiple_persons_names(said.get("author", ""))
+    fields = {name: _plain(said[name]) for name in _TEXTS if name in said}
+    links = {name: re.sub(r"[{}\\]|\burl\{", "", said.get(name, "")) for name in ("doi", "url")}
+    is_arxiv = "arxiv" in (said.get("archiveprefix") or said.get("eprinttype", "")).casefold()
+    preprint = re.search(r"[0-9]{4}\.[0-9]{4,5}", said.get("eprint", "")) if is_arxiv else None
+    if preprint and kind != "article":
+        kind = "preprint"
+    arxiv = f"10.48550/arXiv.{preprint[0]}" if preprint else ""
+    return _entry(
+        key,
+        kind if kind == "preprint" else _BIBTEX_KINDS.get(kind, "unknown"),
+        [_plain(_natural(name)) for name in authors],
+        {
+            **fields,
+            "title": fields.get("title", "").rstrip(".,"),
+            "year": fields.get("year") or fields.get("date", ""),
+            "venue": next((fields[name] for name in _VENUES if fields.get(name)), ""),
+            "number": fields.get("number") or fields.get("issue", ""),
+            "doi": links["doi"] or links["url"],
+            "arxiv": arxiv,
+            "url": links["url"],
+        },
+        line,
     )
+
+
+def _entry(
+    key: str, kind: str, authors: Iterable[str], said: Mapping[str, str], line: int = 1
+) -> Entry:
+    """Return an entry of plain texts, spaces and missing fields made good."""
+    texts = {name: " ".join(text.split()) for name, text in said.items()}
+    year = re.search(r"[0-9]{4}", texts["year"])
+    doi = re.search(r"10\.[0-9]{4,9}/\S+", texts["doi"])
+    pages = texts.get("pages", "")
+    venue = [
+        texts["venue"],
+        *(f"{mark} {texts[of]}" for mark, of in _NUMBERS if texts.get(of)),
+        f"pp. {pages}" if "-" in pages else pages,
+    ]
+    return Entry(
+        key=" ".join(key.split()),
+        title=texts["title"],
+        authors="; ".join(name for name in (" ".join(each.split()) for each in authors) if name),
+        year=year[0] if year else "",
+        venue=", ".join(filter(None, venue)) if texts["venue"] else "",
+        kind=kind,
+        doi=doi[0].rstrip(".,;") if doi else texts.get("arxiv", ""),
+        line=line,
+        url=texts["url"] if re.fullmatch(r"https?://\S+", texts["url"]) else "",
+    )
+
+
+_NUMBERS = (("vol.", "volume"), ("no.", "number"))
 
 
 def _natural(name: str) -> str:
     """Return "Last, First" as "First Last", and BibTeX's word for more authors as "et al."."""
-    if name.strip() == "others":
+    if name == "others":
         return "et al."
-    last, comma, first = name.partition(",")
-    return f"{first.strip()} {last.strip()}".strip() if comma else name.strip(" ,")
+    return parse_single_name_into_parts(name, strict=False).merge_first_name_first
 
 
 def _plain(text: str) -> str:
-    """Return TeX as text: accents composed, commands and braces left out."""
-    text = re.sub(r"(?<!\\)~", " ", text)
-    text = re.sub(
-        r"\\([`'^~\"=.]|[cvuHkrdb](?![A-Za-z]))\s*\{?\s*\\?([A-Za-z])\s*\}?",
-        lambda m: unicodedata.normalize("NFC", m[2] + _ACCENTS[m[1]]),
-        text,
+    """Return TeX as text."""
+    if re.search(r"[\\{}$~]|--|``|''", text):
+        escaped = re.sub(r"(?<!\\)%", r"\\%", text)  # no comment starts inside a field
+        text = _TEX.latex_to_text(escaped)
+    return " ".join(re.sub("[\u2013\u2014]", "-", text).split())
+
+
+def _ris(text: str, name: str) -> Iterator[Entry]:
+    # rispy drops a record without its end, and takes a blank line for more of the field before.
+    lines = [line for line in text.split("\n") if line.strip()]
+    mapping = TAG_KEY_MAPPING | {"BT": "secondary_title"}
+    try:
+        records = rispy.loads("\n".join([*lines, "ER  - "]), mapping=mapping)
+    except KeyError as error:
+        raise SurveyImportError(f"{name}: a record of RIS starts without a tag") from error
+    for record in records:
+        if record.keys() - {"type_of_reference", "unknown_tag"}:
+            yield _of_ris(record)
+
+
+def _of_ris(record: Mapping[str, Any]) -> Entry:
+    def first(*names: str) -> str:
+        found = (record[name] for name in names if record.get(name))
+        return next((str(each[0] if isinstance(each, list) else each) for each in found), "")
+
+    names = record.get("authors") or record.get("first_authors") or ()
+    pages = [first("start_page"), first("end_page")]
+    return _entry(
+        first("id"),
+        _RIS_KINDS.get(first("type_of_reference"), "unknown"),
+        map(_natural, names),
+        {
+            "title": first("title", "primary_title"),
+            "year": first("year", "publication_year", "date"),
+            "venue": first(
+                *("secondary_title", "journal_name", "alternate_title3"),
+                *("alternate_title2", "publisher"),
+            ),
+            "volume": first("volume"),
+            "number": first("number"),
+            "pages": "-".join(filter(None, pages)),
+            "doi": first("doi"),
+            "url": first("urls"),
+        },
     )
-    letters = "|".join(sorted(_LETTERS, key=len, reverse=True))
-    text = re.sub(rf"\\({letters})(?![A-Za-z])\s*", lambda m: _LETTERS[m[1]], text)
-    text = re.sub(r"\\([&%$#_{}])", r"\1", re.sub(r"\\[,;: ]", " ", text))
-    text = re.sub(r"\\[-/!]", "", text)
-    text = re.sub(r"\\[A-Za-z]+\s*", "", text)
-    text = re.sub(r"-{2,}", "-", text.replace("{", "").replace("}", ""))
-    return " ".join(text.split())
+
+
+def _csl(text: str, name: str) -> Iterator[Entry]:
+    try:
+        document = parse_json(text, Path(name))
+    except FileRefusedError as error:
+        raise SurveyImportError(str(error)) from error
+    for at, item in enumerate(document if isinstance(document, list) else [document]):
+        if not isinstance(item, dict):
+            message = f"item {at + 1}: expected an object of CSL JSON, got {type(item).__name__}"
+            raise SurveyImportError(f"{name}: {message}")
+        yield _entry(
+            _scalar(item.get("id")),
+            _CSL_KINDS.get(_scalar(item.get("type")), "unknown"),
+            _csl_names(item.get("author")),
+            {
+                "title": _scalar(item.get("title")),
+                "year": _csl_year(item.get("issued")),
+                "venue": _scalar(item.get("container-title")) or _scalar(item.get("publisher")),
+                "volume": _scalar(item.get("volume")),
+                "number": _scalar(item.get("issue")),
+                "pages": _scalar(item.get("page")),
+                "doi": _scalar(item.get("DOI")),
+                "url": _scalar(item.get("URL")),
+            },
+        )
+
+
+def _csl_names(given: Any) -> Iterator[str]:
+    for name in given if isinstance(given, list) else ():
+        if isinstance(name, dict):
+            parts = (name.get("given"), name.get("non-dropping-particle"), name.get("family"))
+            said = " ".join(filter(None, map(_scalar, parts))) or _scalar(name.get("literal"))
+            yield said.replace(";", ",")
+
+
+def _csl_year(issued: Any) -> str:
+    if not isinstance(issued, dict):
+        return ""
+    parts = _scalar(issued.get("date-parts"))
+    return parts or _scalar(issued.get("raw")) or _scalar(issued.get("literal"))
+
+
+def _scalar(value: Any) -> str:
+    """Return a text or a number as text; the first of a list; '' for anything else."""
+    if isinstance(value, list):
+        return _scalar(value[0]) if value else ""
+    return str(value) if isinstance(value, str | int) and not isinstance(value, bool) else ""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
@@ -28,7 +27,7 @@ _ALIKE = 0.9
 #: Identities that a bibliography settles; what a page has confirmed is a person's to change.
 _OPEN = ("unknown", "ambiguous", "recalled")
 
-Kind = Literal["new", "changed", "conflict"]
+Kind = Literal["new", "changed", "conflict", "kept"]
 
 
 @dataclass(frozen=True)
@@ -36,8 +35,8 @@ class IdentityDifference(JsonData):
     """A cell of a study that the bibliography says otherwise.
 
     ``new``: ours is empty. ``changed``: the identity was not confirmed, or the study was named to
-    be replaced, so that theirs is taken. ``conflict``: it was confirmed, and ours stays. ``line``
-    is where their entry starts.
+    be replaced, so that theirs is taken. ``conflict``: it was confirmed, and ours stays. ``kept``:
+    the year, which stays as the key has it. ``line`` is where their entry starts.
     """
 
     study: str
@@ -54,7 +53,7 @@ class BibliographyPlan(JsonData):
     """What a bibliography changes in the table of studies.
 
     ``settled`` are the studies whose identity it confirms; ``left_aside`` its keys that are no
-    study of ours or contradict one, with the reason; ``missing`` our studies that it does not name.
+    study of ours, with the reason; ``missing`` our studies that it does not name.
     """
 
     source: str
@@ -68,7 +67,7 @@ class BibliographyPlan(JsonData):
     @property
     def edits(self) -> tuple[IdentityDifference, ...]:
         """The cells to be written."""
-        return tuple(d for d in self.differences if d.kind != "conflict")
+        return tuple(d for d in self.differences if d.kind in ("new", "changed"))
 
     @property
     def conflicts(self) -> tuple[str, ...]:
@@ -149,13 +148,13 @@ def plan_identities(
     for entry in entries:
         count += 1
         key = str(also.get(entry.key, entry.key))
-        reason = _refusal(entry, key, rows, seen, by_hand=key in replaced)
+        reason = _refusal(entry, key, rows, seen)
         if reason:
             if entry.key not in other:
                 left.append((entry.key, reason))
             continue
         seen.add(key)
-        row = {name: _text(rows[key][name]) for name in (*_COLUMNS, "identity")}
+        row = {name: _text(rows[key][name]) for name in (*_COLUMNS, "year", "identity")}
         found = _differences(key, row, entry, by_hand=key in replaced)
         differences += found
         if row["identity"] in _OPEN or (key in replaced and found):
@@ -166,9 +165,7 @@ def plan_identities(
     return BibliographyPlan(source, count, tuple(differences), tuple(settled), tuple(left), missing)
 
 
-def _refusal(
-    entry: Entry, key: str, rows: Mapping[str, object], seen: set[str], *, by_hand: bool
-) -> str:
+def _refusal(entry: Entry, key: str, rows: Mapping[str, object], seen: set[str]) -> str:
     """Say why an entry tells nothing of a study; empty where it does."""
     if key not in rows:
         return "no study has this key"
@@ -176,9 +173,6 @@ def _refusal(
         return "stands twice in the bibliography; the first is taken"
     if not entry.title:
         return "no title can be read"
-    digits = re.search(r"[0-9]{4}", key)
-    if entry.year and digits and entry.year != digits[0] and not by_hand:
-        return f"published in {entry.year}, which the key contradicts"
     return ""
 
 
@@ -202,6 +196,12 @@ def _differences(
         open_to_change = by_hand or row["identity"] in _OPEN
         kind: Kind = "new" if empty else "changed" if open_to_change else "conflict"
         found.append(IdentityDifference(key, column, kind, ours, said, row["identity"], entry.line))
+    if entry.year not in ("", row["year"]):
+        found.append(
+            IdentityDifference(
+                key, "year", "kept", row["year"], entry.year, row["identity"], entry.line
+            )
+        )
     return found
 
 
@@ -218,6 +218,8 @@ def _same(column: str, ours: str, theirs: str) -> bool:
     if column == "authors":
         return _surnames(ours) == _surnames(theirs)
     one, two = normalise(ours), normalise(theirs)
+    if column == "venue":  # one may have volume and pages, the other not
+        one, two = (normalise(text.partition(", vol. ")[0]) for text in (ours, theirs))
     if column == "venue" and one and two and (one in two or two in one):
         return True
     return similarity(one, two) >= _ALIKE
@@ -239,11 +241,12 @@ def _edit(folder: Path, plan: BibliographyPlan) -> str:
     by_key = {row[at["key"]]: row for row in rows}
     for edit in plan.edits:
         by_key[edit.study][at[edit.column]] = edit.theirs
+    years = {d.study: f"which says {d.theirs}" for d in plan.differences if d.kind == "kept"}
     for key in plan.settled:
         row = by_key[key]
         said = (
             f"identified by the survey's bibliography ({plan.source}), {row[at['identity']]} before"
         )
-        row[at["note"]] = "; ".join(filter(None, (row[at["note"]], said)))
+        row[at["note"]] = "; ".join(filter(None, (row[at["note"]], said, years.get(key))))
         row[at["identity"]] = "confirmed"
     return csv_text(header, rows)

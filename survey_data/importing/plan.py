@@ -219,21 +219,6 @@ def _withdrawn(tables: SurveyTables, cells: Iterable[Difference]) -> tuple[Withd
     return (*roles, *pairs, *models)
 
 
-def differences(
-    tables: SurveyTables, frame: pd.DataFrame, mapping: ColumnMapping
-) -> list[Difference]:
-    """Return the cells another table states otherwise than ours (see `plan_import`).
-
-    Raises
-    ------
-    SurveyImportError
-        A value cannot be read (names row and column), or no row is about a study of ours.
-    """
-    plan = plan_import(tables, frame, mapping)
-    require_readable(plan)
-    return list(plan.differences)
-
-
 def require_readable(plan: ImportPlan) -> None:
     """Raise SurveyImportError with the first unreadable cell of a plan, if there is one."""
     if plan.errors:

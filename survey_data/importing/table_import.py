@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import nullcontext
 from pathlib import Path
 
 from files.csv_writing import csv_text
@@ -13,13 +14,11 @@ from survey_data.importing.plan import (
     AUTHORS_BASIS,
     Difference,
     ImportPlan,
-    current_cells,
     plan_import,
     require_readable,
 )
 from survey_data.importing.table_reader import read_table
 from survey_data.importing.writing import locked_tables, write_valid
-from survey_data.problems import SurveyImportError
 from survey_data.tables import RESTING, SurveyTables, load
 
 _TABLE = "attributes"
@@ -47,7 +46,7 @@ def import_table(
         Sheet of a workbook.
     apply : bool
         Write. Without it nothing is written, and unreadable cells are listed in the plan's
-        `errors` instead of raised.
+        `errors` instead of raised. Applying the same table twice changes nothing the second time.
 
     Returns
     -------
@@ -58,60 +57,28 @@ def import_table(
     ------
     SurveyImportError
         The file is no table, its columns cannot be matched, or (with `apply`) a value cannot be
-        read; nothing has been written.
+        read, the tables would be invalid or cannot be written; nothing has been written.
     SurveyDataError
         Our own tables cannot be read.
     """
     frame = read_table(path, sheet)
 
-    def compared() -> ImportPlan:
-        tables = load(directory)
-        mapping = match_columns(tables, frame, overrides)
-        return plan_import(tables, frame, mapping, source=Path(path).name)
-
-    if not apply:
-        return compared()
     folder = DATA_DIRECTORY if directory is None else Path(directory)
-    with locked_tables(folder):
-        return _apply(folder, compared())
+    with locked_tables(folder) if apply else nullcontext():
+        tables = load(folder)
+        mapping = match_columns(tables, frame, overrides)
+        plan = plan_import(tables, frame, mapping, source=Path(path).name)
+        return _write(folder, tables, plan) if apply else plan
 
 
-def apply_import(directory: str | Path | None, plan: ImportPlan) -> ImportPlan:
-    """Write a plan's edits into attributes.csv, all or nothing.
+def _write(folder: Path, tables: SurveyTables, plan: ImportPlan) -> ImportPlan:
+    """Write a plan's edits into tables that this process holds, all or nothing.
 
     A cell taken over gets the basis ``authors-table``; what it said before, and on what basis,
     stays in its note. Rows of other tables that rest on a replaced value go (`tables.RESTING`).
-    The result is validated before it replaces the file.
-
-    Parameters
-    ----------
-    directory : str or Path or None
-        Our tables; None is the package's own data.
-    plan : ImportPlan
-        As `plan_import` returns it. Applying the same table twice changes nothing the second
-        time.
-
-    Returns
-    -------
-    ImportPlan
-        The plan with `written` set to the number of cells written.
-
-    Raises
-    ------
-    SurveyImportError
-        The plan has errors, our tables have changed since, they would be invalid, or the file
-        cannot be written; nothing has been written.
+    The result is validated before it replaces the files.
     """
-    folder = DATA_DIRECTORY if directory is None else Path(directory)
-    with locked_tables(folder):
-        return _apply(folder, plan)
-
-
-def _apply(folder: Path, plan: ImportPlan) -> ImportPlan:
-    """Write a plan's edits into tables that this process holds."""
     require_readable(plan)
-    tables = load(folder)
-    _require_fresh(tables, plan)
     if not plan.edits:
         return plan
     texts = {_TABLE: _edit(folder, plan, _authors_doi(tables))}
@@ -124,18 +91,6 @@ def _apply(folder: Path, plan: ImportPlan) -> ImportPlan:
         texts["counts"] = _count(folder, counts)
     write_valid(folder, texts)
     return plan.after_writing()
-
-
-def _require_fresh(tables: SurveyTables, plan: ImportPlan) -> None:
-    cells = current_cells(tables)
-    for edit in plan.edits:
-        cell = cells.get((edit.study, edit.attribute))
-        if (cell.values if cell else ()) != edit.ours:
-            raise SurveyImportError(
-                f"{edit.study}, {edit.attribute} has changed since the comparison; compare again",
-                row=edit.row,
-                column=edit.column,
-            )
 
 
 def _authors_doi(tables: SurveyTables) -> str:

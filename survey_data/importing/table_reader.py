@@ -1,26 +1,46 @@
-"""Reading a table somebody else made: CSV with any usual delimiter, or XLSX."""
+"""Reading a table somebody else made: CSV with any usual delimiter, or XLSX.
+
+What a workbook says of its own size is not believed: cells are read as a stream, up to fixed
+numbers of bytes, rows and cells.
+"""
 
 from __future__ import annotations
 
 import csv
+import datetime as dt
 import io
-from collections.abc import Sequence
+import re
+import warnings
+import zipfile
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
-from files.reading import FileRefusedError, read_bytes
-from survey_data.importing.workbooks import LARGEST_CELLS, LARGEST_ROWS, Row, read_workbook
+from survey_data.importing.offered_files import offered_bytes
 from survey_data.problems import SurveyImportError
 
+#: What the parts of a workbook may unpack to, together.
+LARGEST_UNPACKED = 20_000_000
+LARGEST_ROWS = 20_000
+LARGEST_COLUMNS = 256
+LARGEST_CELLS = 300_000
+LONGEST_CELL = 32_767  # Excel's own limit
+_LAST_ROW = 1_048_576  # as above
+_MOST_TAGS = 2_000_000  # of one part
+_LARGEST_BYTES = 30_000_000
+_LONGEST_LINE = 1_000_000
 _DELIMITERS = (",", ";", "\t", "|")
 _ZIP_MAGIC = b"PK\x03\x04"
 _OLD_EXCEL_MAGIC = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _WORKBOOK_SUFFIXES = {".xlsx", ".xlsm"}
-_LARGEST_BYTES = 30_000_000
-_LONGEST_LINE = 1_000_000
+_SHEET_CELL = re.compile(rb"<(?:\w+:)?c[\s/>]")
+_SHEET_PLACE = re.compile(rb'<(?:\w+:)?(?:row|c)\s(?:[^>]*\s)?r="([A-Z]{0,3})([0-9]{1,20})"')
 #: What a spreadsheet writes where a formula fails; read as text it would pass for "not stated".
 _ERRORS = frozenset({"#N/A", "#VALUE!", "#REF!", "#DIV/0!", "#NAME?", "#NUM!", "#NULL!"})
+
+Row = tuple[int, list[str]]
 
 
 def read_table(path: str | Path, sheet: str | None = None) -> pd.DataFrame:
@@ -34,7 +54,7 @@ def read_table(path: str | Path, sheet: str | None = None) -> pd.DataFrame:
     path : str or Path
         The file. XLSX is recognised by its content and its suffix, which must agree.
     sheet : str, optional
-        Sheet of the workbook; by default the first that is not empty.
+        Sheet of the workbook; by default the first visible one that is not empty.
 
     Returns
     -------
@@ -45,15 +65,11 @@ def read_table(path: str | Path, sheet: str | None = None) -> pd.DataFrame:
     Raises
     ------
     SurveyImportError
-        The file cannot be read as a table: names row and column where there is one.
+        The file cannot be read as a table, or is larger than the limits of this module: names row
+        and column where there is one.
     """
     path = Path(path)
-    try:
-        data = read_bytes(path, _LARGEST_BYTES)
-    except FileNotFoundError as error:
-        raise SurveyImportError(f"cannot read {path}: {error.strerror}") from error
-    except FileRefusedError as error:
-        raise SurveyImportError(f"cannot read {path}: {error.reason}") from error
+    data = offered_bytes(path, _LARGEST_BYTES)
     if not data.strip():
         raise SurveyImportError(f"{path.name} is empty; expected a header and rows", row=1)
     named_workbook = path.suffix.lower() in _WORKBOOK_SUFFIXES
@@ -66,12 +82,146 @@ def read_table(path: str | Path, sheet: str | None = None) -> pd.DataFrame:
             else f"{path.name} is a zip archive or workbook, not CSV; a workbook ends in .xlsx"
         )
     if named_workbook:
-        rows = read_workbook(path.name, data, sheet)
+        rows = _read_workbook(path.name, data, sheet)
     elif sheet is not None:
         raise SurveyImportError(f"{path.name} is no workbook and has no sheet {sheet!r}")
     else:
         rows = _read_text(_decode(path.name, data))
     return _as_frame(path.name, rows)
+
+
+def _read_workbook(name: str, data: bytes, wanted: str | None) -> list[Row]:
+    from openpyxl import load_workbook  # noqa: PLC0415 - most calls read CSV
+
+    try:
+        has_formulas = _check_archive(name, data)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of styles and validations that it drops
+            values = load_workbook(io.BytesIO(data), read_only=True, data_only=True)
+            title, rows = _chosen_sheet(name, values, wanted)
+            if rows and has_formulas:
+                written = load_workbook(io.BytesIO(data), read_only=True)
+                _require_computed(values[title], written[title])
+    except SurveyImportError:
+        raise
+    except Exception as error:  # a mangled part leads openpyxl to raise anything
+        said = " ".join(str(error).split())[:200]
+        raise SurveyImportError(f"{name} is not a readable XLSX workbook: {said}") from error
+    width = len(rows[0][1]) if rows else 0  # a row ends with its last filled cell
+    return [(number, cells + [""] * (width - len(cells))) for number, cells in rows]
+
+
+def _check_archive(name: str, data: bytes) -> bool:
+    """Refuse an archive that is too large, or rows out of order; say whether there are formulas.
+
+    No more of a part is unpacked than its stated size, so that a size that lies gains nothing.
+    openpyxl passes over a row or a cell that stands before its neighbour.
+    """
+    has_formulas = False
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        members = archive.infolist()
+        if sum(member.file_size for member in members) > LARGEST_UNPACKED:
+            raise SurveyImportError(f"{name} unpacks to more than {LARGEST_UNPACKED} bytes")
+        if len(set(archive.namelist())) < len(members):
+            raise SurveyImportError(f"{name} holds two files of one name")
+        for member in archive.namelist():
+            part = archive.read(member)
+            if part.count(b"<") > _MOST_TAGS:
+                raise SurveyImportError(f"{name}: {member} has more than {_MOST_TAGS} tags")
+            if "worksheets/" not in member:
+                continue
+            has_formulas |= b"<f" in part
+            if sum(1 for _ in _SHEET_CELL.finditer(part)) > LARGEST_CELLS:
+                raise SurveyImportError(f"{name} has more than {LARGEST_CELLS} cells")
+            before = (0, 0, b"")
+            for letters, digits in _SHEET_PLACE.findall(part):
+                place = (int(digits), len(letters), letters)
+                what = f"cell {letters.decode()}" if letters else "row "
+                if place <= before:
+                    message = f"{what}{place[0]} stands twice or out of order"
+                    raise SurveyImportError(message, row=place[0])
+                if place[0] > _LAST_ROW:
+                    raise SurveyImportError(f"{name} has a row {place[0]}, a sheet {_LAST_ROW}")
+                before = place
+    return has_formulas
+
+
+def _chosen_sheet(name: str, book: Any, wanted: str | None) -> tuple[str, list[Row]]:
+    """Return the sheet that is wanted, or the first visible one with rows, and its rows."""
+    titles = [sheet.title for sheet in book.worksheets]
+    if wanted is not None:
+        if wanted not in titles:
+            raise SurveyImportError(f"{name} has no sheet {wanted!r}; it has {', '.join(titles)}")
+        return wanted, list(_filled_rows(name, book[wanted]))
+    visible = [title for title in titles if book[title].sheet_state == "visible"]
+    for title in visible:
+        if rows := list(_filled_rows(name, book[title])):
+            return title, rows
+    hidden = [title for title in titles if title not in visible]
+    if any(any(_filled_rows(name, book[title])) for title in hidden):
+        raise SurveyImportError(
+            f"{name} has rows in hidden sheets alone ({', '.join(hidden)}); name one with --sheet"
+        )
+    return "", []
+
+
+def _filled_rows(name: str, sheet: Any) -> Iterator[Row]:
+    """Give the rows of a sheet that hold anything, without the cells behind the last filled one."""
+    sheet.reset_dimensions()
+    count = filled = 0
+    for number, row in enumerate(sheet.rows, 1):
+        count += len(row)
+        if count > LARGEST_CELLS:
+            raise SurveyImportError(f"{name} has more than {LARGEST_CELLS} cells")
+        texts = [_text(f"sheet {sheet.title}", cell) for cell in row]
+        while texts and not texts[-1]:
+            texts.pop()
+        filled += bool(texts)
+        if filled > LARGEST_ROWS:
+            raise SurveyImportError(f"{name} has more than {LARGEST_ROWS} rows")
+        if texts:
+            yield number, texts
+
+
+def _require_computed(values: Any, formulas: Any) -> None:
+    """Refuse formulas without a value, which a workbook has that no spreadsheet has saved."""
+    formulas.reset_dimensions()
+    without = [
+        formula.coordinate
+        for row, written in zip(values.rows, formulas.rows, strict=True)
+        for cell, formula in zip(row, written, strict=True)
+        if formula.data_type == "f" and cell.value is None and cell.data_type != "str"
+    ]
+    if without:
+        more = f" and {len(without) - 10} more" if len(without) > 10 else ""
+        raise SurveyImportError(
+            f"sheet {values.title}: formulas without a value in {', '.join(without[:10])}{more}; "
+            "open the workbook where it was made, let it compute, and save it"
+        )
+
+
+def _text(sheet: str, cell: Any) -> str:
+    """Spell a cell; one without a value is empty."""
+    value = cell.value
+    if value is None:
+        return ""
+    text = str(value).replace("_x000D_", "\r")
+    wrong = ""
+    if cell.data_type == "e":
+        wrong = f"an error ({text}) is no value of a table"
+    elif isinstance(value, bool):
+        wrong = f"a truth value ({text}) is no value of a table"
+    elif text and cell.column > LARGEST_COLUMNS:
+        wrong = f"a table has at most {LARGEST_COLUMNS} columns"
+    elif len(text) > LONGEST_CELL:
+        wrong = f"longer than {LONGEST_CELL} characters"
+    if wrong:
+        raise SurveyImportError(f"{sheet}, cell {cell.coordinate}: {wrong}", row=cell.row)
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        return str(int(value))
+    if isinstance(value, dt.datetime):
+        return value.date().isoformat() if value.time() == dt.time() else value.isoformat()
+    return text
 
 
 def _decode(name: str, data: bytes) -> str:
@@ -119,19 +269,6 @@ def _columns(header: str, delimiter: str) -> int:
         return 0
 
 
-def _require_words(rows: Sequence[Row], header: list[str]) -> None:
-    """Refuse cells that state that something went wrong where the table was made."""
-    for number, cells in rows:
-        for place, cell in enumerate(cells):
-            column = header[place] if place < len(header) else None
-            if "\ufffd" in cell:
-                said = f"{cell[:80]!r} holds U+FFFD, a letter that was lost"
-                raise SurveyImportError(said, row=number, column=column)
-            if cell in _ERRORS:
-                said = f"{cell} is an error of a spreadsheet and no value"
-                raise SurveyImportError(said, row=number, column=column)
-
-
 def _as_frame(name: str, rows: Sequence[Row]) -> pd.DataFrame:
     filled = [(number, [cell.strip() for cell in cells]) for number, cells in rows]
     filled = [(number, cells) for number, cells in filled if any(cells)]
@@ -140,25 +277,20 @@ def _as_frame(name: str, rows: Sequence[Row]) -> pd.DataFrame:
     if len(filled) > LARGEST_ROWS:
         raise SurveyImportError(f"{name} has more than {LARGEST_ROWS} rows")
     (header_row, header), *body = filled
-    while header and not header[-1]:
+    while not header[-1]:
         header.pop()
-    _check_header(header, header_row)
-    _require_words(filled, header)
+    seen: dict[str, str] = {}
+    for position, column in enumerate(header, 1):
+        if not column:
+            raise SurveyImportError(f"column {position} has no name", row=header_row)
+        if other := seen.get(column.casefold()):
+            message = f"the column stands twice (also as {other!r})"
+            raise SurveyImportError(message, row=header_row, column=column)
+        seen[column.casefold()] = column
+    for number, cells in filled:
+        _check_cells(number, cells, header)
     if not body:
         raise SurveyImportError(f"{name} has a header and no rows", row=header_row + 1)
-    for number, cells in body:
-        if any(cells[len(header) :]):
-            raise SurveyImportError(
-                f"{len(cells)} cells, but the header has {len(header)} columns",
-                row=number,
-                column=header[-1],
-            )
-        if len(cells) < len(header):
-            raise SurveyImportError(
-                f"the row ends after {len(cells)} of {len(header)} cells",
-                row=number,
-                column=header[len(cells)],
-            )
     return pd.DataFrame(
         [[cell or None for cell in cells[: len(header)]] for _, cells in body],
         columns=pd.Index(header, dtype="str"),
@@ -167,13 +299,22 @@ def _as_frame(name: str, rows: Sequence[Row]) -> pd.DataFrame:
     )
 
 
-def _check_header(header: list[str], row: int) -> None:
-    seen: dict[str, str] = {}
-    for position, column in enumerate(header, 1):
-        if not column:
-            raise SurveyImportError(f"column {position} has no name", row=row)
-        other = seen.setdefault(column.casefold(), column)
-        if list(seen).index(column.casefold()) != position - 1:
-            raise SurveyImportError(
-                f"the column stands twice (also as {other!r})", row=row, column=column
-            )
+def _check_cells(number: int, cells: Sequence[str], header: Sequence[str]) -> None:
+    """Refuse a row of another length, and cells that say that something went wrong before."""
+    for place, cell in enumerate(cells):
+        said = ""
+        if "\ufffd" in cell:
+            said = f"{cell[:80]!r} holds U+FFFD, a letter that was lost"
+        elif cell in _ERRORS:
+            said = f"{cell} is an error of a spreadsheet and no value"
+        elif cell and place >= len(header):
+            said = f"{len(cells)} cells, but the header has {len(header)} columns"
+        if said:
+            column = header[min(place, len(header) - 1)]
+            raise SurveyImportError(said, row=number, column=column)
+    if len(cells) < len(header):
+        raise SurveyImportError(
+            f"the row ends after {len(cells)} of {len(header)} cells",
+            row=number,
+            column=header[len(cells)],
+        )

@@ -15,7 +15,10 @@ from survey_data.tables import SurveyTables
 _LEAST_SCORE = 0.85
 _LEAST_LEAD = 0.05  # over the second-best value: a coin toss is no match
 _LEAST_LENGTH = 6  # abbreviations one letter apart are different things
-_NOT_STATED = {"", "na", "n a", "nan", "unknown", "not stated", "not reported", "tbd", "null"}
+_NOT_STATED = {
+    *("", "none", "na", "n a", "nan", "unknown"),
+    *("not stated", "not reported", "tbd", "null"),
+}
 _DEGREES = {"deg": 1.0, "arcmin": 1 / 60, "arcsec": 1 / 3600}
 _UNIT = r"deg(?:ree)?s?|°|arc-?\s?min(?:ute)?s?|'|′|arc-?\s?sec(?:ond)?s?|\"|″|''"
 _ANGLE = re.compile(
@@ -30,6 +33,11 @@ _INEQUALITY = re.compile(r"[<≤>≥]|[<>]=")
 #: Longer texts list no values: a cell of all 137 of them is shorter.
 _LONGEST = 5000
 _SHOWN = 80
+
+
+def states_nothing(text: str) -> bool:
+    """Say whether a text is one of the words for a value that a study does not state."""
+    return normalise(text) in _NOT_STATED
 
 
 class UnreadableValueError(ValueError):
@@ -109,9 +117,8 @@ class ValueReader:
 
     def _states_something(self, attribute: str, text: str) -> bool:
         plain = normalise(text)
-        if plain == "none" and "none" not in self._spellings.get(attribute, {}):
-            return False
-        return plain not in _NOT_STATED
+        is_value = plain == "none" and "none" in self._spellings.get(attribute, {})
+        return is_value or not states_nothing(text)
 
     def _lookup(self, attribute: str, text: str) -> set[str]:
         return self._spellings[attribute].get(normalise(text), set())

@@ -12,7 +12,7 @@ from survey_data.validation.cells import Frames, Rule, problem, texts
 #: Columns of sources, by table.
 _SOURCES = {
     **dict.fromkeys(("attributes", "roles", "architectures", "hardware"), "source"),
-    **dict.fromkeys(("compensated_models", "method_variants"), "source"),
+    **dict.fromkeys(("compensated_models", "method_variants", "run_facts"), "source"),
     "studies": "url",
 }
 #: Columns that hold one label of the survey, by table.

@@ -1,4 +1,4 @@
-"""Rules of the studies after the survey: those of its own studies, and what keeps the two apart."""
+"""Rules of studies the survey does not map: those of its own, and what keeps the two apart."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ SURVEY_BASES = ("survey-table", "authors-table", "survey-text")
 def check_extension(
     frames: Frames, rules: tuple[tuple[tuple[str, ...], Rule], ...]
 ) -> list[Problem]:
-    """Return the problems of later studies.
+    """Return the problems of studies the survey does not map.
 
     Parameters
     ----------
     frames : every table that could be read
     rules : those of the survey's studies; of them the ones that ask for nothing but studies and
-        vocabulary hold for later studies too
+        vocabulary hold for these too
     """
     later = {name: frames[name] for name in _SHARED if name in frames}
     for name in BY_STUDY:
@@ -51,7 +51,7 @@ def check_extension(
 
 
 def _keys_are_new(frames: Frames) -> Iterator[Problem]:
-    """Check that a later study has neither the key nor the DOI of another."""
+    """Check that a study has neither the key nor the DOI of another."""
     known: dict[str, str] = {}
     for _, (key, doi) in texts(frames["studies"], "key", "doi"):
         known |= {key.casefold(): "a study of the survey", doi.casefold(): f"{key} of the survey"}
@@ -67,14 +67,14 @@ def _keys_are_new(frames: Frames) -> Iterator[Problem]:
 
 
 def _rests_on_its_own(frames: Frames) -> Iterator[Problem]:
-    """Check that nothing of a later study rests on the survey."""
+    """Check that nothing of such a study rests on the survey."""
     for name in BY_STUDY[1:]:
         table = f"extension_{name}"
         if table not in frames:
             continue
         for index, (basis,) in texts(frames[table], "basis"):
             if basis in SURVEY_BASES:
-                yield problem(table, index, "basis", f"{basis}, of a study after the survey")
+                yield problem(table, index, "basis", f"{basis}, of a study outside the survey")
 
 
 def _names_are_of_values(frames: Frames) -> Iterator[Problem]:

@@ -130,6 +130,24 @@ def _families_cover_the_models(frames: Frames) -> Iterator[Problem]:
         yield problem("model_families", len(frame) - 1, "model", f"no row for the model {model!r}")
 
 
+def _every_run_can_be_judged(frames: Frames) -> Iterator[Problem]:
+    """Check that each study says, or leaves open, how it is calibrated and what its sensor is."""
+    ways = ("", "fitted", "in flight", "drawn")
+    seen: dict[str, set[str]] = {}
+    cells = texts(frames["run_facts"], "study", "fact", "value", "basis")
+    for index, (study, fact, value, basis) in cells:
+        seen.setdefault(study, set()).add(fact)
+        if (value == "") != (basis == "unknown"):
+            yield problem("run_facts", index, "basis", "unknown is the basis of an empty value")
+        if fact == "calibration" and value not in ways:
+            message = f"expected one of {', '.join(ways[1:])}, got {value!r}"
+            yield problem("run_facts", index, "value", message)
+    last = len(frames["run_facts"]) - 1
+    for _, (study,) in texts(frames["studies"], "key"):
+        for fact in sorted({"calibration", "layout"} - seen.get(study, set())):
+            yield problem("run_facts", last, "study", f"no row {fact} of the study {study!r}")
+
+
 def _venues_are_of_known_ones(frames: Frames) -> Iterator[Problem]:
     """Check that a venue is given for studies alone that have one."""
     known = {key for _, (key, venue) in texts(frames["studies"], "key", "venue") if venue}
@@ -150,4 +168,5 @@ RULES: tuple[tuple[tuple[str, ...], Rule], ...] = (
     (("taxonomy", "advice"), _advice_speaks_the_vocabulary),
     (("taxonomy", "model_families"), _families_cover_the_models),
     (("studies", "venues"), _venues_are_of_known_ones),
+    (("studies", "run_facts"), _every_run_can_be_judged),
 )

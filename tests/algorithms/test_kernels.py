@@ -1,4 +1,4 @@
-"""The compiled loops where nothing can be cached. Their speed is of `tools.bench.extractors`."""
+"""The compiled loops where nothing can be cached."""
 
 from __future__ import annotations
 

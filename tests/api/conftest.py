@@ -5,17 +5,24 @@ from __future__ import annotations
 import asyncio
 import csv
 import io
+import socket
+import threading
+import time
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from http.client import HTTPConnection
 from typing import Any
 
 import httpx
 import pytest
+import uvicorn
 from fastapi import FastAPI
 
 from api.cli import asking
 from api.docs import knowledge as of_docs
 from api.server import app as service
 from api.server.app import create_app
+from api.server.connections import bounds
 from api.service.knowledge import Knowledge
 from benchmark.results.analyses import Analyses
 
@@ -106,3 +113,35 @@ def client_of() -> Iterator[Callable[[FastAPI], Client]]:
     yield make
     for client in made:
         client.close()
+
+
+@contextmanager
+def _serving(app: FastAPI, **options: Any) -> Iterator[HTTPConnection]:
+    """Serve from a thread of this process, with options of `uvicorn.Config`."""
+    # The protocol is named: asyncio turns Nagle's algorithm off only where it is.
+    listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP)
+    listening.bind(("127.0.0.1", 0))
+    listening.listen()
+    listening.setblocking(False)
+    # a connection is kept however long the machine lets its next request wait
+    chosen = {**bounds(), "timeout_keep_alive": 600, "lifespan": "off", **options}
+    server = uvicorn.Server(uvicorn.Config(app, log_level="error", access_log=False, **chosen))
+    thread = threading.Thread(target=server.run, args=([listening],), daemon=True)
+    thread.start()
+    try:
+        while not server.started:
+            assert thread.is_alive(), "the server did not start; its log says why"
+            time.sleep(0.01)
+        connection = HTTPConnection(*listening.getsockname())
+        yield connection
+        connection.close()
+    finally:
+        server.should_exit = True
+        thread.join()
+        listening.close()
+
+
+@pytest.fixture(scope="session")
+def serve() -> Callable[..., AbstractContextManager[HTTPConnection]]:
+    """Serves an application on a free port; gives a connection to it."""
+    return _serving

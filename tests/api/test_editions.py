@@ -53,7 +53,10 @@ def test_every_later_study_has_its_page_and_its_endpoint_in_every_form(atlas: Cl
     for key in later():
         page = atlas.get(f"/studies/{key}")
         assert page.status_code == 200
-        assert "after the survey" in page.text
+        assert "not mapped by the survey" in page.text
+        after = facts("all").studies[key].year > 2024  # of the latest study that the survey maps
+        assert ("after its latest study of 2024" in page.text) == after
+        assert ("within its years, up to 2024" in page.text) != after
         for address in (f"/studies/{key}.json", f"/studies/{key}.csv", f"/v1/studies/{key}"):
             assert atlas.get(address).status_code == 200
         assert atlas.get(f"/v1/studies/{key}").json()["edition"] == "extension"
@@ -65,7 +68,7 @@ def test_the_survey_is_the_default_and_all_has_its_studies_first(atlas: Client) 
     assert len(alone) == 129
     assert {study["edition"] for study in alone} == {"survey"}
     every = atlas.walk("/v1/studies?limit=500&edition=all")
-    assert every[:129] == alone  # what runs of a study of the survey is not moved by later ones
+    assert every[:129] == alone  # what runs of a study of the survey is not moved by others
     assert [study["key"] for study in every[129:]] == later()
     assert len(atlas.table("/v1/studies?limit=500&edition=all")) == len(every)
 
@@ -132,6 +135,13 @@ def test_editions_are_cited_by_version(atlas: Client) -> None:
     survey, extension = atlas.get("/v1/editions").json()["items"]
     assert (survey["name"], survey["studies"]) == ("survey", 129)
     assert extension["studies"] == len(later())
+    years = [int(facts("all").studies[key].year) for key in later()]
+    mapped = [int(one.year) for one in facts("survey").studies.values() if one.year]
+    assert survey["last_year"] == max(mapped)
+    assert extension["later"] == sum(year > max(mapped) for year in years)
+    assert 0 < extension["later"] < len(years), "some are of the survey's years, some later"
+    shown = atlas.get("/studies?edition=all").text
+    assert f"{len(years)} it does not map ({len(years) - extension['later']} up to 2024" in shown
     assert survey["version"] in atlas.get("/studies/Chang2008").text
     assert extension["version"] in atlas.get(f"/studies/{LATER}").text
     assert [row["version"] for row in atlas.table("/v1/editions")] == [

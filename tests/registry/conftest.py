@@ -9,6 +9,7 @@ from benchmark.results.pipelines import pipelines, standard_benches
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.results.times import read_times
 from registry import studies
+from registry.fidelity.particulars import RunFact
 from registry.measured_pipelines import Measurements
 from registry.studies import AttributeValue, Facts, Study
 
@@ -32,18 +33,22 @@ def facts_of(survey: Facts) -> Callable[[Sequence[Row]], Facts]:
             values = {a: tuple(AttributeValue(v, "title", "", "") for v in row[a]) for a in row}
             found[f"S{at}"] = Study(
                 key=f"S{at}",
-                title="",
+                title=f"Study {at}",
                 authors="",
                 year=2020,
                 venue="",
                 doi="",
                 url="",
-                identity="unknown",
+                identity="confirmed",
                 note="",
                 values=MappingProxyType({a: cells for a, cells in values.items() if cells}),
                 unknown=MappingProxyType({a: "" for a, cells in values.items() if not cells}),
             )
-        return Facts(found, survey.taxonomy)
+        how = {
+            key: (RunFact(key, "calibration", "fitted", "abstract", key, "it says so"),)
+            for key in found
+        }
+        return Facts(found, survey.taxonomy, run_facts=how)
 
     return build
 

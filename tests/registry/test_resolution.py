@@ -273,9 +273,10 @@ def test_an_answer_is_plain_data(facts_of: Build) -> None:
     departures = answer.pop("departures")
     assert [(d["part"], d["value"]) for d in departures] == [("model", "None"), ("model", "LSQ")]
     assert all(d["text"] in answer["sentence"] and d["settled_by"] for d in departures)
+    assert [d["unknown"] for d in departures] == [True, False]  # none stated; not implemented
     assert answer == {
         "key": "S0",
-        "grade": "stand-in",
+        "grade": "close",
         "sentence": answer["sentence"],
         "purposes": {},
         "state": "partial",

@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 import json
 
+import pytest
+
 import survey_data
 
 
@@ -79,6 +81,19 @@ def test_a_printed_class_that_its_number_contradicts_stands_and_is_shown(
     assert (found.study, found.filed, found.by_limits, found.printed) == (
         "Wei2014", "VFSS", "UFSS", True,
     )  # fmt: skip
+
+
+@pytest.mark.parametrize(("value", "count"), [("0.0167", 0), ("0.0166667", 0), ("0.0171", 1)])
+def test_a_number_that_is_a_limit_as_rounded_contradicts_neither_class(
+    tables: survey_data.SurveyTables, value: str, count: int
+) -> None:
+    """Rufino2008 states "better than 1 arcmin": one arcminute, in the class that is better."""
+    attributes = tables.attributes.copy()
+    at = (attributes["study"] == "Rufino2008") & (attributes["attribute"] == "accuracy_deg")
+    assert attributes.loc[at, "value"].tolist() == ["0.0167"]
+    attributes.loc[at, "value"] = value
+    changed = dataclasses.replace(tables, attributes=attributes)
+    assert len(survey_data.fidelity(changed).class_disagreements) == count
 
 
 def test_problems_are_carried(tables: survey_data.SurveyTables) -> None:

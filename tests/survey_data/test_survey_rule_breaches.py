@@ -235,6 +235,6 @@ def test_evidence_of_later_studies_is_checked_though_a_table_beside_is_missing(
     assert [(p.file, p.row, p.column, p.message) for p in found] == [
         (
             "extension/attributes.csv", at + FIRST_ROW, "basis",
-            "survey-text, of a study after the survey",
+            "survey-text, of a study outside the survey",
         )
     ]  # fmt: skip

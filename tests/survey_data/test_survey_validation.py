@@ -11,7 +11,7 @@ import survey_data
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name, primary_key, table_names
 from survey_data.editions import EXTENSION_TABLES
 
-#: Those of the survey; the tables of later studies may be empty (`additions/`).
+#: Those of the survey; the tables of those it does not map may be empty (`additions/`).
 ALL = tuple(name for name in table_names() if name not in EXTENSION_TABLES)
 PRINTED = "study_tables.csv"
 
@@ -175,12 +175,12 @@ UNKNOWN = {
     "purposes": [("given", "model=Sundial"), ("unless", "mask"), ("purpose", "fun")],
     "compensated_models": [("model", "Sundial"), ("relation", "behind"), ("study", "Nobody1999")],
     "method_variants": [("model", "Sundial"), ("extractor", "Squint"), ("runs_as", "Sundial")],
-    "architectures": [("mask", "Sundial")],
+    "run_facts": [("fact", "colour"), ("value", "guessed"), ("study", "Nobody1999")],
+    "architectures": [("mask", "Sundial")], "venues": [("study", "Nobody1999")],
     "roles": [("value", "Sundial"), ("role", "admired"), ("study", "Nobody1999")],
     "advice": [("detector", "Sundial"), ("extractor", "Squint"), ("value", "Beauty")],
     "protocol": [("kind", "rumour")],
     "model_families": [("model", "Sundial"), ("calibration", "never")],
-    "venues": [("study", "Nobody1999")],
     "statistics": [("kind", "median"), ("rms_divisor", "three"), ("rms_divisor", "0")],
     "sources": [("kind", "rumour"), ("host", "No Host")],
     "labels": [("kind", "chorus"), ("label", "sundial")],

@@ -1,17 +1,15 @@
-"""What a cell costs as the benchmark grows: ``python -m tools.bench.growth``.
+"""What a cell costs as the benchmark grows: made-up methods, data sets, units and studies.
 
-Made-up parts: ten times the methods, more data sets, a hundred units, a thousand studies. Each
-step is timed (processor time) at four sizes; the exponent is the slope of the logarithms of cost
-and work. 1 is a cost that grows as its work does, cells or studies; above `MOST_EXPONENT`
-something grows faster.
+Each figure is the slope of the logarithms of processor time and work; 1 is a cost that grows as its
+work does.
 """
 
 from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -31,80 +29,39 @@ from registry.judging import Question
 from registry.measured_pipelines import Measurements
 from registry.requirements import Requirements
 from registry.studies import facts
-from tools.bench.verdicts import Verdict, any_broken
 
-FAKES = str(Path(__file__).parents[2] / "tests" / "benchmark" / "fakes")
-if FAKES not in sys.path:
-    sys.path.append(FAKES)
+from .paired import at_most
 
-import fake_atlas  # noqa: E402 - of the tests, which have no package
-import fake_plan  # noqa: E402 - likewise
+sys.path.append(str(Path(__file__).parents[2] / "tests" / "benchmark" / "fakes"))
 
-MOST_EXPONENT = 1.1
-#: Samples of a made-up data set: few, as what is asked is the cost of all else.
-_SAMPLES = 20
-_TIMES = 2
+import fake_atlas  # of the tests, which have no package
+import fake_plan
 
-
-@dataclass(frozen=True)
-class Growth:
-    """How the cost of a step grows.
-
-    Attributes
-    ----------
-    step, of : what is timed, and what there is more of
-    sizes : how many of these
-    work : cells, or studies, that each size makes
-    seconds : processor time of each
-    """
-
-    step: str
-    of: str
-    sizes: Sequence[int]
-    work: Sequence[int]
-    seconds: Sequence[float]
-
-    @property
-    def exponent(self) -> float:
-        """Slope of the logarithm of the cost over that of the work."""
-        return float(np.polyfit(np.log(self.work), np.log(self.seconds), 1)[0])
-
-
-#: Prepares a step at a size; returns what it comes to in cells or studies, and the step.
-Prepared = Callable[[int], tuple[int, Callable[[], object]]]
-
-
-def measure(step: str, of: str, sizes: Sequence[int], prepare: Prepared) -> Growth:
-    """Time a step at each size, the best of `_TIMES`; once before, for what is kept."""
-    prepare(sizes[0])[1]()
-    work, seconds = [], []
-    for size in sizes:
-        best = np.inf
-        for _ in range(_TIMES):
-            amount, run = prepare(size)
-            start = time.process_time()
-            run()
-            best = min(best, time.process_time() - start)
-        work.append(amount)
-        seconds.append(float(best))
-    return Growth(step, of, tuple(sizes), tuple(work), tuple(seconds))
+_MOST = 1.1
+#: Amount of work, and what does it.
+Prepared = tuple[int, Callable[[], object]]
 
 
 def made_up(methods: int = 1, datasets: int = 1) -> Parts:
     """Return parts with so many models and data sets, alike but for their names."""
     least = fake_atlas.LeastSquares
-    models = tuple(
-        type(f"Made{at}", (least,), {"about": replace(least.about, name=f"made-{at}")})
-        for at in range(methods)
-    )
-    for model in models:
-        model.__module__ = least.__module__  # whose code they are
-    presets = tuple(fake_atlas.Diodes(name=f"made-{at}", n=_SAMPLES) for at in range(datasets))
+    models = []
+    for at in range(methods):
+        about = replace(least.about, name=f"made-{at}")
+        models.append(type(f"Made{at}", (least,), {"about": about}))
+        models[-1].__module__ = least.__module__  # whose code they are
+    presets = tuple(fake_atlas.Diodes(name=f"made-{at}", n=20) for at in range(datasets))
     return fake_plan.parts(*models, presets=presets)
 
 
-def prepare_running(methods: int = 1, datasets: int = 1, units: int = 1) -> tuple[int, Any]:
-    """Prepare planning, measuring and recording of made-up parts."""
+def planning(methods: int) -> Prepared:
+    """Prepare a plan of methods on ten data sets."""
+    parts = made_up(methods, 10)
+    return len(combinations.cells(parts=parts)), lambda: combinations.cells(parts=parts)
+
+
+def running(methods: int = 1, datasets: int = 1, units: int = 1) -> Prepared:
+    """Prepare planning, measuring and recording."""
     parts = made_up(methods, datasets)
     standard = combinations.cells(parts=parts)
     cells = [replace(cell, unit=unit) for cell in standard for unit in range(units)]
@@ -118,17 +75,11 @@ def prepare_running(methods: int = 1, datasets: int = 1, units: int = 1) -> tupl
     return len(cells), run
 
 
-def prepare_planning(size: int) -> tuple[int, Any]:
-    """Prepare a plan of so many methods on ten data sets."""
-    parts = made_up(size, 10)
-    return len(combinations.cells(parts=parts)), lambda: combinations.cells(parts=parts)
-
-
-def prepare_ranking(methods: int = 1, units: int = 1) -> tuple[int, Any]:
-    """Prepare the board of one data set with the published rows so many times, on made-up units."""
+def ranking(methods: int = 1, units: int = 1) -> Prepared:
+    """Prepare the board of one data set: the published rows so many times, on made-up units."""
     known = [r for r in Store(PUBLISHED).rows(unit=0) if r["dataset"] == "cmos-single-aperture"]
     rng = np.random.default_rng(36)
-    rows = [
+    rows: list[dict[str, Any]] = [
         {**row, "model": f"{row['model']}-{copy}", "unit": unit}
         for row in known
         for copy in range(methods)
@@ -141,74 +92,55 @@ def prepare_ranking(methods: int = 1, units: int = 1) -> tuple[int, Any]:
     return len(rows), lambda: board.build(rows)
 
 
-def prepare_answering(studies: int, methods: int, known: Knowledge) -> tuple[int, Any]:
+def answering(studies: int, methods: int = 1) -> Prepared:
     """Prepare a table of designs, and an answer, for so many studies and times the methods."""
-    of_survey = facts()
-    every = list(of_survey.studies.values())
-    copies = -(-studies // len(every))
+    known, measured = facts(), Knowledge().measured_pipelines.rows
+    every = list(known.studies.values())
     made = [
-        replace(study, key=f"{study.key}-{copy}" if copy else study.key)
-        for copy in range(copies)
+        replace(study, key=f"{study.key}-{copy}")
+        for copy in range(-(-studies // len(every)))
         for study in every
     ]
-    grown = replace(of_survey, studies={study.key: study for study in made[:studies]})
-    rows = [
-        replace(row, model=f"{row.model}-{copy}")
-        for row in known.measured_pipelines.rows
-        for copy in range(methods)
-    ]
+    grown = replace(known, studies={study.key: study for study in made[:studies]})
+    rows = [replace(row, model=f"{row.model}-{n}") for row in measured for n in range(methods)]
     pipelines = Measurements(rows)
 
-    def answer() -> None:
+    def answer() -> object:
         table = DesignTable(grown, pipelines)
-        _ = Answer(Question(table, Requirements()), "evidence").architectures
+        return Answer(Question(table, Requirements()), "evidence").architectures
 
     return studies if methods == 1 else len(rows), answer
 
 
-def growths() -> Iterator[Growth]:
-    """Measure every step."""
-    tens, hundred = (8, 16, 40, 80), (12, 25, 50, 100)
-    yield measure("plan", "methods", (10, 25, 50, 100), prepare_planning)
-    yield measure("plan, run, record", "methods", tens, lambda size: prepare_running(methods=size))
-    yield measure(
-        "plan, run, record", "data sets", tens, lambda size: prepare_running(datasets=size)
-    )
-    yield measure("plan, run, record", "units", hundred, lambda size: prepare_running(units=size))
-    yield measure(
-        "board", "methods", (1, 2, 5, 10), lambda size: prepare_ranking(methods=size, units=5)
-    )
-    yield measure("board", "units", hundred, lambda size: prepare_ranking(units=size))
-    known = Knowledge()
-    many = (125, 250, 500, 1000)
-    yield measure("answer", "studies", many, lambda size: prepare_answering(size, 1, known))
-    yield measure(
-        "answer", "methods", (2, 4, 7, 10), lambda size: prepare_answering(1000, size, known)
-    )
+_STEPS: dict[str, tuple[Callable[[int], Prepared], tuple[int, ...]]] = {
+    "plan by methods": (planning, (10, 25, 50, 100)),
+    "run by methods": (lambda size: running(methods=size), (8, 16, 40, 80)),
+    "run by data sets": (lambda size: running(datasets=size), (8, 16, 40, 80)),
+    "run by units": (lambda size: running(units=size), (12, 25, 50, 100)),
+    "board by methods": (lambda size: ranking(methods=size, units=5), (1, 2, 5, 10)),
+    "board by units": (lambda size: ranking(units=size), (12, 25, 50, 100)),
+    "answer by studies": (answering, (125, 250, 500, 1000)),
+    "answer by methods": (lambda size: answering(1000, size), (2, 4, 7, 10)),
+}
 
 
-def run() -> list[Verdict]:
-    """Measure and print; return the verdicts."""
-    found = []
-    for growth in growths():
-        each = ", ".join(
-            f"{size}: {1e6 * seconds / work:.0f} us"
-            for size, work, seconds in zip(growth.sizes, growth.work, growth.seconds, strict=True)
-        )
-        unit = "a study" if growth.of == "studies" else "a cell"
-        print(
-            f"{growth.step} by {growth.of} ({unit}) {each}; exponent {growth.exponent:.2f}",
-            flush=True,
-        )
-        what = f"{growth.step}: exponent of its cost by {growth.of}"
-        found.append(Verdict(what, growth.exponent, MOST_EXPONENT))
-    return found
+def track_exponent(step: str) -> float:
+    """Time a step at four sizes, the best of two."""
+    prepare, sizes = _STEPS[step]
+    prepare(sizes[0])[1]()
+    work, seconds = [], []
+    for size in sizes:
+        amount, run = prepare(size)
+        best = float("inf")
+        for _ in range(2):
+            start = time.process_time()
+            run()
+            best = min(best, time.process_time() - start)
+        work.append(amount)
+        seconds.append(best)
+    return at_most(_MOST, float(np.polyfit(np.log(work), np.log(seconds), 1)[0]))
 
 
-def main() -> int:
-    """Measure, print, and return the exit status."""
-    return 1 if any_broken(run()) else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+track_exponent.params = list(_STEPS)  # type: ignore[attr-defined]
+track_exponent.param_names = ["step"]  # type: ignore[attr-defined]
+track_exponent.timeout = 1200  # type: ignore[attr-defined]

@@ -1,118 +1,68 @@
-"""How fast and how large recommendations are: ``python -m tools.bench.service [--seed N]``.
+"""The service and the command line: times of answers, sizes, and what idling and starting cost.
 
-The service runs under uvicorn in this process; one client asks it questions drawn at random, then
-one question again and again. Printed are milliseconds, bytes of the usual answer and of the OpenAPI
-document, and lines of the code that answers. The limits on times are for the development machine.
+Questions are drawn by SEED. The limits on milliseconds are for the development machine.
 """
 
 from __future__ import annotations
 
-import argparse
-import asyncio
+import contextlib
+import os
 import random
-import socket
+import subprocess
 import sys
-import threading
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
 from http.client import HTTPConnection
 from itertools import islice
 from pathlib import Path
-from typing import Any
-from urllib.parse import urlencode
+from urllib.parse import urlencode, urlsplit
 
-import uvicorn
-from fastapi import FastAPI
+import psutil
 
-from api.server.app import create_app
-from api.server.connections import bounds
 from registry.ranking import SORTS
 from registry.requirements import HAZARDS, MISSIONS
 from registry.studies import facts
-from tools.bench.verdicts import Verdict, any_broken
 
+from .paired import at_most, ratio
+
+ROOT = Path(__file__).parents[2]
 PATH = "/v1/recommendations"
-NEW_MS, REPEATED_MS = 20.0, 3.0
-"""What 95 of 100 new questions, and of repeated ones, may take on the development machine."""
-ANSWER_BYTES, OPENAPI_BYTES = 30_000, 200_000
-LINES = 8_834
-"""Lines of `registry` and `api/schema`: 2,000 fewer than they had when answers were bytes."""
-#: Questions before those that are measured, and how often one has a requirement of a kind.
-_WARM, _SHARE = 20, 0.35
-#: A connection is kept however long the machine lets its next request wait, s.
-_KEPT_S = 600
+_SEED = int(os.environ.get("SEED") or 1)
+_QUESTIONS, _WARM, _SHARE = 300, 20, 0.35
+_IDLE_S = 30.0
 
 
-def empty_app() -> FastAPI:
-    """Return the reference: an application whose endpoint does nothing."""
-    app = FastAPI()
-
-    @app.get("/")
-    async def nothing() -> dict[str, str]:
-        return {}
-
-    return app
-
-
-@contextmanager
-def serve(apps: Sequence[FastAPI], **options: Any) -> Iterator[list[HTTPConnection]]:
-    """Serve applications from a thread of this process; yield a connection to each.
-
-    `options` are those of `uvicorn.Config`.
-    """
-    chosen = {**bounds(), "timeout_keep_alive": _KEPT_S, **options}
-    servers = [
-        uvicorn.Server(uvicorn.Config(app, log_level="error", access_log=False, **chosen))
-        for app in apps
-    ]
-    sockets = [_listening() for _ in apps]
-
-    async def serve_all() -> None:
-        pairs = zip(servers, sockets, strict=True)
-        await asyncio.gather(*(server.serve(sockets=[listening]) for server, listening in pairs))
-
-    thread = threading.Thread(target=asyncio.run, args=(serve_all(),), daemon=True)
-    thread.start()
-    try:
-        while not all(server.started for server in servers):
-            if not thread.is_alive():
-                raise RuntimeError("the servers did not start; their log says why")
-            time.sleep(0.01)
-        connections = [HTTPConnection(*listening.getsockname()) for listening in sockets]
-        yield connections
-        for connection in connections:
-            connection.close()
-    finally:
-        for server in servers:
-            server.should_exit = True
-        thread.join()
-        for listening in sockets:
-            listening.close()
+@contextlib.contextmanager
+def served() -> Iterator[tuple[HTTPConnection, psutil.Process]]:
+    """Serve in a process of its own; give a connection to it, ready, and the process."""
+    command = (sys.executable, "-m", "api.cli.command_line", "serve", "--port", "0")
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stdout is not None
+            words = process.stdout.readline().split()
+            place = urlsplit(next(word for word in words if "://" in word))
+            connection = HTTPConnection(str(place.hostname), place.port, timeout=600)
+            ask(connection, "/healthz")  # waits until it is ready
+            yield connection, psutil.Process(process.pid)
+        finally:
+            process.terminate()
 
 
-def _listening() -> socket.socket:
-    """Return a socket that listens on a free port of the loopback interface.
-
-    Its protocol is named: asyncio turns Nagle's algorithm off only where it is, and with it on an
-    answer in two packets waits 40 ms for an acknowledgement, which would flatter every ratio.
-    """
-    listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP)
-    listening.bind(("127.0.0.1", 0))
-    listening.listen()
-    listening.setblocking(False)
-    return listening
+def ask(connection: HTTPConnection, path: str) -> tuple[float, int]:
+    """Return how long an answer takes, ms, and its bytes; RuntimeError where it is a refusal."""
+    start = time.perf_counter()
+    connection.request("GET", path)
+    response = connection.getresponse()
+    size = len(response.read())
+    if response.status != 200:
+        raise RuntimeError(f"{path} was answered by {response.status}")
+    return 1e3 * (time.perf_counter() - start), size
 
 
-def random_paths(seed: int) -> Iterator[str]:
-    """Yield paths that ask for requirements drawn at random, none of them twice.
-
-    Something meets them or nothing.
-    """
-    values = facts().taxonomy.values
-    rng = random.Random(seed)
-    before: set[str] = set()
-    numbers = {
+def questions(seed: int) -> Iterator[str]:
+    """Give addresses of requirements drawn at random, whether anything meets them or not."""
+    values, rng = facts().taxonomy.values, random.Random(seed)
+    numbers: dict[str, Callable[[], float]] = {
         "max_error_deg": lambda: 10.0 ** rng.uniform(-3.5, 1.0),
         "min_fov_deg": lambda: rng.uniform(5.0, 200.0),
         "bench_deg": lambda: 10.0 ** rng.uniform(-3.0, -1.0),
@@ -131,78 +81,74 @@ def random_paths(seed: int) -> Iterator[str]:
         for name, among in (("survive", HAZARDS), ("mission", MISSIONS)):
             if rng.random() < _SHARE / 3:
                 asked[name] = rng.choice(list(among))
-        path = f"{PATH}?{urlencode(asked)}"
-        if path not in before:
-            before.add(path)
-            yield path
+        yield f"{PATH}?{urlencode(asked)}"
 
 
-def ask(connection: HTTPConnection, path: str) -> tuple[float, int]:
-    """Return how long an answer takes, in milliseconds, and its size in bytes.
-
-    Raises
-    ------
-    RuntimeError
-        Where it is a refusal.
-    """
-    start = time.perf_counter()
-    connection.request("GET", path)
-    response = connection.getresponse()
-    size = len(response.read())
-    spent = 1e3 * (time.perf_counter() - start)
-    if response.status != 200:
-        raise RuntimeError(f"{path} was answered by {response.status}")
-    return spent, size
-
-
-def measure(seed: int, questions: int = 300, app: FastAPI | None = None) -> list[Verdict]:
-    """Ask drawn questions, then one again and again; return what was measured with its limit.
-
-    Parameters
-    ----------
-    seed, questions : of the draw, and how many
-    app : the service, not asked before
-    """
-    drawn = random_paths(seed)
-    with serve([create_app() if app is None else app]) as (connection,):
+def measured() -> dict[str, float]:
+    """Serve once, and measure all there is to measure of it."""
+    drawn = questions(_SEED)
+    with served() as (connection, process):
         for path in islice(drawn, _WARM):
             ask(connection, path)
-        new = [ask(connection, path)[0] for path in islice(drawn, questions)]
-        repeated = [ask(connection, PATH)[0] for _ in range(questions + 1)][1:]
-        sizes = {path: ask(connection, path)[1] for path in (PATH, "/openapi.json")}
-    return [
-        Verdict("a new question, ms (95 of 100)", _of_95(new), NEW_MS),
-        Verdict("a repeated question, ms (95 of 100)", _of_95(repeated), REPEATED_MS),
-        Verdict("the usual answer, bytes", sizes[PATH], ANSWER_BYTES),
-        Verdict("the OpenAPI document, bytes", sizes["/openapi.json"], OPENAPI_BYTES),
-        Verdict("lines of registry and api/schema", _lines(), LINES),
-    ]
+        new = sorted(ask(connection, path)[0] for path in islice(drawn, _QUESTIONS))
+        again = sorted(ask(connection, PATH)[0] for _ in range(_QUESTIONS))
+        sizes = [ask(connection, path)[1] for path in (PATH, "/openapi.json")]
+        time.sleep(5.0)
+        before = process.cpu_times()
+        time.sleep(_IDLE_S)
+        after = process.cpu_times()
+        one = not process.children(recursive=True)
+    spent = after.user + after.system - before.user - before.system
+    return {
+        "new": new[int(0.95 * _QUESTIONS)],
+        "again": again[int(0.95 * _QUESTIONS)],
+        "answer": sizes[0],
+        "openapi": sizes[1],
+        "idle": spent * 60.0 / _IDLE_S if one else float("inf"),
+    }
 
 
-def _of_95(times: Sequence[float]) -> float:
-    return sorted(times)[int(0.95 * len(times))]
+class Service:
+    """Recommendations over HTTP; 95 of 100 answers take at most so long."""
+
+    timeout = 600
+
+    def setup_cache(self) -> dict[str, float]:
+        return measured()
+
+    def track_new_question_ms(self, found: dict[str, float]) -> float:
+        return at_most(20.0, found["new"])
+
+    def track_repeated_question_ms(self, found: dict[str, float]) -> float:
+        return at_most(3.0, found["again"])
+
+    def track_usual_answer_bytes(self, found: dict[str, float]) -> float:
+        return at_most(30_000, found["answer"])
+
+    def track_openapi_bytes(self, found: dict[str, float]) -> float:
+        return at_most(200_000, found["openapi"])
+
+    def track_idle_processor_s_a_minute(self, found: dict[str, float]) -> float:
+        """While nobody asks; infinite where the service is more than one process."""
+        return at_most(1.0, found["idle"])
 
 
-def _lines() -> int:
-    root = Path(__file__).parents[2]
-    files = [*(root / "registry").rglob("*.py"), *(root / "api" / "schema").rglob("*.py")]
-    return sum(len(file.read_text(encoding="utf-8").splitlines()) for file in files)
+def track_lines_of_registry_and_schema() -> float:
+    """Lines of the code that answers."""
+    files = [*(ROOT / "registry").rglob("*.py"), *(ROOT / "api" / "schema").rglob("*.py")]
+    return at_most(9_318, sum(len(file.read_text("utf-8").splitlines()) for file in files))
 
 
-def run(seed: int) -> list[Verdict]:
-    """Measure and print; return the verdicts."""
-    found = measure(seed)
-    for verdict in found:
-        print(f"{verdict.what}: {verdict.value:.4g} (at most {verdict.most:g})")
-    return found
+def track_help_over_importing_typer() -> float:
+    """Processor time of a process each."""
 
+    def run(*arguments: str) -> Callable[[], object]:
+        command = [sys.executable, *arguments]
+        return lambda: subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL, check=True)
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Measure, print, and return the exit status."""
-    parser = argparse.ArgumentParser(prog="python -m tools.bench.service", description=__doc__)
-    parser.add_argument("--seed", type=int, default=36, help="of what is drawn")
-    return 1 if any_broken(run(parser.parse_args(arguments).seed)) else 0
+    def spent() -> float:
+        times = os.times()
+        return times.children_user + times.children_system
 
-
-if __name__ == "__main__":
-    sys.exit(main())
+    call = run("-m", "api.cli.command_line", "--help")
+    return at_most(2.5, ratio(call, run("-c", "import typer"), repeats=5, clock=spent))

@@ -14,6 +14,7 @@ from api.cli.table_output import Format, FormatOption, emit
 from api.cli.wrong_call import WrongCallError
 from api.deposit import against_record
 from api.deposit import bundle as deposit
+from api.deposit.archives.metadata import description
 from api.deposit.verification import UNSEEN
 from api.deposit.verification import verify as verified
 from benchmark.progress import console_progress
@@ -55,16 +56,24 @@ def build(
     out: Annotated[
         Path, typer.Option(help="Output directory; an earlier bundle is replaced.")
     ] = _BUILT,
+    code: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Source archive of this version, where this is no checkout.",
+            show_default=False,
+        ),
+    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="Do not show progress.")] = False,
     form: FormatOption = Format.TABLE,
 ) -> None:
-    """Build the bundle for an archive: the survey's tables and the published results.
+    """Build the bundle for an archive: facts, published results, their samples and the code.
 
     A Data Package with RO-Crate metadata, licences, CITATION.cff and checksums, as a directory and
     as a zip file. The same sources give the same bytes.
     """
     with console_progress("building the bundle", quiet=quiet) as progress:
-        bundle = deposit.build(out, progress=progress)
+        bundle = deposit.build(out, code=code, progress=progress)
     rows = [
         {"file": name, "bytes": (bundle.directory / name).stat().st_size} for name in bundle.files
     ]
@@ -74,7 +83,10 @@ def build(
         "files": rows,
     }
     emit(rows, ("file", "bytes"), form, document=document, title=str(bundle.directory))
-    typer.echo(f"built {bundle.directory} and {bundle.archive}", err=True)
+    total = sum((bundle.directory / name).stat().st_size for name in bundle.files)
+    typer.echo(f"built {bundle.directory} ({total / 1e6:.0f} MB) and {bundle.archive}", err=True)
+    for field in description(bundle.directory).unfilled:
+        typer.echo(f"to fill in before an upload, in CITATION.cff: {field}", err=True)
 
 
 @app.command()
@@ -115,6 +127,43 @@ def verify(
 
 
 @app.command()
+def rescore(
+    directory: Annotated[Path, typer.Argument(help="Directory of the bundle.", show_default=False)],
+    *,
+    cells: Annotated[int, typer.Option(help="Number of scores to measure.", min=1)] = 20,
+    seed: Annotated[int, typer.Option(help="Draws them.")] = 1,
+    form: FormatOption = Format.TABLE,
+) -> None:
+    """Measure scores of a bundle again from its own samples, and compare them to the last digit.
+
+    Scores are drawn by the seed from those whose samples are in the bundle. Nothing is simulated.
+    The exit code is 1 where a number differs. `rescore.py` in the bundle installs its code first.
+    """
+    from api.deposit import rescoring  # noqa: PLC0415 - a second: the simulator
+
+    scores = rescoring.read_scores(directory)
+    possible = rescoring.repeatable(directory, scores)
+    typer.echo(
+        f"{len(possible)} of {len(scores)} scores can be measured from the samples of the bundle; "
+        f"seed {seed} draws {cells}",
+        err=True,
+    )
+    rows = []
+    for one in rescoring.rescore(directory, rescoring.draw(possible, cells, seed)):
+        told = [f"{name} is {one.found[name]}, not {one.stated[name]}" for name in one.differing]
+        found = {name: one.found[name] for name in ("status", "rms_deg")}
+        took = {"seconds": round(one.seconds, 1), "differs": "; ".join(told)}
+        rows.append({"cell": str(one.cell), **found, **took})
+        typer.echo(f"{'differs' if told else 'same'}: {one.cell}", err=True)
+    emit(rows, ("cell", "status", "rms_deg", "seconds", "differs"), form)
+    differing = sum(bool(row["differs"]) for row in rows)
+    same = len(rows) - differing
+    typer.echo(f"{same} of {len(rows)} scores are the same to the last digit", err=True)
+    if differing:
+        raise typer.Exit(1)
+
+
+@app.command()
 def upload(
     *,
     bundle: BuiltBundle = _BUILT,
@@ -132,6 +181,8 @@ def upload(
     form: FormatOption = Format.TABLE,
 ) -> None:
     """Upload a bundle as a draft; nothing becomes public.
+
+    Requires authors with valid ORCID iDs and a repository in CITATION.cff.
 
     The default is Zenodo's sandbox; --production selects zenodo.org. The token is read from
     ZENODO_SANDBOX_TOKEN, with --production from ZENODO_TOKEN, with --server from ARCHIVE_TOKEN. An
@@ -185,8 +236,8 @@ def publish(
 ) -> None:
     """Publish a draft. This cannot be undone.
 
-    Requires authors with valid ORCID iDs in CITATION.cff and in the draft, and a draft with exactly
-    the files of the bundle. Server and token as for upload.
+    Requires CITATION.cff as for upload, the same authors in the draft, and a draft with exactly the
+    files of the bundle. Server and token as for upload.
     """
     from api.deposit.archives import publishing  # noqa: PLC0415 - as above
 

@@ -10,7 +10,7 @@ import typer
 
 from api.citations import FORMS
 from api.cli import completion
-from api.cli.asking import ask
+from api.cli.asking import ask, knowledge
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, emit, emit_json, say, write
 from api.cli.wrong_call import WrongCallError
@@ -66,15 +66,30 @@ def studies(
             ),
         ),
     ] = StudyFormat.TABLE,
+    published: Annotated[
+        bool,
+        typer.Option(
+            "--published",
+            help="Compare reported accuracies with own errors here, worst first.",
+        ),
+    ] = False,
 ) -> None:
     """List studies with the grade of each run, or show one.
 
-    Grades: faithful (sensor, condition and methods are the study's own, stated or inferred with a
-    reason), close (one part differs), stand-in (more parts differ), none (not implemented).
-    `sunatlas studies KEY` shows the differences, the information that would remove them, and the
-    basis of each value. State is complete if every value of the study is implemented.
+    Grades: faithful (sensor, condition, methods, calibration and score are the study's own),
+    assumed (nothing known differs, but facts that it takes to judge are unknown), close (one part
+    differs), stand-in (more parts differ), none (not implemented). `sunatlas studies KEY` shows
+    what differs or is unknown, what would raise the grade, and the basis of each value. State is
+    complete if every value of the study is implemented. --published compares the accuracy that
+    studies report with the own error here, worst first.
     """
-    if key is None:
+    if published and (key is not None or asked != {"edition": "survey"} or form in FORMS):
+        raise WrongCallError("--published compares every study of the survey, as a table")
+    if published:
+        rows = service.compare_accuracy(knowledge())
+        title = service.say_comparison(rows)
+        emit(rows, service.COMPARED, Format(form), document=rows, title=title)
+    elif key is None:
         _list(asked, form)
     elif asked != {"edition": "survey"}:
         raise WrongCallError("a study's key takes no filters beside it")
@@ -117,12 +132,13 @@ def _show(key: str, asked: StudyFormat) -> None:
         say(f"{study['authors'] or 'authors unknown'}, {year}. {study['venue'] or ''}")
         say(study["doi"] or study["url"] or "no DOI known")
         if study["edition"] != "survey":
-            say("Added after the survey, which does not map it.")
+            say("Not mapped by the survey.")
         for one in study["verified"]:
             say(f"Verified by {one['name']} on {one['date']}: {one['confirms']} ({one['source']})")
         say(f"{study['grade']}: {labels.label_of(study['sentence'])}")
         for departure in study["departures"]:
-            say(f"  {departure['part']} settled by: {departure['settled_by']}")
+            way = "unknown" if departure["unknown"] else "differs"
+            say(f"  {departure['part']} {way}; raised by: {departure['settled_by']}")
         typer.echo()
     emit(study["attributes"], columns_of(AttributeValue) if form is Format.CSV else DETAILS, form)
     if form is Format.TABLE:

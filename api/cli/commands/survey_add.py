@@ -1,4 +1,4 @@
-"""`sunatlas survey add`, `remove` and `verify`: studies after the survey."""
+"""`sunatlas survey add`, `remove` and `verify`: studies the survey does not map."""
 
 from __future__ import annotations
 
@@ -15,11 +15,12 @@ from api.cli.wrong_call import WrongCallError
 from files.atomic import replace_file
 from survey_data.additions.addition_reader import Addition
 from survey_data.additions.faults import FaultsError
-from survey_data.additions.publications import SUFFIXES, choose, read_publications
+from survey_data.additions.publications import choose, read_publications
 from survey_data.additions.template import empty_template
 from survey_data.additions.vocabulary import vocabulary
 from survey_data.additions.writing import add_study, read_study, remove_study, verify_study
 from survey_data.descriptor import DATA_DIRECTORY
+from survey_data.importing.bibliography import SUFFIXES
 
 _CELLS = ("attribute", "value", "name", "role", "basis", "source", "note")
 _PIPELINES = ("detector", "mask", "extractor", "model", "datasets", "assumed")

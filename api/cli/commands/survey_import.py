@@ -106,6 +106,8 @@ def _bibliography(
     if plan.conflicts:
         keys = ", ".join(plan.conflicts)
         say(f"confirmed and said otherwise: {keys}; --replace KEY takes what the file says")
+    for kept in (found for found in plan.differences if found.kind == "kept"):
+        say(f"{kept.study}: published in {kept.theirs} there; the year of the key stays")
     for key, reason in plan.left_aside:
         say(f"left aside: {key}: {reason}")
     if plan.missing:

@@ -13,9 +13,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from api.metadata.citation import Author, authors
+from api.deposit.archives.contract import ArchiveError
+from api.metadata.citation import Author, authors, repository, unfilled
 
-Scheme = Literal["arxiv", "doi"]
+Scheme = Literal["arxiv", "doi", "url"]
+
+
+class UnfilledError(ArchiveError):
+    """A person has still to fill in fields of CITATION.cff; the message names them."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +71,7 @@ class Description:
     authors : as CITATION.cff names them
     keywords : free
     licences : (SPDX identifier, what it covers), that of the data first
+    repository : address of the code, or None
     """
 
     title: str
@@ -75,6 +81,28 @@ class Description:
     authors: tuple[Author, ...]
     keywords: tuple[str, ...]
     licences: tuple[tuple[str, str], ...]
+    repository: str | None
+
+    @property
+    def related(self) -> tuple[RelatedWork, ...]:
+        """Other works: the sources of the facts, and the code that made the rest."""
+        if self.repository is None:
+            return RELATED
+        code = RelatedWork(self.repository, "url", "isCompiledBy", ("software", "software"))
+        return (*RELATED, code)
+
+    @property
+    def unfilled(self) -> list[str]:
+        """Fields of CITATION.cff that an archive demands and that are missing or placeholders."""
+        return unfilled(self.authors, self.repository)
+
+    def require_filled(self, undone: str) -> None:
+        """Raise UnfilledError where CITATION.cff lacks a field; `undone` is what was not done."""
+        if self.unfilled:
+            raise UnfilledError(
+                f"CITATION.cff of the bundle is not filled in: {'; '.join(self.unfilled)}. Fill in "
+                f"the project's own, build and upload again; {undone}"
+            )
 
     @property
     def html(self) -> str:
@@ -94,6 +122,7 @@ def description(bundle: Path) -> Description:
     """
     package = json.loads((bundle / "datapackage.json").read_text("utf-8"))
     path = bundle / "CITATION.cff"
+    citation = path.read_text("utf-8")
     return Description(
         title=package["title"],
         version=package["version"],
@@ -102,12 +131,13 @@ def description(bundle: Path) -> Description:
             package["description"],
             _CONTENTS.format(zip=f"{package['name']}-{package['version']}.zip"),
         ),
-        authors=authors(path.read_text("utf-8"), path),
+        authors=authors(citation, path),
         keywords=tuple(package["keywords"]),
         licences=(
             ("CC-BY-4.0", "facts (survey/, bibliography/)"),
-            ("MIT", "what the code measured and made (everything else)"),
+            ("MIT", "code, and what it measured and made (everything else)"),
         ),
+        repository=repository(citation),
     )
 
 
@@ -134,7 +164,7 @@ def invenio(described: Description) -> dict[str, Any]:
                     "relation_type": {"id": work.relation.lower()},
                     "resource_type": {"id": work.kind[0]},
                 }
-                for work in RELATED
+                for work in described.related
             ],
         },
     }
@@ -166,7 +196,7 @@ def legacy(described: Description) -> dict[str, Any]:
                 "relation": work.relation,
                 "resource_type": work.kind[1],
             }
-            for work in RELATED
+            for work in described.related
         ],
     }
 

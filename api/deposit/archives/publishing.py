@@ -32,8 +32,10 @@ def publish(archive: Archive, identifier: str, directory: Path) -> PublishedReco
 
     Raises
     ------
+    UnfilledError
+        Where the bundle's CITATION.cff lacks a field.
     NotReadyError
-        Where authors are missing or placeholders, or files are missing, foreign or other bytes.
+        Where the draft's authors are no people, or files are missing, foreign or other bytes.
     BundleError
         Where the bundle does not hold.
     ArchiveError
@@ -46,12 +48,7 @@ def publish(archive: Archive, identifier: str, directory: Path) -> PublishedReco
 def _published(
     archive: Archive, identifier: str, directory: Path, bundle: SealedBundle
 ) -> PublishedRecord:
-    found = author_problems(bundle.description.authors)
-    if found:
-        raise NotReadyError(
-            f"the bundle's authors cannot be published: {'; '.join(found)}. Fill in CITATION.cff, "
-            "build and upload again; nothing was published"
-        )
+    bundle.description.require_filled("nothing was published")
     try:
         draft = archive.draft(identifier)
     except NoDraftError:

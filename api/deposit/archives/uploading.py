@@ -88,11 +88,14 @@ def upload(
 
     Raises
     ------
+    UnfilledError
+        Where the bundle's CITATION.cff lacks authors or the repository; nothing was sent.
     ArchiveError
         Where anything does not go as it should; what has been sent stays in the draft.
     """
     memory = Memory(directory, f"{server} {archive.name}")
     with seal(directory) as bundle:
+        bundle.description.require_filled("nothing was sent")
         opened = _open(archive, memory, version_of, draft, bundle.description)
         return _send(archive, bundle, opened, tell)
 

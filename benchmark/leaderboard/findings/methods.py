@@ -16,7 +16,7 @@ from registry.catalogue import catalogue
 from registry.resolution import Resolution
 from registry.studies import METHODS
 
-#: Times the error over observable samples above which an error is mostly that of false Suns.
+#: Times the error over observable samples above which an error is mostly that of false detections.
 PENALTY = 2.0
 #: What a method rests on that is not the study's: memory, or a choice of ours.
 _NOT_THE_STUDYS = frozenset({"recalled", "defaulted"})
@@ -89,7 +89,7 @@ def _steps(record: Record) -> tuple[tuple[Callable[[Use], bool], str], ...]:
         return bool(row["charged_deg"] <= PENALTY * row["rms_deg"])
 
     return (
-        (honest, "whose error is mostly that of false Suns"),
+        (honest, "whose error is mostly that of false detections"),
         (lambda use: not use.chosen, "whose extractor or model we chose"),
         (lambda use: not is_drawn(use.cell.model), "whose model has no fitted constant"),
     )

@@ -60,7 +60,15 @@ def test_filters_by_grade_divide_the_studies():
         assert {study["grade"] for study in found} <= {grade}
     shown = sunatlas("studies", "Soken2023").stdout
     assert any(line.startswith("close: ") for line in shown.splitlines())
-    assert "settled by:" in shown
+    assert "raised by:" in shown
+
+
+def test_reported_and_own_errors_are_printed_worst_first():
+    rows = answer("studies", "--published")
+    off = [max(row["times"], 1 / row["times"]) for row in rows]
+    assert off == sorted(off, reverse=True)
+    assert f"{len(rows)} studies report an accuracy" in sunatlas("studies", "--published").stdout
+    assert sunatlas("studies", "Soken2023", "--published").exit_code == 2
 
 
 @pytest.mark.parametrize("attribute", ["model", "extractor"])

@@ -26,7 +26,9 @@ authors:
     given-names: Ada
     orcid: https://orcid.org/0009-0000-0012-3455
     affiliation: Institute of Light
+repository-code: https://code.institute-of-light.org/sun/atlas
 """
+NOWHERE = PEOPLE[: PEOPLE.index("repository-code")]
 PLACEHOLDER = "authors:\n  - name: The Sun Sensor Atlas contributors\n"
 
 

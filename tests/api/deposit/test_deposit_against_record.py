@@ -5,18 +5,104 @@ from __future__ import annotations
 import json
 import random
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from api.deposit import against_record, bundle
+from api.deposit.crate import CRATE
 from api.deposit.database import DATABASE
+from api.deposit.frames import FOLDER
 from api.deposit.package import DESCRIPTOR
 from api.deposit.verification import verify
-from tools.faults.forging_bundles import FORGERIES, fit
+from benchmark.datasets.checksums import CHECKSUMS, read_checksums, sha256, write_checksums
+from benchmark.datasets.export import export
 
 pytestmark = pytest.mark.slow  # a bundle and each comparison take seconds
 FRAMES = ("pd-slit",)
+
+
+def fit(folder: Path) -> None:
+    """Make descriptor, crate and checksums fit what is there."""
+    package = json.loads((folder / DESCRIPTOR).read_text("utf-8"))
+    kept = [r for r in package["resources"] if (folder / r["path"]).is_file()]
+    for resource in kept:
+        path = folder / resource["path"]
+        resource.update(bytes=path.stat().st_size, hash=f"sha256:{sha256(path)}")
+    package["resources"] = kept
+    (folder / DESCRIPTOR).write_text(json.dumps(package, indent=2, ensure_ascii=False) + "\n")
+    (folder / CHECKSUMS).unlink(missing_ok=True)
+    write_checksums(folder)
+    listed = read_checksums(folder)
+    crate = json.loads((folder / CRATE).read_text("utf-8"))
+    known = {entity["@id"] for entity in crate["@graph"]}
+    for name in listed.keys() - known - {CRATE}:
+        crate["@graph"].append({"@id": name, "@type": "File"})
+    for entity in crate["@graph"]:
+        if entity["@id"] in listed and entity["@id"] != CRATE:
+            size = (folder / entity["@id"]).stat().st_size
+            entity.update(sha256=listed[entity["@id"]], contentSize=str(size))
+    (folder / CRATE).write_text(json.dumps(crate, indent=2, ensure_ascii=False) + "\n")
+    (folder / CHECKSUMS).unlink()
+    write_checksums(folder)
+
+
+def number(rng: random.Random, folder: Path) -> None:
+    """Raise one digit of a table of measurements or facts."""
+    tables = [*folder.glob("benchmark/*.csv"), *folder.glob("survey/*.csv")]
+    path = rng.choice(sorted(tables))
+    data = bytearray(path.read_bytes())
+    start = data.index(b"\n")
+    places = [at for at in range(start, len(data)) if data[at] in b"12345678"]
+    if places:
+        data[rng.choice(places)] += 1
+        path.write_bytes(data)
+    else:
+        row_out(rng, folder)
+
+
+def row_out(rng: random.Random, folder: Path) -> None:
+    """Leave out a row of a table of measurements."""
+    path = rng.choice(sorted(folder.glob("benchmark/*.csv")))
+    lines = path.read_bytes().splitlines(keepends=True)
+    del lines[rng.randrange(1, len(lines))]
+    path.write_bytes(b"".join(lines))
+
+
+def text(rng: random.Random, folder: Path) -> None:
+    """Change a letter of what tells of the bundle."""
+    names = ("README.md", "CITATION.cff", "LICENSE", "bibliography/studies.bib")
+    path = folder / rng.choice(names)
+    data = bytearray(path.read_bytes())
+    data[rng.choice([at for at, byte in enumerate(data) if byte in b"abcdefgh"])] += 1
+    path.write_bytes(data)
+
+
+def samples(rng: random.Random, folder: Path) -> None:
+    """Put in fewer samples of a data set, as its export writes them."""
+    data = rng.choice(sorted((folder / FOLDER).iterdir()))
+    shutil.rmtree(data)
+    export(data.name, data, n=3)
+
+
+def file_more(rng: random.Random, folder: Path) -> None:
+    """Put in a file that no bundle has, or a table's worth of nothing."""
+    (folder / rng.choice(["run.me", "parquet/scores2.parquet"])).write_bytes(b"x" * 99)
+
+
+def form(rng: random.Random, folder: Path) -> None:
+    """Change a byte of Parquet or SQLite."""
+    forms = [*folder.glob("parquet/*.parquet"), *folder.glob("*.sqlite")]
+    path = rng.choice(sorted(forms))
+    data = bytearray(path.read_bytes())
+    data[len(data) // 2] ^= 1
+    path.write_bytes(data)
+
+
+FORGERIES: tuple[Callable[[random.Random, Path], None], ...] = (
+    *(number, row_out, text, samples, file_more, form),
+)
 
 
 @pytest.fixture(scope="module")

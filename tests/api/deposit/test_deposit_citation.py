@@ -138,6 +138,7 @@ def test_both_forms_say_data_set_survey_and_terms(document):
     assert old["license"] == "cc-by-4.0"
     assert "MIT" in old["description"]
     works = {"arXiv:2507.21541": "isderivedfrom", "10.5281/zenodo.15784429": "references"}
+    works |= {"https://code.institute-of-light.org/sun/atlas": "iscompiledby"}
     assert {w["identifier"]: w["relation_type"]["id"] for w in new["related_identifiers"]} == works
     assert {w["identifier"]: w["relation"].lower() for w in old["related_identifiers"]} == works
     assert new["publisher"] == "Zenodo"

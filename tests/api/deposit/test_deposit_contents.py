@@ -15,7 +15,6 @@ import pytest
 import rispy
 
 from api.deposit.database import NameNotPlainError, sql_name, write_database
-from api.deposit.frames import LEAST, ROOM, sample_size
 from api.deposit.typed_tables import CellError, typed_tables
 from benchmark.datasets.checksums import CHECKSUMS
 from benchmark.datasets.export_verification import verify as verify_export
@@ -176,9 +175,11 @@ def test_the_crate_names_every_file_with_its_checksum(built):
 
 
 @pytest.mark.slow
-def test_samples_are_whole_exports_of_the_stated_size(built):
+def test_samples_are_whole_exports_of_every_split(built):
     listed = rows(built.directory / "benchmark" / "frames.csv")
-    assert {row["dataset"] for row in listed} == set(FRAMES)
+    assert {(row["dataset"], row["split"]) for row in listed} == {
+        (name, split) for name in FRAMES for split in ("calibration", "test", "repeat")
+    }
     pins = Store(PUBLISHED).pins()
     for name in FRAMES:
         folder = built.directory / "frames" / name
@@ -190,22 +191,8 @@ def test_samples_are_whole_exports_of_the_stated_size(built):
             count = len(arrays["observations"])
             assert arrays["sun"].shape == (count, 3)
             assert arrays["bound_deg"].shape == (count,)
-        assert (int(row["samples"]), int(row["samples_of"])) == (count, pin.n)
-        # A whole split is the published one, by its hash.
-        assert (row["data_hash"] == pin.data_hash) == (count == pin.n)
-
-
-@pytest.mark.parametrize(
-    ("name", "size"),
-    [
-        ("pd-slit", None),
-        ("cmos-single-aperture", None),  # 441 of 64 x 64 pixels, 3.4 MiB
-        ("ccd-lens", ROOM // (256 * 256 * 2)),
-        ("ccd-multi-aperture", LEAST),
-    ],
-)
-def test_the_sample_of_a_data_set_follows_from_the_size_of_its_frames(name, size):
-    assert sample_size(name, Store(PUBLISHED).pins()) == size
+        assert int(row["samples"]) == count == pin.n
+        assert row["data_hash"] == pin.data_hash
 
 
 def test_the_example_of_the_readme_runs_where_it_lies(bundle):
@@ -224,6 +211,9 @@ def test_the_example_of_the_readme_runs_where_it_lies(bundle):
     lines = shown.stdout.splitlines()
     assert lines[0].startswith("cmos-single-aperture ")
     error = float(re.search(r"error: ([\d.]+) deg over 400 frames", shown.stdout)[1])
-    assert 0.0 < error < 1.0
+    # calibrated and tested with true directions, as the leaders: no bench of 0.01 deg is in it
+    leaders = [float(line.split(" ")[-1]) for line in lines if re.match(r"\d+ ", line)]
+    assert len(leaders) == 3
+    assert leaders[0] < error < 5 * leaders[0]
     read = {line.split(" ")[0] for line in lines if ".npz" in line}
     assert read == {row["file"] for row in rows(bundle / "benchmark" / "frames.csv")}

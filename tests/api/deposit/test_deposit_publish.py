@@ -5,6 +5,7 @@ import json
 import pytest
 
 from api.deposit.archives.contract import ArchiveError, RefusedError
+from api.deposit.archives.metadata import UnfilledError
 from api.deposit.archives.publishing import NotReadyError
 from tests.api.deposit import small_bundle
 from tests.api.deposit.conftest import each, only
@@ -21,28 +22,55 @@ def test_a_whole_draft_of_people_is_published(journey):
     assert journey.archive.held(done.draft.id) == journey.wanted()
 
 
-@pytest.mark.parametrize(
+UNFILLED = pytest.mark.parametrize(
     ("people", "why"),
     [
-        (small_bundle.PLACEHOLDER, "no person among the authors"),
-        ("authors: []\n", "no person"),
-        (SOMEBODY.replace("0009-0000", "0009-0001"), "mistyped"),
-        (SOMEBODY.replace("Sommer", "Family name"), "is no family name"),
+        (
+            small_bundle.PLACEHOLDER,
+            "authors: no person among the authors.*repository-code: missing",
+        ),
+        ("authors: []\n", "authors: no person"),
+        (SOMEBODY.replace("0009-0000", "0009-0001"), "authors: .*mistyped"),
+        (SOMEBODY.replace("Sommer", "Family name"), "authors: .*is no family name"),
+        (small_bundle.NOWHERE, "not filled in: repository-code: missing"),
+        (
+            SOMEBODY.replace("code.institute-of-light.org", "example.org"),
+            "repository-code: .*no add",
+        ),
+        (SOMEBODY.replace("https://code", "code"), "repository-code: .*no address"),
     ],
 )
-def test_authors_that_are_none_are_not_published(journey, people, why):
+
+
+@UNFILLED
+def test_a_bundle_whose_citation_lacks_a_field_is_not_sent(journey, people, why):
     small_bundle.make(journey.bundle, people)
+    with pytest.raises(UnfilledError, match=why) as refused:
+        journey.upload()
+    assert str(refused.value).endswith("nothing was sent")
+    assert journey.archive.asked == []
+
+
+@UNFILLED
+def test_nor_is_it_published(journey, people, why):
     done = journey.upload()
-    with pytest.raises(NotReadyError, match=why):
+    small_bundle.make(journey.bundle, people)
+    with pytest.raises(UnfilledError, match=why) as refused:
         journey.publish(done.draft.id)
+    assert str(refused.value).endswith("nothing was published")
     assert not journey.archive.records
     assert not journey.archive.calls("POST", "/actions/publish")
 
 
 def test_authors_of_the_draft_count_even_where_those_of_the_bundle_are_people(journey):
-    small_bundle.make(journey.bundle, small_bundle.PLACEHOLDER)
     done = journey.upload()
-    small_bundle.make(journey.bundle)
+    if journey.api == "records":
+        nobody = {"person_or_org": {"type": "organizational", "name": "Contributors"}}
+        draft = journey.archive.drafts[done.draft.id]
+    else:
+        nobody = {"name": "Contributors"}
+        draft = journey.archive.all[done.draft.id]
+    draft["metadata"]["creators"] = [nobody]
     with pytest.raises(NotReadyError, match=f"authors of draft {done.draft.id}"):
         journey.publish(done.draft.id)
     assert not journey.archive.records

@@ -17,7 +17,7 @@ import sys
 from pathlib import Path
 from api.deposit.bundle import build
 print(Path(sys.modules["api"].__file__).parent)
-build(Path(sys.argv[1]), frames=sys.argv[2:])
+build(Path(sys.argv[1]), code=Path(sys.argv[2]), frames=sys.argv[3:])
 """
 
 
@@ -30,9 +30,9 @@ def test_a_wheel_builds_the_bytes_that_a_checkout_builds(built, tmp_path):
     with zipfile.ZipFile(wheel) as packed:
         packed.extractall(site)
     environment = {**os.environ, "PYTHONPATH": str(site), "PYTHONHASHSEED": "7", "TZ": "Asia/Tokyo"}
-    out = tmp_path / "bundle"
+    out, code = tmp_path / "bundle", (built.directory / "code").iterdir()
     shown = subprocess.run(
-        [sys.executable, "-c", BUILD, str(out), *FRAMES],
+        [sys.executable, "-c", BUILD, str(out), str(next(code)), *FRAMES],
         cwd=tmp_path,
         env=environment,
         capture_output=True,

@@ -5,16 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from tools.bench.service import serve
-
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "http.md"
 SNIPPETS = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
 
 
 @pytest.fixture(scope="module")
-def address(atlas):
+def address(atlas, serve):
     # the application has loaded what it answers, or does with its first answer
-    with serve([atlas.app], lifespan="off") as (connection,):
+    with serve(atlas.app) as connection:
         yield f"http://{connection.host}:{connection.port}"
 
 

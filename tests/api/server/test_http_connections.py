@@ -8,7 +8,6 @@ from contextlib import ExitStack
 import pytest
 
 from api.server.connections import BoundedProtocol
-from tools.bench.service import serve
 
 
 class Impatient(BoundedProtocol):
@@ -28,9 +27,9 @@ class Small(BoundedProtocol):
 
 
 @pytest.fixture(scope="module")
-def place(atlas, request):
+def place(atlas, request, serve):
     # what the application answers is loaded with its first answer, not once more by every server
-    with serve([atlas.app], http=request.param, lifespan="off") as (connection,):
+    with serve(atlas.app, http=request.param) as connection:
         yield connection.host, connection.port
 
 

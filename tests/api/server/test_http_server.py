@@ -5,12 +5,10 @@ from http.client import HTTPConnection
 
 import pytest
 
-from tools.bench.service import serve
-
 
 @pytest.fixture(scope="module")
-def connection(atlas):
-    with serve([atlas.app], lifespan="off") as (opened,):
+def connection(atlas, serve):
+    with serve(atlas.app) as opened:
         yield opened
 
 

@@ -23,8 +23,6 @@ from benchmark.simulator.readout.noise import NoiseStreams
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.lit_pixels import LitPixels
 from benchmark.simulator.sensors.multi_spot_frames import MultiSpotSensor
-from tools.bench.comparing import Subject
-from tools.bench.frames import frames_of_many_spots
 
 LIGHT = Irradiance(stray=0.002, stray_spread=0.0004)
 
@@ -244,12 +242,3 @@ def test_generation_depends_on_neither_batch_nor_order(monkeypatch: pytest.Monke
     again = few.generate("missing-apertures", "test")
     assert np.array_equal(first.observations, again.observations)
     assert np.array_equal(first.origin_px, np.zeros((7, 2)))
-
-
-@pytest.mark.slow
-def test_million_pixel_frames_agree_with_the_brute_force_they_are_timed_against() -> None:
-    subject = Subject(**frames_of_many_spots())
-    assert subject.worst <= subject.tolerance
-    frames = subject.call()
-    assert isinstance(frames, np.ndarray)
-    assert frames.shape == (subject.items, 1024, 1024)

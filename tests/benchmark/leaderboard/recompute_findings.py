@@ -43,12 +43,11 @@ def summary(values):
     return [float(np.median(v)), float(v[k - 1]), float(v[n - k]), n]
 
 
-uses = resolution[resolution.edition == "survey"].merge(
-    standard[["charged_deg", "rms_deg"]].reset_index(), on=CELL
-)
+mapped = resolution[resolution.edition == "survey"]
+uses = mapped.merge(standard[["charged_deg", "rms_deg"]].reset_index(), on=CELL)
 base = uses.model.str.split(" + ", regex=False).str[-1]
 stated = ~uses[["extractor_basis", "model_basis"]].isin(["recalled", "defaulted"]).any(axis=1)
-lost = []
+lost = [mapped.study.nunique() - uses.study.nunique()]
 for keep in (uses.charged_deg <= 2 * uses.rms_deg, stated, ~base.isin(NOTHING_FITTED)):
     kept = uses[keep.loc[uses.index]]
     lost.append(uses.study.nunique() - kept.study.nunique())

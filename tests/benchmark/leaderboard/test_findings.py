@@ -175,7 +175,7 @@ def test_a_pipeline_that_studies_share_counts_once_and_each_is_told_why_it_is_le
     )
     assert found.left_out == (
         "1 study without a score (Unmeasured)",
-        "1 study whose error is mostly that of false Suns (FalseSuns)",
+        "1 study whose error is mostly that of false detections (FalseSuns)",
         "1 study whose extractor or model we chose (Ours)",
         "1 study whose model has no fitted constant (Drawn)",
     )

@@ -1,6 +1,8 @@
 """What drawn benches add to an error, beside own errors of the same readings."""
 
+import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,7 +10,7 @@ import pytest
 from benchmark import datasets
 from benchmark.contract import ON_BENCH
 from benchmark.plan.parts import installed_parts
-from benchmark.running.task import BENCHES, Task, measure
+from benchmark.running.task import BENCHES, Task, _pooled, measure
 
 MODELS = ("lut-polynomial", "slit")
 
@@ -46,3 +48,20 @@ def test_errors_of_samples_are_those_the_score_is_made_of(measured):
         assert one.found.shape == given.shape
         assert other.sample_errors_deg is None
     assert BENCHES == 2
+
+
+def test_each_bench_is_aligned_by_itself():
+    """Two benches off by a turn to either side: nothing is left of each, of both together all."""
+    x, y = np.meshgrid(np.linspace(-0.3, 0.3, 7), np.linspace(-0.3, 0.3, 7))
+    sun = np.column_stack([x.ravel(), y.ravel(), np.sqrt(1 - x.ravel() ** 2 - y.ravel() ** 2)])
+    turn = math.radians(0.5)
+    turned = []
+    for angle in (turn, -turn):
+        cosine, sine = math.cos(angle), math.sin(angle)
+        turned.append(sun @ np.array([[1, 0, 0], [0, cosine, sine], [0, -sine, cosine]]))
+    data = SimpleNamespace(
+        splits={"test": SimpleNamespace(sun=sun)}, observable=np.ones(len(sun), dtype=np.bool_)
+    )
+    found = _pooled(SimpleNamespace(test=turned), data)
+    assert 0.45 < found.rms_deg <= 0.5
+    assert found.aligned_deg < 1e-6

@@ -1,4 +1,4 @@
-"""Studies after the survey: read from a file or refused by line, added whole, removed traceless."""
+"""Studies the survey does not map: read or refused by line, added whole, removed traceless."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Later studies in the tables: whole after a kill, by the rules, a version an edition."""
+"""Studies the survey does not map: whole after a kill, by the rules, a version an edition."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def test_an_edition_has_another_version_when_a_cell_of_it_changes(recorded: Path
             ("studies", "doi", "10.1016/j.sna.2006.05.037", "Chang2006 of the survey"),
             ("studies", "year", "1999", "the key"),
             ("attributes", "value", "Sundial", "unknown taxonomy value"),
-            ("attributes", "basis", "survey-text", "of a study after the survey"),
+            ("attributes", "basis", "survey-text", "of a study outside the survey"),
             ("roles", "value", "Fourier", "has no"),
             ("names", "value", "Fourier", "has no"),
         ],

@@ -14,7 +14,7 @@ import pytest
 import survey_data
 from files.locks import lock_path
 from files.manifest import FILE
-from survey_data import SurveyImportError, import_table, match_columns, read_table
+from survey_data import SurveyImportError, import_table, read_table
 from survey_data.importing.bibliography import read_bibliography
 from survey_data.importing.studies import StudyFinder, StudyNotFoundError
 from survey_data.importing.values import UnreadableValueError, ValueReader
@@ -76,12 +76,6 @@ def test_an_entry_takes_its_venue_from_the_title_of_the_one_that_it_refers_to(
     text = '@inproceedings{a, title = "A", crossref = {p}}\n@proceedings{p, year = 2008%s}\n'
     assert entries(tmp_path, text % ', title = "Proc. X"')["a"] == ("A", "Proc. X")
     assert entries(tmp_path, text % "")["a"] == ("A", "")
-
-
-def test_a_quote_that_is_not_closed_ends_with_the_file(tmp_path: Path) -> None:
-    assert entries(tmp_path, '@article{a, title = "Never {closed} by M\\"uller') == {
-        "a": ("Never closed by Müller", "")
-    }
 
 
 def test_items_of_a_bbl_without_a_label_are_read_and_those_without_a_key_left_out(
@@ -149,19 +143,6 @@ def test_a_study_is_found_by_a_misprinted_title_and_by_a_key_without_a_year(
     assert finder.find(key="timeless") == "Timeless"
     with pytest.raises(StudyNotFoundError, match="no study by 'Timeless' of 2001"):
         finder.find(authors="Timeless", year="2001")
-
-
-def test_differences_are_those_that_a_comparison_shows(
-    copy: Any, tables: survey_data.SurveyTables
-) -> None:
-    path = copy.directory / "theirs.txt"
-    path.write_text("Key;Mask;Error\nAlvi2014;Lens;Alignment\n", encoding="utf-8")
-    frame = read_table(path)
-    found = survey_data.differences(tables, frame, match_columns(tables, frame))
-    assert [(d.study, d.attribute, d.kind, d.theirs) for d in found] == [
-        ("Alvi2014", "mask", "changed", ("Lens",)),
-        ("Alvi2014", "error", "new", ("Alignment",)),
-    ]
 
 
 def test_a_folder_where_no_lock_can_be_made_is_refused(tmp_path: Path) -> None:

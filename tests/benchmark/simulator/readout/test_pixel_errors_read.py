@@ -229,6 +229,19 @@ def test_tunnels_dim_the_sun_and_no_stray_light(name: str) -> None:
     assert deep.expected(scene, unit) - background == pytest.approx(share * direct, abs=1e-8)
 
 
+@pytest.mark.parametrize("name", ["cmos-single-aperture", "ccd-slit", "cmos-encoded"])
+def test_stray_light_adds_its_share_of_a_sunlit_pixel_to_every_pixel(name: str) -> None:
+    sensor = sensor_of(name, PixelErrors())
+    dark = replace(scene_of(sensor, 1), irradiance=np.zeros(1))
+    unit, detector = sensor.fixed_pattern("unit"), sensor.detector
+    dim, bright = (
+        sensor.expected(replace(dark, stray=np.full(1, stray)), unit)[0] for stray in (0.01, 0.03)
+    )
+    shares = (bright - dim) * detector.gain_e_per_dn / (0.02 * detector.sunlit_e)
+    assert shares.min() > 0.8
+    assert shares.mean() == pytest.approx(1.0, abs=0.01)  # gains scatter about one
+
+
 def test_impossible_tunnels_and_cameras_are_refused() -> None:
     with pytest.raises(ValueError, match=r"tunnel.*-1"):
         sensor_of("ccd-slit", PixelErrors(), columns=10).detector.__class__(

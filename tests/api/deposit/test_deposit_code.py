@@ -1,0 +1,79 @@
+"""The code in a bundle: the project's source distribution, its digest in every list."""
+
+import hashlib
+import json
+import shutil
+import tarfile
+
+import pytest
+
+from api.deposit import code_archive
+from api.deposit.code_archive import CodeArchiveError, write_code, write_code_as_in
+
+
+def archive(bundle):
+    (found,) = (bundle / "code").iterdir()
+    return found
+
+
+def test_the_archive_holds_the_code_its_lock_file_and_no_more_than_the_checkout(built):
+    with tarfile.open(archive(built.directory)) as packed:
+        names = {member.name.split("/", 1)[1] for member in packed}
+        top = {member.name.split("/", 1)[0] for member in packed}
+    assert top == {"sun_sensor_atlas-0.1.0"}
+    wanted = {"pyproject.toml", "requirements.lock", "LICENSE", "CITATION.cff"}
+    wanted |= {"benchmark/published/manifest.json", "tests/api/deposit/test_deposit_code.py"}
+    assert wanted <= names
+    ours = {name for name in names if name != "PKG-INFO"}
+    assert [name for name in sorted(ours) if not (code_archive.ROOT / name).is_file()] == []
+    assert not [
+        name for name in names if "__pycache__" in name or name.startswith((".venv", "out"))
+    ]
+
+
+def test_its_digest_is_in_the_descriptor_the_crate_and_the_list_of_checksums(built):
+    path = archive(built.directory)
+    name, digest = f"code/{path.name}", hashlib.sha256(path.read_bytes()).hexdigest()
+    described = json.loads((built.directory / "datapackage.json").read_text("utf-8"))
+    (resource,) = (r for r in described["resources"] if r["path"] == name)
+    assert resource["hash"] == f"sha256:{digest}"
+    crate = json.loads((built.directory / "ro-crate-metadata.json").read_text("utf-8"))
+    (entity,) = (e for e in crate["@graph"] if e["@id"] == name)
+    assert (entity["sha256"], entity["encodingFormat"]) == (digest, "application/gzip")
+    listed = (built.directory / "checksums-sha256.txt").read_text("utf-8").splitlines()
+    assert f"{digest}  {name}" in listed
+
+
+def test_the_same_checkout_is_packed_to_the_same_bytes(built, tmp_path):
+    write_code(tmp_path)
+    assert archive(tmp_path).read_bytes() == archive(built.directory).read_bytes()
+    assert (tmp_path / "rescore.py").read_bytes() == (built.directory / "rescore.py").read_bytes()
+
+
+def test_an_installation_is_handed_the_archive(built, tmp_path, monkeypatch):
+    monkeypatch.setattr(code_archive, "ROOT", tmp_path)
+    (tmp_path / "a").mkdir()
+    with pytest.raises(CodeArchiveError, match=r"no sources.* --code"):
+        write_code(tmp_path / "a")
+    (tmp_path / "b").mkdir()
+    with pytest.raises(CodeArchiveError, match="expected a source distribution"):
+        write_code(tmp_path / "b", tmp_path / "a.zip")
+    (tmp_path / "c").mkdir()
+    write_code(tmp_path / "c", archive(built.directory))
+    assert archive(tmp_path / "c").read_bytes() == archive(built.directory).read_bytes()
+
+
+def test_verification_packs_the_checkout_again_and_takes_what_is_the_same(bundle, tmp_path):
+    for name in ("same", "other"):
+        (tmp_path / name).mkdir()
+    write_code_as_in(bundle, tmp_path / "same")
+    assert archive(tmp_path / "same").read_bytes() == archive(bundle).read_bytes()
+    path = archive(bundle)
+    with tarfile.open(path) as packed:
+        packed.extractall(tmp_path / "unpacked", filter="data")
+    path.unlink()
+    (tmp_path / "unpacked" / "sun_sensor_atlas-0.1.0" / "README.md").write_text("forged\n")
+    made = shutil.make_archive(str(path).removesuffix(".tar.gz"), "gztar", tmp_path / "unpacked")
+    assert made == str(path)
+    write_code_as_in(bundle, tmp_path / "other")
+    assert archive(tmp_path / "other").read_bytes() != path.read_bytes()

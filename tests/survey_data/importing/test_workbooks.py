@@ -1,0 +1,131 @@
+"""A workbook beyond a limit is refused with the limit; values are spelt as a person sees them."""
+
+from __future__ import annotations
+
+import datetime as dt
+import io
+import struct
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+
+import openpyxl
+import pytest
+
+from survey_data import SurveyImportError, read_table
+from survey_data.importing import table_reader
+from survey_data.importing.table_reader import LONGEST_CELL
+
+SHEET = "xl/worksheets/sheet1.xml"
+
+
+def saved(*rows: list[object]) -> dict[str, bytes]:
+    """Return the files of a small workbook."""
+    book = openpyxl.Workbook()
+    for row in rows:
+        book.worksheets[0].append(row)
+    stream = io.BytesIO()
+    book.save(stream)
+    with zipfile.ZipFile(stream) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+@pytest.fixture(scope="module")
+def parts() -> dict[str, bytes]:
+    return saved(["Key", "Year"], ["Chang2008", 2008])
+
+
+def packed(folder: Path, parts: Mapping[str, bytes], rows: bytes = b"", start: bytes = b"") -> Path:
+    """Return a workbook with rows behind its own, and a start of its sheet."""
+    sheet = parts[SHEET].replace(b"</sheetData>", rows + b"</sheetData>")
+    path = folder / "theirs.xlsx"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in {**parts, SHEET: start + sheet}.items():
+            archive.writestr(name, data)
+    return path
+
+
+def refusal(path: Path) -> str:
+    with pytest.raises(SurveyImportError) as refused:
+        read_table(path)
+    assert "\n" not in str(refused.value)
+    return str(refused.value)
+
+
+CELL = b'<row r="%d"><c r="%b%d"><v>1</v></c></row>'
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        (CELL % (2, b"A", 2), "row 2 stands twice or out of order"),
+        (CELL % (9, b"A", 9) + CELL % (5, b"A", 5), "row 5 stands twice or out of order"),
+        (b'<row r="9"><c r="B9"/><c r="A9"/></row>', "cell A9 stands twice or out of order"),
+        (CELL % (10**9, b"A", 10**9), "has a row 1000000000, a sheet 1048576"),
+        (CELL % (9, b"ZZZZ", 9), "is not a readable XLSX workbook"),
+        (b'<row r="9"><c r="A9" t="s"><v>99</v></c></row>', "is not a readable XLSX workbook"),
+        (b'<row r="9">' + b"<c/>" * 300_001 + b"</row>", "has more than 300000 cells"),
+        (b"".join(b'<row r="%d"><c r="XFD%d"/></row>' % (n, n) for n in range(5, 50)), "300000 c"),
+        (b"<a/>" * 2_000_001, f"{SHEET} has more than 2000000 tags"),
+        (b" " * 20_000_000, "unpacks to more than 20000000 bytes"),
+    ],
+)
+def test_hostile_rows_are_refused(
+    rows: bytes, said: str, parts: Mapping[str, bytes], tmp_path: Path
+) -> None:
+    assert said in refusal(packed(tmp_path, parts, rows))
+
+
+def test_entities_that_multiply_are_refused(parts: Mapping[str, bytes], tmp_path: Path) -> None:
+    names = [b"&e%d;" % n * 10 for n in range(9)]
+    entities = b"".join(b'<!ENTITY e%d "%b">' % (n + 1, name) for n, name in enumerate(names))
+    start = b'<!DOCTYPE x [<!ENTITY e0 "aaaaaaaaaa">' + entities + b"]>"
+    rows = b'<row r="3"><c r="A3" t="inlineStr"><is><t>&e9;</t></is></c></row>'
+    assert "amplification" in refusal(packed(tmp_path, parts, rows, start))
+
+
+@pytest.mark.parametrize("stated", [500, 4_000_000_000])
+def test_a_size_that_lies_is_refused(
+    stated: int, parts: Mapping[str, bytes], tmp_path: Path
+) -> None:
+    path = packed(tmp_path, parts, b" " * 50_000_000)
+    with zipfile.ZipFile(path) as archive:
+        size = struct.pack("<I", archive.getinfo(SHEET).file_size)
+    path.write_bytes(path.read_bytes().replace(size, struct.pack("<I", stated)))
+    assert ("unpacks to more" if stated > 500 else "not a readable") in refusal(path)
+
+
+@pytest.mark.parametrize(("limit", "what"), [("LARGEST_CELLS", "cells"), ("LARGEST_ROWS", "rows")])
+def test_a_workbook_beyond_a_limit_is_refused_with_the_limit(
+    limit: str,
+    what: str,
+    parts: Mapping[str, bytes],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(table_reader, limit, 1)
+    assert f"theirs.xlsx has more than 1 {what}" in refusal(packed(tmp_path, parts))
+
+
+def test_a_cell_longer_than_excel_s_own_limit_is_named(
+    parts: Mapping[str, bytes], tmp_path: Path
+) -> None:
+    cell = b'<row r="3"><c r="B3" t="inlineStr"><is><t>%b</t></is></c></row>'
+    said = refusal(packed(tmp_path, parts, cell % (b"x" * (LONGEST_CELL + 1))))
+    assert f"cell B3: longer than {LONGEST_CELL} characters" in said
+    frame = read_table(packed(tmp_path, parts, cell % (b"x" * LONGEST_CELL)))
+    assert len(frame.at[3, "Year"]) == LONGEST_CELL
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        *((2005.0, "2005"), (-3.0, "-3"), (1e20, "1e+20"), (0.05, "0.05")),
+        (dt.datetime.fromisoformat("2008-05-01"), "2008-05-01"),
+        (dt.datetime.fromisoformat("2008-05-01T12:30"), "2008-05-01T12:30:00"),
+        ("a_x000D_\nb", "a\r\nb"),
+    ],
+)
+def test_a_value_is_spelt_as_a_person_sees_it(value: object, text: str, tmp_path: Path) -> None:
+    path = packed(tmp_path, saved(["Key", "Said"], ["Chang2008", value]))
+    assert read_table(path).at[2, "Said"] == text

@@ -1,0 +1,1 @@
+"""Benchmarks of speed and accuracy for asv: `make bench` (`tools/asv.conf.json`)."""

@@ -1,1 +1,0 @@
-"""Damaged files tried on every reader: ``make faults``, no part of the tests."""

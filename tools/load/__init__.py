@@ -1,1 +1,0 @@
-"""Campaigns against a running service: `python -m tools.load`, in its own time (`make load`)."""

@@ -1,1 +1,0 @@
-"""What readers read, as sentences: a linter of its words, and a drawing of samples."""
