@@ -17,8 +17,8 @@ import pytest
 from benchmark.datasets import export_verification
 from benchmark.datasets.checksums import write_checksums
 from benchmark.datasets.export import CARD, ExportError, export
-from benchmark.datasets.export_arrays import read_archive, write_archive, write_table
-from benchmark.datasets.export_verification import _rms, _samples, verify
+from benchmark.datasets.export_arrays import read_archive, samples_of, write_archive, write_table
+from benchmark.datasets.export_verification import _rms, verify
 from benchmark.datasets.samples import samples_hash
 from benchmark.results.store import PUBLISHED, Store
 
@@ -34,7 +34,7 @@ def fit(folder: Path, card: dict[str, Any]) -> None:
         if entry["kind"] == "arrays":
             arrays = read_archive(path)
             said = {
-                "data_hash": samples_hash(_samples(arrays)),
+                "data_hash": samples_hash(samples_of(arrays)),
                 "bound_rms_deg": _rms(arrays),
                 "samples": len(arrays["sun"]),
             }
