@@ -211,5 +211,6 @@ def say_comparison(rows: Sequence[Mapping[str, Any]]) -> str:
         f"{len(rows)} studies report an accuracy and have a score. Spearman's rank correlation of "
         f"reported and own error is {found.statistic:.2f} (p = {found.pvalue:.1g}); {near} are "
         f"within a factor of {SCORE_FACTOR:g}, the ratios range from {min(times):.2g} to "
-        f"{max(times):.2g}."
+        f"{max(times):.2g}. Both are RMS, over all units measured; docs/limits.md compares figures "
+        "of each study's own kind, precisions too, on unit 0."
     )
