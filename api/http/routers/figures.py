@@ -45,8 +45,6 @@ async def figure(
 ) -> Answer:
     """Return a figure as sentences and as a table, with the studies of every mark.
 
-    Flows: a row per value and per pair of neighbouring values. Sunburst: a row per arc.
-    Publications: a row per year or venue and part of its bar. Parallel coordinates: a row per
-    sensor.
+    CSV: a row per mark.
     """
     return Answer.of(service.figure(known, figure, query))

@@ -19,7 +19,6 @@ async def realism(known: Known, query: Annotated[RealismQuery, Query()]) -> Answ
     """Compare each data set with built sensors and their published figures.
 
     Our accuracy is the RMS of unit 0 of the best pipeline under nominal conditions, on the standard
-    bench; our precision is its repeatability. Differences of more than a factor of two are
-    explained. CSV: a row per data set and sensor.
+    bench; our precision is its repeatability. CSV: a row per data set and sensor.
     """
     return Answer.of(service.realism(known, query))
