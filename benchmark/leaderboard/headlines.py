@@ -32,7 +32,8 @@ class HeadlineError(ValueError):
     """The table is broken; the message names the line."""
 
 
-#: What of a score stands beside a published accuracy, by its kind; the RMS beside any other.
+#: The statistic of our errors that is compared with a published accuracy, by the kind of that
+#: accuracy; the RMS for any other kind.
 _STATISTICS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
         "3sigma": ("99.7 % within", "p997_deg"),
@@ -58,7 +59,7 @@ class Headline:
     our_deg
         The same statistic of the own error on the standard unit; of a precision, one axis.
     our_statistic
-        What it is.
+        The name of that statistic.
     availability
         Share of the samples that are answered.
     difference
@@ -121,7 +122,7 @@ def headlines(
 ) -> list[Headline]:
     """Set every published number beside ours, the farthest apart first.
 
-    Of the pipelines that rest on most, the one that is most accurate stands for a study.
+    A study is compared by its most accurate pipeline among those with the best evidence.
 
     Parameters
     ----------

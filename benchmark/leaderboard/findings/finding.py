@@ -21,7 +21,7 @@ class Estimate:
     Attributes
     ----------
     name
-        What it is.
+        The quantity estimated.
     kind
         ``median`` (interval by order statistics) or ``share`` (interval by Clopper and Pearson).
     value, low, high
@@ -75,7 +75,7 @@ class Finding:
     estimates
         The numbers in the text.
     left_out
-        What is left out, and how many.
+        The pairs excluded, with their number and the reason.
     pairs
         A row per pair that the estimates are of.
     """

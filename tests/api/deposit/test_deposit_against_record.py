@@ -71,7 +71,7 @@ def row_out(rng: random.Random, folder: Path) -> None:
 
 
 def text(rng: random.Random, folder: Path) -> None:
-    """Change a letter of what tells of the bundle."""
+    """Change a letter of a text that describes the bundle."""
     names = ("README.md", "CITATION.cff", "LICENSE", "bibliography/studies.bib")
     path = folder / rng.choice(names)
     data = bytearray(path.read_bytes())

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from algorithms.angles import separation_deg
+from algorithms.contract import UnusableDataError
 from api.calibrate.calibration import calibrate
 from api.calibrate.readings import features_of
+from api.calibrate.settings import read_settings
 
 CASES = Path(__file__).parents[5] / "shared" / "cases"
 
@@ -19,8 +21,8 @@ MAPS = ("spm", "lsq", "polynomial-2d", "lut-polynomial")
 CELLS = ("polynomial-signals", "assembled-faces")
 
 
-def test_sentinels_are_named_and_rows_that_are_late_are_found_once(tmp_path):
-    late = 2
+@pytest.mark.parametrize("late", [0, 2])
+def test_sentinels_are_named_and_rows_that_are_late_are_found_once(late, tmp_path):
     lines = (CASES / "sentinel-999.csv").read_text().split()
     cells = np.array([line.split(",") for line in lines[1:]])
     cells[:, :2] = np.roll(cells[:, :2], late, axis=0)
@@ -30,7 +32,7 @@ def test_sentinels_are_named_and_rows_that_are_late_are_found_once(tmp_path):
     sentinels = int((cells[:, 0] == "-999.00000").sum())
     reasons = Counter(one.reason for one in found.excluded)
     assert reasons["sentinel -999 in x_px"] == sentinels
-    assert [one.change for one in found.applied] == [{"rows": {"shift": late}}]
+    assert [one.change for one in found.applied] == ([{"rows": {"shift": late}}] if late else [])
     assert found.settings.rows.shift == late
     assert found.chosen.rms_deg == pytest.approx(0.0085, abs=0.0005)
     assert found.verdict.word == "good"
@@ -61,8 +63,11 @@ def test_quadrants_that_fall_from_five_volts_are_good_only_with_dark_and_inversi
     assert again.applied == ()
 
 
-def test_plain_cells_are_channels_that_are_neither_inverted_nor_mirrored():
-    found = calibrate([CASES / "four-tilted-photodiodes.csv"], models=CELLS, apply=True)
+@pytest.mark.parametrize("config", [False, True])
+def test_plain_cells_are_channels_that_are_neither_inverted_nor_mirrored(config):
+    settings = read_settings(CASES / "four-tilted-photodiodes.toml") if config else None
+    path = CASES / "four-tilted-photodiodes.csv"
+    found = calibrate([path], settings, models=CELLS, apply=True)
     assert found.settings.readings.kind == "channels"
     assert found.applied == ()
     assert [one for one in found.findings if one.certain] == []
@@ -76,3 +81,9 @@ def test_six_faces_before_one_dims_are_good():
     found = calibrate([CASES / "cell-dimmed-before.csv"], models=("basic", "assembled-faces"))
     assert found.verdict.word == "good"
     assert found.chosen.rms_deg < 0.2
+
+
+def test_readings_by_chance_are_refused_in_one_sentence():
+    with pytest.raises(UnusableDataError, match="do not belong together") as refused:
+        calibrate([CASES / "faces-random.csv"])
+    assert len(str(refused.value)) < 200
