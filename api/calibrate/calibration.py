@@ -320,8 +320,9 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
         *next_poses(readings.sun),
     )  # fmt: skip
+    dark_found = any("dark" in change for one in applied for change in one.change.values())
     verdict = withheld(
-        replace(verdict, untested=untested_in(readings, stated)),
+        replace(verdict, untested=untested_in(readings, stated, dark_found=dark_found)),
         unexplained(readings, excluded, wrong_ones, stated.sensor.half_fov_deg, fold)
         or doubt_of_light(model, readings, stated, chosen.rms_deg),
         () if stated_sigma is None else _parts(chosen, stated_sigma, compared),

@@ -37,6 +37,8 @@ _TOO_MUCH = 1.118
 _PLANE = 1e-3
 #: Cosine of the largest incidence whose tangents are used.
 _STEEPEST = 0.1
+#: Changes of the light over the noise from which what goes with it is told apart.
+_CHANGES = 5.0
 #: Refractive index of a window that light may have come through.
 _GLASS = 1.5
 
@@ -53,11 +55,14 @@ class Dark:
         1-sigma of it, by what blocks of poses differ; infinite where it is not known.
     by : str
         What told it.
+    told_apart : bool
+        Whether it is told from light that all columns see alike and that goes with the Sun's.
     """
 
     level: Floats
     error: float
     by: str
+    told_apart: bool = False
 
 
 def reading_noise(values: Floats, sun: Floats) -> Floats:
@@ -122,17 +127,29 @@ def level_of_sum(readings: Readings) -> Dark:
 
 
 def level_of_products(readings: Readings) -> Dark:
-    """Return the level at which products of opposite quadrants (N, 4) are equal."""
+    """Return the level at which products of opposite quadrants (N, 4) are equal.
+
+    Where the lamp's light differs from row to row, the part of it that goes with the light is told
+    apart and is none of the level.
+    """
     q = readings.raw
     slope = q[:, 0] + q[:, 2] - q[:, 1] - q[:, 3]
     product = q[:, 0] * q[:, 2] - q[:, 1] * q[:, 3]
     level, error = _by_blocks(slope[:, None], product, readings.sun)
-    noise = reading_noise(q, readings.sun)[[2, 3, 0, 1]]
-    expected = np.sqrt((((q - level) * noise) ** 2).sum(axis=1))
+    noise = reading_noise(q, readings.sun)
+    expected = np.sqrt((((q - level) * noise[[2, 3, 0, 1]]) ** 2).sum(axis=1))
     left = np.abs(product - level * slope) / np.maximum(expected, 1e-300)
+    light = (q.sum(axis=1) - 4.0 * level) / np.maximum(readings.sun[:, 2], _STEEPEST)
+    change = light / light.mean() - 1.0
+    changes = bool(np.std(change) > _CHANGES * float(np.linalg.norm(noise)) / abs(light.mean()))
+    if changes:
+        # the level at the mean light and what goes with the light, less which nothing is left
+        level, error = _by_blocks(
+            np.column_stack([slope * -change, slope * (1.0 + change)]), product, readings.sun
+        )
     if np.median(left) / 0.6745 > _FOLLOWED:  # an opening that is no rectangle
         error = np.inf
-    return Dark(np.full(4, level), error, "the products of opposite quadrants")
+    return Dark(np.full(4, level), error, "the products of opposite quadrants", changes)
 
 
 def level_of_channels(readings: Readings, falls: bool) -> Dark:
@@ -196,11 +213,33 @@ def changes_answers(dark: Dark, readings: Readings, noise_deg: float) -> bool:
     noise_deg : float
         Of single answers, degrees.
     """
-    total = np.abs(readings.raw.sum(axis=1) - dark.level.sum())
-    share = LESS_LIGHT * np.abs(dark.level).sum() / np.maximum(total, 1e-300)
-    off = np.sqrt(1.0 - np.clip(readings.sun[:, 2], -1.0, 1.0) ** 2)
-    moved = float(np.degrees(np.sqrt(np.mean((share * off) ** 2))))
-    return moved > _TOO_MUCH * noise_deg
+    return _moved(dark.level, readings.raw - dark.level, readings.sun) > _TOO_MUCH * noise_deg
+
+
+def largest_stray(readings: Readings, noise_deg: float) -> float:
+    """Return how much of every column, if all see it alike, moves answers by as much as noise.
+
+    Parameters
+    ----------
+    readings : Readings
+        Without their level in the dark.
+    noise_deg : float
+        Of single answers, degrees.
+
+    Returns
+    -------
+    float
+        In units of the readings: of the light as it is, when a tenth of it goes.
+    """
+    each = _moved(np.ones(readings.raw.shape[1]), readings.raw, readings.sun)
+    return noise_deg / each
+
+
+def _moved(level: Floats, light: Floats, sun: Floats) -> float:
+    """Return by how much answers move if a tenth of such a level is missing, RMS, degrees."""
+    share = LESS_LIGHT * np.abs(level).sum() / np.maximum(np.abs(light.sum(axis=1)), 1e-300)
+    off = np.sqrt(1.0 - np.clip(sun[:, 2], -1.0, 1.0) ** 2)
+    return float(np.degrees(np.sqrt(np.mean((share * off) ** 2))))
 
 
 def _by_blocks(design: Floats, wanted: Floats, sun: Floats) -> tuple[float, float]:

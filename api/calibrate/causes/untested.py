@@ -7,7 +7,7 @@ import numpy as np
 from algorithms.contract import FeatureKind
 from api.calibrate.causes.kinks import largest_unnoticed
 from api.calibrate.causes.laws import UNTESTED, scale_of_angles, settles_scale
-from api.calibrate.causes.light import Dark, changes_answers, level_of_channels
+from api.calibrate.causes.light import Dark, changes_answers, largest_stray, level_of_channels
 from api.calibrate.conventions.channels import level_of
 from api.calibrate.readings import Readings
 from api.calibrate.robust import answer_noise_deg
@@ -17,6 +17,11 @@ _MOST = 2000
 _DARK = (
     "the level without light: {}; readings with the sensor covered, or at another light level, "
     "would test it"
+)
+_STRAY = (
+    "whether the level found without light is stray light, which goes with the Sun's: answers move "
+    "by as much as their noise at a tenth less light from {:.2g} of it on; readings with the "
+    "sensor covered, or at another light level, would test it"
 )
 _HALF = (
     "another scale of one half of an axis: noise and the sensor's own distortion hide up to "
@@ -28,8 +33,19 @@ _LAG = (
 )
 
 
-def untested_in(readings: Readings, settings: Settings) -> tuple[str, ...]:
-    """Return which causes of a wrong calibration a file cannot show, each with what would."""
+def untested_in(
+    readings: Readings, settings: Settings, *, dark_found: bool = False
+) -> tuple[str, ...]:
+    """Return which causes of a wrong calibration a file cannot show, each with what would.
+
+    Parameters
+    ----------
+    readings : Readings
+    settings : Settings
+        As applied.
+    dark_found : bool
+        Whether their level without light was found in the file, not stated.
+    """
     from api.calibrate.causes.lag import fraction_late  # noqa: PLC0415 - one use
 
     used = readings.thinned(_MOST)
@@ -48,6 +64,9 @@ def untested_in(readings: Readings, settings: Settings) -> tuple[str, ...]:
         unsure = Dark(np.full(len(dark.level), dark.error), dark.error, dark.by)
         if not np.isfinite(dark.error) or changes_answers(unsure, used, noise):
             found.append(_DARK.format("the signals follow no law by which they tell it"))
+        stray = largest_stray(used, noise) * float(np.abs(settings.readings.gain).max())
+        if dark_found and not dark.told_apart and stray < np.abs(settings.readings.dark).max():
+            found.append(_STRAY.format(stray))
     if not np.isfinite(fraction_late(readings)[1]):
         found.append(_LAG)
     return tuple(found)

@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 
 CENTRE, FOCAL, NOISE = 512.0, 350.0, 0.05
+#: Light that each quadrant sees beside its own share.
+STRAY = 0.02
 
 
 def grid(count: int = 25, half: float = 50.0) -> np.ndarray:
@@ -61,7 +63,7 @@ def quadrants(sun: np.ndarray, seed: int, width: float = 2.0, focal: float = 1.5
     left, right = overlap(x, -width, 0.0), overlap(x, 0.0, width)
     down, up = overlap(y, -width, 0.0), overlap(y, 0.0, width)
     light = np.column_stack([left * up, right * up, right * down, left * down]) * sun[:, [2]]
-    light += 0.02  # what all of them see
+    light += STRAY
     return light + np.random.default_rng(seed).normal(0.0, 0.002, light.shape)
 
 

@@ -19,6 +19,8 @@ from algorithms.contract import UnusableDataError
 from api.calibrate.calibration import calibrate
 from api.calibrate.table import TableError
 
+#: Faults of the level without light, which the sensor's own stray light adds to.
+_OF_LEVEL = ("dark", "inverted")
 #: True error over the stated from which "good" is false.
 FALSE = 1.5
 
@@ -42,9 +44,13 @@ class Outcome:
 
     @property
     def hidden(self) -> bool:
-        """Whether the report says that a scale of half an axis as large as this one is not seen."""
-        told = [re.search(r"one half of an axis.* up to ([\d.]+) %", one) for one in self.untested]
-        return any(one and 0.0 < 100.0 * self.half <= float(one[1]) for one in told)
+        """Whether the report says that a fault as large as this one is not seen."""
+        half = [re.search(r"one half of an axis.* up to ([\d.]+) %", one) for one in self.untested]
+        stray = [re.search(r"stray light.* from ([\d.e-]+) of it on", o) for o in self.untested]
+        return any(one and 0.0 < 100.0 * self.half <= float(one[1]) for one in half) or any(
+            one and self.fault in _OF_LEVEL and SENSORS[self.kind].stray >= float(one[1])
+            for one in stray
+        )
 
     @property
     def false(self) -> bool:

@@ -27,12 +27,13 @@ def cells(sun: np.ndarray, seed: int) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Sensor:
-    """A sensor, its columns, the half width of its field and models that read it."""
+    """A sensor, its columns, half its field, models that read it, and light all columns see."""
 
     names: list[str]
     read: Callable[[np.ndarray, int], np.ndarray]
     half_deg: float
     models: tuple[str, ...]
+    stray: float = 0.0
 
 
 MAPS = ("homography", "lsq", "polynomial-2d", "lut-polynomial")
@@ -40,7 +41,7 @@ BALANCED = ("spm", "lsq", "polynomial-2d", "lut-polynomial")
 SIGNALS = ("polynomial-signals", "assembled-faces")
 SENSORS = {
     "spot": Sensor(["x_px", "y_px"], bench.spots, 50.0, MAPS),
-    "quadrants": Sensor(["q1", "q2", "q3", "q4"], bench.quadrants, 30.0, BALANCED),
+    "quadrants": Sensor(["q1", "q2", "q3", "q4"], bench.quadrants, 30.0, BALANCED, bench.STRAY),
     "electrodes": Sensor(
         ["x_plus", "x_minus", "y_plus", "y_minus"], bench.electrodes, 50.0, BALANCED
     ),

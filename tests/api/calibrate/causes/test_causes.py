@@ -18,11 +18,12 @@ from api.calibrate.causes.kinks import largest_unnoticed
 from api.calibrate.causes.lag import fraction_late
 from api.calibrate.causes.light import level_of_products, level_of_sum
 from api.calibrate.causes.removed import unexplained
+from api.calibrate.causes.untested import untested_in
 from api.calibrate.conventions.findings import findings
 from api.calibrate.exclusions import FOLD, WRONG, Excluded
 from api.calibrate.halves import Halves
-from api.calibrate.readings import FALLING, readings_of
-from api.calibrate.robust import answer_noise_deg
+from api.calibrate.readings import FALLING, quadrant_balances, readings_of
+from api.calibrate.robust import answer_noise_deg, residuals, robust_map
 from api.calibrate.roles import guess
 from api.calibrate.verdict import judge
 
@@ -90,6 +91,36 @@ def test_both_laws_of_quadrants_tell_their_level_without_light():
     for dark in (level_of_sum(readings), level_of_products(readings)):
         # the bench's quadrants all see 0.02 beside
         assert np.abs(dark.level - 0.32).max() < 4.0 * dark.error
+
+
+def test_stray_light_is_no_level_where_the_lamp_fades():
+    lamp = np.linspace(1.0, 0.6, len(LIGHT))[:, None]
+    for dark in (0.0, 0.3):
+        made = table(QUADRANTS, LIGHT * lamp + dark, NARROW)
+        found = level_of_products(readings_of(made, guess(made)))
+        assert found.told_apart
+        assert np.abs(found.level - dark).max() < 4.0 * found.error
+        assert found.error < 0.01  # half of the bench's stray light
+
+
+def test_a_level_found_may_be_stray_light_and_the_report_says_from_which_amount_on():
+    made = table(QUADRANTS, LIGHT + 0.3, NARROW)
+    settings = guess(made)
+    stated = settings.model_copy(
+        update={"readings": settings.readings.model_copy(update={"dark": 0.32})}
+    )
+    readings = readings_of(made, stated)
+    (said,) = (one for one in untested_in(readings, stated, dark_found=True) if "stray" in one)
+    amount = float(said.split(" from ")[1].split()[0])
+    noise = answer_noise_deg(readings.features, readings.sun)
+    less = 0.9 * readings.raw - 0.1 * amount  # of what a dark that is too large by it leaves
+    to_sun, _ = robust_map(readings.features, readings.sun)
+    moved = residuals(to_sun, quadrant_balances(less), readings.sun) - residuals(
+        to_sun, readings.features, readings.sun
+    )
+    rms_deg = np.degrees(np.sqrt(np.mean((moved**2).sum(axis=1))))
+    assert rms_deg == pytest.approx(noise, rel=0.25)
+    assert not any("stray" in one for one in untested_in(readings, stated))
 
 
 def test_quadrants_with_gains_of_their_own_tell_their_level_by_the_sum():
