@@ -168,7 +168,7 @@ def _libraries_with_threads_are_looked_for_once() -> Iterator[None]:
 
     They are looked for again where more modules are loaded than before.
     """
-    from benchmark.running import threads
+    from algorithms import threads
 
     found = lru_cache(maxsize=1)(lambda modules: ThreadpoolController())
 

@@ -15,7 +15,7 @@ import pytest
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[1]
-FLOORS = ("files", "survey_data", "registry", "algorithms", "benchmark", "api")
+FLOORS = ("files", "survey_data", "registry", "algorithms", "calibrate", "benchmark", "api")
 RECIPE = re.compile(r"```python file=(\S+)\n(.*?)```", re.DOTALL)
 SUNATLAS = ("-m", "api.cli.command_line")
 PAGES = ("add-an-algorithm.md", "add-a-data-set.md")

@@ -20,7 +20,7 @@ from cosmic_ray.work_item import WorkItem
 
 ROOT = Path(__file__).resolve().parents[1]
 CONFIG = Path(__file__).with_name("cosmic-ray.toml")
-FLOORS = ("files", "survey_data", "registry", "algorithms", "benchmark", "api")
+FLOORS = ("files", "survey_data", "registry", "algorithms", "calibrate", "benchmark", "api")
 #: They compare digests of the code, or what it draws, with what is committed: red at any change.
 _AT_ANY_CHANGE = ("test_leaderboard_published.py", "test_documentation.py", "test_pictures.py")
 #: Type hints and what is declared alone; the next mutant of the module is taken.

@@ -60,7 +60,9 @@ COMMANDS: dict[str, str] = {
 }
 DEBUG = "SUNATLAS_DEBUG"
 _NO_ROOM = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF})
-_OURS = frozenset({"algorithms", "api", "benchmark", "files", "registry", "survey_data"})
+_OURS = frozenset(
+    {"algorithms", "api", "benchmark", "calibrate", "files", "registry", "survey_data"}
+)
 
 
 class LazyCommands(TyperGroup):

@@ -10,11 +10,6 @@ from typing import Any, get_args
 from fastapi import APIRouter, Request, Response
 from markupsafe import Markup
 
-from api.calibrate.forms.units import AngleUnit, TemperatureUnit, TimeUnit
-from api.calibrate.sample import NAME, sample
-from api.calibrate.settings import Form as DirectionForm
-from api.calibrate.settings import Kind
-from api.calibrate.uploaded import LARGEST, LONGEST_S, MOST_ROWS, Upload
 from api.pages.rendering import render
 from api.pages.serving import page_bytes
 from api.service.problems import Problem
@@ -22,6 +17,11 @@ from api.web.answers import StrictRoute
 from api.web.calibrations import HTML, archive_of, as_response, checked, made_of
 from api.web.representations import Representation
 from api.web.uploads import Form, read_form
+from calibrate.forms.units import AngleUnit, TemperatureUnit, TimeUnit
+from calibrate.sample import NAME, sample
+from calibrate.settings import Form as DirectionForm
+from calibrate.settings import Kind
+from calibrate.uploaded import LARGEST, LONGEST_S, MOST_ROWS, Upload
 
 #: Kinds of readings and forms of directions as the form calls them.
 _KINDS = {

@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from api.calibrate.likeness import alike
 from api.real.sets import RealSet
+from calibrate.likeness import alike
 from files.reading import read_text
 
 _PATH = Path(__file__).parent / "scores.csv"
@@ -32,7 +32,7 @@ def measured(real: RealSet, directory: Path) -> list[dict[str, Any]]:
         Of runs left out one by one, wrong poses and clear mistakes of convention put right, as
         `sunatlas calibrate --apply` does; four digits.
     """
-    from api.calibrate.calibration import calibrate  # noqa: PLC0415 - SciPy
+    from calibrate.calibration import calibrate  # noqa: PLC0415 - SciPy
 
     runs = [directory / source.written for source in real.sources if source.blocks]
     found = calibrate(runs, apply=True)
@@ -66,7 +66,7 @@ def beside_standard(
 ) -> list[dict[str, Any]]:
     """Return the kept scores of a set, and beside each that on the standard set most alike.
 
-    With the factor by which ratios between models differ there, see `api.calibrate.likeness`.
+    With the factor by which ratios between models differ there, see `calibrate.likeness`.
 
     Parameters
     ----------

@@ -11,10 +11,10 @@ from typing import TypeVar
 
 from fastapi import Request, Response
 
-from api.calibrate.uploaded import UploadRefusedError, calibrate_uploads, preview_uploads
 from api.service.problems import Problem, Violation
 from api.web.negotiation import JSON
 from api.web.uploads import Form, read_form
+from calibrate.uploaded import UploadRefusedError, calibrate_uploads, preview_uploads
 from survey_data.nearest import nearest_name
 
 HTML, ZIP = "text/html", "application/zip"

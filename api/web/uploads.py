@@ -8,8 +8,8 @@ from email.message import Message
 
 from fastapi import Request
 
-from api.calibrate.uploaded import LARGEST, Upload
 from api.service.problems import Problem, Violation
+from calibrate.uploaded import LARGEST, Upload
 
 #: Bytes of a body: those of the files, a config, and what separates them.
 LARGEST_BODY = LARGEST + 100_000

@@ -13,6 +13,7 @@ from algorithms.chain import Scored
 from algorithms.contract import Extractor, Floats, UnusableDataError
 from algorithms.pipeline import Pipeline
 from algorithms.references import ReferenceCorrection
+from algorithms.threads import one_thread
 from benchmark.datasets.benches import report
 from benchmark.datasets.corrected import correction
 from benchmark.datasets.features import features_of
@@ -22,7 +23,6 @@ from benchmark.error_budget import perfected
 from benchmark.error_budget.variants import VARIANTS
 from benchmark.metrics.score import separation_deg
 from benchmark.running.task import BENCHES
-from benchmark.running.threads import one_thread
 from benchmark.simulator.light.memory import memory
 
 #: Input of a calibration: features, Suns, context.

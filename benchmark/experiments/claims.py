@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
+from algorithms.threads import one_thread
 from benchmark.claims.experiment import find_experiments
 from benchmark.claims.outcomes import RECORD, outcome_of, outcome_of_row, plan_digest, row_of
 from benchmark.claims.plots import file_of, picture
@@ -13,7 +14,6 @@ from benchmark.claims.verification import contradictions
 from benchmark.results.closure import closure_digest
 from benchmark.results.row_file import Row
 from benchmark.running.experiment import RecordedExperiment
-from benchmark.running.threads import one_thread
 
 
 class Claims(RecordedExperiment[str]):

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from algorithms.chain import Scored
 from algorithms.contract import Context, Extractor, Floats, UnusableDataError
 from algorithms.pipeline import Pipeline
+from algorithms.threads import one_thread
 from benchmark.contract import Preset
 from benchmark.datasets.corrected import correction
 from benchmark.datasets.features import features_of
@@ -24,7 +25,6 @@ from benchmark.learning_curves.draws import Rows, sizes, subsets
 from benchmark.learning_curves.leaders import Leader
 from benchmark.metrics.score import score
 from benchmark.running.task import reason_of
-from benchmark.running.threads import one_thread
 from benchmark.simulator.light.memory import memory
 
 #: Units of the sensor, and draws of poses on each of them.

@@ -29,7 +29,7 @@ from benchmark.results.analyses import Analyses
 from benchmark.results.definitions import ClosureError, Definitions
 from benchmark.results.syntax import EVERYTHING, IMPORTED, LOADED
 
-FIRST_PARTY = ("files", "survey_data", "algorithms", "registry", "benchmark", "api")
+FIRST_PARTY = ("files", "survey_data", "algorithms", "registry", "calibrate", "benchmark", "api")
 
 #: What is done when a module is imported, with all that it imports; by the module itself.
 _RUN, _RUN_ALONE = "", "^"

@@ -22,7 +22,7 @@ from files.checked import read_checked, write_checked
 from files.user_cache import user_cache
 
 _ROOT = Path(__file__).resolve().parents[2]
-_PACKAGES = ("files", "survey_data", "algorithms", "registry", "benchmark", "api")
+_PACKAGES = ("files", "survey_data", "algorithms", "registry", "calibrate", "benchmark", "api")
 _INSTALLED = ("numpy", "scipy", "numba", "pandas")
 #: Folders whose files say nothing: byte code, and what can be made again.
 _PASSED_OVER = frozenset({"__pycache__", "stages", "unchanged"})

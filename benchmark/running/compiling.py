@@ -17,13 +17,13 @@ import numpy as np
 from algorithms.chain import Chain, Scored
 from algorithms.contract import Extractor, Observation, UnusableDataError
 from algorithms.pipeline import Pipeline, extract_features
+from algorithms.threads import one_thread
 from benchmark.contract import Preset
 from benchmark.datasets.corrected import correct, correction
 from benchmark.datasets.preset import Preset as SimulatedPreset
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback, silent
-from benchmark.running.threads import one_thread
 from benchmark.running.workers import as_completed
 from benchmark.simulator.sensors.line_sensor import LineSensor
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 
+from algorithms.threads import one_thread
 from benchmark.contract import SPLITS, Preset, UnknownNameError
 from benchmark.datasets.pins import Pin, Place, bounds_agree
 from benchmark.datasets.samples import HEAD, head_hash
@@ -24,7 +25,6 @@ from benchmark.results.record import Record, open_record
 from benchmark.results.store import Store
 from benchmark.running.condition_data import generated_pins, rms_bound
 from benchmark.running.task import reason_of
-from benchmark.running.threads import one_thread
 from benchmark.running.workers import as_completed
 from benchmark.simulator.light.memory import memory
 

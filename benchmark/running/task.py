@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from algorithms.chain import Scored
 from algorithms.contract import Extractor, Floats, UnusableDataError
 from algorithms.pipeline import Pipeline
+from algorithms.threads import one_thread
 from benchmark.contract import ON_BENCH, Cell, Preset
 from benchmark.datasets.benches import report
 from benchmark.datasets.method_bound import method_bound_deg
@@ -25,7 +26,6 @@ from benchmark.metrics.score import Score, score, separation_deg
 from benchmark.processes import release_free_memory
 from benchmark.running.condition_data import ConditionData, found_features, generate, truth
 from benchmark.running.kept_stages import FEATURES, PREDICTIONS, KeptStages
-from benchmark.running.threads import one_thread
 
 #: Benches that each unit of a leading pipeline is calibrated on beside a perfect one.
 BENCHES = 2

@@ -21,13 +21,13 @@ from numpy.typing import NDArray
 from algorithms.chain import Scored
 from algorithms.contract import Extractor, Floats, SensorGeometry
 from algorithms.pipeline import Pipeline, extract_features
+from algorithms.threads import one_thread
 from benchmark.contract import Cell, Preset, Samples
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.csv_tables import text_of
 from benchmark.results.times import COLUMNS, MACHINE, TIMES, Machine, Place, Time, read_times
-from benchmark.running.threads import one_thread
 from files.atomic import replace_file
 from files.locks import wait_for_lock
 from files.temporary import remove_stale_files

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from algorithms.contract import Extractor, Floats
+from algorithms.threads import one_thread
 from benchmark.contract import Cell, Samples, UnknownNameError
 from benchmark.plan.combinations import cells as planned
 from benchmark.plan.parts import Parts, installed_parts
@@ -29,7 +30,6 @@ from benchmark.progress import ProgressCallback, console_progress, silent
 from benchmark.results.store import Store
 from benchmark.running.condition_data import ConditionData, found_features, generate
 from benchmark.running.task import Outcome, Task, data_condition, measured_on
-from benchmark.running.threads import one_thread
 from benchmark.seeds import generator
 
 #: A value's bits mixed until they are as good as random (SplitMix64's last step): no draw a value,

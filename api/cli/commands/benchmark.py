@@ -87,10 +87,10 @@ def benchmark(
 
 def _on_own_data(data: Path, config: Path | None, models: list[str] | None, form: Format) -> None:
     """Print every model that applies on a reader's file, beside the standard set most alike."""
-    from api.calibrate.calibration import calibrate  # noqa: PLC0415 - SciPy
-    from api.calibrate.likeness import alike  # noqa: PLC0415 - as above
-    from api.calibrate.settings import read_settings  # noqa: PLC0415 - as above
     from api.cli.asking import knowledge  # noqa: PLC0415 - the published record
+    from calibrate.calibration import calibrate  # noqa: PLC0415 - SciPy
+    from calibrate.likeness import alike  # noqa: PLC0415 - as above
+    from calibrate.settings import read_settings  # noqa: PLC0415 - as above
 
     settings = None if config is None else read_settings(config)
     found = calibrate([data], settings, models=models)

@@ -102,15 +102,15 @@ def calibrate(
     all files or none, even if it is killed. The exit code is 0 if the verdict is "good" (with
     --onto, if the correction explains the poses) and every requirement is met, otherwise 3.
     """
-    from api.calibrate.calibration import calibrate as run  # noqa: PLC0415 - SciPy
-    from api.calibrate.flight.names import c_name  # noqa: PLC0415 - as above
-    from api.calibrate.frames import table_in  # noqa: PLC0415 - as above
-    from api.calibrate.products import write_products  # noqa: PLC0415 - as above
-    from api.calibrate.report.page import Asked, outcomes  # noqa: PLC0415 - as above
-    from api.calibrate.settings import read_settings  # noqa: PLC0415 - as above
-    from api.calibrate.table import read_table  # noqa: PLC0415 - as above
-    from api.calibrate.template import template_of  # noqa: PLC0415 - as above
     from benchmark.progress import terminal_progress  # noqa: PLC0415 - Rich, where it is shown
+    from calibrate.calibration import calibrate as run  # noqa: PLC0415 - SciPy
+    from calibrate.flight.names import c_name  # noqa: PLC0415 - as above
+    from calibrate.frames import table_in  # noqa: PLC0415 - as above
+    from calibrate.products import write_products  # noqa: PLC0415 - as above
+    from calibrate.report.page import Asked, outcomes  # noqa: PLC0415 - as above
+    from calibrate.settings import read_settings  # noqa: PLC0415 - as above
+    from calibrate.table import read_table  # noqa: PLC0415 - as above
+    from calibrate.template import template_of  # noqa: PLC0415 - as above
     from files.atomic import replace_file  # noqa: PLC0415 - as above
 
     if onto is not None:
@@ -166,7 +166,7 @@ def calibrate(
 
 def _checked(stated: list[str], out: Path) -> tuple[Any, ...]:
     """Return requirements; one that is none, and a place that cannot be written, end the call."""
-    from api.calibrate.report.requirement import (  # noqa: PLC0415 - SciPy
+    from calibrate.report.requirement import (  # noqa: PLC0415 - SciPy
         RequirementError,
         requirement,
     )
@@ -187,8 +187,8 @@ def _checked(stated: list[str], out: Path) -> tuple[Any, ...]:
 
 def _compared(found: Any, files: list[Path], factory: Path | None) -> Any:
     """Return the comparison with a factory's calibration; None without one."""
-    from api.calibrate.report.factory import compared_with  # noqa: PLC0415 - SciPy
-    from api.calibrate.sources import read_sources  # noqa: PLC0415 - as above
+    from calibrate.report.factory import compared_with  # noqa: PLC0415 - SciPy
+    from calibrate.sources import read_sources  # noqa: PLC0415 - as above
 
     if factory is None:
         return None
@@ -208,9 +208,9 @@ def _correct(
     files: list[Path], onto: Path, out: Path, name: str, requirements: tuple[Any, ...]
 ) -> int:
     """Write an old calibration with the correction that a few new poses show, and its code."""
-    from api.calibrate.documents import load  # noqa: PLC0415 - SciPy
-    from api.calibrate.products import corrected_products, write_set  # noqa: PLC0415 - as above
-    from api.calibrate.recalibration import recalibrate  # noqa: PLC0415 - as above
+    from calibrate.documents import load  # noqa: PLC0415 - SciPy
+    from calibrate.products import corrected_products, write_set  # noqa: PLC0415 - as above
+    from calibrate.recalibration import recalibrate  # noqa: PLC0415 - as above
 
     old = load(onto)
     found = recalibrate(files, old)

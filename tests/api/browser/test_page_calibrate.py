@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from api.calibrate import uploaded
+from calibrate import uploaded
 from tests.api.browser.visiting import PATIENCE_MS, Visit, follow
-from tests.api.calibrate.bench import HEADER, grid, spots, sun_of, write
+from tests.calibrate.bench import HEADER, grid, spots, sun_of, write
 
 pytestmark = pytest.mark.slow
 

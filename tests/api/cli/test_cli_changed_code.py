@@ -17,7 +17,7 @@ from benchmark.results.store import PUBLISHED
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[3]
-FLOORS = ("files", "survey_data", "registry", "algorithms", "benchmark", "api")
+FLOORS = ("files", "survey_data", "registry", "algorithms", "calibrate", "benchmark", "api")
 
 #: Which implementations load a module: asked of Python's own imports, one after another.
 REACHING = """

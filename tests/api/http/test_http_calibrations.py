@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from api.calibrate import uploaded
-from api.calibrate.uploaded import Upload, UploadRefusedError, calibrate_uploads
+from calibrate import uploaded
+from calibrate.uploaded import Upload, UploadRefusedError, calibrate_uploads
 
 BAD = b"x_px,y_px,alpha,beta\n1,b,3,4\n"
 ADDRESS = "/v1/calibrations"
@@ -238,7 +238,7 @@ def test_hostile_files_are_refused_within_time_and_memory(names):
     """In a process of their own: the memory of a child that is forked is its parent's, too."""
     code = (
         "import json, resource, runpy, sys\n"
-        "from api.calibrate.uploaded import Upload, UploadRefusedError, calibrate_uploads\n"
+        "from calibrate.uploaded import Upload, UploadRefusedError, calibrate_uploads\n"
         "made = runpy.run_path(sys.argv[1])['HOSTILE']\n"
         "for name in sys.argv[2:]:\n"
         "    try:\n"

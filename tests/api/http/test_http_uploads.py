@@ -9,10 +9,10 @@ import pytest
 from fastapi import Request
 from starlette.types import Message
 
-from api.calibrate.uploaded import Upload
 from api.service.problems import Problem
 from api.web import uploads
 from api.web.uploads import Form, read_form
+from calibrate.uploaded import Upload
 
 FIELD = b'Content-Disposition: form-data; name="%s"\r\n\r\n%s'
 FILE = b'Content-Disposition: form-data; name="file"; filename="%s"\r\n\r\n%s'

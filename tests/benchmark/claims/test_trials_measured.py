@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
+from algorithms.threads import one_thread
 from benchmark.claims.experiment import find_experiments
 from benchmark.claims.outcomes import outcome_of, read_outcomes
 from benchmark.claims.rules import FIRST_TRIAL, claims
-from benchmark.running.threads import one_thread
 
 
 @pytest.mark.slow

@@ -13,13 +13,13 @@ import pytest
 from typer.testing import CliRunner
 
 import survey_data
-from api.calibrate import calibration, documents, products, recalibration
-from api.calibrate.report.page import Asked
 from api.cli.boards import overview_text
 from api.cli.command_line import app
 from api.cli.commands.get import fetch_answer
 from api.server import app as service
 from benchmark.leaderboard.overview import WITHIN, suffix
+from calibrate import calibration, documents, products, recalibration
+from calibrate.report.page import Asked
 from survey_data import Problem
 from tests.api.conftest import Client
 

@@ -1,0 +1,72 @@
+"""What a file does not tell of its sensor, and what would."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from algorithms.contract import FeatureKind
+from calibrate.causes.kinks import largest_unnoticed
+from calibrate.causes.laws import UNTESTED, scale_of_angles, settles_scale
+from calibrate.causes.light import Dark, changes_answers, largest_stray, level_of_channels
+from calibrate.conventions.channels import level_of
+from calibrate.readings import Readings
+from calibrate.robust import answer_noise_deg
+from calibrate.settings import Settings
+
+_MOST = 2000
+_DARK = (
+    "the level without light: {}; readings with the sensor covered, or at another light level, "
+    "would test it"
+)
+_STRAY = (
+    "whether the level found without light is stray light, which goes with the Sun's: answers move "
+    "by as much as their noise at a tenth less light from {:.2g} of it on; readings with the "
+    "sensor covered, or at another light level, would test it"
+)
+_HALF = (
+    "another scale of one half of an axis: noise and the sensor's own distortion hide up to "
+    "{:.2g} %; directions of a second turntable, or more poses, would test it"
+)
+_LAG = (
+    "readings that come late by a part of a row: all sweeps go one way, or none is smooth; sweeps "
+    "to and fro would test it"
+)
+
+
+def untested_in(
+    readings: Readings, settings: Settings, *, dark_found: bool = False
+) -> tuple[str, ...]:
+    """Return which causes of a wrong calibration a file cannot show, each with what would.
+
+    Parameters
+    ----------
+    readings : Readings
+    settings : Settings
+        As applied.
+    dark_found : bool
+        Whether their level without light was found in the file, not stated.
+    """
+    from calibrate.causes.lag import fraction_late  # noqa: PLC0415 - one use
+
+    used = readings.thinned(_MOST)
+    found = []
+    noise = answer_noise_deg(used.features, used.sun)
+    if not settles_scale(scale_of_angles(used, settings), used, noise):
+        found.append(UNTESTED)
+        if half := largest_unnoticed(readings, settings, noise):
+            found.append(_HALF.format(100.0 * half))
+    kind = settings.readings.kind
+    if kind == "balance":
+        found.append(_DARK.format("the file has balances, not the signals that they are made of"))
+    elif kind in ("quadrants", "electrodes", "channels"):
+        signals = used.kind is FeatureKind.SIGNALS
+        dark = level_of_channels(used, falls=False) if signals else level_of(used, settings)
+        unsure = Dark(np.full(len(dark.level), dark.error), dark.error, dark.by)
+        if not np.isfinite(dark.error) or changes_answers(unsure, used, noise):
+            found.append(_DARK.format("the signals follow no law by which they tell it"))
+        stray = largest_stray(used, noise) * float(np.abs(settings.readings.gain).max())
+        if dark_found and not dark.told_apart and stray < np.abs(settings.readings.dark).max():
+            found.append(_STRAY.format(stray))
+    if not np.isfinite(fraction_late(readings)[1]):
+        found.append(_LAG)
+    return tuple(found)

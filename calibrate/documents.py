@@ -1,0 +1,370 @@
+"""A calibration as a JSON document that answers the same to the last bit when it is loaded."""
+
+from __future__ import annotations
+
+import json
+import sys
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+from algorithms.calibration.documents import DIGEST, digest_of, read_document, require_whole
+from algorithms.calibration.saving import (
+    CONVENTIONS,
+    UnreadableCalibrationError,
+    stage_document,
+    stage_of,
+)
+from algorithms.contract import Compensation, Floats, Model
+from algorithms.discovery import discover_compensations, discover_models
+from calibrate.calibration import Calibration
+from calibrate.flight.program import Program
+from calibrate.flight.stored import stored_program
+from calibrate.intervals.places import tangent_axes
+from calibrate.intervals.stored import intervals_of, stored_intervals
+from calibrate.one_axis.curve import AxisCurve
+from calibrate.readings import readings_of
+from calibrate.recalibration import Correction
+from calibrate.selection import deviation_of, unbounded
+from calibrate.settings import Settings, parse_settings
+from calibrate.table import Table
+from calibrate.terms.corrections import (
+    Corrected,
+    features_in,
+    numbers,
+    of_features,
+    temperatures,
+    with_changes,
+)
+from calibrate.terms.temperature import TERMS
+from calibrate.uncertainty import Intervals, covariance_of
+from calibrate.verdict import as_text
+from files.atomic import replace_file
+
+SCHEMA = "sun-sensor-atlas/sensor-calibration"
+#: Of documents written; those of version 1 have a factor and no table of intervals.
+SCHEMA_VERSION = 2
+_READ = (1, 2)
+_MEMBERS = frozenset(
+    {
+        *("schema", "schema_version", "conventions", "settings", "compensations", "model", "fit"),
+        *("selection", "verdict", "found", "excluded", "made", "flight", "correction", DIGEST),
+    }
+)
+#: What a damaged document leads to that fits no class here.
+_MISFITS = (
+    *(ValueError, LookupError, TypeError, AttributeError, ImportError),
+    *(ArithmeticError, MemoryError, RecursionError),
+)
+
+
+@dataclass(frozen=True)
+class SavedCalibration:
+    """A calibration read from its document.
+
+    Attributes
+    ----------
+    settings : Settings
+        By which readings become features.
+    compensations : tuple of Compensation
+    model : Model
+    factor : float
+        Of the model's stated 1-sigma, where there are no intervals.
+    intervals : Intervals or None
+        The 1-sigma by place; None of few samples and of a document of version 1.
+    temperature_K : tuple of two float, or None
+        Lowest and highest that was measured, of a model that reads it; beyond, NaN is answered.
+    offset, gain : ndarray, shape (F,) or ()
+        Since a correction features are ``(f - offset) / gain``; see `calibrate.recalibration`.
+        Of quadrants and electrodes `settings` have it, whose readings are no features.
+    rotation : ndarray, shape (3, 3)
+        Of directions since then.
+    document : dict
+        All that it says.
+    """
+
+    settings: Settings
+    compensations: tuple[Compensation, ...]
+    model: Model
+    factor: float
+    intervals: Intervals | None
+    temperature_K: tuple[float, float] | None  # noqa: N815 - the unit's symbol
+    offset: Floats
+    rotation: Floats
+    document: dict[str, Any]
+    gain: Floats = field(default_factory=lambda: np.ones(()))
+
+    @property
+    def stated_deg(self) -> float:
+        """RMS error of samples left out, by the document."""
+        stated = self.document["fit"].get("rms_left_out_deg")
+        return float("nan") if stated is None else float(stated)
+
+    @property
+    def unbounded(self) -> SavedCalibration:
+        """The same, but answering beyond the field that was calibrated."""
+        return replace(self, model=unbounded(self.model))
+
+    @property
+    def corrected(self) -> Corrected:
+        """What was corrected since; its ``settings`` are those for flight software."""
+        return Corrected(self.offset, self.gain, self.rotation)
+
+    def predict(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
+        """Return unit vectors (N, 3) of features (N, F); NaN rows outside the hull."""
+        columns = context or {}
+        sun = self.model.predict(self._compensated(features, columns), columns) @ self.rotation.T
+        if self.temperature_K is not None:
+            low, high = self.temperature_K
+            measured = np.asarray(columns["temperature_K"], dtype=np.float64)
+            sun[~((measured >= low) & (measured <= high))] = np.nan
+        return np.asarray(sun)
+
+    def covariance(self, features: Floats, context: Mapping[str, Floats] | None = None) -> Floats:
+        """Return the covariance (N, 3, 3) of the unit vectors at features (N, F), radians squared.
+
+        A correction turns it with the directions; NaN where nothing is answered.
+        """
+        before = self.predict(features, context) @ self.rotation
+        if self.intervals is None:
+            columns = context or {}
+            stated = deviation_of(self.model, self._compensated(features, columns), columns)
+            sigma = np.repeat(self.factor * stated[:, None], 2, axis=1)
+        else:
+            sigma = self.intervals.at(before)
+        return np.asarray(self.rotation @ covariance_of(sigma, before) @ self.rotation.T)
+
+    def deviations_deg(
+        self, features: Floats, context: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """Return the 1-sigma (N, 2) of both axes of `calibrate.intervals.places.tangent_axes`.
+
+        In degrees, at features (N, F).
+        """
+        axes = np.stack(tangent_axes(self.predict(features, context)), axis=1)
+        variance = np.einsum("nai,nij,naj->na", axes, self.covariance(features, context), axes)
+        return np.asarray(np.degrees(np.sqrt(variance)))
+
+    def deviation_deg(
+        self, features: Floats, context: Mapping[str, Floats] | None = None
+    ) -> Floats:
+        """Return the 1-sigma (N,) of a tangent axis, degrees: RMS of both of `deviations_deg`."""
+        return np.asarray(np.sqrt(np.mean(self.deviations_deg(features, context) ** 2, axis=1)))
+
+    def _compensated(self, features: Floats, columns: Mapping[str, Floats]) -> Floats:
+        features = (np.asarray(features, dtype=np.float64) - self.offset) / self.gain
+        for stage in self.compensations:
+            features = stage.transform(features, columns)
+        return features
+
+    def predict_table(self, table: Table) -> Floats:
+        """Return unit vectors of the usable rows of a file with the calibration's columns."""
+        readings = readings_of(table, self.settings)
+        return self.predict(readings.features, readings.context)
+
+
+def document(
+    found: Calibration, command: str = "", program: Program | None = None
+) -> dict[str, Any]:
+    """Return a calibration as what JSON can say, with the program of its code if there is one."""
+    stages = list(getattr(found.model, "compensations", ()))
+    last = getattr(found.model, "model", found.model)
+    held = {
+        "schema": SCHEMA,
+        "schema_version": SCHEMA_VERSION,
+        "conventions": CONVENTIONS,
+        "settings": found.settings.model_dump(mode="json"),
+        "compensations": [stage_document(stage) for stage in stages],
+        "model": stage_document(last),
+        "fit": {
+            "samples": len(found.readings),
+            "rms_left_out_deg": number(found.chosen.rms_deg),
+            "rms_fitted_deg": number(found.residual_deg),
+            "noise_deg": number(found.noise_deg),
+            "intervals": None if found.intervals is None else stored_intervals(found.intervals),
+            "temperature_K": _temperatures(found),
+            "fit_spread_deg": number(_rms(found.spread_deg)),
+            "sensor": {k: v for k, v in asdict(found.geometry).items() if v is not None},
+        },
+        "selection": selection_table(found),
+        "verdict": dict(as_text(found.verdict)),
+        "found": [
+            {**{k: number(v) for k, v in asdict(one).items()}, "applied": one in found.applied}
+            for one in found.findings
+        ],
+        "excluded": [asdict(one) for one in found.excluded],
+        "made": {
+            "files": list(found.sources),
+            "data_sha256": found.digest,
+            "rows_dropped": dict(found.readings.dropped),
+            "notes": list(found.notes),
+            "command": command,
+            "versions": versions(),
+        },
+    }
+    if program is not None:
+        held["flight"] = stored_program(program)
+    return {**held, DIGEST: digest_of(held)}
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of what calibrates, by name."""
+    names = ("sun-sensor-atlas", "numpy", "scipy")
+    return {**{name: _version(name) for name in names}, "python": sys.version.split()[0]}
+
+
+def selection_table(found: Calibration) -> list[dict[str, Any]]:
+    """Return a row for every model tried."""
+    return [
+        {
+            "model": one.name,
+            "chosen": one.name == found.chosen.name,
+            "rms_deg": number(one.rms_deg),
+            "standard_error_deg": number(one.spread_deg),
+            "worst_fold_deg": number(one.worst_deg),
+            "unanswered": number(one.missing),
+            "parameters": one.parameters,
+            "fit_s": number(one.seconds),
+            "refused": one.refused,
+        }
+        for one in found.candidates
+    ]
+
+
+def save(found: Calibration, path: Path, command: str = "") -> None:
+    """Write a calibration to a file, whole or not at all."""
+    replace_file(path, json.dumps(document(found, command), indent=1, allow_nan=False) + "\n")
+
+
+def load(path: Path) -> SavedCalibration:
+    """Return the calibration of a file that `save` wrote.
+
+    Raises
+    ------
+    UnreadableCalibrationError
+        If it is not one, of another version, or was changed.
+    OSError
+        If it cannot be read.
+    """
+    try:
+        stored = read_document(path)
+        if not isinstance(stored, dict) or stored.get("schema") != SCHEMA:
+            raise UnreadableCalibrationError(f"{path.name}: expected a document of {SCHEMA}")
+        if stored.get("schema_version") not in _READ:
+            raise UnreadableCalibrationError(
+                f"{path.name}: expected version {' or '.join(map(str, _READ))}; "
+                f"got {stored.get('schema_version')!r}"
+            )
+        require_whole(stored, _MEMBERS)
+        found = of_document(stored, path.name)
+        with warnings.catch_warnings():  # of numbers that no row would have
+            warnings.simplefilter("ignore", RuntimeWarning)
+            columns = {name: np.ones(1) for name in ("temperature_K", "time_s")}
+            found.predict(np.ones((1, features_in(found.settings))), columns)
+    except _MISFITS as error:
+        said = str(error) or type(error).__name__
+        named = said if said.startswith(f"{path.name}: ") else f"{path.name}: {said}"
+        raise UnreadableCalibrationError(named) from error
+    return found
+
+
+def of_document(stored: dict[str, Any], source: str) -> SavedCalibration:
+    """Return the calibration that a document of this version holds."""
+    settings, fit = parse_settings(stored["settings"], source), stored["fit"]
+    measured = fit.get("temperature_K")
+    correction = Corrected.of(stored.get("correction", {}), settings)
+    if not isinstance(stored["compensations"], list):
+        raise UnreadableCalibrationError("compensations must be a list")
+    if "rms_left_out_deg" not in fit:
+        raise UnreadableCalibrationError("fit lacks rms_left_out_deg")
+    if (stated := fit["rms_left_out_deg"]) is not None:
+        numbers(stated, (), "fit.rms_left_out_deg")
+    model = cast("Model", stage_of(stored["model"], _models()))
+    _require_vector(model)
+    return SavedCalibration(
+        settings,
+        tuple(
+            cast("Compensation", stage_of(stage, {**discover_compensations(), **TERMS}))
+            for stage in stored["compensations"]
+        ),
+        model,
+        numbers(fit.get("interval_factor", 1.0), (), "fit.interval_factor", above=0.0).item(),
+        intervals_of(fit.get("intervals")),
+        None if measured is None else temperatures(measured),
+        correction.offset,
+        correction.rotation,
+        stored,
+        correction.gain,
+    )
+
+
+def _models() -> dict[str, type[Any]]:
+    return {**discover_models(), AxisCurve.about.name: AxisCurve}
+
+
+def _require_vector(model: Any) -> None:
+    """Raise where a drawing has other than a number for each parameter: its loops are compiled."""
+    if not hasattr(model, "free_parameters"):
+        return
+    wanted, vector = (len(model.free_parameters()),), model.vector_
+    if not isinstance(vector, np.ndarray) or vector.shape != wanted or vector.dtype != np.float64:
+        raise UnreadableCalibrationError(
+            f"{model.about.name} has {wanted[0]} parameters; its vector_ has {str(vector)[:60]}"
+        )
+
+
+def with_correction(
+    old: SavedCalibration, found: Correction, files: Sequence[Path], command: str = ""
+) -> dict[str, Any]:
+    """Return the document of an old calibration with a correction, on top of those it has.
+
+    Of spots, balances and channels the correction has gain and offset of features; of quadrants and
+    electrodes the settings have them as gain and dark level of readings.
+    """
+    held = {name: value for name, value in old.document.items() if name != DIGEST}
+    settings, gain, offset = old.settings, np.asarray(found.gain), np.asarray(found.offset)
+    if len(gain) != features_in(settings):
+        held["settings"] = with_changes(settings, offset, gain).model_dump(mode="json")
+        offset, gain = np.zeros(()), np.ones(())
+    offset, gain = of_features(settings, offset, gain) if gain.ndim else (offset, gain)
+    whole = old.corrected.then(offset, gain, np.asarray(found.rotation))
+    held["correction"] = {
+        **found.as_data(),
+        **{name: value.tolist() for name, value in vars(whole).items()},
+        "onto": old.document[DIGEST],
+        "files": [path.name for path in files],
+        "command": command,
+    }
+    return {**held, DIGEST: digest_of(held)}
+
+
+def _temperatures(found: Calibration) -> list[float] | None:
+    """Return the lowest and the highest that a model which reads it was fitted at."""
+    if "temperature_K" not in tuple(found.model.about.context):
+        return None
+    column = found.readings.context["temperature_K"]
+    return [float(column.min()), float(column.max())]
+
+
+def number(value: Any) -> Any:
+    """Return a value as JSON has it: None for what is no number."""
+    if isinstance(value, (float, np.floating)):
+        return float(value) if np.isfinite(value) else None
+    return value
+
+
+def _rms(values: Floats) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.sqrt(np.mean(known**2))) if len(known) else float("nan")
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "unknown"

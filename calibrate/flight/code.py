@@ -1,0 +1,244 @@
+"""Flight code of a calibration: what it does, what it adds to the model, and its files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from algorithms.angles import separation_deg
+from algorithms.contract import FeatureKind, Floats
+from calibrate.calibration import Calibration
+from calibrate.flight.answers import Answers, answers_of
+from calibrate.flight.c_source import c_files
+from calibrate.flight.faces import faces_steps
+from calibrate.flight.plane import plane_steps
+from calibrate.flight.program import NoCodeError, Program, Step, Thermometer, run
+from calibrate.flight.python_source import python_module
+from calibrate.flight.raw import (
+    LARGEST,
+    RawLimits,
+    columns_of,
+    limits_of,
+    raw_readings,
+    raw_steps,
+)
+from calibrate.flight.runtime import STATUSES
+from calibrate.flight.vectors import Vectors, vectors_of
+from calibrate.forms.units import KELVIN
+from calibrate.settings import RowSettings
+
+#: Share of the model's error above which what the code adds is refused.
+_MOST_ADDED = 0.1
+#: Of temperatures in other units.
+_ROUNDING_K = 1e-9
+#: Rows of the calibration by which code is judged.
+_JUDGED = 2000
+_KINDS = ("spot", "balance", "quadrants", "electrodes", "channels")
+
+
+@dataclass(frozen=True)
+class FlightCode:
+    """Flight code of a calibration.
+
+    Attributes
+    ----------
+    program : Program
+    answers : Answers
+    vectors : Vectors
+        Of the self-test.
+    limits : RawLimits
+    added_deg, largest_deg : float
+        RMS and largest difference from the model on the calibration's own raw rows.
+    flagged : mapping of str to int
+        Rows that the model answers and the code does not, by status.
+    rows : int
+        Rows that were compared.
+    judged_on : str
+        What these rows are of.
+    """
+
+    program: Program
+    answers: Answers
+    vectors: Vectors
+    limits: RawLimits
+    added_deg: float
+    largest_deg: float
+    flagged: Mapping[str, int]
+    rows: int
+    judged_on: str = "rows of the calibration"
+
+    @property
+    def words(self) -> str:
+        """Name what stands for the model, for a report."""
+        return self.program.words
+
+    @property
+    def sentence(self) -> str:
+        """Say what the code adds to the model, and which rows it refuses."""
+        refused = ", ".join(f"{count} {name}" for name, count in self.flagged.items())
+        return (
+            f"{self.words}: adds {self.added_deg:.2g} deg RMS to the model, at most "
+            f"{self.largest_deg:.2g} deg, on {self.rows} {self.judged_on}"
+            + (f"; {sum(self.flagged.values())} of them refused ({refused})" if refused else "")
+        )
+
+    def files(self, name: str, said: Mapping[str, str], digest: str) -> dict[str, str]:
+        """Return the text of each file of C and of Python by its name.
+
+        Parameters
+        ----------
+        name : str
+            An identifier, as `calibrate.flight.names.c_name` makes it.
+        said : mapping of str to str
+            What comments at the top say first.
+        digest : str
+            SHA-256 of the calibration, hexadecimal digits.
+        """
+        told = {**said, **self._told()}
+        return {
+            f"{name}.py": python_module(self.program, self.answers, self.vectors, told, digest),
+            **c_files(self.program, self.answers, self.vectors, name, told, digest),
+        }
+
+    def _told(self) -> dict[str, str]:
+        """Return what comments say of inputs, steps, limits, accuracy and cost."""
+        program, limits = self.program, self.limits
+        made = program.steps[0].constants
+        lines = {"Code": self.sentence, "Steps": ", ".join(s.name for s in program.steps)}
+        for at, name in enumerate(program.columns):
+            place = int(np.flatnonzero(made["place"] == at)[0])
+            lines[f"Input value[{at}]"] = (
+                f"column {name}, in its unit; dark {made['dark'][place]:.6g}, gain "
+                f"{made['gain'][place]:.6g}{_clipped(limits, place)}"
+            )
+        if program.thermometer is not None:
+            lines["Input temperature"] = (
+                f"column {program.thermometer.column}, {program.thermometer.unit}"
+            )
+        if limits.least_light > -LARGEST:
+            lines["Light"] = (
+                f"readings less dark over gain add up to {limits.least_light:.6g} to "
+                f"{limits.most_light:.6g}"
+            )
+        lines["Frame"] = "+z is the boresight; the answer is the unit vector from sensor to Sun"
+        size = program.bytes + self.answers.bytes
+        operations = program.operations + self.answers.operations
+        calls = program.calls + self.answers.calls
+        lines["Cost"] = (
+            f"at most {operations} additions, multiplications, divisions and comparisons "
+            f"and {calls} calls of libm an answer; {size} bytes of constants in double "
+            "precision; no heap, nothing kept between calls"
+        )
+        return lines
+
+
+def flight_code(found: Calibration) -> FlightCode:
+    """Return the flight code of a calibration.
+
+    Parameters
+    ----------
+    found : Calibration
+
+    Raises
+    ------
+    NoCodeError
+        If no code is written for its model, or the code departs from the model by more than a
+        tenth of the model's error.
+    """
+    settings, readings = found.settings, found.readings
+    kind = settings.readings.kind
+    if kind not in _KINDS:
+        raise NoCodeError(f"flight code takes readings of {', '.join(_KINDS)}; these are {kind}")
+    if readings.features.shape[1] == 2 and not np.ptp(readings.features, axis=0).all():
+        raise NoCodeError("flight code is not written for sensors of one axis")
+    context = tuple(found.model.about.context)
+    if set(context) - {"temperature_K"}:
+        raise NoCodeError(f"code for flight knows no {', '.join(context)}")
+    columns = columns_of(found)
+    allowed = limits_of(found)
+    steps = raw_steps(columns, settings, allowed)
+    thermometer = _thermometer(settings.rows) if context else None
+    if thermometer is not None:
+        steps.append(_temperatures(readings.context["temperature_K"]))
+    used = readings.thinned(_JUDGED)
+    if readings.kind is FeatureKind.SIGNALS:
+        made, words = faces_steps(found.model, used.features, used.context)
+    else:
+        made, words = plane_steps(
+            found.model, readings.features, readings.context, found.chosen.rms_deg
+        )
+    program = Program(columns, (*steps, *made), thermometer, words)
+    raw = np.empty((len(used), len(columns)))
+    raw[:, steps[0].constants["place"]] = raw_readings(used, settings.readings)
+    kelvin = used.context.get("temperature_K", np.zeros(len(used)))
+    model = found.model.predict(used.features, used.context)
+    return judged_code(
+        program, answers_of(found), allowed, raw, kelvin, model, found.chosen.rms_deg
+    )
+
+
+def judged_code(  # noqa: PLR0917 - what code is made of
+    program: Program,
+    answers: Answers,
+    limits: RawLimits,
+    raw: Floats,
+    kelvin: Floats,
+    model: Floats,
+    rms_deg: float,
+) -> FlightCode:
+    """Return code by a program whose answers are those of a model on raw rows.
+
+    Parameters
+    ----------
+    program : Program
+    answers : Answers
+    limits : RawLimits
+        Of the program's first step.
+    raw : ndarray, shape (N, K)
+        In the file's order.
+    kelvin : ndarray, shape (N,)
+    model : ndarray, shape (N, 3)
+        Before the turn of the answers; NaN where there is none.
+    rms_deg : float
+        Of the model.
+
+    Raises
+    ------
+    NoCodeError
+        If the program answers none of the rows or adds more than a tenth of the model's error.
+    """
+    _, sun, status = run(program.steps, raw, kelvin)
+    off = separation_deg(sun, model)
+    both = np.isfinite(off)
+    if not both.any():
+        raise NoCodeError("the code answers none of the calibration's rows that the model answers")
+    added = float(np.sqrt(np.mean(off[both] ** 2)))
+    if not added <= _MOST_ADDED * rms_deg:
+        raise NoCodeError(
+            f"{program.words} would add {added:.3g} deg to a model that errs "
+            f"{rms_deg:.3g} deg, more than a tenth of it"
+        )
+    lost = status[np.isfinite(model[:, 0]) & (status != 0)]
+    counts = {STATUSES[one]: int((lost == one).sum()) for one in np.unique(lost)}
+    return FlightCode(
+        program, answers, vectors_of(program, raw, kelvin, model), limits, added,
+        float(off[both].max()), counts, len(raw),
+    )  # fmt: skip
+
+
+def _temperatures(kelvin: Floats) -> Step:
+    low, high = float(kelvin.min()) - _ROUNDING_K, float(kelvin.max()) + _ROUNDING_K
+    return Step("temperature_range", {"low": low, "high": high}, 2)
+
+
+def _thermometer(rows: RowSettings) -> Thermometer:
+    unit = rows.temperature_unit
+    return Thermometer(rows.temperature_K or "temperature_K", unit, *KELVIN[unit])
+
+
+def _clipped(limits: RawLimits, place: int) -> str:
+    low, high = float(limits.low[place]), float(limits.high[place])
+    said = f", clipped at {low:.6g} and below" if low > -LARGEST else ""
+    return said + (f", clipped at {high:.6g} and above" if high < LARGEST else "")

@@ -1,0 +1,178 @@
+"""The report of a calibration: one HTML file that needs nothing else."""
+
+from __future__ import annotations
+
+import datetime as dt
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from calibrate.calibration import Calibration
+from calibrate.certificate.elements import COVERAGE_FACTOR
+from calibrate.documents import selection_table, versions
+from calibrate.report.errors import (
+    THREE_SIGMA,
+    Errors,
+    by_axis,
+    by_band,
+    by_run,
+    by_temperature,
+    fewest_for,
+    field_of,
+)
+from calibrate.report.factory import Compared
+from calibrate.report.pictures import pictures
+from calibrate.report.requirement import Judged, Requirement, judged
+from calibrate.settings import UNSTATED
+
+_TEMPLATES = Path(__file__).parent
+#: Rows left out that are listed one by one; the JSON has all.
+_LISTED, _LISTED_RUNS = 60, 30
+#: Letters of a reason or a refusal that are shown.
+_LONGEST = 160
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is wanted of a report beside the calibration itself.
+
+    Attributes
+    ----------
+    requirements : tuple of Requirement
+        On its errors.
+    compared : Compared, optional
+        With a factory's calibration.
+    certificate : str
+        Name of the certificate among the files; empty for none.
+    """
+
+    requirements: tuple[Requirement, ...] = ()
+    compared: Compared | None = None
+    certificate: str = ""
+
+
+def outcomes(found: Calibration, asked: Asked) -> list[Judged]:
+    """Return for each requirement whether it is met."""
+    errors = Errors.of(found) if asked.requirements else None
+    return [
+        judged(one, found.readings.sun, errors) for one in asked.requirements if errors is not None
+    ]
+
+
+def report(
+    found: Calibration,
+    command: str = "",
+    code: str = "",
+    asked: Asked | None = None,
+    today: dt.date | None = None,
+) -> str:
+    """Return the report as HTML text: the verdict first.
+
+    Parameters
+    ----------
+    found : Calibration
+    command : str
+        What was called.
+    code : str
+        What the flight code does and adds, in a sentence; empty where there is none.
+    asked : Asked, optional
+        Requirements, and a factory's calibration to compare with.
+    today : date, optional
+        Of the report; by default today in UTC.
+    """
+    wanted = asked or Asked()
+    errors = Errors.of(found)
+    drawn = pictures(found, errors, wanted.requirements)
+    counted = Counter(one.reason for one in found.excluded)
+    return (
+        templates()
+        .get_template("report.html")
+        .render(
+            found=found,
+            verdict=found.verdict,
+            outcomes=[judged(one, found.readings.sun, errors) for one in wanted.requirements],
+            compared=wanted.compared,
+            axes=by_axis(errors),
+            bands=by_band(errors),
+            runs=by_run(errors)[:_LISTED_RUNS],
+            temperatures=by_temperature(errors),
+            field=field_of(found.readings.sun),
+            fewest=fewest_for(THREE_SIGMA),
+            tested=int(errors.known.sum()),
+            rows=selection_table(found),
+            refused=_refused(found),
+            pictures={title: Markup(svg) for title, svg in drawn.items()},  # noqa: S704 - drawn here
+            excluded=counted.most_common(),
+            listed=found.excluded[:_LISTED],
+            settings=_settings(found),
+            files=_files(found),
+            versions=versions(),
+            code=code,
+            command=command,
+            today=(today or dt.datetime.now(dt.UTC).date()).isoformat(),
+            coverage_factor=COVERAGE_FACTOR,
+            unstated=UNSTATED,
+        )
+    )
+
+
+def templates() -> Environment:
+    """Return what makes reports of their templates."""
+    environment = Environment(
+        loader=FileSystemLoader(_TEMPLATES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters.update(deg=_deg, percent=_percent, short=_short)
+    return environment
+
+
+def _refused(found: Calibration) -> dict[str, list[str]]:
+    """Return the models that cannot be fitted, by reason; what came is left out of it."""
+    reasons: dict[str, list[str]] = {}
+    for one in found.candidates:
+        if one.refused:
+            said = one.refused.split("; got ")[0].removeprefix(f"{one.name} ")
+            reasons.setdefault(said, []).append(one.name)
+    return reasons
+
+
+def _settings(found: Calibration) -> list[tuple[str, Any]]:
+    """Return settings by name, those that nobody stated left out."""
+    held = found.settings.model_dump(mode="json", exclude_none=True, exclude={"certificate"})
+    rows = []
+    for section, values in held.items():
+        if not isinstance(values, dict):
+            rows.append((section, _value(values)))
+            continue
+        rows += [(f"{section}.{name}", _value(value)) for name, value in values.items()]
+    return rows
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, list):
+        return ", ".join(_value(one) for one in value) or "none"
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _files(found: Calibration) -> list[tuple[str, str]]:
+    digests = found.digests or ("",) * len(found.sources)
+    return list(zip(found.sources, digests, strict=False))
+
+
+def _deg(value: float | None) -> str:
+    return "-" if value is None or value != value else f"{value:.3g}"  # noqa: PLR0124 - NaN
+
+
+def _percent(value: float | None) -> str:
+    return "-" if value is None or value != value else f"{100 * value:.1f}"  # noqa: PLR0124 - NaN
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 1].rstrip() + "\u2026"

@@ -1,0 +1,224 @@
+"""Files that strangers send: calibrated by a process of its own, within time and memory.
+
+The files lie in a temporary directory that is gone at the end. The process reads nothing else of
+what it is sent names of, and what it is sent is never run.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from files.temporary import temporary_directory
+
+#: Bytes of all files together and of a config, seconds, and bytes of memory of a calibration.
+LARGEST, LARGEST_CONFIG, LONGEST_S, MOST_MEMORY = 10_000_000, 20_000, 60.0, 3 * 2**30
+#: Files and rows of a calibration.
+MOST_FILES, MOST_ROWS = 20, 100_000
+_LONGEST_FAULT = 200
+_TASK, _SAID = "task.json", "said.json"
+_NAME = re.compile(r"[^A-Za-z0-9._-]+")
+
+
+class UploadRefusedError(ValueError):
+    """Files that cannot be calibrated; the message says why, and where."""
+
+
+@dataclass(frozen=True)
+class Upload:
+    """A file as it was sent.
+
+    Attributes
+    ----------
+    name : str
+        As the sender calls it.
+    data : bytes
+    """
+
+    name: str
+    data: bytes
+
+
+def calibrate_uploads(
+    uploads: Sequence[Upload],
+    config: str = "",
+    *,
+    apply: bool = False,
+    model: str = "",
+    require: str = "",
+    longest_s: float | None = None,
+) -> dict[str, str]:
+    """Calibrate files in a process of its own; returns the text of each product by its name.
+
+    Parameters
+    ----------
+    uploads : sequence of Upload
+        Each a run of one sensor.
+    config : str
+        TOML, as `calibrate.settings.read_settings` takes it; columns are guessed where empty.
+    apply : bool
+        Whether conventions found with certainty are applied.
+    model : str
+        The only one tried; all that apply where empty.
+    require : str
+        A requirement on the error, as `calibrate.report.requirement` reads it; none if empty.
+    longest_s : float, optional
+        Seconds after which the process is ended; by default `LONGEST_S`.
+
+    Raises
+    ------
+    UploadRefusedError
+        If the files are too large or no calibration settles them.
+    """
+    task = {"config": config, "apply": apply, "model": model, "require": require}
+    found: dict[str, str] = _answered(uploads, task, longest_s)
+    return found
+
+
+def preview_uploads(uploads: Sequence[Upload], longest_s: float | None = None) -> dict[str, Any]:
+    """Return what the first file seems to hold, as `calibrate.template.preview` says it.
+
+    Raises
+    ------
+    UploadRefusedError
+        If the files are too large, or the first is no table.
+    """
+    found: dict[str, Any] = _answered(uploads, {"config": "", "preview": True}, longest_s)
+    return found
+
+
+def _answered(uploads: Sequence[Upload], task: dict[str, Any], longest_s: float | None) -> Any:
+    """Return what a process of its own answers to a task on files."""
+    longest_s = LONGEST_S if longest_s is None else longest_s
+    _require_bounds(uploads, str(task["config"]))
+    with temporary_directory() as directory:
+        names = [_safe(one.name, number) for number, one in enumerate(uploads)]
+        for name, one in zip(names, uploads, strict=True):
+            (directory / name).parent.mkdir()
+            (directory / name).write_bytes(one.data)
+        (directory / _TASK).write_text(json.dumps({**task, "names": names}), "utf-8")
+        try:
+            done = subprocess.run(  # noqa: S603 - this interpreter, and a directory made here
+                [sys.executable, "-m", "calibrate.uploaded", str(directory)],
+                check=False, timeout=longest_s, stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            )  # fmt: skip
+        except subprocess.TimeoutExpired:
+            raise UploadRefusedError(
+                f"the calibration took over {longest_s:g} s; send fewer rows, or run `sunatlas "
+                "calibrate`, which has no limit"
+            ) from None
+        said = directory / _SAID
+        if done.returncode or not said.is_file():
+            raise UploadRefusedError(_ended(done.returncode))
+        found: dict[str, Any] = json.loads(said.read_text("utf-8"))
+    if "fault" in found:
+        logging.getLogger("sunatlas").error("a calibration failed:\n%s", found["trace"])
+        raise UploadRefusedError(
+            f"the program failed on these files ({found['fault']}); this is a fault of the program"
+        )
+    if "refused" in found:
+        raise UploadRefusedError(found["refused"])
+    return found["answer"]
+
+
+def _ended(status: int) -> str:
+    """Say how a process ended that left no answer."""
+    if status == -signal.SIGKILL:
+        return "the calibration was killed, most likely for want of memory; send fewer rows"
+    if status < 0:
+        names = {one.value: one.name for one in signal.Signals}
+        return f"the calibration was ended by {names.get(-status, f'signal {-status}')}"
+    return f"the calibration ended without an answer (exit code {status}); this is a fault of ours"
+
+
+def _require_bounds(uploads: Sequence[Upload], config: str) -> None:
+    size = sum(len(one.data) for one in uploads)
+    if not 1 <= len(uploads) <= MOST_FILES:
+        raise UploadRefusedError(f"expected 1 to {MOST_FILES} files; got {len(uploads)}")
+    if size > LARGEST:
+        raise UploadRefusedError(f"expected at most {LARGEST} bytes; got {size}")
+    if len(config) > LARGEST_CONFIG:
+        raise UploadRefusedError(
+            f"config: expected at most {LARGEST_CONFIG} characters; got {len(config)}"
+        )
+
+
+def _safe(name: str, number: int) -> str:
+    """Return a name of a file in the directory, whatever the sender's says of others."""
+    plain = _NAME.sub("_", re.split(r"[/\\]", name)[-1])[-60:].lstrip(".") or "file"
+    return f"{number}/{plain}"
+
+
+def _answer(directory: Path) -> dict[str, Any]:
+    """Return the answer, why there is none, or the program's fault."""
+    import traceback  # noqa: PLC0415 - of the process
+
+    from algorithms.contract import UnusableDataError  # noqa: PLC0415 - as above
+    from calibrate.report.requirement import RequirementError  # noqa: PLC0415 - as above
+    from calibrate.settings import SettingsError  # noqa: PLC0415 - as above
+    from calibrate.table import TableError  # noqa: PLC0415 - as above
+
+    task = json.loads((directory / _TASK).read_text("utf-8"))
+    paths = [directory / name for name in task["names"]]
+    refusals = (TableError, SettingsError, RequirementError, UnusableDataError)
+    try:
+        return {"answer": _previewed(paths[0]) if task.get("preview") else _made(paths, task)}
+    except refusals as error:
+        return {"refused": str(error)}
+    except MemoryError:
+        return {"refused": "the files need more memory than a calibration may take"}
+    except Exception as error:  # noqa: BLE001 - what is said is what went wrong
+        said = f"{type(error).__name__}: {error}"
+        return {"fault": said[:_LONGEST_FAULT], "trace": traceback.format_exc()}
+
+
+def _previewed(path: Path) -> dict[str, Any]:
+    from calibrate.template import preview  # noqa: PLC0415 - of the process
+
+    return preview(path)
+
+
+def _made(paths: Sequence[Path], task: dict[str, Any]) -> dict[str, str]:
+    from calibrate.calibration import calibrate  # noqa: PLC0415 - of the process
+    from calibrate.products import products  # noqa: PLC0415 - as above
+    from calibrate.report.page import Asked  # noqa: PLC0415 - as above
+    from calibrate.report.requirement import requirement  # noqa: PLC0415 - as above
+    from calibrate.settings import parse_settings, parse_toml  # noqa: PLC0415 - as above
+    from calibrate.table import TableError, read_table  # noqa: PLC0415 - as above
+
+    settings = None
+    if task["config"].strip():
+        settings = parse_settings(parse_toml(task["config"], "config"), "config")
+    asked = (requirement(task["require"]),) if task.get("require", "").strip() else ()
+    layout = settings.file if settings else None
+    rows = sum(len(read_table(path, layout)) for path in paths)
+    if rows > MOST_ROWS:
+        raise TableError(f"expected at most {MOST_ROWS} rows in all; got {rows}")
+    models = [task["model"]] if task["model"] else None
+    found = calibrate(paths, settings, apply=task["apply"], models=models)
+    return products(found, "sun_sensor", "POST /v1/calibrations", Asked(asked))
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Calibrate what lies in a directory, and leave there what came of it."""
+    import resource  # noqa: PLC0415 - not on every system
+
+    directory = Path(arguments[0])
+    resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
+    seconds = int(LONGEST_S) + 5
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+    (directory / _SAID).write_text(json.dumps(_answer(directory)), "utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

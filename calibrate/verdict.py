@@ -1,0 +1,328 @@
+"""The verdict on a calibration, and what to do next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from algorithms.angles import separation_deg
+from algorithms.calibration.hull import Hull
+from algorithms.contract import Floats, UnusableDataError
+from calibrate.causes.held_out import Part, uncovered
+from calibrate.halves import Halves
+from calibrate.readings import Readings
+from calibrate.uncertainty import tangent_offsets
+
+Word = Literal["good", "model misfit", "poses missing", "conventions uncertain"]
+#: Ratio of the difference of two halves' fits to their stated uncertainties that is a misfit, if
+#: noise alone has a smaller chance than this to make it.
+_RATIO, _RATIO_CHANCE = 2.0, 1e-3
+#: Share of the residuals' variance that a pattern explains to be named, and its significance.
+_SHARE, _CHANCE = 0.05, 1e-4
+#: Error of samples fitted over that of samples left out, or their noise, that no sound fit has.
+_BEYOND = 2.0
+#: Named beside the others, and no misfit: a bench and a sensor may be worse at the edge.
+GROWING = "the angle off the boresight: the size of errors grows with it"
+#: Patterns that neighbouring poses share; others, as a drift, are in what neighbours differ by, and
+#: the noise told by them holds the pattern.
+_OF_PLACE = ("the direction", "the fraction", GROWING)
+_NEXT = 20
+#: Steps between poses from which a hole in the field is said.
+_GAP = 5.0
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """A pattern left in the residuals.
+
+    Attributes
+    ----------
+    name : str
+        What the residuals go with.
+    share : float
+        Of their variance that it explains; of the variance of their sizes' ranks for `GROWING`.
+    chance : float
+        That residuals without it would go with it as much.
+    """
+
+    name: str
+    share: float
+    chance: float
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a calibration is worth.
+
+    Attributes
+    ----------
+    word : {"good", "model misfit", "poses missing", "conventions uncertain"}
+    reason : str
+        In one or two sentences.
+    split_ratio : float
+        Difference of fits to two halves over their stated uncertainties added; NaN where not known.
+    patterns : tuple of Pattern
+        Left in the errors of samples left out, the largest first.
+    next_poses : ndarray, shape (20, 3)
+        Directions that would add most.
+    untested : tuple of str
+        Causes of a wrong calibration that the file cannot show, each with what would.
+    parts : tuple of Part
+        Of the samples left out, with how many errors lie within the intervals, the fewest first.
+    """
+
+    word: Word
+    reason: str
+    split_ratio: float
+    patterns: tuple[Pattern, ...]
+    next_poses: Floats
+    untested: tuple[str, ...] = ()
+    parts: tuple[Part, ...] = ()
+
+
+def judge(  # noqa: PLR0917 - the numbers it is made of
+    rms_deg: float,
+    residual_deg: float,
+    noise: float,
+    floor_deg: float,
+    split: Halves,
+    patterns: tuple[Pattern, ...],
+    next_poses: Floats,
+    gap: float,
+) -> Verdict:
+    """Return the verdict.
+
+    Parameters
+    ----------
+    rms_deg, residual_deg : float
+        Error of samples left out, and of those fitted, degrees.
+    noise : float
+        Of single samples, degrees.
+    floor_deg : float
+        Of the bench, degrees.
+    split : Halves
+        How far fits to halves are apart.
+    patterns : tuple of Pattern
+        In the errors.
+    next_poses : ndarray
+        To take where poses are missing.
+    gap : float
+        Largest distance of a direction of the field to a pose, in usual steps.
+    """
+    floor = np.hypot(noise if np.isfinite(noise) else 0.0, floor_deg)
+    apart = split.ratio > _RATIO and split.chance < _RATIO_CHANCE
+    smooth = [one for one in patterns if one.share > 0.25 and one.name != GROWING]
+    drifts = [one for one in smooth if not one.name.startswith(_OF_PLACE)]
+    if not residual_deg <= _BEYOND * max(rms_deg, floor):
+        word: Word = "model misfit"
+        reason = (
+            f"samples fitted err {residual_deg:.3g} deg, more than those left out, which err "
+            f"{rms_deg:.3g} deg: the fit does not answer its own samples"
+        )
+    elif rms_deg > 1.6 * residual_deg and rms_deg > 1.3 * floor:
+        word = "poses missing"
+        reason = (
+            f"samples left out err {rms_deg:.3g} deg, those fitted {residual_deg:.3g} deg: "
+            "there are too few poses for this model, or too far apart"
+        )
+    elif gap > _GAP:
+        word = "poses missing"
+        reason = (
+            f"parts of the field are {gap:.0f} steps from any pose: there the model is not tested "
+            f"(where it is, samples left out err {rms_deg:.3g} deg)"
+        )
+    elif apart or (smooth and residual_deg > 1.5 * floor):
+        word = "model misfit"
+        reason = (
+            f"fits to two halves differ {split.ratio:.2g} times as much as noise explains"
+            if apart
+            else f"residuals of {residual_deg:.3g} deg are more than the noise of {floor:.3g} deg"
+        ) + (f", and go with {smooth[0].name}" if smooth else "")
+    elif drifts:
+        word = "model misfit"
+        reason = (
+            f"{100 * drifts[0].share:.0f} % of the residuals' variance, which is "
+            f"{residual_deg:.3g} deg RMS, goes with {drifts[0].name}"
+        )
+    else:
+        word = "good"
+        reason = (
+            f"samples left out err {rms_deg:.3g} deg, those fitted {residual_deg:.3g} deg, "
+            f"noise is {floor:.3g} deg"
+        )
+    return Verdict(word, reason, split.ratio, patterns, next_poses)
+
+
+def with_uncertain_conventions(verdict: Verdict, found: str) -> Verdict:
+    """Return a verdict that is good only if the file's conventions are as stated after all.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        On the fit.
+    found : str
+        The convention that the file seems to follow instead, in a sentence.
+    """
+    reason = f"{found}: apply that or state it; as stated, {verdict.reason}"
+    return replace(verdict, word="conventions uncertain", reason=reason)
+
+
+def withheld(verdict: Verdict, doubt: str, parts: tuple[Part, ...]) -> Verdict:
+    """Return a verdict that is not good where rows are missing for no cause, or intervals fail.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        On the fit.
+    doubt : str
+        What speaks against it, as rows left out without a known cause, in a sentence; or empty.
+    parts : tuple of Part
+        Of the samples left out.
+    """
+    bad = uncovered(parts)
+    said = doubt or (
+        f"95 % intervals hold {100 * bad.coverage:.0f} % of the errors at {bad.name} "
+        f"({bad.samples} samples)"
+        if bad
+        else ""
+    )
+    known = replace(verdict, parts=parts)
+    if not said or verdict.word == "conventions uncertain":
+        return known
+    if verdict.word == "good":
+        return replace(known, word="model misfit", reason=f"{said}; {verdict.reason}")
+    return replace(known, reason=f"{verdict.reason}; {said}")
+
+
+def patterns_in(offsets: Floats, readings: Readings) -> tuple[Pattern, ...]:
+    """Return what errors (N, 3) of samples go with, the largest share first."""
+    known = np.asarray(np.isfinite(offsets).all(axis=1))
+    used = readings.only(known)
+    if len(used) < 40:
+        return ()
+    errors = tangent_offsets(offsets[known], used.sun)
+    designs: dict[str, Floats] = {}
+    if len(np.unique(used.run)) > 1:
+        designs["the run: an offset of its own in some"] = np.eye(len(readings.run_names))[used.run]
+    for name, word in (("time_s", "time"), ("temperature_K", "temperature")):
+        if name in used.context and np.ptp(used.context[name]) > 0:
+            designs[f"{word}: a drift"] = _powers(used.context[name], 1)
+    if (warmer := designs.get("temperature: a drift")) is not None:
+        designs["temperature and direction: a scale or turn"] = warmer * (
+            used.sun - used.sun.mean(axis=0)
+        )
+    designs["the order of rows: a drift"] = _powers(np.arange(len(used), dtype=np.float64), 1)
+    designs["the direction: a smooth pattern over the field"] = _surface(used.sun)
+    if used.features.shape[1] == 2:
+        phase = 2.0 * np.pi * used.features
+        if np.ptp(used.features) > 20.0:
+            designs["the fraction of a pixel"] = np.column_stack([np.sin(phase), np.cos(phase)])
+    found = [_pattern(name, design, errors) for name, design in designs.items()]
+    found.append(_growth(errors, used.sun))
+    named = [one for one in found if one and one.share > _SHARE and one.chance < _CHANCE]
+    return tuple(sorted(named, key=lambda one: -one.share))
+
+
+def next_poses(sun: Floats, count: int = _NEXT) -> tuple[Floats, float]:
+    """Return directions (count, 3) inside the field measured that lie farthest from any pose.
+
+    And the distance of the first, in usual steps between poses.
+    """
+    try:
+        hull = Hull.of_directions(sun, "poses")
+    except UnusableDataError:
+        return np.empty((0, 3)), 0.0
+    turns = np.arange(4000)
+    z = 1.0 - 2.0 * (turns + 0.5) / len(turns)
+    angle = np.pi * (1.0 + 5.0**0.5) * turns
+    grid = np.column_stack(
+        [np.sqrt(1 - z**2) * np.cos(angle), np.sqrt(1 - z**2) * np.sin(angle), z]
+    )
+    middle = sun.mean(axis=0)
+    reach = float(np.max(separation_deg(sun, np.broadcast_to(middle, sun.shape))))
+    if np.linalg.norm(middle) > 0.05 and reach < 80.0:  # a denser grid of a narrow field
+        middle = middle / np.linalg.norm(middle)
+        radius = np.radians(reach) * np.sqrt((turns + 0.5) / len(turns))
+        flat = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+        first = np.cross(middle, [0.0, 1.0, 0.0] if abs(middle[1]) < 0.9 else [1.0, 0.0, 0.0])
+        first /= np.linalg.norm(first)
+        grid = middle + flat[:, [0]] * first + flat[:, [1]] * np.cross(middle, first)
+        grid /= np.linalg.norm(grid, axis=1)[:, None]
+    inside = grid[hull.holds(grid)] if len(hull.facets) else grid
+    if not len(inside):
+        return np.empty((0, 3)), 0.0
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - SciPy, at the first use
+
+    # poses nearer to each other than a hundredth of the field are one, as repeats are
+    cell = max(2.0 * np.sin(np.radians(min(reach, 180.0)) / 2.0), 1e-6) / 50.0
+    poses = np.unique(np.round(sun / cell), axis=0) * cell
+    tree = cKDTree(poses)
+    step = float(np.median(np.asarray(tree.query(poses, k=2)[0])[:, 1]))
+    away = np.asarray(tree.query(inside)[0])
+    gap = float(away.max()) / max(step, 1e-9)
+    chosen = []
+    for _ in range(min(count, len(inside))):
+        at = int(np.argmax(away))
+        chosen.append(inside[at])
+        away = np.minimum(away, np.linalg.norm(inside - inside[at], axis=1))
+    return np.array(chosen), gap
+
+
+def _pattern(name: str, design: Floats, errors: Floats) -> Pattern | None:
+    from scipy.special import fdtrc  # noqa: PLC0415 - SciPy, at the first use
+
+    count = len(errors)
+    centred = errors - errors.mean(axis=0)
+    columns = np.column_stack([np.ones(count), design])
+    rank = int(np.linalg.matrix_rank(columns)) - 1
+    if rank < 1 or count <= rank + 2:
+        return None
+    left = centred - columns @ np.linalg.lstsq(columns, centred, rcond=1e-10)[0]
+    total, rest = float((centred**2).sum()), float((left**2).sum())
+    if not total > 0:
+        return None
+    share = 1.0 - rest / total
+    expected = rank / (count - 1)  # of errors that go with nothing
+    ratio = (total - rest) / rank / max(rest / (count - rank - 1), 1e-300)
+    axes = errors.shape[1]
+    chance = float(fdtrc(axes * rank, axes * (count - rank - 1), ratio))
+    return Pattern(name, max(share - expected, 0.0), chance)
+
+
+def _growth(errors: Floats, sun: Floats) -> Pattern | None:
+    """Say whether errors (N, 2) are larger away from the boresight."""
+    from scipy.stats import rankdata  # noqa: PLC0415 - SciPy, at the first use
+
+    off = np.arccos(np.clip(sun[:, 2], -1.0, 1.0))
+    rank = rankdata(np.linalg.norm(errors, axis=1))  # a few large errors decide nothing
+    if np.cov(off, rank)[0, 1] <= 0.0:
+        return None
+    return _pattern(GROWING, _powers(off, 2), rank[:, None])
+
+
+def _powers(column: Floats, degree: int) -> Floats:
+    scaled = (column - column.mean()) / max(float(np.ptp(column)), 1e-12)
+    return np.column_stack([scaled**power for power in range(1, degree + 1)])
+
+
+def _surface(sun: Floats) -> Floats:
+    x, y = sun[:, 0], sun[:, 1]
+    return np.column_stack([x**a * y**b for a in range(5) for b in range(5 - a) if a + b > 0])
+
+
+def as_text(verdict: Verdict) -> Mapping[str, object]:
+    """Return the verdict as plain data."""
+    return {
+        "verdict": verdict.word,
+        "reason": verdict.reason,
+        "split_half_ratio": None
+        if not np.isfinite(verdict.split_ratio)
+        else round(verdict.split_ratio, 3),
+        "patterns": [vars(one) for one in verdict.patterns],
+        "untested": list(verdict.untested),
+        "parts": [vars(one) for one in verdict.parts],
+        "next_poses": [[round(float(c), 4) for c in pose] for pose in verdict.next_poses],
+    }

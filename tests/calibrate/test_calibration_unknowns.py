@@ -1,0 +1,202 @@
+"""What a calibration leaves unknown, in its numbers, documents, code and certificate."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import bench
+import numpy as np
+import pytest
+
+from algorithms.calibration.documents import DIGEST
+from algorithms.calibration.saving import UnreadableCalibrationError
+from algorithms.contract import UnusableDataError
+from calibrate import documents, products
+from calibrate.calibration import Calibration, calibrate
+from calibrate.certificate.certificate import certificate
+from calibrate.documents import load, save, with_correction
+from calibrate.recalibration import Correction
+from calibrate.recalibration import Errors as CorrectionErrors
+from calibrate.report import pictures
+from calibrate.report.errors import Errors
+from calibrate.table import read_table
+
+VECTOR = ["sun_x", "sun_y", "sun_z"]
+FACES = ["xp", "xm", "yp", "ym", "zp", "zm"]
+
+
+def spots(path: Path, angles: np.ndarray, noise: float = 0.0, repeats: int = 1) -> Path:
+    """A file of a camera, each pose and its reading so many times."""
+    features = bench.spots(bench.sun_of(angles), 1)
+    features += np.random.default_rng(2).normal(0.0, noise, features.shape)
+    return bench.write(
+        path, bench.HEADER, *(np.repeat(part, repeats, axis=0) for part in (features, angles))
+    )
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return spots(tmp_path_factory.mktemp("nine") / "nine.csv", bench.grid(3, 30.0))
+
+
+@pytest.fixture(scope="module")
+def nine(path: Path) -> Calibration:
+    """A calibration by nine poses."""
+    return calibrate([path], models=("polynomial-2d",))
+
+
+@pytest.fixture(scope="module")
+def warm(tmp_path_factory: pytest.TempPathFactory) -> Calibration:
+    """A calibration of a box of cells at several temperatures."""
+    sun = bench.sphere(300, 2)
+    kelvin = np.random.default_rng(1).uniform(270.0, 320.0, 300)
+    signals = bench.faces(sun, 3) * (1.0 + 0.002 * (kelvin - 295.0))[:, None]
+    file = tmp_path_factory.mktemp("warm") / "warm.csv"
+    bench.write(file, [*FACES, *VECTOR, "temperature_K"], signals, sun, kelvin)
+    return calibrate([file], models=("temperature + basic",))
+
+
+def names_in(text: str) -> set[str]:
+    return {one.text or "" for one in ET.fromstring(text).iter("{https://ptb.de/dcc}content")}
+
+
+def test_a_certificate_of_nine_poses_has_no_noise_no_rings_and_no_parameters(
+    nine: Calibration, warm: Calibration
+) -> None:
+    left = {"RMS noise of single samples", "Errors by angle from the boresight"}
+    assert np.isnan(nine.noise_deg)
+    assert nine.intervals is None
+    said = names_in(certificate(nine))
+    assert (left | {"Parameters of the model"}) & said == set()
+    assert "RMS error of samples left out of the fit" in said
+    assert left <= names_in(certificate(warm))
+
+
+def test_a_pose_measured_twice_alike_is_one_row_that_stands_twice(tmp_path: Path) -> None:
+    file = spots(tmp_path / "twice.csv", bench.grid(5, 30.0), repeats=2)
+    found = calibrate([file], models=("homography",))
+    assert len(found.readings) == 25
+    assert [one.reason for one in found.excluded] == ["duplicate of another row"] * 25
+
+
+def test_readings_too_noisy_for_a_refit_leave_the_fits_spread_unknown(tmp_path: Path) -> None:
+    angles = np.random.default_rng(3).uniform(-40.0, 40.0, (100, 2))
+    found = calibrate([spots(tmp_path / "noisy.csv", angles, noise=70.0)], models=("linear",))
+    assert found.noise_deg > 5.0
+    assert np.isnan(found.spread_deg).all()
+    assert np.isnan(found.verdict.split_ratio)
+
+
+def test_a_drawing_that_errs_more_than_the_field_is_wide_is_refused(tmp_path: Path) -> None:
+    angles = bench.grid(5, 0.5)
+    features = bench.spots(bench.sun_of(angles), 1)
+    shuffled = np.random.default_rng(1).permutation(features)
+    file = bench.write(tmp_path / "shuffled.csv", bench.HEADER, shuffled, angles)
+    said = r"errs [\d.]+ deg where directions spread over 0\.\d+ deg: readings and directions do"
+    with pytest.raises(UnusableDataError, match=said):
+        calibrate([file], models=("spm",))
+
+
+def test_azimuths_named_as_rotations_are_found_among_rows_that_seem_behind(tmp_path: Path) -> None:
+    sun = bench.sun_of(bench.grid(9, 50.0))
+    azimuth = np.degrees(np.column_stack([np.arctan2(sun[:, 1], sun[:, 0]), np.arcsin(sun[:, 2])]))
+    file = bench.write(tmp_path / "azimuth.csv", bench.HEADER, bench.spots(sun, 1), azimuth)
+    found = calibrate([file], models=("homography",), apply=True)
+    assert [one.change for one in found.applied] == [{"direction": {"form": "azimuth-elevation"}}]
+    assert len(found.readings) == 81
+    assert found.chosen.rms_deg < 0.02
+
+
+def test_code_is_written_of_a_model_that_reads_a_temperature(
+    warm: Calibration, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(products, "report", lambda *_: "")
+    made = products.products(warm, "box")
+    ends = (".json", ".py", ".h", ".c", "_selftest.c", "_example.c", "_report.html", ".sha256")
+    assert set(made) == {f"box{end}" for end in ends}
+    low, high = json.loads(made["box.json"])["fit"]["temperature_K"]
+    assert 270.0 <= low < high <= 320.0
+    said = re.search(r"const real low = R\((.*)\);", made["box.c"])
+    assert said
+    assert float(said[1]) == pytest.approx(low, abs=1e-6)
+
+
+def test_no_code_says_why(warm: Calibration, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(products, "report", lambda *_: "")
+    about = replace(warm.model.about, context=("nadir",))
+    made = products.products(replace(warm, model=replace(warm.model, about=about)), "box")
+    assert set(made) == {"box.json", "box_no_code.txt", "box_report.html", "box.sha256"}
+    assert made["box_no_code.txt"] == "No code was written: code for flight knows no nadir.\n"
+
+
+def test_runs_are_drawn_where_there_are_some_and_poses_without_next_ones(
+    nine: Calibration, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for other in (
+        "_map",
+        "_against_angle",
+        "_histogram",
+        "_uncertainty",
+    ):  # each takes a tenth of a second
+        monkeypatch.setattr(pictures, other, lambda *_: "")
+    readings = replace(nine.readings, run=np.arange(9) % 3, run_names=("first", "second", "third"))
+    verdict = replace(nine.verdict, next_poses=np.empty((0, 3)))
+    found = replace(nine, readings=readings, verdict=verdict)
+    drawn = pictures.pictures(found, Errors.of(found))
+    assert drawn["Mean error of each run"].startswith("<svg")
+    assert drawn["Poses, their hull, and the next to take"].startswith("<svg")
+
+
+def test_a_loaded_calibration_answers_a_table_of_its_columns(
+    nine: Calibration, path: Path, tmp_path: Path
+) -> None:
+    save(nine, tmp_path / "nine.json")
+    answered = load(tmp_path / "nine.json").predict_table(read_table(path))
+    expected = nine.model.predict(nine.readings.features, {})
+    assert np.array_equal(answered, expected, equal_nan=True)
+
+
+def test_a_correction_is_saved_on_top_of_those_before(nine: Calibration, tmp_path: Path) -> None:
+    file = tmp_path / "nine.json"
+    save(nine, file)
+    first = load(file).document[DIGEST]
+    turns = [bench.turn("x", 1.0), bench.turn("z", 2.0)]
+    for offset, turn in zip((1.0, 0.25), turns, strict=True):
+        rotation = tuple(tuple(float(c) for c in row) for row in turn)
+        errors = CorrectionErrors(1.0, 1.0, 1.0, 1.0)
+        found = Correction(
+            ("offset", "scale"), (2.0, 2.0), (offset, 0.0), rotation, errors, errors, (), 12
+        )
+        held = with_correction(load(file), found, [tmp_path / "few.csv"], "sunatlas calibrate")
+        file.write_text(json.dumps(held), encoding="utf-8")
+    loaded = load(file)
+    # what was read, f, is now 2 f + 1, and later 2 (2 f + 1) + 0.25
+    assert loaded.offset.tolist() == [2.25, 0.0]
+    assert loaded.gain.tolist() == [4.0, 4.0]
+    assert loaded.rotation == pytest.approx(turns[1] @ turns[0])
+    assert loaded.document["correction"]["files"] == ["few.csv"]
+    assert loaded.document["correction"]["onto"] != first
+    features = np.array([[520.0, 500.0]])
+    plain = nine.model.predict(features, {})
+    now = 2.0 * (2.0 * features + [1.0, 0.0]) + [0.25, 0.0]
+    assert loaded.predict(now) == pytest.approx(plain @ (turns[1] @ turns[0]).T)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"schema": "another"}, "expected a document of sun-sensor-atlas/sensor-calibration"),
+        ({"schema_version": 99}, "expected version 1 or 2; got 99"),
+    ],
+)
+def test_a_document_of_another_kind_is_refused(
+    change: dict[str, object], said: str, nine: Calibration, tmp_path: Path
+) -> None:
+    file = tmp_path / "nine.json"
+    file.write_text(json.dumps(documents.document(nine) | change), encoding="utf-8")
+    with pytest.raises(UnreadableCalibrationError, match=rf"^nine\.json: {said}"):
+        load(file)

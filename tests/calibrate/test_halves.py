@@ -1,0 +1,39 @@
+"""Fits to two halves of the samples: chance is no misfit, and a wrong model is one."""
+
+from __future__ import annotations
+
+import mistakes
+import numpy as np
+import pytest
+
+from calibrate.calibration import calibrate
+from calibrate.halves import _traces
+
+
+@pytest.mark.parametrize("seed", [2, *(pytest.param(n, marks=pytest.mark.slow) for n in (0, 3, 4))])
+def test_a_model_that_fits_is_good_whatever_the_noise(seed, tmp_path):
+    """On a grid of odd width every other pose has all four corners: halves were not alike."""
+    made = mistakes.untouched(tmp_path / "bench.csv", "electrodes", seed)
+    verdict = calibrate(made.paths, models=("polynomial-2d",)).verdict
+    assert verdict.word == "good"
+    assert 0.7 < verdict.split_ratio < 2.0  # what is said to be a misfit
+
+
+@pytest.mark.parametrize("seed", [0, pytest.param(3, marks=pytest.mark.slow)])
+def test_a_model_that_does_not_follow_the_sensor_is_a_misfit(seed, tmp_path):
+    made = mistakes.untouched(tmp_path / "bench.csv", "electrodes", seed)
+    verdict = calibrate(made.paths, models=("qpd",)).verdict
+    assert verdict.word == "model misfit"
+    assert verdict.split_ratio > 2.0
+
+
+@pytest.mark.parametrize("scales", [[1.0] * 12, [3.0, 1.0, 1.0, 0.1, 0.1, 0.1]])
+def test_traces_of_few_refits_are_those_of_the_covariance(scales):
+    variance = np.square(scales)
+    drawn = np.random.default_rng(1)
+    found = []
+    for _ in range(2000):
+        parts = drawn.normal(0.0, scales, (2, 3, len(scales))).reshape(2, 3, -1, 3)
+        found.append(_traces(*(part - part.mean(axis=0) for part in parts)))
+    expected = ((2 * variance.sum()) ** 2, 4 * (variance**2).sum())
+    assert np.mean(found, axis=0) == pytest.approx(expected, rel=0.15)

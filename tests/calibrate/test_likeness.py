@@ -1,0 +1,67 @@
+"""A sensor behaves like the standard one on which models rank as on its own data."""
+
+from __future__ import annotations
+
+import json
+
+import bench
+import pytest
+import typer
+
+from api.cli.commands.benchmark import app
+from api.cli.wrong_call import WrongCallError
+from calibrate.likeness import alike
+
+MINE = {"a": 0.1, "b": 0.2, "c": 1.0, "d": 4.0, "e": 5.0}
+
+
+def scored(dataset, extractor, **errors):
+    return {
+        (dataset, extractor, model): {
+            "status": "ok" if rms else "unfit", "own_deg": rms, "detector": "D", "mask": "M",
+        }
+        for model, rms in errors.items()
+    }  # fmt: skip
+
+
+def test_ratios_between_models_decide_and_not_their_size():
+    nominal = {
+        **scored("near", "x", a=1.0, b=2.0, c=10.0, d=40.0, e=50.0, f=1.0),
+        **scored("near", "y", a=1.0, b=1.0, c=1.0, d=1.0, e=1.0),
+        **scored("flat", "x", a=0.1, b=0.1, c=0.1, d=0.1),
+        **scored("few", "x", a=0.1, b=0.2, c=None),
+    }
+    found = alike(MINE, nominal)
+    assert [(one.dataset, one.extractor) for one in found] == [("near", "x"), ("flat", "x")]
+    assert found[0].factor == pytest.approx(1.0)
+    assert set(found[0].errors_deg) == set("abcde")
+
+
+def test_few_models_are_like_nothing():
+    nominal = scored("near", "x", a=1.0, b=2.0, c=10.0)
+    assert alike({name: MINE[name] for name in "abc"}, nominal) == []
+
+
+@pytest.mark.parametrize(
+    "call", [["--config", "a.toml"], ["--data", "a.csv", "--dataset", "ccd-slit"]]
+)
+def test_options_that_would_count_for_nothing_are_refused(call):
+    with pytest.raises(WrongCallError, match="--data"):
+        typer.main.get_command(app).main(call, standalone_mode=False)
+
+
+def test_own_data_are_scored_beside_a_standard_set(tmp_path, capsys):
+    angles = bench.grid(9)
+    path = bench.write(
+        tmp_path / "a.csv", bench.HEADER, bench.spots(bench.sun_of(angles), 1), angles
+    )
+    models = [f"--model={name}" for name in ("homography", "pinhole", "polynomial-2d", "spm")]
+    typer.main.get_command(app).main(
+        ["--data", str(path), *models, "--format", "json"], standalone_mode=False
+    )
+    said = capsys.readouterr()
+    rows = json.loads(said.out)
+    rows = rows if isinstance(rows, list) else next(v for v in rows.values() if isinstance(v, list))
+    assert {row["model"] for row in rows} == {"homography", "pinhole", "polynomial-2d", "spm"}
+    assert all(row["dataset"] and row["dataset_own_deg"] for row in rows)
+    assert "within a factor of" in said.err

@@ -1,0 +1,127 @@
+"""What a few poses say of a sensor whose answers are a formula: a turn, an offset, or nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import bench
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from calibrate.recalibration import Correction, Errors, recalibrate
+from calibrate.roles import guess
+from calibrate.table import read_table
+
+Array = NDArray[np.float64]
+RNG = np.random.default_rng(5)
+SUN = bench.sun_of(RNG.uniform(-40.0, 40.0, (12, 2)))
+SPOTS = bench.CENTRE + bench.FOCAL * SUN[:, :2] / SUN[:, 2:] + RNG.normal(0.0, 0.05, (12, 2))
+FACES = ["xp", "xm", "yp", "ym", "zp", "zm"]
+VECTOR = ["sun_x", "sun_y", "sun_z"]
+NOT_TURNED = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+class Pinhole:
+    """A camera that answers spots of which x is at most so much below y."""
+
+    def __init__(self, path: Path, below: float = np.inf) -> None:
+        self.settings = guess(read_table(path))
+        self.below = below
+
+    def predict(self, features: Array, _: object = None) -> Array:
+        tangents = (features - bench.CENTRE) / bench.FOCAL
+        sun = np.column_stack([tangents, np.ones(len(tangents))])
+        sun /= np.linalg.norm(sun, axis=1)[:, None]
+        sun[features[:, 1] - features[:, 0] > self.below] = np.nan
+        return sun
+
+
+class Box:
+    """Six faces whose signals are cosines."""
+
+    def __init__(self, path: Path) -> None:
+        self.settings = guess(read_table(path))
+
+    def predict(self, signals: Array, _: object = None) -> Array:
+        sun = signals[:, ::2] - signals[:, 1::2]
+        return np.asarray(sun / np.linalg.norm(sun, axis=1)[:, None])
+
+
+def spots(path: Path, features: Array, sun: Array = SUN) -> Path:
+    return bench.write(path, ["x_px", "y_px", *VECTOR], features, sun)
+
+
+def test_moved_readings_are_an_offset_that_a_wrong_pose_does_not_move(tmp_path: Path) -> None:
+    sun = SUN.copy()
+    sun[3] = [0.0, 0.0, 1.0]
+    path = spots(tmp_path / "few.csv", SPOTS + np.array([3.0, -4.0]), sun)
+    found = recalibrate([path], Pinhole(path))
+    assert found.kinds == ("offset",)
+    assert found.offset == pytest.approx((3.0, -4.0), abs=0.1)
+    assert found.rotation == NOT_TURNED
+    assert found.gain == (1.0, 1.0)
+    assert found.after.median_deg < 0.03
+    assert found.before.median_deg > 0.5
+    assert found.after.largest_deg > 10.0  # the wrong pose is not hidden
+
+
+def test_turned_faces_are_a_turn(tmp_path: Path) -> None:
+    sun = bench.sphere(20, 1)
+    turn = bench.turn("x", 2.0)
+    axes = np.repeat(np.eye(3), 2, axis=0) * np.tile([1.0, -1.0], 3)[:, None]
+    signals = np.maximum(sun @ axes.T, 0.0) + np.random.default_rng(2).normal(0.0, 1e-4, (20, 6))
+    path = bench.write(tmp_path / "few.csv", [*FACES, *VECTOR], signals, sun @ turn.T)
+    found = recalibrate([path], Box(path))
+    assert found.kinds == ("boresight",)
+    assert found.offset == (0.0,) * 6
+    assert found.gain == (1.0,) * 6
+    assert np.asarray(found.rotation) == pytest.approx(turn, abs=1e-3)
+    assert found.changes[0].startswith("a turn by 2 +- ")
+
+
+def test_poses_at_the_edge_of_the_old_field_settle_no_offset(tmp_path: Path) -> None:
+    edge = np.repeat(SPOTS[:, [0]].round(3), 2, axis=1)
+    path = spots(tmp_path / "few.csv", edge + np.array([3.0, 3.0]))
+    found = recalibrate([path], Pinhole(path, below=0.0))
+    assert found.offset == (0.0, 0.0)
+    assert found.samples == 12
+
+
+def correction(kinds: tuple[Any, ...], changes: tuple[str, ...], stated: float) -> Correction:
+    before, after = Errors(0.8, 0.2, 3.0, 0.5), Errors(0.1, 0.08, 0.2, 0.09)
+    return Correction(
+        kinds, (1.0, 1.0), (0.0, 0.0), NOT_TURNED, before, after if kinds else before,
+        changes, 12, 0, stated,
+    )  # fmt: skip
+
+
+def test_a_correction_is_told_with_rms_median_and_largest_before_and_after() -> None:
+    found = correction(("boresight",), ("a turn by 0.71 +- 0.02 deg",), 0.1)
+    assert found.explained
+    assert found.sentence() == (
+        "the old calibration errs 0.8 deg RMS (median 0.2, largest 3) on 12 poses; a turn by "
+        "0.71 +- 0.02 deg: that leaves 0.1 deg RMS (median 0.08, largest 0.2) on poses left out"
+    )
+
+
+def test_an_error_that_nothing_explains_is_said_beside_what_was_stated() -> None:
+    found = correction((), (), 0.1)
+    assert not found.explained
+    assert "no gain, offset, scale or turn explains that better: it stays" in found.sentence()
+    assert "It stated 0.1 deg" in found.sentence()
+    assert correction((), (), 0.7).explained
+
+
+@pytest.mark.parametrize("moved", [60.0, 200.0])
+def test_an_offset_far_beyond_the_spread_of_few_poses_is_found_whole(
+    tmp_path: Path, moved: float
+) -> None:
+    sun = bench.sun_of(RNG.uniform(-1.0, 1.0, (12, 2)))
+    seen = bench.CENTRE + bench.FOCAL * sun[:, :2] / sun[:, 2:] + RNG.normal(0.0, 0.05, (12, 2))
+    path = spots(tmp_path / "few.csv", seen + np.array([moved, 0.0]), sun)
+    found = recalibrate([path], Pinhole(path))
+    assert found.kinds == ("offset",)
+    assert found.offset == pytest.approx([moved, 0.0], abs=0.2)
+    assert found.after.rms_deg < 0.05
