@@ -7,7 +7,7 @@ import numpy as np
 from algorithms.angles import separation_deg
 from algorithms.contract import FeatureKind, Model
 from calibrate.causes.light import LESS_LIGHT, level_of_channels
-from calibrate.conventions.channels import level_of
+from calibrate.conventions.channels import dark_of
 from calibrate.readings import Readings, features_of
 from calibrate.settings import Settings
 
@@ -25,7 +25,7 @@ def moved_by_less_light(model: Model, readings: Readings, settings: Settings) ->
         return float("nan")
     used = readings.thinned(_MOST)
     signals = used.kind is FeatureKind.SIGNALS
-    dark = level_of_channels(used, falls=False) if signals else level_of(used, settings)
+    dark = level_of_channels(used, falls=False) if signals else dark_of(used, settings)
     if not np.isfinite(dark.error):
         return float("nan")
     as_is = model.predict(used.features, used.context)

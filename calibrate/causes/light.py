@@ -127,29 +127,40 @@ def level_of_sum(readings: Readings) -> Dark:
 
 
 def level_of_products(readings: Readings) -> Dark:
-    """Return the level at which products of opposite quadrants (N, 4) are equal.
-
-    Where the lamp's light differs from row to row, the part of it that goes with the light is told
-    apart and is none of the level.
-    """
-    q = readings.raw
-    slope = q[:, 0] + q[:, 2] - q[:, 1] - q[:, 3]
-    product = q[:, 0] * q[:, 2] - q[:, 1] * q[:, 3]
+    """Return the level at which products of opposite quadrants (N, 4) are equal."""
+    slope, product = _of_products(readings.raw)
     level, error = _by_blocks(slope[:, None], product, readings.sun)
-    noise = reading_noise(q, readings.sun)
-    expected = np.sqrt((((q - level) * noise[[2, 3, 0, 1]]) ** 2).sum(axis=1))
+    noise = reading_noise(readings.raw, readings.sun)[[2, 3, 0, 1]]
+    expected = np.sqrt((((readings.raw - level) * noise) ** 2).sum(axis=1))
     left = np.abs(product - level * slope) / np.maximum(expected, 1e-300)
-    light = (q.sum(axis=1) - 4.0 * level) / np.maximum(readings.sun[:, 2], _STEEPEST)
-    change = light / light.mean() - 1.0
-    changes = bool(np.std(change) > _CHANGES * float(np.linalg.norm(noise)) / abs(light.mean()))
-    if changes:
-        # the level at the mean light and what goes with the light, less which nothing is left
-        level, error = _by_blocks(
-            np.column_stack([slope * -change, slope * (1.0 + change)]), product, readings.sun
-        )
     if np.median(left) / 0.6745 > _FOLLOWED:  # an opening that is no rectangle
         error = np.inf
-    return Dark(np.full(4, level), error, "the products of opposite quadrants", changes)
+    return Dark(np.full(4, level), error, "the products of opposite quadrants")
+
+
+def without_stray(dark: Dark, readings: Readings) -> Dark:
+    """Return a level of quadrants (N, 4) without what goes with the light.
+
+    It is that of `level_of_products` where light hardly differs from row to row: it tells nothing.
+    """
+    slope, product = _of_products(readings.raw)
+    level = float(dark.level[0])
+    light = (readings.raw - level).sum(axis=1) / np.maximum(readings.sun[:, 2], _STEEPEST)
+    change = light / light.mean() - 1.0
+    noise = float(np.linalg.norm(reading_noise(readings.raw, readings.sun)))
+    if not (np.isfinite(dark.error) and np.std(change) > _CHANGES * noise / abs(light.mean())):
+        return dark
+    # a level, and what there is at the mean light and in proportion to it
+    at_none, error = _by_blocks(
+        np.column_stack([slope * -change, slope * (1.0 + change)]), product, readings.sun
+    )
+    return Dark(np.full(4, at_none), error, dark.by, told_apart=True)
+
+
+def _of_products(q: Floats) -> tuple[Floats, Floats]:
+    """Return by what a level changes the difference of products of opposite ones, and that (N,)."""
+    slope = q[:, 0] + q[:, 2] - q[:, 1] - q[:, 3]
+    return slope, q[:, 0] * q[:, 2] - q[:, 1] * q[:, 3]
 
 
 def level_of_channels(readings: Readings, falls: bool) -> Dark:

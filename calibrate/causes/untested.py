@@ -8,7 +8,7 @@ from algorithms.contract import FeatureKind
 from calibrate.causes.kinks import largest_unnoticed
 from calibrate.causes.laws import UNTESTED, scale_of_angles, settles_scale
 from calibrate.causes.light import Dark, changes_answers, largest_stray, level_of_channels
-from calibrate.conventions.channels import level_of
+from calibrate.conventions.channels import dark_of
 from calibrate.readings import Readings
 from calibrate.robust import answer_noise_deg
 from calibrate.settings import Settings
@@ -60,7 +60,7 @@ def untested_in(
         found.append(_DARK.format("the file has balances, not the signals that they are made of"))
     elif kind in ("quadrants", "electrodes", "channels"):
         signals = used.kind is FeatureKind.SIGNALS
-        dark = level_of_channels(used, falls=False) if signals else level_of(used, settings)
+        dark = level_of_channels(used, falls=False) if signals else dark_of(used, settings)
         unsure = Dark(np.full(len(dark.level), dark.error), dark.error, dark.by)
         if not np.isfinite(dark.error) or changes_answers(unsure, used, noise):
             found.append(_DARK.format("the signals follow no law by which they tell it"))

@@ -17,6 +17,7 @@ from calibrate.causes.light import (
     level_of_channels,
     level_of_products,
     level_of_sum,
+    without_stray,
 )
 from calibrate.conventions.finding import MUCH_BETTER, Finding
 from calibrate.face_normals import face_normals
@@ -47,7 +48,7 @@ def of_light(readings: Readings, settings: Settings, noise_deg: float) -> Iterat
         falls = _falling_faces(readings)
         dark = level_of_channels(readings, falls)
     elif settings.readings.kind in ("quadrants", "electrodes"):
-        falls, dark = falling(readings), level_of(readings, settings)
+        falls, dark = falling(readings), dark_of(readings, settings)
     else:
         return
     unsure = replace(dark, level=np.full(len(dark.level), dark.error))
@@ -77,13 +78,24 @@ def of_light(readings: Readings, settings: Settings, noise_deg: float) -> Iterat
         )  # fmt: skip
 
 
+def dark_of(readings: Readings, settings: Settings) -> Dark:
+    """Return the level of quadrants or electrodes that is there without light, too."""
+    if settings.readings.kind != "quadrants":
+        return level_of_sum(readings)
+    return _agreed(level_of_sum(readings), without_stray(level_of_products(readings), readings))
+
+
 def level_of(readings: Readings, settings: Settings) -> Dark:
-    """Return the level without light of quadrants or electrodes, by the law that tells it best."""
+    """Return the level that all readings of quadrants or electrodes have, stray light in it."""
     found = level_of_sum(readings)
     if settings.readings.kind != "quadrants":
         return found
-    other = level_of_products(readings)
-    best, worse = sorted((found, other), key=lambda one: one.error)
+    return _agreed(found, level_of_products(readings))
+
+
+def _agreed(one: Dark, other: Dark) -> Dark:
+    """Return what of two levels is known best, as uncertain as the other contradicts it."""
+    best, worse = sorted((one, other), key=lambda each: each.error)
     apart = float(np.abs(best.level - worse.level).max())
     if apart > CERTAIN * float(np.hypot(best.error, worse.error)):
         return replace(best, error=apart)

@@ -16,7 +16,7 @@ from calibrate.causes.bad_cells import DUPLICATE, without_bad_cells
 from calibrate.causes.held_out import parts_of, uncovered
 from calibrate.causes.kinks import largest_unnoticed
 from calibrate.causes.lag import fraction_late
-from calibrate.causes.light import level_of_products, level_of_sum
+from calibrate.causes.light import level_of_products, level_of_sum, without_stray
 from calibrate.causes.removed import unexplained
 from calibrate.causes.untested import untested_in
 from calibrate.conventions.findings import findings
@@ -97,7 +97,8 @@ def test_stray_light_is_no_level_where_the_lamp_fades():
     lamp = np.linspace(1.0, 0.6, len(LIGHT))[:, None]
     for dark in (0.0, 0.3):
         made = table(QUADRANTS, LIGHT * lamp + dark, NARROW)
-        found = level_of_products(readings_of(made, guess(made)))
+        readings = readings_of(made, guess(made))
+        found = without_stray(level_of_products(readings), readings)
         assert found.told_apart
         assert np.abs(found.level - dark).max() < 4.0 * found.error
         assert found.error < 0.01  # half of the bench's stray light
