@@ -42,6 +42,7 @@ WIDEST_COLUMNS = (
     *("rank", "dataset", "condition", "extractor", "model", "widest_field_deg", "half_fov_deg"),
     *("own_deg", "availability", "false_sun"),
 )
+_OF_CHECK = frozenset({"--check", "--stored", "--kernels", "--workers", "--form", "--safe"})
 DIFFERENCES = ("file", "cell", "committed", "measured", "kernels")
 
 Row = Mapping[str, Any]
@@ -140,9 +141,10 @@ def leaderboard(
         _require_no_options(context)
         return
     listing = each or dataset or condition or field is not None or max_error is not None
-    if overview and (listing or check):
-        raise WrongCallError("--overview counts over data sets: it neither lists nor checks them")
-    if asked and (listing or check):
+    _refuse_beside_check(_given(context), check=check)
+    if overview and listing:
+        raise WrongCallError("--overview counts over data sets: it does not list them")
+    if asked and listing:
         raise WrongCallError("--detector and --mask narrow architectures and --overview alone")
     if check:
         _check(workers, form, (kernels or Kernels.BOTH).names, stored_only=stored)
@@ -158,14 +160,30 @@ def leaderboard(
         _show(dataset or [], condition or [], field, max_error, form)
 
 
-def _require_no_options(context: typer.Context) -> None:
-    """Refuse options before a command, which would be passed over in silence."""
-    given = [
+def _given(context: typer.Context) -> list[str]:
+    """Return the options that the call has."""
+    return [
         f"--{name.replace('_', '-')}"
         for name in context.params
         if (source := context.get_parameter_source(name)) and source.name == "COMMANDLINE"
     ]
-    if given:
+
+
+def _refuse_beside_check(given: list[str], *, check: bool) -> None:
+    """Refuse options that the check, or anything else, would pass over in silence."""
+    if not check and "--workers" in given:
+        raise WrongCallError("--workers goes with --check: nothing else here is measured")
+    narrowing = [name for name in given if name not in _OF_CHECK]
+    if check and narrowing:
+        raise WrongCallError(
+            f"--check takes all that is published: leave out {', '.join(narrowing)}; "
+            "`sunatlas verify` measures a part"
+        )
+
+
+def _require_no_options(context: typer.Context) -> None:
+    """Refuse options before a command, which would be passed over in silence."""
+    if given := _given(context):
         raise WrongCallError(
             f"{', '.join(given)} before `{context.invoked_subcommand}`: options of a command "
             "stand behind it"
