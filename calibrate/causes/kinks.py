@@ -113,12 +113,10 @@ def _bend(readings: Readings, angle: Floats) -> _Bend:
     tangents = readings.sun[:, :2] / readings.sun[:, 2:]
     along = [abs(float(np.corrcoef(angle, tangents[:, at])[0, 1])) for at in (0, 1)]
     tangent = tangents[:, int(np.argmax(along))]
-    # what images tangents is smoother over them than over angles
-    forms = [(form, _smooth(design, form)) for form in (angle, tangent)]
-    used, inside = min(forms, key=lambda one: _share_left(design, *one))
-    left = _rest(design[inside], used[inside])
-    # of the smooth angle: errors of the stated one would go with themselves
-    hinge_left = _rest(design[inside], np.maximum(used[inside] - left, 0.0))
+    # what images tangents is smoother over them than over angles; without its kink
+    left, hinge_left, inside = min(
+        (_parted(design, form) for form in (angle, tangent)), key=_share_left
+    )
     other = tangents[inside, int(np.argmin(along))]
     block = np.argsort(np.argsort(other)) * _BLOCKS // len(other)
     whole = _ratio(hinge_left, left)
@@ -134,6 +132,19 @@ def _bend(readings: Readings, angle: Floats) -> _Bend:
     )
 
 
+def _parted(design: Floats, column: Floats) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    """Return what a smooth function leaves of a column and of its hinge, and of which values (N,).
+
+    The first two in standard deviations of the column.
+    """
+    inside = _smooth(design, column)
+    left = _rest(design[inside], column[inside])
+    # of the smooth column: errors of the stated one would go with themselves
+    hinge_left = _rest(design[inside], np.maximum(column[inside] - left, 0.0))
+    spread = float(np.std(column[inside]))
+    return left / spread, hinge_left / spread, inside
+
+
 def _smooth(design: Floats, column: Floats) -> NDArray[np.bool_]:
     """Return which values (N,) a smooth function follows: a wrong pose is off it, and no kink."""
     kept = np.ones(len(column), dtype=np.bool_)
@@ -147,8 +158,9 @@ def _smooth(design: Floats, column: Floats) -> NDArray[np.bool_]:
     return kept
 
 
-def _share_left(design: Floats, column: Floats, kept: NDArray[np.bool_]) -> float:
-    return float(np.var(_rest(design[kept], column[kept])) / np.var(column[kept]))
+def _share_left(parted: tuple[Floats, Floats, NDArray[np.bool_]]) -> float:
+    left, hinge_left, _ = parted
+    return float(np.var(left - _ratio(hinge_left, left) * hinge_left))
 
 
 def _rest(design: Floats, column: Floats) -> Floats:
