@@ -19,21 +19,18 @@ from benchmark.processes import end_if_requested
 
 
 class ProgressCallback(Protocol):
-    """Called with cells done, cells in all, what was just finished, and the share of the work done.
+    """Called with cells done, cells in all, and what was just finished."""
 
-    The share is of the time that all takes, as far as that is known; else cells count alike.
-    """
-
-    def __call__(self, done: int, total: int, what: str, share: float | None = None, /) -> None:
+    def __call__(self, done: int, total: int, what: str, /) -> None:
         """Take in how far something is."""
         ...
 
 
-def silent(done: int, total: int, what: str, share: float | None = None) -> None:
+def silent(done: int, total: int, what: str) -> None:
     """Show nothing."""
 
 
-def time_left(elapsed_s: float, done: int, total: int, share: float | None = None) -> str:
+def time_left(elapsed_s: float, done: int, total: int) -> str:
     """Return what time is left in words, "" where that is not known yet.
 
     Parameters
@@ -42,14 +39,10 @@ def time_left(elapsed_s: float, done: int, total: int, share: float | None = Non
         Seconds since the begin.
     done, total
         Cells, or other parts.
-    share
-        Of the work that is done; `done / total` by default.
     """
-    if share is None:
-        share = done / total if total else 0.0
-    if not 0.0 < share < 1.0:
+    if not 0 < done < total:
         return ""
-    left = elapsed_s * (1.0 - share) / share
+    left = elapsed_s * (total - done) / done
     return f"{left / 60:.0f} min" if left >= 90.0 else f"{left:.0f} s"
 
 
@@ -71,8 +64,8 @@ def terminal_progress(doing: str = "measuring") -> Iterator[ProgressCallback]:
     with Progress(*columns, console=Console(stderr=True)) as bar:
         task = bar.add_task("", total=None, left="")
 
-        def report(done: int, total: int, what: str, share: float | None = None) -> None:
-            left = time_left(bar.tasks[task].elapsed or 0.0, done, total, share)
+        def report(done: int, total: int, what: str) -> None:
+            left = time_left(bar.tasks[task].elapsed or 0.0, done, total)
             said = f"about {left} left" if left else ""
             bar.update(task, completed=done, total=total, description=what, left=said)
 
@@ -97,9 +90,9 @@ def console_progress(doing: str, *, quiet: bool = False) -> Iterator[ProgressCal
         shown = nullcontext(lines(doing, lambda line: print(line, file=sys.stderr, flush=True)))  # noqa: T201
     with shown as show:
 
-        def report(done: int, total: int, what: str, share: float | None = None) -> None:
+        def report(done: int, total: int, what: str) -> None:
             end_if_requested()
-            show(done, total, what, share)
+            show(done, total, what)
 
         yield report
 
@@ -126,13 +119,13 @@ def lines(
     """
     start = last = clock()
 
-    def report(done: int, total: int, what: str, share: float | None = None) -> None:
+    def report(done: int, total: int, what: str) -> None:
         nonlocal last
         now = clock()
         if now - last < pause_s or not 0 < done < total:
             return
         last = now
-        left = time_left(now - start, done, total, share)
+        left = time_left(now - start, done, total)
         said = f", about {left} left" if left else ""
         say(f"{doing}: {done} of {total}{said}{f' ({what})' if what else ''}")
 

@@ -28,13 +28,10 @@ PARTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ),
     ),
     "running many processes": (
-        tuple(
-            f"benchmark/running/{name}"
-            for name in ("schedule", "durations", "times", "workers", "backend", "cluster")
-        ),
+        tuple(f"benchmark/running/{name}" for name in ("schedule", "times", "workers", "cluster")),
         tuple(
             f"tests/benchmark/running/test_{name}"
-            for name in ("schedule", "durations", "times", "workers", "backend", "cluster")
+            for name in ("schedule", "times", "workers", "cluster")
         ),
     ),
     "files": (("files/",), ("tests/files/",)),

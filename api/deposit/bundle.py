@@ -137,7 +137,7 @@ def build(
         bundle.mkdir()
         write_code(bundle, code)
         exported = write_frames(
-            bundle, names, pins, lambda done, _, what, _share=None: progress(done, total, what)
+            bundle, names, pins, lambda done, _, what: progress(done, total, what)
         )
         progress(len(names), total, "tables")
         fill(bundle, who, sources, exported)

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping
-from functools import partial
-from itertools import groupby
+from collections.abc import Iterable
 from pathlib import Path
 
 from benchmark.contract import Cell
@@ -17,11 +15,9 @@ from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback
 from benchmark.results import record_manifest
 from benchmark.results.components import Components, current
-from benchmark.results.csv_tables import Row
 from benchmark.results.record import open_record
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import experiment, pinning
-from benchmark.running.planned import FollowUp
 from benchmark.running.runner import Summary, failures, kept_beside, measure_missing
 
 
@@ -62,16 +58,13 @@ def update(
     known = parts or installed_parts()
     components = current(known)
     first, studied = scope.first(known), scope.studied_pipelines(known)
-    choose = partial(scope.followers, studied=studied)
     store = Store(directory)
     kept = kept_beside(store, components)
     with open_record(store) as record:
         pinned = store.pins()
         _require_heads(store, known, components, workers)
 
-        def measured(
-            wanted: Iterable[Cell], follow_ups: Mapping[str, FollowUp] | None = None
-        ) -> int:
+        def measured(wanted: Iterable[Cell]) -> int:
             return measure_missing(
                 wanted,
                 record,
@@ -80,12 +73,11 @@ def update(
                 workers=workers,
                 progress=progress,
                 scheduler=scheduler,
-                follow_ups=follow_ups,
                 kept=kept,
             )
 
-        computed = measured(first, _follow_ups(first, known, choose))
-        followers = choose(record.scores, known)
+        computed = measured(first)
+        followers = scope.followers(record.scores, known, studied)
         computed += measured(followers)
         pins = pinning.pin_missing(record, components, known, workers=workers, progress=progress)
         pinning.require_versions(pinned, record.pins.values())
@@ -112,22 +104,6 @@ def update(
         ),
         seconds=time.perf_counter() - started,
     )
-
-
-def _follow_ups(
-    first: Iterable[Cell],
-    parts: Parts,
-    choose: Callable[[Mapping[Cell, Row], Parts], list[Cell]],
-) -> dict[str, FollowUp]:
-    """Say by data set what a worker that has measured its first cells goes on with."""
-    return {
-        name: FollowUp(
-            Parts({name: parts.presets[name]}, parts.extractors, parts.models),
-            frozenset(cells),
-            choose,
-        )
-        for name, cells in groupby(first, key=lambda cell: cell.dataset)
-    }
 
 
 def _require_heads(store: Store, parts: Parts, components: Components, workers: int) -> None:

@@ -125,19 +125,12 @@ class StageCounts:
 
 def count_stages(
     cells: Iterable[Cell], components: Components, kept: KeptStages | None
-) -> tuple[StageCounts, list[Cell]]:
-    """Count what is to be done for cells of these components, with what is kept of them.
-
-    Returns
-    -------
-    tuple of StageCounts and list of Cell
-        The cells are those whose models are to be fitted.
-    """
+) -> StageCounts:
+    """Count what is to be done for cells of these components, with what is kept of them."""
     there = set() if kept is None else kept.keys()
     data: set[tuple[str, str, int]] = set()
     features: set[tuple[str, str, int, str]] = set()
-    fitted: list[Cell] = []
-    scores = 0
+    predictions = scores = 0
     for cell in cells:
         scores += 1
         read = components.condition_read(cell.dataset, cell.condition)
@@ -150,9 +143,9 @@ def count_stages(
             data.add(place)
         if has[PREDICTIONS]:
             continue
-        fitted.append(cell)
+        predictions += 1
         if not has[FEATURES]:
             features.add((*place, cell.extractor))
             if not has[DATA]:
                 data.add(place)
-    return StageCounts(len(data), len(features), len(fitted), scores), fitted
+    return StageCounts(len(data), len(features), predictions, scores)

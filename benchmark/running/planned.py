@@ -1,14 +1,8 @@
-"""From cells to tasks and back, and what a worker goes on with when it has done a data set's first.
-
-Which pipelines are worth measuring under other conditions may depend on how they did under the
-first. Whoever measured that still holds the light that the others look at too: it is asked to go
-on, rather than another worker to render the light again.
-"""
+"""From cells to tasks and back."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
 from itertools import groupby
 
 from benchmark.contract import ON_BENCH, Cell
@@ -18,38 +12,6 @@ from benchmark.plan.parts import Parts
 from benchmark.results.csv_tables import Row
 from benchmark.results.samples import CONDITION, Directions, SampleErrors
 from benchmark.running.task import Task, TaskResult, data_condition
-
-
-@dataclass(frozen=True)
-class FollowUp:
-    """What to measure of a data set once its first cells are.
-
-    Attributes
-    ----------
-    parts
-        The data set, and the implementations.
-    first
-        Its first cells: nothing follows from a part of them.
-    choose
-        From the numbers of the first cells and `parts` to the cells that follow.
-    """
-
-    parts: Parts
-    first: frozenset[Cell]
-    choose: Callable[[Mapping[Cell, Row], Parts], Sequence[Cell]]
-
-    def tasks(self, results: Sequence[TaskResult]) -> list[Task]:
-        """List the tasks that follow, other units last; none where first cells are missing."""
-        scores = {
-            cell: numbers
-            for result in results
-            for cell, numbers in zip(cells_of(result), numbers_of(result), strict=True)
-        }
-        if not self.first <= scores.keys():
-            return []
-        following = [cell for cell in self.choose(scores, self.parts) if cell not in scores]
-        pins = {pin.place: pin for result in results for pin in result.pins}
-        return tasks_of(following, self.parts, pins)
 
 
 def tasks_of(cells: Iterable[Cell], parts: Parts, pins: Mapping[Place, Pin]) -> list[Task]:

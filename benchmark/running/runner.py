@@ -9,8 +9,8 @@ workers.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Mapping
-from contextlib import nullcontext
+from collections.abc import Iterable
+from contextlib import closing, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,11 +21,10 @@ from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.components import Components, current
 from benchmark.results.record import Record, open_record
 from benchmark.results.store import Store
-from benchmark.running.backend import outcomes
-from benchmark.running.durations import Durations, ExtractionTask
 from benchmark.running.kept_stages import KeptStages
-from benchmark.running.planned import FollowUp, cells_of, numbers_of, samples_of, tasks_of
-from benchmark.running.task import TaskResult
+from benchmark.running.planned import cells_of, numbers_of, samples_of, tasks_of
+from benchmark.running.schedule import outcomes
+from benchmark.running.task import Task, TaskResult
 
 
 @dataclass(frozen=True)
@@ -72,9 +71,8 @@ def run(
     workers
         Number of processes; 1 measures in this one.
     progress
-        Called as ``progress(done, total, what, share)`` in cells, with the share of the time
-        that all takes as far as that is known, else None; by default a bar on standard error when
-        that is a terminal.
+        Called as ``progress(done, total, what)`` in cells; by default a bar on standard error
+        when that is a terminal.
     scheduler
         Address of a Dask scheduler to measure on instead.
     parts
@@ -137,41 +135,52 @@ def measure_missing(
     workers: int,
     progress: ProgressCallback | None = None,
     scheduler: str | None = None,
-    follow_ups: Mapping[str, FollowUp] | None = None,
     kept: KeptStages | None = None,
 ) -> int:
     """Measure the cells that a record does not hold of these components; returns how many.
 
-    With what followed from them. Parameters and errors as `run`.
-
-    Parameters
-    ----------
-    follow_ups
-        By data set, what a worker that measured all its first cells goes on with at once.
-    kept
-        Where stages are kept; nowhere for None.
+    Parameters and errors as `run`; `kept` is where stages are kept, nowhere for None.
     """
     missing = [cell for cell in sorted(wanted) if not record.is_scored(cell, components)]
     # the standard units first: what they tell of the directions that can be observed saves every
     # other unit a bound
     stages = [[c for c in missing if c.unit == 0], [c for c in missing if c.unit != 0]]
-    done = 0
-    if missing:
-        with terminal_progress() if progress is None else nullcontext(progress) as report:
-            expected = Durations.read([record.store]).seconds_by_task(missing)
-            counted = _Count(report, len(missing), sum(expected.values()))
+    if not missing:
+        return 0
+    done, total = 0, len(missing)
+    with terminal_progress() if progress is None else nullcontext(progress) as report:
+        report(done, total, "")
+        try:
             for stage in filter(None, stages):
                 tasks = tasks_of(stage, parts, record.pins)
-                durations = Durations.read([record.store])
-                results = outcomes(
-                    tasks, workers, scheduler, follow_ups or {}, durations, kept=kept
-                )
-                try:
-                    _keep_all(results, record, components, counted, expected)
-                finally:
-                    durations.keep(record.store)
-            done = counted.done
+                with closing(outcomes(tasks, workers, scheduler, kept)) as results:
+                    for result in results:
+                        end_if_requested()
+                        _keep(result, record, components)
+                        done += len(result.outcomes)
+                        report(done, total, _named(result.task))
+        except KeyboardInterrupt as error:
+            raise RunInterruptedError(
+                f"interrupted with {done} of {total} cells measured; they are kept in "
+                f"{record.journal} and not measured again by the next run"
+            ) from error
     return done
+
+
+def _named(task: Task) -> str:
+    return f"{task.preset.name} {task.condition} {task.extractor.about.name}"
+
+
+def _keep(result: TaskResult, record: Record, components: Components) -> None:
+    """Take a finished task into the record, on disk."""
+    samples = samples_of(result)
+    record.keep(
+        components,
+        pins=[pin for pin in result.pins if not record.is_pinned(pin.place, components)],
+        scores=dict(zip(cells_of(result), numbers_of(result), strict=True)),
+        errors=samples.cells,
+        directions=samples.directions,
+    )
 
 
 def kept_beside(
@@ -218,56 +227,3 @@ def known_cells(cells: Iterable[Cell], parts: Parts) -> list[Cell]:
         parts.extractor(cell.extractor)
         parts.model(cell.model)
     return wanted
-
-
-@dataclass
-class _Count:
-    """How far measuring has come, for the progress display."""
-
-    report: ProgressCallback
-    total: int
-    expected_s: float = 0.0
-    done: int = 0
-    done_s: float = 0.0
-
-    def __post_init__(self) -> None:
-        self.report(0, self.total, "")
-
-    def add(self, cells: int, what: str, seconds: float) -> None:
-        self.done += cells
-        self.done_s += seconds
-        self.total = max(self.total, self.done)  # what followed was not counted before
-        share = min(self.done_s / self.expected_s, 1.0) if self.expected_s else None
-        self.report(self.done, self.total, what, share)
-
-
-def _keep_all(
-    results: Iterable[TaskResult],
-    record: Record,
-    components: Components,
-    counted: _Count,
-    expected: Mapping[ExtractionTask, float],
-) -> None:
-    """Take every finished task into the record, which is on disk before the next is awaited."""
-    try:
-        for result in results:
-            end_if_requested()
-            task = result.task
-            scores = dict(zip(cells_of(result), numbers_of(result), strict=True))
-            new = [pin for pin in result.pins if not record.is_pinned(pin.place, components)]
-            samples = samples_of(result)
-            record.keep(
-                components,
-                pins=new,
-                scores=scores,
-                errors=samples.cells,
-                directions=samples.directions,
-            )
-            what = f"{task.preset.name} {task.condition} {task.extractor.about.name}"
-            seconds = sum(expected.get(of, 0.0) for of in {ExtractionTask.of(c) for c in scores})
-            counted.add(len(scores), what, seconds)
-    except KeyboardInterrupt as error:
-        raise RunInterruptedError(
-            f"interrupted with {counted.done} of {counted.total} cells measured; they are kept in "
-            f"{record.journal} and not measured again by the next run"
-        ) from error

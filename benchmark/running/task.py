@@ -107,8 +107,6 @@ class _RefusedError(Exception):
 class TaskResult:
     """What a worker hands back; pins are of the standard unit only.
 
-    `reused` says whether features or predictions were read, so that it took less than all of it.
-
     `directions` are true ones (N, 3) of the test samples, which of them are observable and their
     bounds (N,), of the standard unit.
     """
@@ -117,7 +115,6 @@ class TaskResult:
     pins: tuple[Pin, ...]
     outcomes: tuple[Outcome, ...]
     directions: tuple[Floats, NDArray[np.bool_], Floats] | None = None
-    reused: bool = False
 
 
 def measure(task: Task, kept: KeptStages | None = None) -> TaskResult:
@@ -136,7 +133,6 @@ def measure(task: Task, kept: KeptStages | None = None) -> TaskResult:
         except Exception as error:  # noqa: BLE001 - any error of a dataset is a row with its reason
             return _failed(task, error, "generating data")
         answers = [_stored_answers(task, model, kept) for model in task.models]
-        reused = answers != [None] * len(answers) or _seen_before(task, kept)
         if None in answers:
             try:
                 extractor, features = _extractor(task), _features(task, kept)
@@ -151,7 +147,7 @@ def measure(task: Task, kept: KeptStages | None = None) -> TaskResult:
         directions = None
         if data.bound_deg is not None:
             directions = data.splits["test"].sun, data.observable, data.bound_deg
-        return TaskResult(task, data.pins, outcomes, directions, reused)
+        return TaskResult(task, data.pins, outcomes, directions)
 
 
 def data_condition(preset: Preset, condition: str) -> str:
@@ -212,11 +208,6 @@ def _features(task: Task, kept: KeptStages | None) -> dict[str, Floats]:
     if kept is not None:
         kept.put(FEATURES, cell, found, time.process_time() - started)
     return found
-
-
-def _seen_before(task: Task, kept: KeptStages | None) -> bool:
-    """Say whether features are kept; on drawn benches they are those of the first condition."""
-    return task.condition != ON_BENCH and kept is not None and kept.has(FEATURES, _cell(task))
 
 
 def _stored_answers(task: Task, model: Scored, kept: KeptStages | None) -> Answers | None:

@@ -5,42 +5,35 @@ from __future__ import annotations
 import json
 import platform
 import re
-import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import nullcontext
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from datetime import UTC, datetime
 from functools import partial
 from itertools import groupby
 from pathlib import Path
-from typing import Any, TypeVar
+from time import process_time
+from timeit import repeat
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.chain import Scored
-from algorithms.contract import Extractor, Floats, SensorGeometry
 from algorithms.pipeline import Pipeline, extract_features
 from algorithms.threads import one_thread
-from benchmark.contract import Cell, Preset, Samples
+from benchmark.contract import Cell
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback, terminal_progress
 from benchmark.results.csv_tables import text_of
-from benchmark.results.times import COLUMNS, MACHINE, TIMES, Machine, Place, Time, read_times
+from benchmark.results.times import COLUMNS, MACHINE, TIMES, Machine, Time, read_times
 from files.atomic import replace_file
-from files.locks import wait_for_lock
-from files.temporary import remove_stale_files
+from files.locks import lock_or_refuse
 
-#: Observations that are timed together: as many as fill this, of what the test split has.
-_TIMED_BYTES = 8 * 2**20
-_FEWEST = 8
-#: Values that the weighted sum turns to floats at a time: 32 MB of them.
-_SUMMED_VALUES = 2**22
-#: A call is timed at least so often, and on until it took so long or was timed so often.
-_FEWEST_RUNS, _ENOUGH_S, _MOST_RUNS = 5, 0.1, 20
-_LOOP_RUNS = 200
-
+#: Test samples that are timed together: as many as fill this, at least so many.
+_TIMED_BYTES, _FEWEST = 8 * 2**20, 8
+#: How often a call is timed.
+_RUNS = 7
 _VALUES = np.linspace(0.0, 1.0, 100_000)
 _WEIGHTS = _VALUES[::-1].copy()
 LOOP = (
@@ -48,16 +41,9 @@ LOOP = (
     "Python; processor time, best of several"
 )
 
-T = TypeVar("T")
-
 
 def reference_loop() -> float:
-    """Do the work that times are multiples of.
-
-    Ten weighted sums (`numpy.dot`) of 100,000 float64 numbers, and 10,000 steps of
-    ``x = 0.5 * x + 1.0`` in the interpreter. It reads no observation and never changes, so that it
-    says how fast a machine does arithmetic and runs Python.
-    """
+    """Do the work that times are multiples of (`LOOP`)."""
     x = 0.0
     for _ in range(10):
         x += float(np.dot(_VALUES, _WEIGHTS))
@@ -67,39 +53,19 @@ def reference_loop() -> float:
 
 
 def weighted_sums(observations: NDArray[Any]) -> object:
-    """Sum every observation with weights.
-
-    The least that anything reading all of an observation must do.
-    """
+    """Sum every observation with weights: the least that reading all of it takes."""
     samples = observations.reshape(len(observations), -1)
     if samples.dtype.names is not None:
         samples = samples.view(np.uint8).reshape(len(observations), -1)  # events: their bytes
     weights = np.linspace(0.0, 1.0, samples.shape[1])
-    rows = max(_SUMMED_VALUES // samples.shape[1], 1)
+    rows = max(2**22 // samples.shape[1], 1)  # 32 MB of floats at a time
     parts = range(0, len(samples), rows)
     return [samples[start : start + rows].astype(np.float64) @ weights for start in parts]
 
 
-def best_of(call: Callable[[], T], *references: Callable[[], object]) -> tuple[T, list[float]]:
-    """Return the result of `call`, its best time in seconds, and those of references.
-
-    Processor time of this process, so that other programs do not count. The references run before
-    each run of the call, so that a change of the processor's frequency changes all alike.
-    """
-    best = [float("inf")] * (1 + len(references))
-    spent, runs = 0.0, 0
-    while runs < _FEWEST_RUNS or (spent < _ENOUGH_S and runs < _MOST_RUNS):
-        seconds = [_time(reference)[0] for reference in references]
-        own, result = _time(call)
-        best = [min(pair) for pair in zip(best, [own, *seconds], strict=True)]
-        spent, runs = spent + own, runs + 1
-    return result, best
-
-
-def _time(call: Callable[[], T]) -> tuple[float, T]:
-    started = time.process_time()
-    result = call()
-    return time.process_time() - started, result
+def best_s(*calls: Callable[[], object]) -> list[float]:
+    """Return the best processor time of several runs of each call, in seconds."""
+    return [min(repeat(call, timer=process_time, repeat=_RUNS, number=1)) for call in calls]
 
 
 def update(
@@ -109,81 +75,45 @@ def update(
     again: bool = False,
     parts: Parts | None = None,
 ) -> int:
-    """Time the pipelines that have no time yet; returns how many were.
+    """Time the pipelines that have no time yet, one after another; returns how many were.
 
-    In this process and one after another. Times are on disk data set by data set, and those of
-    pipelines that there are no longer are dropped.
-
-    Parameters
-    ----------
-    directory
-        Of the record.
-    progress
-        As `benchmark.running.runner.run`.
-    again
-        Whether to forget all times first, and the machine they were measured on.
-    parts
-        Data sets and implementations; what is installed by default.
-
-    Raises
-    ------
-    StoreError
-        Where the files cannot be read.
+    Times are on disk data set by data set; those of pipelines that are gone are dropped. `again`
+    forgets all times first, and the machine. Raises StoreError for files that cannot be read,
+    LockedError where another process times.
     """
     known = parts or installed_parts()
     first = {name: preset.conditions[0] for name, preset in known.presets.items()}
     planned = [cell for cell in cells(parts=known) if cell.condition == first[cell.dataset]]
-    for name in (TIMES, MACHINE):
-        remove_stale_files(directory, name)
-    if again:
-        _write(directory, {}, planned, forget=True)
-    there = read_times(directory).rows
-    missing = [cell for cell in planned if _pipeline(cell) not in there]
-    with terminal_progress() if progress is None else nullcontext(progress) as report:
-        done = 0
-        report(done, len(missing), "")
-        for dataset, group in groupby(missing, key=lambda cell: cell.dataset):
-            timed = {one.pipeline: one for one in _timed(known, list(group))}
-            _write(directory, timed, planned)
-            done += len(timed)
-            report(done, len(missing), dataset)
+    places = {(cell.dataset, cell.extractor, cell.model) for cell in planned}
+    directory.mkdir(parents=True, exist_ok=True)
+    with lock_or_refuse(directory / TIMES), one_thread():
+        if again:
+            (directory / TIMES).unlink(missing_ok=True)
+        there = read_times(directory)
+        rows = {place: row for place, row in there.rows.items() if place in places}
+        missing = [c for c in planned if (c.dataset, c.extractor, c.model) not in rows]
+        done, machine = 0, there.machine
+        with terminal_progress() if progress is None else nullcontext(progress) as report:
+            report(0, len(missing), "")
+            for dataset, group in groupby(missing, key=lambda cell: cell.dataset):
+                timed = {one.pipeline: one for one in _timed(known, list(group))}
+                rows |= timed
+                done += len(timed)
+                machine = machine or _this_machine()
+                if (also := _processor()) not in {machine.processor, *machine.also_on}:
+                    machine = replace(machine, also_on=(*machine.also_on, also))
+                replace_file(directory / MACHINE, json.dumps(asdict(machine), indent=2) + "\n")
+                table = [asdict(rows[place]) for place in sorted(rows)]
+                replace_file(directory / TIMES, text_of(list(COLUMNS), table))
+                report(done, len(missing), dataset)
     return len(missing)
 
 
-def _write(
-    directory: Path, timed: Mapping[Place, Time], planned: Sequence[Cell], *, forget: bool = False
-) -> None:
-    """Add times to those on disk, which another process may have written meanwhile."""
-    directory.mkdir(parents=True, exist_ok=True)
-    with wait_for_lock(directory / TIMES):
-        if forget:
-            (directory / TIMES).unlink(missing_ok=True)
-        there = read_times(directory)
-        here = there.machine or _this_machine()
-        if timed and (also := _processor()) not in {here.processor, *here.also_on}:
-            here = replace(here, also_on=(*here.also_on, also))
-        kept = {**there.rows, **timed}
-        rows = [asdict(kept[place]) for place in sorted(kept.keys() & set(map(_pipeline, planned)))]
-        if rows:
-            replace_file(directory / MACHINE, json.dumps(asdict(here), indent=2) + "\n")
-            replace_file(directory / TIMES, text_of(list(COLUMNS), rows))
-
-
 def _this_machine() -> Machine:
-    with one_thread():
-        _, (seconds, *_) = min(
-            (best_of(reference_loop) for _ in range(_LOOP_RUNS // _MOST_RUNS)),
-            key=lambda found: found[1],
-        )
-    return Machine(
-        processor=_processor(),
-        cores=1,
-        python=platform.python_version(),
-        numpy=np.__version__,
-        date=datetime.now(UTC).date().isoformat(),
-        loop=LOOP,
-        loop_us=_round(1e6 * seconds),
-    )
+    loop_s = min(best_s(*[reference_loop] * 30))
+    today = datetime.now(UTC).date().isoformat()
+    python = platform.python_version()
+    return Machine(_processor(), 1, python, np.__version__, today, LOOP, _round(1e6 * loop_s))
 
 
 def _processor() -> str:
@@ -200,72 +130,40 @@ def _processor() -> str:
 
 
 def _timed(parts: Parts, group: list[Cell]) -> Iterator[Time]:
-    """Time the pipelines of one data set."""
+    """Time the pipelines of one data set; one that fails has no time, the record says why."""
     preset, condition = parts.preset(group[0].dataset), group[0].condition
-    with one_thread():
-        data = _Data(
-            preset.geometry_for(condition),
-            preset.generate(condition, "calibration"),
-            preset.generate(condition, "test", _batch(preset, condition)),
-        )
-        for name, of_extractor in groupby(group, key=lambda cell: cell.extractor):
-            models = [parts.model(cell.model) for cell in of_extractor]
-            for model, numbers in _ratios(data, parts.extractor(name), models):
-                yield Time(preset.name, name, model.about.name, *numbers)
-
-
-@dataclass(frozen=True)
-class _Data:
-    geometry: SensorGeometry
-    calibration: Samples
-    test: Samples
-
-
-_Ratios = tuple[float | None, float | None]
-_UNTIMED: _Ratios = (None, None)
-
-
-def _ratios(
-    data: _Data, extractor_class: type[Extractor], models: Sequence[Scored]
-) -> Iterator[tuple[Scored, _Ratios]]:
-    """Give the ratios of an extractor with each of the models."""
-    sums = partial(weighted_sums, data.test.observations)
-    try:
-        extractor = extractor_class.for_sensor(data.geometry)
-        known = _features(extractor, data.calibration)  # also warms compiled code up
-        features, (extract_s, loop_s, sums_s) = best_of(
-            lambda: _features(extractor, data.test), reference_loop, sums
-        )
-    except Exception:  # noqa: BLE001 - the record says what failed; here it has no time
-        yield from ((model, _UNTIMED) for model in models)
-        return
-    for model_class in models:
+    geometry = preset.geometry_for(condition)
+    calibration = preset.generate(condition, "calibration")
+    one = preset.generate(condition, "test", 1).observations.nbytes
+    test = preset.generate(condition, "test", max(_TIMED_BYTES // max(one, 1), _FEWEST))
+    sums = partial(weighted_sums, test.observations)
+    for name, of_extractor in groupby(group, key=lambda cell: cell.extractor):
+        models = [parts.model(cell.model) for cell in of_extractor]
+        none = [Time(preset.name, name, model.about.name, None, None) for model in models]
         try:
-            model = model_class.for_sensor(data.geometry, extractor.about.kind)
-            pipeline = Pipeline(extractor, model)
-            pipeline.fit_features(known, data.calibration.sun, data.calibration.context)
-            predict = partial(pipeline.predict_features, features, data.test.context)
-            _, (predict_s, loop_again_s) = best_of(predict, reference_loop)
-        except Exception:  # noqa: BLE001 - likewise
-            yield model_class, _UNTIMED
+            extractor = parts.extractor(name).for_sensor(geometry)
+            learn, extract = (
+                partial(extract_features, extractor, split.observations, split.origin_px)
+                for split in (calibration, test)
+            )
+            learnt, features = learn(), extract()  # warms compiled code up, too
+            loop_s, sums_s, extract_s = best_s(reference_loop, sums, extract)
+        except Exception:  # noqa: BLE001
+            yield from none
             continue
-        whole = extract_s / loop_s + predict_s / loop_again_s
-        yield model_class, (_round(whole / len(data.test.sun)), _round(extract_s / sums_s))
-
-
-def _batch(preset: Preset, condition: str) -> int:
-    """Return how many test samples to time together; a split may have fewer."""
-    one = preset.generate(condition, "test", 1)
-    return max(_TIMED_BYTES // max(one.observations.nbytes, 1), _FEWEST)
-
-
-def _features(extractor: Extractor, samples: Samples) -> Floats:
-    return extract_features(extractor, samples.observations, samples.origin_px)
+        for model, untimed in zip(models, none, strict=True):
+            try:
+                fitted = model.for_sensor(geometry, extractor.about.kind)
+                pipeline = Pipeline(extractor, fitted)
+                pipeline.fit_features(learnt, calibration.sun, calibration.context)
+                predict = partial(pipeline.predict_features, features, test.context)
+                again_s, predict_s = best_s(reference_loop, predict)
+            except Exception:  # noqa: BLE001
+                yield untimed
+                continue
+            ratio = (extract_s / loop_s + predict_s / again_s) / len(test.sun)
+            yield replace(untimed, ratio=_round(ratio), extract_ratio=_round(extract_s / sums_s))
 
 
 def _round(value: float) -> float:
     return float(f"{value:.3g}")
-
-
-def _pipeline(cell: Cell) -> Place:
-    return cell.dataset, cell.extractor, cell.model

@@ -1,4 +1,4 @@
-"""What a run would measure, why, and how long that takes: nothing is measured to tell."""
+"""What a run would measure, and why: nothing is measured to tell."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from benchmark.results.components import current
 from benchmark.results.csv_tables import Row
 from benchmark.results.record import Record
 from benchmark.results.store import Store
-from benchmark.running.durations import Durations, Estimate
 from benchmark.running.kept_stages import KeptStages, StageCounts, count_stages
 from benchmark.running.runner import known_cells
 from benchmark.suites.selection import Suite
@@ -32,14 +31,11 @@ class CellPlan:
         ``new``, ``failed`` (before), or which of `benchmark.results.components.KEYED` changed.
     stages
         How much of each stage that is, where what is kept beside the stores is used.
-    estimate
-        How long that takes; scoring what is predicted already takes next to nothing.
     """
 
     cells: tuple[Cell, ...]
     missing: Mapping[Cell, tuple[str, ...]]
     stages: StageCounts
-    estimate: Estimate
 
 
 def plan(cells: Iterable[Cell], stores: Sequence[Store], *, parts: Parts | None = None) -> CellPlan:
@@ -71,11 +67,9 @@ def plan(cells: Iterable[Cell], stores: Sequence[Store], *, parts: Parts | None 
         reasons = [record.why_outdated(cell, components) for record in records]
         if all(reasons):
             missing[cell] = next((r for r in reasons if r != (NEW,)), (NEW,))
-    durations = Durations.read(stores)
     *others, into = (store.work_directory for store in stores)
     kept = KeptStages.beside(into, components, others)
-    counts, fitted = count_stages(missing, components, kept)
-    return CellPlan(tuple(wanted), missing, counts, durations.estimate(fitted))
+    return CellPlan(tuple(wanted), missing, count_stages(missing, components, kept))
 
 
 def cells_of(suite: Suite, stores: Sequence[Store], *, parts: Parts | None = None) -> list[Cell]:

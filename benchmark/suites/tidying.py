@@ -13,7 +13,7 @@ from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.components import current
 from benchmark.results.record import open_record
 from benchmark.results.store import Store
-from benchmark.running import durations, pinning
+from benchmark.running import pinning
 from benchmark.running.task import data_condition
 from files.temporary import temporary_directory
 
@@ -24,8 +24,8 @@ class TidyResult:
 
     Attributes
     ----------
-    scores, pins, times
-        How many scores, pinned splits and durations of tasks.
+    scores, pins
+        How many scores and pinned splits.
     kept
         Scores that stay.
     freed
@@ -34,13 +34,12 @@ class TidyResult:
 
     scores: int
     pins: int
-    times: int
     kept: int
     freed: int
 
 
 def tidy(store: Store, *, parts: Parts | None = None) -> TidyResult:
-    """Drop scores, pins and durations of code or data that have changed or are gone.
+    """Drop scores and pins of code or data that have changed or are gone.
 
     Raises
     ------
@@ -50,7 +49,7 @@ def tidy(store: Store, *, parts: Parts | None = None) -> TidyResult:
         For a file that cannot be read.
     """
     if not store.directory.is_dir():
-        return TidyResult(0, 0, 0, 0, 0)
+        return TidyResult(0, 0, 0, 0)
     known = parts or installed_parts()
     components = current(known)
     before = _size(store)
@@ -72,11 +71,9 @@ def tidy(store: Store, *, parts: Parts | None = None) -> TidyResult:
 
         record.drop(scores=is_current, pins=is_pinned)
         record.write(components)
-        dropped = durations.drop_unplanned(store, planned)
     return TidyResult(
         scores=there[0] - len(record.scores),
         pins=there[1] - len(record.pins),
-        times=dropped,
         kept=len(record.scores),
         freed=before - _size(store),
     )
@@ -85,7 +82,7 @@ def tidy(store: Store, *, parts: Parts | None = None) -> TidyResult:
 def would_tidy(store: Store, *, parts: Parts | None = None) -> TidyResult:
     """Say what `tidy` would drop: it is done to a copy."""
     if not store.directory.is_dir():
-        return TidyResult(0, 0, 0, 0, 0)
+        return TidyResult(0, 0, 0, 0)
     with temporary_directory() as temporary:
         copy = Store(temporary)
         for path in _files(store):
@@ -98,8 +95,7 @@ def would_tidy(store: Store, *, parts: Parts | None = None) -> TidyResult:
 def _files(store: Store) -> list[Path]:
     """List the files of a store: whatever else lies in its directory is nobody's garbage."""
     top = [store.pins_path, store.components_path]
-    found = [*top, store.work_directory / durations.DURATIONS]
-    found += [store.work_directory / "journal.jsonl", *store.scores_directory.glob("*.csv")]
+    found = [*top, store.work_directory / "journal.jsonl", *store.scores_directory.glob("*.csv")]
     found += store.samples_directory.glob("*.parquet")
     return [path for path in found if path.is_file()]
 

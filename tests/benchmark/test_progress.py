@@ -78,7 +78,7 @@ def test_a_signal_that_was_lost_ends_what_is_done_at_the_next_step(monkeypatch):
             report(2, 3, "")
 
 
-def test_the_time_that_is_left_goes_by_the_share_of_the_work_where_it_is_known():
+def test_the_time_that_is_left_goes_by_what_is_done():
     assert time_left(30.0, 3, 4) == "10 s"
-    assert time_left(30.0, 3, 4, 0.25) == "2 min"
+    assert time_left(40.0, 1, 4) == "2 min"
     assert time_left(30.0, 0, 4) == time_left(30.0, 4, 4) == time_left(30.0, 0, 0) == ""

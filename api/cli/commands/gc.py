@@ -14,7 +14,7 @@ from benchmark.suites.tidying import tidy, would_tidy
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
-COLUMNS = ("scores", "pins", "times", "kept", "freed")
+COLUMNS = ("scores", "pins", "kept", "freed")
 
 
 @app.command()
@@ -28,8 +28,8 @@ def gc(
 ) -> None:
     """Delete unused results from the local store.
 
-    Unused: scores, hashes and durations whose data set, extractor, model or measuring code has
-    changed or no longer exists. Nothing is deleted without --yes. `freed` is in bytes.
+    Unused: scores and hashes whose data set, extractor, model or measuring code has changed or no
+    longer exists. Nothing is deleted without --yes. `freed` is in bytes.
     """
     published, there = stores_of(store)
     if there.directory.resolve() == published.directory.resolve():

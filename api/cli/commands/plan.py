@@ -1,4 +1,4 @@
-"""`sunatlas plan`: what of a suite is to be measured, why, and how long it takes."""
+"""`sunatlas plan`: what of a suite is to be measured, and why."""
 
 from __future__ import annotations
 
@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from api.cli.measuring import (
-    AVAILABLE_WORKERS,
-    ManyWorkersOption,
     StoreOption,
     SuiteOption,
     stores_of,
@@ -21,7 +19,6 @@ from benchmark.suites.selection import suite as suite_named
 
 if TYPE_CHECKING:
     from benchmark.contract import Cell
-    from benchmark.running.durations import Estimate
     from benchmark.suites.planning import CellPlan
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -34,7 +31,6 @@ CSV_COLUMNS = ("dataset", "condition", "extractor", "model", "unit", "why")
 def plan(
     *,
     suite: SuiteOption = "standard",
-    workers: ManyWorkersOption = AVAILABLE_WORKERS,
     store: StoreOption = None,
     form: FormatOption = Format.TABLE,
 ) -> None:
@@ -42,8 +38,8 @@ def plan(
 
     A cell is a pipeline on a data set under a condition. Listed are the cells that `sunatlas run
     --suite` would measure (by default suite standard): new ones, failed ones, and those whose data
-    set, extractor, model or measuring code has changed. The time is estimated from earlier runs on
-    this machine. Nothing is measured. JSON and CSV list every cell.
+    set, extractor, model or measuring code has changed. JSON and CSV list every cell. Nothing is
+    measured.
 
     Below stands how much of each stage that is: data to generate, features to extract, models to
     fit, scores to compute. Stages in the cache of the local store are not computed again.
@@ -69,7 +65,6 @@ def plan(
         "planned": len(found.cells),
         "missing": rows,
         "stages": asdict(found.stages),
-        "estimate": {**asdict(found.estimate), "workers": workers},
     }
     if form is Format.TABLE:
         counted = Counter((row["why"], row["dataset"]) for row in rows)
@@ -81,7 +76,7 @@ def plan(
             emit(table, COLUMNS, form, title=f"{chosen.name}: to be measured")
     else:
         emit(rows, CSV_COLUMNS, form, document=document)
-    typer.echo(f"{chosen.name}: {_summary(found, workers)}", err=True)
+    typer.echo(f"{chosen.name}: {_summary(found)}", err=True)
 
 
 def _why(cell: Cell, reasons: tuple[str, ...]) -> str:
@@ -98,7 +93,7 @@ def _why(cell: Cell, reasons: tuple[str, ...]) -> str:
     return f"{', '.join(parts)} changed"
 
 
-def _summary(found: CellPlan, workers: int) -> str:
+def _summary(found: CellPlan) -> str:
     count = _count(len(found.missing), len(found.cells))
     if not found.missing:
         return count
@@ -107,16 +102,8 @@ def _summary(found: CellPlan, workers: int) -> str:
         f"data sets to generate {todo.data}, features to extract {todo.features}, "
         f"models to fit {todo.predictions}, scores to compute {todo.scores}"
     )
-    return f"{count}; {_time(found.estimate, workers)}\nby stage: {stages}"
+    return f"{count}\nby stage: {stages}"
 
 
 def _count(missing: int, planned: int) -> str:
     return f"{missing} of {planned} cells to be measured"
-
-
-def _time(estimate: Estimate, workers: int) -> str:
-    if 0 < estimate.tasks == estimate.unknown:
-        return "how long that takes is known here once it has been run"
-    known = f"about {estimate.seconds / workers:.2g} s on {workers} workers"
-    rest = f", and {estimate.unknown} of {estimate.tasks} tasks whose like never ran here"
-    return known + (rest if estimate.unknown else "")

@@ -71,8 +71,6 @@ def test_a_suite_is_planned_run_and_then_there(small: Path) -> None:
     planned = sunatlas("plan", "--format", "json")
     document = json.loads(planned.stdout)
     assert {row["why"] for row in document["missing"]} == {"new"}
-    assert document["estimate"]["unknown"] == document["estimate"]["tasks"] > 0
-    assert not re.search(r"\d (s|min)\b", planned.stderr), "nothing ran here yet"
     # the first condition only: what follows depends on the scores
     assert {row["condition"] for row in document["missing"]} == {"nominal"}
     table = sunatlas("plan").stdout
@@ -98,12 +96,11 @@ def test_a_plan_says_what_failed_and_how_long_its_like_took(small: Path) -> None
     text = (store.scores_directory / "pd-maskless-cube.csv").read_text()
     changed = text.replace(",ok,", ",failed,", 1)
     (store.scores_directory / "pd-maskless-cube.csv").write_text(changed)
-    planned = sunatlas("plan", "--suite", "quick", "--workers", "2", "--format", "csv")
+    planned = sunatlas("plan", "--suite", "quick", "--format", "csv")
     header, *rows = planned.stdout.splitlines()
     assert header == "dataset,condition,extractor,model,unit,why"
     assert rows == ["pd-maskless-cube,nominal,direct,basic,0,failed before"]
     assert "1 of 2" in planned.stderr
-    assert "s on 2 workers" in planned.stderr
 
 
 @pytest.mark.parametrize(

@@ -37,7 +37,7 @@ def test_a_site_of_which_a_page_cannot_be_written_is_not_put_in_place(
     settings = {"extensions": ["myst_parser"], "source_suffix": {".md": "markdown"}}
     monkeypatch.setattr(site, "_settings", lambda: settings)
 
-    def block(done: int, total: int, _page: str, _share: float | None = None) -> None:
+    def block(done: int, total: int, _page: str) -> None:
         if done == total:
             (made,) = (path.parent for path in tmp_path.rglob("_static"))
             (made / "index.html").mkdir(exist_ok=True)

@@ -12,12 +12,9 @@ from hypothesis import strategies as st
 from benchmark.contract import ON_BENCH, Cell
 from benchmark.leaderboard import scope
 from benchmark.leaderboard.scope import BEHIND, CLOSE, LEADING, UNITS, UNITS_BEHIND
-from benchmark.leaderboard.update import update
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import installed_parts
-from benchmark.progress import silent
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running import condition_data
 
 NAMES = ("a", "b", "c")
 MODELS = [
@@ -112,31 +109,3 @@ def test_each_extractor_is_seen_under_every_condition():
     found = {(c.dataset, c.condition, c.extractor) for c in scope.published_scope(scores, parts)}
     for dataset, extractor in planned:
         assert {(dataset, c, extractor) for c in parts.presets[dataset].conditions} <= found
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("readings_only")
-def test_a_worker_that_goes_on_at_once_measures_what_would_be_asked_for_later(
-    tmp_path, monkeypatch, log
-):
-    parts = fake_plan.parts(presets=[Diodes(name=f"fake-{number}") for number in range(4)])
-
-    def recorded(name):
-        condition_data.forget()
-        start = len(log())
-        update(tmp_path / name, progress=silent, parts=parts)
-        seen = [line.split()[1:3] for line in log()[start:] if line.startswith("generate")]
-        files = {
-            str(path.relative_to(tmp_path / name)): path.read_bytes()
-            for path in (tmp_path / name).rglob("*.*")
-            if path.is_file() and ".sunatlas" not in path.parts
-        }
-        return files, list(dict.fromkeys(map(tuple, seen)))
-
-    at_once, order = recorded("at once")
-    monkeypatch.setattr("benchmark.leaderboard.update._follow_ups", lambda *_: {})
-    later, staged = recorded("later")
-    assert at_once == later
-    assert sorted(order) == sorted(staged)
-    assert [name for name, _ in order] == sorted(name for name, _ in order)
-    assert [name for name, _ in staged] != sorted(name for name, _ in staged)

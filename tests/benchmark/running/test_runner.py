@@ -1,18 +1,21 @@
 """Measuring: the right numbers, the same with any number of workers, never twice."""
 
 import dataclasses
+import sys
 
 import fake_atlas
+import fake_cluster
 import fake_plan
 import numpy as np
 import pytest
 
+from benchmark.contract import UnknownNameError
 from benchmark.metrics.score import repeatability_deg
 from benchmark.plan import combinations as plan
 from benchmark.results.record import Record
 from benchmark.results.store import Store
-from benchmark.running import cluster, condition_data, runner
-from benchmark.running.cluster import DaskMissingError
+from benchmark.running import condition_data, runner
+from benchmark.running.workers import WorkerLostError
 
 pytestmark = pytest.mark.usefixtures("log")
 
@@ -276,8 +279,9 @@ def test_data_kept_are_those_of_the_same_parameters_and_unit():
 
 
 def test_dask_without_its_package_is_a_clear_error(store, monkeypatch):
-    monkeypatch.setattr(cluster, "find_spec", lambda name: None)
-    with pytest.raises(DaskMissingError, match="pip install distributed"):
+    monkeypatch.delitem(sys.modules, "benchmark.running.cluster", raising=False)
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(ImportError, match="pip install distributed"):
         measure(store, scheduler="tcp://127.0.0.1:1")
 
 
@@ -325,3 +329,35 @@ def test_any_other_value_error_is_a_failure_and_tried_again(store, log, place):
         assert {reason for _, reason in summary.failed} == {said}
         assert log().count(f"{place} fake-singular") == 4 * times
     assert {row["status"] for row in store.rows()} == {"failed"}
+
+
+@pytest.mark.parametrize("name", ["dataset", "extractor", "model"])
+def test_a_cell_of_what_is_not_installed_is_named_before_anything_is_done(name, store):
+    known = plan.Cell("fake-diodes", "quiet", "fake-currents", "fake-least-squares")
+    wrong = dataclasses.replace(known, **{name: "fake-nothing"})
+    assert runner.stale([known], store, parts=fake_plan.parts()) == [known]
+    for call in (runner.stale, runner.run):
+        with pytest.raises(UnknownNameError, match=f"no {name} named 'fake-nothing'"):
+            call([known, wrong], store, parts=fake_plan.parts())
+    assert not store.directory.exists()
+
+
+def test_cells_are_measured_once_each(store):
+    cell = plan.Cell("fake-diodes", "quiet", "fake-currents", "fake-least-squares")
+    done = runner.run([cell, cell], store, parts=fake_plan.parts())
+    assert (done.planned, done.already_stored, done.computed) == (1, 0, 1)
+
+
+@pytest.mark.slow
+def test_a_worker_that_is_killed_ends_the_run_and_the_next_does_what_is_missing(store, tmp_path):
+    deadly = tmp_path / "deadly"
+    deadly.touch()
+    parts = fake_cluster.parts(deadly=str(deadly))
+    with pytest.raises(WorkerLostError, match="a worker process was killed"):
+        measure(store, parts, workers=2)
+    deadly.unlink()
+    kept = len(plan.cells(parts=parts)) - len(
+        runner.stale(plan.cells(parts=parts), store, parts=parts)
+    )
+    assert measure(store, parts, workers=2).already_stored == kept
+    assert len(store.rows()) == len(plan.cells(parts=parts))

@@ -11,12 +11,15 @@ import fake_plan
 import numpy as np
 import pytest
 
+from benchmark.contract import Cell
 from benchmark.plan.parts import Parts
 from benchmark.progress import silent
+from benchmark.results.samples import CONDITION
 from benchmark.results.times import read_times
 from benchmark.running import condition_data, times
 from benchmark.running.condition_data import ConditionData
-from benchmark.running.task import Outcome, Task, measure
+from benchmark.running.planned import samples_of
+from benchmark.running.task import Outcome, Task, TaskResult, measure
 from benchmark.simulator.light.memory import memory
 
 
@@ -179,3 +182,27 @@ def test_an_extractor_that_cannot_be_built_has_no_time_and_keeps_none_from_other
     (ratio,) = found.values()
     assert ratio is not None
     assert ratio > 0
+
+
+def test_a_task_is_of_the_standard_unit_unless_it_says_otherwise() -> None:
+    preset, models = fake_atlas.Diodes(n=40), (fake_atlas.LeastSquares,)
+    plain = measure(Task(preset, "quiet", fake_atlas.Currents, models))
+    assert {pin.split for pin in plain.pins} == {"calibration", "test", "repeat"}
+    (outcome,) = plain.outcomes
+    assert outcome.score is not None
+    assert outcome.score.bound_deg > 0
+    assert measure(Task(preset, "quiet", fake_atlas.Currents, models, 1)).pins == ()
+
+
+def test_errors_of_samples_are_kept_of_the_condition_that_shows_them_and_of_no_failure() -> None:
+    preset = fake_atlas.Diodes(conditions=(CONDITION,))
+    task = Task(preset, CONDITION, fake_atlas.Currents, ())
+    errors, found = np.array([0.1, 0.2]), np.array([True, True])
+    good = Outcome("fake-least-squares", "", sample_errors_deg=errors, found=found)
+    result = TaskResult(task, (), (good, replace(good, sample_errors_deg=None)))
+    (kept,) = samples_of(replace(result, outcomes=(good,))).cells.values()
+    (cell,) = samples_of(result).cells
+    assert cell == Cell("fake-diodes", CONDITION, "fake-currents", "fake-least-squares")
+    np.testing.assert_allclose(kept.error_deg, errors, rtol=1e-3)
+    elsewhere = replace(result, task=replace(task, condition="noisy"))
+    assert samples_of(elsewhere).cells == {}

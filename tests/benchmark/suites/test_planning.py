@@ -1,4 +1,4 @@
-"""What a plan says: which cells, why, and how long they take."""
+"""What a plan says: which cells, and why."""
 
 from __future__ import annotations
 
@@ -10,14 +10,12 @@ import fake_atlas
 import fake_plan
 import pytest
 
-from benchmark.contract import Cell
 from benchmark.leaderboard.scope import UNITS
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts
 from benchmark.progress import silent
 from benchmark.results import components
 from benchmark.results.store import Store
-from benchmark.running.durations import Durations, Estimate, ExtractionTask, Took
 from benchmark.running.runner import run
 from benchmark.suites.planning import CellPlan, cells_of, plan
 from benchmark.suites.selection import suite
@@ -49,12 +47,11 @@ EXTRACTORS = {"fake-currents", "fake-gaps"}
 FINE = [cell for cell in cells(parts=parts()) if cell.model != "fake-broken"]
 
 
-def test_before_anything_is_measured_all_is_new_and_no_time_is_known(tmp_path: Path) -> None:
+def test_before_anything_is_measured_all_is_new(tmp_path: Path) -> None:
     wanted = cells(parts=parts())
     found = plan(wanted, [Store(tmp_path / "none"), Store(tmp_path / "other")], parts=parts())
     assert found.cells == tuple(wanted)
     assert found.missing == dict.fromkeys(wanted, ("new",))
-    assert found.estimate == Estimate(0.0, 8, 8)  # two data sets, conditions and extractors
     assert not (tmp_path / "none").exists()
 
 
@@ -105,56 +102,6 @@ def test_changed_code_of_a_stage_is_the_reason_of_all(
     assert {cell.dataset for cell, why in both.items() if why == ("dataset", "code of scores")} == {
         "fake-second"
     }
-
-
-def test_what_was_measured_tells_how_long_it_will_take(store: Store) -> None:
-    known = Durations.read([store]).known
-    assert len(known) == 8
-    assert {took.models for took in known.values()} == {2}
-    assert sum(took.made_data for took in known.values()) == 4, "once a data set and condition"
-    found = plan(FINE, [store], parts=parts(seed=8))
-    assert (found.estimate.tasks, found.estimate.unknown) == (4, 0)
-
-
-def test_what_a_task_is_expected_to_take_is_its_own_time_or_what_is_usual() -> None:
-    durations = Durations(
-        {
-            ExtractionTask("d", "one", 0, "a"): Took(models=2, made_data=1, seconds=6.0),
-            ExtractionTask("d", "one", 0, "b"): Took(models=2, made_data=0, seconds=2.0),
-            ExtractionTask("e", "one", 0, "a"): Took(models=2, made_data=0, seconds=1.0),
-        }
-    )
-    cells = [Cell("d", "one", "a", "m"), Cell("d", "two", "a", "m"), Cell("f", "one", "a", "m")]
-    assert durations.seconds_by_task(cells) == {
-        ExtractionTask("d", "one", 0, "a"): 6.0,
-        ExtractionTask("d", "two", 0, "a"): 4.0,
-        ExtractionTask("f", "one", 0, "a"): 2.5,
-    }
-    assert Durations().seconds_by_task(cells) == {}
-
-
-def test_an_estimate_is_of_the_data_and_the_tasks() -> None:
-    """Data of a place take 5 s; the extractors `a` and `b` 1 and 3 s."""
-    durations = Durations(
-        {
-            ExtractionTask("d", "one", 0, "a"): Took(models=2, made_data=1, seconds=6.0),
-            ExtractionTask("d", "one", 0, "b"): Took(models=2, made_data=0, seconds=3.0),
-            ExtractionTask("d", "two", 0, "a"): Took(models=2, made_data=0, seconds=1.0),
-            ExtractionTask("d", "two", 0, "c"): Took(models=1, made_data=0, seconds=1.0),
-        }
-    )
-
-    def of(*wanted: Cell) -> Estimate:
-        return durations.estimate(wanted)
-
-    two = [Cell("d", "one", "b", model) for model in ("m", "n")]
-    assert of(*two) == Estimate(5.0 + 3.0, 1, 0)
-    assert of(*two, Cell("d", "one", "a", "m")) == Estimate(5.0 + 3.0 + 1.0, 2, 0)
-    assert of(Cell("d", "one", "a", "m", 1)) == Estimate(5.0 + 1.0, 1, 0), "another unit is alike"
-    twice = [Cell("d", "two", "c", model) for model in ("m", "n")]
-    assert of(*twice) == Estimate(5.0 + 2.0, 1, 0), "twice the models"
-    assert of(*two, Cell("other", "one", "a", "m")) == Estimate(8.0, 2, 1)
-    assert of() == Estimate(0.0, 0, 0)
 
 
 def test_a_suite_follows_from_the_scores_that_any_store_holds(store: Store, tmp_path: Path) -> None:

@@ -15,12 +15,11 @@ from benchmark.plan.parts import Parts
 from benchmark.progress import silent
 from benchmark.results.record import StoreLockedError, open_record
 from benchmark.results.store import Store
-from benchmark.running.durations import Durations
 from benchmark.running.runner import run, stale
 from benchmark.suites.tidying import TidyResult, tidy, would_tidy
 from files import manifest
 
-NOTHING = (0, 0, 0)
+NOTHING = (0, 0)
 
 
 def parts(**changes: Any) -> Parts:
@@ -51,8 +50,8 @@ def total(found: dict[Path, bytes]) -> int:
     return sum(len(text) for path, text in found.items() if path.name != manifest.FILE)
 
 
-def dropped(found: TidyResult) -> tuple[int, int, int]:
-    return found.scores, found.pins, found.times
+def dropped(found: TidyResult) -> tuple[int, int]:
+    return found.scores, found.pins
 
 
 def test_results_of_a_data_set_that_is_gone_are_dropped(store: Store) -> None:
@@ -82,7 +81,7 @@ def test_scores_and_pins_of_changed_data_go(store: Store) -> None:
     assert contents(store) == before, "only reported"
     done = tidy(store, parts=now)
     assert result == done
-    assert (dropped(done), done.kept) == ((4, 3, 0), 4)
+    assert (dropped(done), done.kept) == ((4, 3), 4)
     assert done.freed == size - total(contents(store)) > 0
     assert (store.directory / "notes.txt").read_text() == "mine"
     assert {cell.dataset for cell in store.scores()} == {"fake-diodes"}
@@ -93,19 +92,18 @@ def test_scores_and_pins_of_changed_data_go(store: Store) -> None:
     assert stale(fine, store, parts=now) == []
 
 
-def test_what_is_not_installed_any_more_goes_with_the_time_it_took(store: Store) -> None:
+def test_what_is_not_installed_any_more_goes(store: Store) -> None:
     known = parts()
     now = replace(known, extractors={"fake-currents": known.extractors["fake-currents"]})
     done = tidy(store, parts=now)
-    assert dropped(done) == (4, 0, 2)  # durations of two tasks
+    assert dropped(done) == (4, 0)
     assert {cell.extractor for cell in store.scores()} == {"fake-currents"}
-    assert {task.extractor for task in Durations.read([store]).known} == {"fake-currents"}
 
 
 def test_a_broken_off_run_s_journal_is_taken_in_before(tmp_path: Path) -> None:
     store = Store(tmp_path)
 
-    def stop(done: int, _total: int, _what: str, _share: float | None = None) -> None:
+    def stop(done: int, _total: int, _what: str) -> None:
         if done >= 2:
             raise KeyboardInterrupt
 
@@ -117,7 +115,7 @@ def test_a_broken_off_run_s_journal_is_taken_in_before(tmp_path: Path) -> None:
 
 def test_a_store_that_is_not_there_is_not_made(tmp_path: Path) -> None:
     for do in (would_tidy, tidy):
-        assert do(Store(tmp_path / "none"), parts=parts()) == TidyResult(0, 0, 0, 0, 0)
+        assert do(Store(tmp_path / "none"), parts=parts()) == TidyResult(0, 0, 0, 0)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -115,7 +115,7 @@ def test_every_cell_is_drawn_as_often_as_any_other() -> None:
 
 
 def test_an_interrupted_verification_says_that_nothing_is_kept(record: Store) -> None:
-    def stop(done: int, _total: int, _what: str, _share: float | None = None) -> None:
+    def stop(done: int, _total: int, _what: str) -> None:
         if done:
             raise KeyboardInterrupt
 
