@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-from enum import StrEnum
+from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -15,13 +13,10 @@ from api.cli.wrong_call import WrongCallError
 from api.deposit import against_record
 from api.deposit import bundle as deposit
 from api.deposit.archives.metadata import description
+from api.deposit.archives.server import SANDBOX, ZENODO, Server, server_at
 from api.deposit.verification import UNSEEN
 from api.deposit.verification import verify as verified
 from benchmark.progress import console_progress
-
-if TYPE_CHECKING:
-    from api.deposit.archives.archive import Archive
-    from api.deposit.archives.server import Server
 
 app = typer.Typer(
     help="Build, verify, upload or publish the archive bundle.",
@@ -30,17 +25,7 @@ app = typer.Typer(
 )
 
 
-class Interface(StrEnum):
-    """Of Zenodo's two."""
-
-    RECORDS = "records"
-    LEGACY = "legacy"
-
-
 BuiltBundle = Annotated[Path, typer.Option("--bundle", help="Directory of the bundle.")]
-InterfaceOption = Annotated[
-    Interface, typer.Option("--api", help="InvenioRDM records API, or the legacy API.")
-]
 ProductionOption = Annotated[
     bool, typer.Option("--production", help="Use zenodo.org instead of its sandbox.")
 ]
@@ -175,7 +160,6 @@ def upload(
         str | None,
         typer.Option(metavar="RECORD_ID", help="Draft to continue; by default the last one."),
     ] = None,
-    api: InterfaceOption = Interface.RECORDS,
     production: ProductionOption = False,
     server: ServerOption = None,
     form: FormatOption = Format.TABLE,
@@ -189,23 +173,24 @@ def upload(
     interrupted upload continues; files with the right checksum are not sent again.
     """
     from api.deposit.archives import uploading  # noqa: PLC0415 - a tenth of a second: HTTP
+    from api.deposit.archives.archive import Archive  # noqa: PLC0415
 
     if new_version is not None and draft is not None:
         raise WrongCallError("--draft goes on with a draft, --new-version opens one: give one")
     place = _server(production=production, server=server)
-    with _archive(place, api) as archive:
+    with closing(Archive(place, place.token())) as archive:
         done = uploading.upload(
             archive,
-            place.address,
             bundle,
             version_of=new_version,
             draft=draft,
             tell=lambda name, state: typer.echo(f"{state}: {name}", err=True),
         )
+    page = f"{place.address}/uploads/{done.draft.id}"
     rows = [{"file": name, "state": state} for name, state in done.files.items()]
     document = {
         "record": done.draft.id,
-        "page": done.draft.page,
+        "page": page,
         "published": False,
         "files": rows,
         "left": list(done.remaining_files),
@@ -214,11 +199,10 @@ def upload(
     for name in done.remaining_files:
         typer.echo(f"left as it was, though not of the bundle: {name}", err=True)
     where = "" if place.address.endswith("sandbox.zenodo.org") else _where(place, production)
-    interface = "" if api is Interface.RECORDS else f" --api {api.value}"
     typer.echo(
-        f"draft {done.draft.id}: {done.draft.page}\n"
+        f"draft {done.draft.id}: {page}\n"
         "nothing is public; look at the draft, then: "
-        f"sunatlas deposit publish {done.draft.id} --bundle {bundle}{interface}{where}",
+        f"sunatlas deposit publish {done.draft.id} --bundle {bundle}{where}",
         err=True,
     )
 
@@ -230,7 +214,6 @@ def publish(
     ],
     *,
     bundle: BuiltBundle = _BUILT,
-    api: InterfaceOption = Interface.RECORDS,
     production: ProductionOption = False,
     server: ServerOption = None,
 ) -> None:
@@ -239,11 +222,14 @@ def publish(
     Requires CITATION.cff as for upload, the same authors in the draft, and a draft with exactly the
     files of the bundle. Server and token as for upload.
     """
-    from api.deposit.archives import publishing  # noqa: PLC0415 - as above
+    from api.deposit.archives import uploading  # noqa: PLC0415 - as above
+    from api.deposit.archives.archive import Archive  # noqa: PLC0415
 
-    with _archive(_server(production=production, server=server), api) as archive:
-        done = publishing.publish(archive, record_id, bundle)
-    typer.echo(f"published {done.page}" + (f", DOI {done.doi}" if done.doi else ""))
+    place = _server(production=production, server=server)
+    with closing(Archive(place, place.token())) as archive:
+        done = uploading.publish(archive, record_id, bundle)
+    doi = f", DOI {done.pids['doi'].identifier}" if "doi" in done.pids else ""
+    typer.echo(f"published {place.address}/records/{done.id}{doi}")
 
 
 def _where(place: Server, production: bool) -> str:
@@ -251,22 +237,8 @@ def _where(place: Server, production: bool) -> str:
 
 
 def _server(*, production: bool, server: str | None) -> Server:
-    from api.deposit.archives.server import SANDBOX, ZENODO, server_at  # noqa: PLC0415
-
     if production and server is not None:
         raise WrongCallError("--production is zenodo.org, --server another archive: give one")
     if server is not None:
         return server_at(server)
     return ZENODO if production else SANDBOX
-
-
-@contextmanager
-def _archive(place: Server, api: Interface) -> Iterator[Archive]:
-    from api.deposit.archives.depositions import DepositionsArchive  # noqa: PLC0415
-    from api.deposit.archives.records import RecordsArchive  # noqa: PLC0415
-    from api.deposit.archives.server import token_of  # noqa: PLC0415
-    from api.deposit.archives.transport import Transport  # noqa: PLC0415
-
-    kind = RecordsArchive if api is Interface.RECORDS else DepositionsArchive
-    with Transport(place, token_of(place)) as transport:
-        yield kind(transport)

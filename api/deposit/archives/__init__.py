@@ -1,1 +1,1 @@
-"""Archives that take the bundle: Zenodo by either of its two interfaces."""
+"""Uploading the bundle to an archive that runs InvenioRDM, as Zenodo does."""

@@ -57,7 +57,6 @@ def test_somebody_else_s_directory_is_refused_in_one_line(tmp_path):
         (("upload", "--production", "--server", "https://a.example"), "give one"),
         (("upload", "--draft", "1", "--new-version", "2"), "give one"),
         (("publish",), "record_id"),
-        (("upload", "--api", "other"), "--api"),
     ],
 )
 def test_a_wrong_call_is_named(arguments, why):

@@ -1,174 +1,313 @@
-"""Uploads into both stand-ins: whole, mended, gone on with, never twice and never public."""
+"""A bundle goes into a draft and is published, whatever the archive answers; the token stays."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
-from api.deposit.archives.contract import ArchiveError, RefusedError, UnreachableError
-from api.deposit.archives.transport import PAUSES
-from api.deposit.archives.uploading import BundleError, ChecksumError
+from api.deposit.archives.archive import Archive, RefusedError
+from api.deposit.archives.server import SANDBOX, ZENODO, ArchiveError, SecretStr, server_at
+from api.deposit.archives.uploading import publish, upload
 from tests.api.deposit import small_bundle
-from tests.api.deposit.conftest import each
-from tests.api.deposit.standins.server import TOKEN
+from tests.api.deposit.standin import TOKEN, StandIn
 
-#: Steps that a first upload takes, in both interfaces or one.
-TAKEN = ("create", "list", "declare", "send", "commit")
-UNDECIDED = [
-    *(500, "drop before", "drop after"),
-    *(pytest.param(status, marks=pytest.mark.slow) for status in (502, 503, 504)),
-]
+ZIP = "sun-sensor-atlas-0.1.0.zip"
+STEPS = ("create", "describe", "list", "declare", "send", "commit")
+REFUSED = tuple(zip(STEPS, (302, 400, 401, 403, 409, 413), strict=True))
 
 
-def test_an_upload_brings_every_file_once_and_publishes_nothing(journey):
-    done = journey.upload()
-    assert set(done.files.values()) == {"sent"}
-    assert journey.archive.held(done.draft.id) == journey.wanted()
-    assert set(journey.sent().values()) == {1}
+class Journey:
+    """A bundle, an archive that takes it, and how long the client waited."""
+
+    def __init__(self, bundle: Path, archive: StandIn) -> None:
+        self.bundle, self.archive, self.pauses = bundle, archive, []
+        self.client = Archive(
+            server_at(archive.address), SecretStr(TOKEN), sleep=self.pauses.append, timeout=2.0
+        )
+
+    def upload(self, **options):
+        return upload(self.client, self.bundle, **options)
+
+    def publish(self, draft):
+        return publish(self.client, draft, self.bundle)
+
+    def is_whole(self, draft):
+        held = self.archive.files(draft)
+        names = ("README.md", "bibliography/studies.bib", "bibliography/studies.ris")
+        whole = {Path(name).name: (self.bundle / name).read_bytes() for name in names}
+        whole["sun-sensor-atlas.sqlite"] = (self.bundle / "sun-sensor-atlas.sqlite").read_bytes()
+        whole[ZIP] = self.bundle.with_name("bundle.zip").read_bytes()
+        return held == whole
+
+
+@pytest.fixture
+def journey(tmp_path):
+    with StandIn() as archive:
+        made = Journey(small_bundle.make(tmp_path / "bundle"), archive)
+        yield made
+        made.client.close()
+
+
+def test_an_upload_publishes_nothing_and_a_second_sends_nothing(journey):
+    told = []
+    draft = journey.upload(tell=lambda *one: told.append(one)).draft.id
+    assert journey.is_whole(draft)
+    assert {state for _, state in told} == {"sent"}
     assert not journey.archive.records
-    assert not journey.archive.calls("POST", "/actions/publish")
-    assert len(journey.archive.drafts) == 1
-
-
-def test_a_second_upload_of_the_same_bundle_sends_no_file(journey):
-    first = journey.upload()
+    reserved = journey.archive.drafts[draft]["pids"]
     again = journey.upload()
-    assert again.draft.id == first.draft.id
-    assert set(again.files.values()) == {"there already"}
-    assert set(journey.sent().values()) == {1}
-
-
-def test_only_what_changed_is_sent_again(journey):
-    done = journey.upload()
+    assert (again.draft.id, set(again.files.values())) == (draft, {"there already"})
+    assert len(journey.archive.sent()) == 5
+    assert journey.archive.drafts[draft]["pids"] == reserved
     small_bundle.make(journey.bundle, readme="# another\n")
-    again = journey.upload()
-    changed = {name for name, state in again.files.items() if state == "sent"}
-    assert changed == {"README.md", "sun-sensor-atlas-0.1.0.zip"}
-    assert journey.archive.held(done.draft.id) == journey.wanted()
+    changed = journey.upload(draft=draft).files
+    assert {name for name, state in changed.items() if state == "sent"} == {"README.md", ZIP}
+    metadata = journey.archive.drafts[draft]["metadata"]
+    assert [right["id"] for right in metadata["rights"]] == ["cc-by-4.0", "mit"]
+    assert metadata["creators"][0]["person_or_org"]["family_name"] == "Sommer"
+    assert (metadata["publication_date"], metadata["version"]) == ("2026-11-21", "0.1.0")
 
 
-@pytest.mark.parametrize("kind", UNDECIDED)
-@each(*TAKEN)
-def test_a_moment_s_failure_is_survived(journey, kind, step):
-    fault = journey.fails(kind, step)
-    done = journey.upload()
-    assert fault.met.is_set()
-    assert journey.archive.held(done.draft.id) == journey.wanted()
-    assert not journey.archive.records
-    # What was lost while a file was sent may be sent once more, and no other file is.
-    assert sorted(journey.sent().values()) in ([1, 1, 1, 1, 1], [1, 1, 1, 1, 2])
-    assert journey.pauses in ([], [PAUSES[0]])
+def test_a_published_record_has_a_next_version_without_its_old_files(journey):
+    first = journey.upload().draft.id
+    public = journey.publish(first)
+    assert (public.id, public.pids["doi"].identifier) == (first, f"10.5072/zenodo.{first}")
+    with pytest.raises(ArchiveError, match=f"--new-version {first}"):
+        journey.upload()
+    with pytest.raises(ArchiveError, match="is published already; nothing was published"):
+        journey.publish(first)
+    files = journey.archive.records[first]["files"]
+    files["old.zip"] = {**files["README.md"], "key": "old.zip"}
+    done = journey.upload(version_of=first)
+    assert done.draft.id != first
+    assert done.files == {**dict.fromkeys(files, "there already"), "old.zip": "removed"}
+    assert journey.is_whole(done.draft.id)
 
 
-@each(*TAKEN)
-def test_too_many_requests_are_waited_out_as_long_as_asked(journey, step):
-    journey.fails(429, step, times=2, Retry_After="7")
-    done = journey.upload()
-    assert journey.pauses == [7.0, 7.0]
-    assert journey.archive.held(done.draft.id) == journey.wanted()
+@pytest.mark.parametrize("kind", [429, "drop before", "drop after"])
+@pytest.mark.parametrize("step", [*STEPS, "version", "import", "delete", "publish"])
+def test_a_failure_for_the_moment_is_survived(journey, kind, step):
+    """Whether or not the request arrived, nothing is done twice."""
+    if step in {*STEPS, "publish"}:
+        journey.archive.fault(step, kind)
+        draft = journey.upload().draft.id
+        assert len(journey.archive.sent()) <= 6
+    else:
+        first = journey.upload().draft.id
+        journey.publish(first)
+        small_bundle.make(journey.bundle, readme="# second\n")
+        journey.archive.fault(step, kind)
+        draft = journey.upload(version_of=first).draft.id
+    assert journey.is_whole(draft)
+    journey.publish(draft)
+    assert draft in journey.archive.records
+    assert not [n for n, kept in journey.archive.drafts.items() if kept["files"]]
+    assert journey.pauses == [7.0 if isinstance(kind, int) else 1.0]
 
 
-def test_a_server_that_asks_for_hours_is_not_waited_for(journey):
-    journey.fails(429, "create", times=9, Retry_After="7200")
+@pytest.mark.parametrize(("step", "kind"), REFUSED)
+def test_a_refusal_ends_an_upload_without_the_token_and_the_next_goes_on(journey, step, kind):
+    journey.archive.fault(step, kind)
+    with pytest.raises(RefusedError, match=f"{kind}.*you sent Bearer \\*\\*\\*") as refused:
+        journey.upload()
+    assert TOKEN not in repr(refused.value)
+    assert journey.pauses == []
+    assert journey.is_whole(journey.upload().draft.id)
+    assert len(journey.archive.drafts) == 1
+    assert journey.archive.signed == {f"Bearer {TOKEN}"}
+    kept = [path for path in journey.bundle.parent.rglob("*") if path.is_file()]
+    assert not [path for path in kept if TOKEN.encode() in path.read_bytes()]
+
+
+def test_an_archive_that_stays_away_or_asks_for_hours_is_given_up(journey):
+    journey.archive.fault("create", b"", 99)
+    with pytest.raises(ArchiveError, match="no whole answer"):
+        journey.upload()
+    assert journey.pauses == [1, 2, 4, 8, 16]
+    journey.archive.fault("create", b"HTTP/1.1 429 No\r\nRetry-After: 7200\r\n\r\n")
     with pytest.raises(RefusedError, match="429"):
         journey.upload()
-    assert journey.pauses == []
-    assert len(journey.archive.asked) == 1
 
 
-@pytest.mark.parametrize("kind", [401, 403, 409])
-@each(*TAKEN)
-def test_a_refusal_ends_the_upload_and_the_next_one_ends_it_well(journey, kind, step):
-    journey.fails(kind, step)
-    with pytest.raises(RefusedError, match=str(kind)) as refused:
+def test_a_wrong_checksum_is_sent_again_and_not_for_ever(journey):
+    journey.archive.fault("send", "wrong checksum")
+    assert journey.is_whole(journey.upload().draft.id)
+    small_bundle.make(journey.bundle, readme="# another\n")
+    journey.archive.fault("send", "wrong checksum", 99)
+    with pytest.raises(ArchiveError, match="sent 3 times"):
         journey.upload()
-    assert refused.value.status == kind
-    assert TOKEN not in str(refused.value)
-    assert journey.pauses == []
-    done = journey.upload()
-    assert journey.archive.held(done.draft.id) == journey.wanted()
+
+
+def answer(body: bytes, *headers: str) -> bytes:
+    head = "\r\n".join(["HTTP/1.1 200 OK", "Content-Type: application/json", *headers])
+    return f"{head}\r\nContent-Length: {len(body)}\r\n\r\n".encode() + body
+
+
+HOSTILE = {
+    "200,000 arrays deep": answer(b"[" * 200_000 + b"]" * 200_000),
+    "a bomb": answer(gzip.compress(bytes(50 << 20)), "Content-Encoding: gzip"),
+    "a byte every moment": "drip",
+    "50 MB": answer(b" " * (50 << 20)),
+    "a page": answer(b"<html>log in</html>", "Content-Type: text/html"),
+    "a list": answer(b"[]"),
+    "no member": answer(b"{}"),
+    "nothing": answer(b""),
+    "a path": answer(b'{"id": "../../users"}'),
+    "escape codes": answer(b'{"id": "a", "pids": {"\\u001b[2J": {"identifier": ""}}}'),
+    "5,000 digits": answer(b'{"id": ' + b"9" * 5000 + b"}"),
+    "not UTF-8": answer(b'{"id": "\xe9"}'),
+    "a number of creators": answer(b'{"id": "a", "metadata": {"creators": 5}}'),
+    "cut short": answer(b'{"id": "a"}')[:-3],
+    "chunks that are none": b"HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n{}\r\n",
+    "no HTTP": b"SSH-2.0-OpenSSH_9.6\r\n",
+    "an endless header": b"HTTP/1.1 200 OK\r\nX: " + b"x" * 300_000,
+    "a refusal 200,000 deep": answer(b"[" * 200_000).replace(b"200 OK", b"400 \x1b[2J", 1),
+    "Retry-After of 400 digits": b"HTTP/1.1 429 No\r\nRetry-After: " + b"9" * 400 + b"\r\n\r\n",
+    "Retry-After in superscript": "HTTP/1.1 429 No\r\nRetry-After: ²\r\n\r\n".encode("latin-1"),
+}
+
+
+@pytest.mark.parametrize(
+    ("step", "name"), [*(("create", name) for name in HOSTILE), ("publish", "no member")]
+)
+def test_any_answer_ends_in_one_sentence(journey, step, name):
+    draft = journey.upload().draft.id if step == "publish" else ""
+    journey.archive.fault(step, HOSTILE[name], 99)
+    with pytest.raises(ArchiveError) as raised:
+        journey.publish(draft) if draft else journey.upload()
+    assert str(raised.value).isprintable()
+    assert 10 < len(str(raised.value)) <= 600
     assert not journey.archive.records
 
 
-@pytest.mark.parametrize("kind", [500, "drop before"])
-def test_an_archive_that_stays_away_is_given_up(journey, kind):
-    journey.fails(kind, "send", times=99)
-    with pytest.raises((UnreachableError, RefusedError)):
-        journey.upload()
-    assert journey.pauses == list(PAUSES)
+def test_an_answer_of_another_record_or_with_a_file_twice_is_not_believed(journey):
+    draft = journey.upload().draft.id
+    journey.archive.fault("draft", answer(b'{"id": "77"}'))
+    with pytest.raises(ArchiveError, match=f"answered of record 77, expected {draft}"):
+        journey.publish(draft)
+    journey.archive.fault("list", answer(b'{"entries": [{"key": "a"}, {"key": "a"}]}'))
+    with pytest.raises(ArchiveError, match="lists a file twice"):
+        journey.publish(draft)
+
+
+@pytest.mark.parametrize(
+    ("people", "why"),
+    [
+        (small_bundle.PLACEHOLDER, "authors: no person.*repository-code: missing"),
+        (small_bundle.PEOPLE.replace("0009-0000", "0009-0001"), "authors: .*mistyped"),
+        (small_bundle.NOWHERE, "not filled in: repository-code: missing"),
+    ],
+)
+def test_a_citation_that_lacks_a_field_is_neither_sent_nor_published(journey, people, why):
+    draft = journey.upload().draft.id
+    asked = len(journey.archive.asked)
+    small_bundle.make(journey.bundle, people)
+    for act, undone in ((journey.upload, "sent"), (lambda: journey.publish(draft), "published")):
+        with pytest.raises(ArchiveError, match=f"{why}.*; nothing was {undone}$"):
+            act()
+    assert len(journey.archive.asked) == asked
+
+
+def test_a_draft_that_is_not_the_bundle_is_not_published(journey):
+    draft = journey.upload().draft.id
+    kept = journey.archive.drafts[draft]
+    kept["files"]["notes.txt"] = {**kept["files"]["README.md"], "key": "notes.txt"}
+    assert journey.upload().remaining_files == ("notes.txt",)
+    with pytest.raises(ArchiveError, match=r"notes\.txt missing, foreign or of other bytes"):
+        journey.publish(draft)
+    del kept["files"]["notes.txt"]
+    kept["metadata"]["creators"] = [{"person_or_org": {"name": "Contributors"}}]
+    with pytest.raises(ArchiveError, match="authors of draft"):
+        journey.publish(draft)
+    with pytest.raises(ArchiveError, match="77 is no unpublished draft"):
+        journey.publish("77")
     assert not journey.archive.records
 
 
-def test_a_file_with_a_wrong_checksum_is_sent_again(journey):
-    journey.fails("wrong checksum", "send")
-    done = journey.upload()
-    assert journey.archive.held(done.draft.id) == journey.wanted()
-    assert sorted(journey.sent().values()) == [1, 1, 1, 1, 2]
-
-
-def test_a_checksum_that_stays_wrong_ends_the_upload(journey):
-    journey.fails("wrong checksum", "send", times=99)
-    with pytest.raises(ChecksumError, match="sent 3 times"):
+def test_a_bundle_that_does_not_hold_or_a_draft_that_is_none_is_not_sent(journey, tmp_path):
+    for draft, why in (("77", "no unpublished draft 77"), ("../77", "is no identifier")):
+        with pytest.raises(ArchiveError, match=why):
+            journey.upload(draft=draft)
+    memory = journey.bundle.with_name("bundle.drafts.json")
+    for text in ("[]", "{", '{"a": {"draft": 3}}'):
+        memory.write_text(text)
+        with pytest.raises(ArchiveError, match=r"bundle\.drafts\.json: does not say"):
+            journey.upload()
+    memory.unlink()
+    readme = journey.bundle / "README.md"
+    with readme.open("wb") as file:
+        file.truncate(1 << 40)
+    with pytest.raises(ArchiveError, match="at most 50,000,000,000"):
         journey.upload()
-    journey.archive.faults.clear()
-    done = journey.upload()
-    assert journey.archive.held(done.draft.id) == journey.wanted()
+    readme.write_text("other")
+    with pytest.raises(ArchiveError, match=r"README\.md: SHA-256"):
+        journey.upload()
+    for make in (os.mkfifo, lambda path: path.symlink_to(tmp_path)):
+        readme.unlink()
+        make(readme)
+        with pytest.raises(ArchiveError, match=r"README\.md"):
+            journey.upload()
+    assert [step for step, _ in journey.archive.asked] == ["draft"]
 
 
 def test_a_draft_deleted_by_hand_is_replaced(journey):
-    first = journey.upload()
-    if journey.api == "records":
-        journey.archive.drafts.pop(first.draft.id)
-    else:
-        journey.archive.all.pop(first.draft.id)
-    again = journey.upload()
-    assert again.draft.id != first.draft.id
-    assert journey.archive.held(again.draft.id) == journey.wanted()
+    first = journey.upload().draft.id
+    del journey.archive.drafts[first]
+    journey.archive.records["x"] = {}
+    again = journey.upload().draft.id
+    assert again != first
+    assert journey.is_whole(again)
 
 
-def test_files_of_others_in_a_draft_are_left_and_told(journey):
-    done = journey.upload()
-    files = (
-        journey.archive.drafts[done.draft.id]["files"]
-        if journey.api == "records"
-        else journey.archive.all[done.draft.id]["files"]
-    )
-    files["notes.txt"] = {**files["README.md"], "id": "f-9"}
-    again = journey.upload(draft=done.draft.id)
-    assert again.remaining_files == ("notes.txt",)
-    assert "notes.txt" in journey.archive.held(done.draft.id)
-    with pytest.raises(ArchiveError, match=r"notes\.txt is not of the bundle"):
-        journey.publish(done.draft.id)
+@pytest.mark.slow
+def test_a_killed_upload_goes_on_where_it_was(journey):
+    journey.archive.faults["send"] = [None, None, "hold"]
+    command = [*(sys.executable, "-m", "api.cli.command_line", "deposit", "upload"), "--bundle"]
+    command += [str(journey.bundle), "--server", journey.archive.address]
+    environment = {**os.environ, "ARCHIVE_TOKEN": TOKEN}
+    first = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True)
+    assert journey.archive.held.wait(120)
+    first.send_signal(signal.SIGKILL)
+    assert first.communicate()[1].count("sent: ") == 2
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert TOKEN not in done.stdout + done.stderr
+    (draft,) = journey.archive.drafts
+    assert journey.is_whole(draft)
+    assert len(journey.archive.sent()) == 6
+    remembered = json.loads(journey.bundle.with_name("bundle.drafts.json").read_text())
+    kept = {"draft": draft, "version_of": None}
+    assert remembered == {f"{journey.archive.address} records": kept}
 
 
-def test_a_draft_that_is_not_there_is_not_gone_on_with(journey):
-    with pytest.raises(ArchiveError, match="no unpublished draft 77"):
-        journey.upload(draft="77")
-    with pytest.raises(ArchiveError, match="is no identifier"):
-        journey.upload(draft="../77")
+def test_each_server_has_a_token_of_its_own(monkeypatch):
+    monkeypatch.setenv("ZENODO_TOKEN", TOKEN)
+    for server in (SANDBOX, server_at("https://archive.example")):
+        monkeypatch.delenv(server.variable, raising=False)
+        with pytest.raises(ArchiveError, match=f"as {server.variable}"):
+            server.token()
+    assert TOKEN not in f"{ZENODO.token()!r} {ZENODO.token()}"
+    for text in ("two words here", "line\nbreak-in-it", "short", "ünicode-token"):
+        monkeypatch.setenv("ZENODO_SANDBOX_TOKEN", text)
+        with pytest.raises(ArchiveError, match="holds no token") as refused:
+            SANDBOX.token()
+        assert text not in str(refused.value)
+    assert server_at("https://zenodo.org/") == ZENODO
 
 
-def test_a_damaged_bundle_is_not_sent(journey):
-    (journey.bundle / "README.md").write_text("other")
-    with pytest.raises(BundleError, match=r"README\.md: SHA-256"):
-        journey.upload()
-    small_bundle.make(journey.bundle)
-    packed = journey.bundle.with_name("bundle.zip")
-    packed.write_bytes(packed.read_bytes()[:-30])
-    with pytest.raises(BundleError, match=r"bundle\.zip"):
-        journey.upload()
-    assert journey.archive.asked == []
-
-
-def test_a_zip_of_another_bundle_is_not_sent(journey):
-    other = small_bundle.make(journey.bundle.with_name("other"), readme="other")
-    other.with_name("other.zip").replace(journey.bundle.with_name("bundle.zip"))
-    with pytest.raises(BundleError, match="not the zip of"):
-        journey.upload()
-    assert journey.archive.asked == []
-
-
-@pytest.mark.parametrize("text", ["[]", "{", '{"x y": 3}', '{"a b": {"draft": 3}}'])
-def test_a_memory_that_says_nothing_is_named(journey, text):
-    path = journey.bundle.with_name("bundle.drafts.json")
-    path.write_text(text)
-    with pytest.raises(BundleError, match=r"bundle\.drafts\.json"):
-        journey.upload()
-    assert journey.archive.asked == []
+@pytest.mark.parametrize(
+    "address",
+    [
+        *("http://zenodo.org", "ftp://zenodo.org", "zenodo.org", "https://me:secret@zenodo.org"),
+        *("https://zenodo.org/api", "https://", "", "http://127.0.0.1.evil.example"),
+    ],
+)
+def test_an_address_to_which_no_token_may_go_is_refused(address):
+    with pytest.raises(ArchiveError, match="no address of an archive"):
+        server_at(address)
