@@ -87,11 +87,16 @@ class PipelinesOfStudy:
     catalogue : Catalogue
     facts : Facts
         What is said of studies beyond their values.
+    is_own : bool
+        Whether the plan is that of one study's own sensor.
     """
 
-    def __init__(self, plan: Plan, catalogue: Catalogue, facts: Facts) -> None:
+    def __init__(
+        self, plan: Plan, catalogue: Catalogue, facts: Facts, *, is_own: bool = False
+    ) -> None:
         self.catalogue = catalogue
         self.facts = facts
+        self.is_own = is_own
         self.plan: Plan = {
             architecture: {
                 pair: datasets
@@ -101,6 +106,12 @@ class PipelinesOfStudy:
             for architecture, pairs in plan.items()
         }
         self._stages = {name: stages(scored) for name, scored in catalogue.models.items()}
+
+    def on_own(self, plan: Plan | None) -> PipelinesOfStudy:
+        """Return the same on the plan of a study's own sensor; itself where there is none."""
+        if plan is None:
+            return self
+        return PipelinesOfStudy(plan, self.catalogue, self.facts, is_own=True)
 
     def pipelines_by_architecture(
         self, study: Study, architectures: Iterable[Architecture]

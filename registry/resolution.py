@@ -11,6 +11,7 @@ has a cell. What is decided here, because the mapping does not say it:
   it there: its score is not the study's own.
 - A study is shown under what it is run for (`registry.fidelity.purposes`). Where its own sensor
   does not show that, it stands on the nearest that does, if it is nearer to the study so.
+- A study whose sensor is simulated for it alone runs there and nowhere else.
 - How near its run is to the study is graded (`registry.fidelity.grading`), by what is known of its
   sensor, calibration and accuracy too (`registry.fidelity.evidence`).
 """
@@ -19,6 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from types import MappingProxyType
 from typing import Literal
 
@@ -38,7 +40,7 @@ from registry.fidelity.particulars import Purpose
 from registry.fidelity.purposes import PURPOSES, DataSet, DatasetCondition, purposes, settings
 from registry.fidelity.runnable import Gap, RunnablePipeline, strongest
 from registry.fitting import ChosenMethod, FittedPipeline, PipelinesOfStudy
-from registry.sensors import BASES, SENSOR, Basis, Part, Sensor, cell, sensors
+from registry.sensors import BASES, SENSOR, Basis, Part, Sensor, cell, own_sensors, sensors
 from registry.studies import Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED, Architecture, Plan
 
@@ -90,6 +92,7 @@ def resolve(
     study: Study | str,
     plan: Plan,
     *,
+    own: Mapping[str, Plan] | None = None,
     data_sets: Mapping[str, DataSet] | None = None,
     catalogue: Catalogue | None = None,
     facts: Facts | None = None,
@@ -103,6 +106,9 @@ def resolve(
         A study or its key; InvalidValueError for an unknown key.
     plan : Plan
         What can be scored, as `benchmark.plan.combinations.scorable_plan` gives it.
+    own : optional
+        What can be scored on sensors of single studies, by study, as
+        `benchmark.plan.combinations.study_plans` gives it; none by default.
     data_sets : optional
         What the plan's data sets show, as `benchmark.plan.shown.data_sets` gives it; one that is
         missing shows its nominal condition alone.
@@ -114,12 +120,13 @@ def resolve(
     known = facts or registered.facts()
     found = known.study(study) if isinstance(study, str) else study
     fitting = PipelinesOfStudy(plan, catalogue or implementations.catalogue(), known)
-    return _resolve(found, fitting, data_sets or {}, scores)
+    return _resolve(found, fitting.on_own((own or {}).get(found.key)), data_sets or {}, scores)
 
 
 def resolve_all(
     plan: Plan,
     *,
+    own: Mapping[str, Plan] | None = None,
     data_sets: Mapping[str, DataSet] | None = None,
     catalogue: Catalogue | None = None,
     facts: Facts | None = None,
@@ -128,8 +135,11 @@ def resolve_all(
     """`resolve` of every study, by key."""
     known = facts or registered.facts()
     fitting = PipelinesOfStudy(plan, catalogue or implementations.catalogue(), known)
-    sets = data_sets or {}
-    return {key: _resolve(one, fitting, sets, scores) for key, one in known.studies.items()}
+    sets, owned = data_sets or {}, own or {}
+    return {
+        key: _resolve(one, fitting.on_own(owned.get(key)), sets, scores)
+        for key, one in known.studies.items()
+    }
 
 
 def resolve_later(
@@ -215,7 +225,11 @@ def _place(
 ) -> tuple[Resolution, Sequence[FittedPipeline]]:
     """Resolve a study on its own sensor, or on the nearest that shows what it is run for."""
     facts = fitting.facts
-    on = sensors(study, facts, fitting.plan, lambda pair: fitting.count_own_methods(study, pair))
+    on = (
+        own_sensors(study, facts, fitting.plan)
+        if fitting.is_own
+        else sensors(study, facts, fitting.plan, partial(fitting.count_own_methods, study))
+    )
     wanted = purposes(study, facts)
     own = _resolve_all(study, on, fitting, data_sets, wanted)
     shown = all(departure.part != "condition" for departure in own[0].fidelity.departures)
@@ -282,7 +296,7 @@ def _resolve_all(
     ran = [one for found in fitted.values() for one in found]
     gaps = (
         *empty_cells(study, pipelines),
-        *architecture_gaps(study, fitting.plan, pipelines),
+        *(() if fitting.is_own else architecture_gaps(study, fitting.plan, pipelines)),
         *method_gaps(study, ran, on, fitting),
         *nearest_gaps(study),
     )

@@ -93,6 +93,34 @@ def sensors(
     return (relatives,) if relatives else ()
 
 
+def own_sensors(
+    study: Study, facts: Facts, architectures: Iterable[Architecture]
+) -> tuple[Sensor, ...]:
+    """Return what data sets made after a study alone have, whatever else its mapping infers.
+
+    A value that the mapping does not have is inferred from what is known of the built sensor.
+
+    Parameters
+    ----------
+    study, facts
+        The study, and what is said of its sensor.
+    architectures
+        Of its data sets.
+    """
+
+    def part(attribute: str, value: str) -> Part:
+        if value in study.of(attribute):
+            return cell(study, attribute, value)
+        built = facts.run_facts.get(study.key, ())
+        ids = [one.note for one in built if (one.fact, one.value) == (attribute, value)]
+        if not ids:
+            return Part(value, "defaulted", "of the data set made after it")
+        mapped = " and ".join(study.of(attribute))
+        return Part(value, "inferred", f"built so (hardware {ids[0]}); the mapping has {mapped}")
+
+    return tuple(Sensor(part("detector", d), part("mask", m)) for d, m in architectures)
+
+
 def _fill(study: Study, attribute: str, defaults: Iterable[Default]) -> dict[str, Part]:
     """Return the values of an attribute: stated, or by the first rule that applies; or none."""
     if study.of(attribute):

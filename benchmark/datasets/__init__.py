@@ -1,7 +1,7 @@
-"""Standard datasets: `names`, `get`.
+"""Standard datasets: `names`, `get`; and sensors of single studies: `study_names`.
 
-A dataset is one module of `benchmark.datasets.standard` that defines ``PRESET``; nothing else
-registers it.
+A dataset is one module of `benchmark.datasets.standard` or `benchmark.datasets.studies` that
+defines ``PRESET``; nothing else registers it.
 """
 
 from __future__ import annotations
@@ -9,8 +9,9 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from functools import cache
+from types import ModuleType
 
-from benchmark.datasets import standard
+from benchmark.datasets import standard, studies
 from benchmark.datasets.calibration import SHOWN_IDEAL
 from benchmark.datasets.card import parameters_of
 from benchmark.datasets.preset import Condition, Preset
@@ -26,6 +27,7 @@ __all__ = [
     "names",
     "parameters_of",
     "samples_hash",
+    "study_names",
 ]
 
 
@@ -40,19 +42,27 @@ class UnknownDatasetError(LookupError, ValueError):
 
 
 def names() -> tuple[str, ...]:
-    """Names of all datasets, sorted."""
+    """Names of all standard datasets, sorted."""
     return tuple(sorted(_presets()))
 
 
+def study_names() -> tuple[str, ...]:
+    """Names of the sensors of single studies, sorted.
+
+    Only the pipelines of the studies that such a dataset follows are scored on it.
+    """
+    return tuple(sorted(_of_studies()))
+
+
 def get(name: str) -> Preset:
-    """Return the dataset of this name.
+    """Return the dataset of this name, a standard one or the sensor of a study.
 
     Raises
     ------
     UnknownDatasetError
         Naming the nearest known one.
     """
-    presets = _presets()
+    presets = {**_presets(), **_of_studies()}
     if name not in presets:
         raise UnknownDatasetError(name, tuple(sorted(presets)))
     return presets[name]
@@ -60,9 +70,21 @@ def get(name: str) -> Preset:
 
 @cache
 def _presets() -> dict[str, Preset]:
+    return {
+        name: preset.with_ideal_calibration() if name in SHOWN_IDEAL else preset
+        for name, preset in _found_in(standard).items()
+    }
+
+
+@cache
+def _of_studies() -> dict[str, Preset]:
+    return _found_in(studies)
+
+
+def _found_in(package: ModuleType) -> dict[str, Preset]:
     found: dict[str, Preset] = {}
-    for module in pkgutil.iter_modules(standard.__path__):
-        loaded = importlib.import_module(f"{standard.__name__}.{module.name}")
+    for module in pkgutil.iter_modules(package.__path__):
+        loaded = importlib.import_module(f"{package.__name__}.{module.name}")
         preset = getattr(loaded, "PRESET", None)
         if not isinstance(preset, Preset):
             raise TypeError(f"{loaded.__name__} must define PRESET, a Preset; got {preset!r}")
@@ -73,6 +95,5 @@ def _presets() -> dict[str, Preset]:
                 f"dataset {preset.name!r} belongs in a module called "
                 f"{preset.name.replace('-', '_')}; it is in {module.name}"
             )
-        shown = preset.name in SHOWN_IDEAL
-        found[preset.name] = preset.with_ideal_calibration() if shown else preset
+        found[preset.name] = preset
     return found

@@ -9,7 +9,7 @@ from itertools import product
 from algorithms.chain import Scored
 from algorithms.contract import Extractor, FeatureKind, UnsuitableDesignError
 from benchmark.contract import Cell, Preset, UnknownNameError
-from benchmark.plan.parts import Parts, installed_parts
+from benchmark.plan.parts import Parts, installed_parts, study_parts
 from registry.taxonomy import Plan
 
 Names = str | Iterable[str] | None
@@ -106,6 +106,25 @@ def scorable_plan(*, parts: Parts | None = None) -> Plan:
             pair = extractor.about.name, model.about.name
             pairs[pair] = (*pairs.get(pair, ()), preset.name)
     return found
+
+
+def study_plans(*, parts: Parts | None = None) -> dict[str, Plan]:
+    """Return by study what can be scored on its own sensor: `scorable_plan` of that alone.
+
+    Parameters
+    ----------
+    parts
+        Of sensors of single studies and implementations; those that are installed by default.
+    """
+    known = parts or study_parts()
+    found: dict[str, dict[str, Preset]] = {}
+    for name, preset in known.presets.items():
+        for study in getattr(preset, "follows", ()):
+            found.setdefault(study, {})[name] = preset
+    return {
+        study: scorable_plan(parts=Parts(presets, known.extractors, known.models))
+        for study, presets in sorted(found.items())
+    }
 
 
 @dataclass(frozen=True)

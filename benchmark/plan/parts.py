@@ -62,3 +62,33 @@ def installed_parts() -> Parts:
         extractors=discover_extractors(),
         models=discover_chains(),
     )
+
+
+@cache
+def study_parts() -> Parts:
+    """Return the sensors of single studies, and every implementation."""
+    from benchmark import datasets  # noqa: PLC0415 - loads the simulator
+
+    known = installed_parts()
+    presets = {name: datasets.get(name) for name in datasets.study_names()}
+    return Parts(presets, known.extractors, known.models)
+
+
+@cache
+def every_part() -> Parts:
+    """Return standard data sets and sensors of single studies, and every implementation."""
+    known = installed_parts()
+    presets = {**known.presets, **study_parts().presets}
+    return Parts(presets, known.extractors, known.models)
+
+
+def split_parts(parts: Parts) -> tuple[Parts, Parts]:
+    """Divide parts into those of standard data sets and those of sensors of single studies."""
+    from benchmark import datasets  # noqa: PLC0415 - loads the simulator
+
+    own = frozenset(datasets.study_names())
+    halves: tuple[dict[str, Preset], dict[str, Preset]] = ({}, {})
+    for name, preset in parts.presets.items():
+        halves[name in own][name] = preset
+    standard, studies = (Parts(half, parts.extractors, parts.models) for half in halves)
+    return standard, studies

@@ -6,21 +6,26 @@ import math
 from collections.abc import Mapping
 
 from algorithms.design import SensorGeometry
-from benchmark.plan.parts import Parts, installed_parts
+from benchmark.plan.parts import Parts, every_part
 from registry.fidelity.purposes import DataSet
 
 
 def data_sets(*, parts: Parts | None = None) -> Mapping[str, DataSet]:
-    """Return conditions, columns, studies and design of every data set, by its name."""
+    """Return conditions, columns, studies and design of every data set, by its name.
+
+    Sensors of single studies among them, unless others are handed in.
+    """
     return {
         name: DataSet(
             name,
             tuple(preset.conditions),
             frozenset(preset.context_columns),
             tuple(getattr(preset, "follows", ())),  # a card's field, and no part of the protocol
-            design(preset.geometry) if hasattr(preset, "geometry") else {},
+            {**design(preset.geometry), **getattr(preset, "drawn", {})}
+            if hasattr(preset, "geometry")
+            else {},
         )
-        for name, preset in (parts or installed_parts()).presets.items()
+        for name, preset in (parts or every_part()).presets.items()
     }
 
 

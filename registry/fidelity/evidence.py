@@ -21,7 +21,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 
 from registry.catalogue import Catalogue
-from registry.fidelity.particulars import DRAWN
+from registry.fidelity.particulars import DIMENSIONS, DRAWN
 from registry.fidelity.purposes import DataSet
 from registry.fidelity.runnable import Departure, RunnablePipeline
 from registry.studies import Facts, Study
@@ -29,7 +29,7 @@ from registry.studies import Facts, Study
 FACTOR = 1.5
 """Times by which a dimension may be another than the study's."""
 UNKNOWN_SHARE = 0.4
-"""Share of a sensor's needed facts that may not be unknown."""
+"""Share of a sensor's dimensions from which on their being unknown is said."""
 SCORE_FACTOR = 3.0
 """Times by which the own error may be another than the accuracy that a study reports."""
 
@@ -58,7 +58,7 @@ _COUNTED = ("Multi-Ap.", "Multi-Slit", "Encoded")
 def needed(design: Mapping[str, float | str], mask: str) -> tuple[str, ...]:
     """Name what has to be known of a sensor of this kind."""
     if "faces" in design:
-        return ("layout", "faces", *(("tilt_deg",) * (design["layout"] == "pyramid")))
+        return ("layout", "faces", *(("tilt_deg",) * ("pyramid" in str(design["layout"]))))
     counted = ("openings",) * (mask in _COUNTED)
     pixels = tuple(name for name in ("pitch_um", "array_px") if name in design)
     return (*counted, "opening_um", "height_mm", *pixels, "fov_deg")
@@ -155,9 +155,9 @@ def sensor(
         yield Departure("sensor", at.name, text, f"a data set with {wanted}")
     missing, number = unknown_of_sensor(study, facts, at, pair)
     if len(missing) >= UNKNOWN_SHARE * number and missing:
-        names = ", ".join(NAMES[name] for name in missing)
-        text = f"{len(missing)} of {number} facts of its sensor are not known ({names})"
-        yield Departure("sensor", "dimensions", text, f"the study's {names}", True)
+        names = ", ".join(NAMES[name].partition(",")[0] for name in missing)
+        text = f"{len(missing)} of {number} dimensions of its sensor are not known ({names})"
+        yield Departure("sensor", DIMENSIONS, text, f"the study's {names}", True)
 
 
 def parts(study: Study, facts: Facts) -> Iterable[Departure]:

@@ -27,7 +27,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from files.json_data import JsonData
-from registry.fidelity.particulars import Purpose
+from registry.fidelity.particulars import DIMENSIONS, Purpose
 from registry.fidelity.purposes import PURPOSES
 from registry.fidelity.runnable import Departure, Part, RunnablePipeline, strongest
 from registry.fitting import COMPENSATIONS, FITTED, ChosenMethod, FittedPipeline
@@ -59,7 +59,7 @@ TALLIED: Mapping[Grade, str] = {
 
 @dataclass(frozen=True)
 class Fidelity(JsonData):
-    """The grade of a study's run, in one sentence and by its departures."""
+    """The grade of a study's run, in words and by its departures."""
 
     grade: Grade
     sentence: str
@@ -285,7 +285,10 @@ def _sentence(
     departures: Sequence[Departure],
     running: Collection[str],
 ) -> str:
-    """Say in one sentence what runs where beside how many more, and what is missing or chosen."""
+    """Say what runs where beside how many more, and what is missing or chosen.
+
+    Dimensions that are unknown stand in a sentence of their own.
+    """
     best, more = shown
     stated = [
         _small(facts.taxonomy.name(attribute, value))
@@ -302,10 +305,17 @@ def _sentence(
     if best.model.split(" + ")[-1] in PROJECTIONS and best.model_taxonomy == "SPM":
         lead += " (projection, constants fitted)"
     if departures:
-        return f"{lead}; {'; '.join(departure.text for departure in departures)}."
+        clauses = [one.text for one in departures if one.value != DIMENSIONS]
+        alone = [_dimensions_sentence(one) for one in departures if one.value == DIMENSIONS]
+        return " ".join((f"{'; '.join((lead, *clauses))}.", *alone))
     inferred = [a for a in SENSOR if best.basis[a] in ("inferred", "implied")]
     verb = "are" if len(inferred) > 1 else "is"
     return lead + (f"; its {_list_items(inferred)} {verb} inferred." if inferred else ".")
+
+
+def _dimensions_sentence(departure: Departure) -> str:
+    """Say that dimensions of the sensor are unknown, with their count, as a sentence."""
+    return f"{departure.text}; its data set assumes them."
 
 
 def _small(name: str) -> str:

@@ -8,6 +8,9 @@ from typing import Literal, cast
 
 Purpose = Literal["albedo", "temperature", "flight"]
 
+DIMENSIONS = "dimensions"
+"""Value of the departure of a sensor whose dimensions are not known."""
+
 DRAWN = "drawn"
 """How a study comes by its constants that takes them from its drawing."""
 

@@ -11,6 +11,7 @@ from benchmark.plan.combinations import cells, scorable_plan
 from benchmark.plan.parts import installed_parts
 from benchmark.plan.shown import data_sets
 from registry.catalogue import catalogue
+from registry.fidelity.particulars import RunFact
 from registry.fidelity.runnable import ESSENTIAL
 from registry.resolution import Resolution, resolve, resolve_all
 from registry.sensors import BASES
@@ -46,6 +47,24 @@ def test_a_cell_of_the_mapping_carries_its_basis(
     (pipeline,) = resolved(facts).pipelines
     assert pipeline.basis["mask"] == expected
     assert pipeline.assumed.get("mask") == rule
+
+
+def test_a_sensor_of_its_own_stands_against_what_the_mapping_infers(facts_of: Build) -> None:
+    """A mask that the built sensor has is inferred from it, and leaves no gap of the mapping's."""
+    facts = facts_of([study_of(), study_of()])
+    built = RunFact("S0", "mask", "Lens", "page", "x", "P99")
+    facts = dataclasses.replace(facts, run_facts={"S0": (*facts.run_facts["S0"], built)})
+    known, own = stand_ins(facts, EXTRACTORS, MODELS), {"S0": planned([("CMOS", "Lens")])}
+    found = resolve_all(PLAN, own=own, catalogue=known, facts=facts)
+    (pipeline,) = found["S0"].pipelines
+    assert (pipeline.mask, pipeline.basis["mask"]) == ("Lens", "inferred")
+    assert "P99" in pipeline.assumed["mask"]
+    assert (found["S0"].gaps, found["S0"].state) == ((), "complete")
+    assert found["S1"] == resolve("S1", PLAN, catalogue=known, facts=facts)
+    # what nothing is known of is a choice
+    unknown = dataclasses.replace(facts, run_facts={"S0": facts.run_facts["S0"][:1]})
+    (pipeline,) = resolve("S0", PLAN, own=own, catalogue=known, facts=unknown).pipelines
+    assert pipeline.basis["mask"] == "defaulted"
 
 
 def test_a_rule_fills_an_empty_cell_of_a_study_that_meets_it(facts_of: Build) -> None:
