@@ -9,7 +9,7 @@ import numpy as np
 
 from algorithms.contract import Extractor, Floats, UnusableDataError
 from algorithms.pipeline import check_features
-from benchmark.metrics.score import store
+from benchmark.metrics.separation import store
 from benchmark.results.row_file import Row
 from benchmark.running.threads import one_thread
 from benchmark.sweeps.plan import SERIES
