@@ -41,7 +41,7 @@ AT_ONCE = 2
 _ROOT = Path(__file__).resolve().parents[1]
 _MAKERS = ("algorithms", "benchmark", "files", "survey_data")
 #: What a picture is made by, beside the data set.
-_DRAWN_BY = "benchmark.datasets.preview:preview_png"
+_DRAWN_BY = "benchmark.datasets.preview"
 _DRAWING_WITH = ("matplotlib", "numpy", "scipy", "opencv-python-headless")
 
 
@@ -71,11 +71,11 @@ def published_preview(name: str) -> Path:
 def _show(name: str) -> str:
     from benchmark import datasets  # noqa: PLC0415 - slow, and not needed to find what is kept
     from benchmark.canonical import digest as digest_of  # noqa: PLC0415 - as above
-    from benchmark.results.closure import closure_digest  # noqa: PLC0415 - as above
     from benchmark.results.digests import condition_digests  # noqa: PLC0415 - as above
+    from benchmark.results.modules import modules_digest  # noqa: PLC0415 - as above
 
     shown = condition_digests(datasets.get(name))["nominal"]
-    return digest_of([shown, closure_digest(_DRAWN_BY)])[:16]
+    return digest_of([shown, modules_digest(_DRAWN_BY)])[:16]
 
 
 class Pictures:

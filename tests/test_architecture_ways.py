@@ -21,9 +21,10 @@ from algorithms.extractors.frames.centroid import BasicCentroid
 from algorithms.models.geometric.standard_projection import StandardProjection
 from api.server.app import create_app
 from benchmark import datasets
-from benchmark.results.closure import FIRST_PARTY
+from benchmark.results.modules import FIRST_PARTY
 from benchmark.running import condition_data
-from benchmark.running.task import Task, measure
+from benchmark.running.stages import Task
+from benchmark.running.task import measure
 
 ROOT = Path(__file__).parents[1]
 MOST = 19  # four kept stages, each read or made

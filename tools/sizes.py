@@ -18,14 +18,8 @@ _SILENT = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tok
 PARTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "development programs": (("tools/",), ("tests/tools/",)),
     "digests of code": (
-        tuple(
-            f"benchmark/results/{name}"
-            for name in ("closure", "definitions", "syntax", "analyses", "unchanged")
-        ),
-        tuple(
-            f"tests/benchmark/results/test_{name}"
-            for name in ("closure", "unchanged", "what_moves")
-        ),
+        ("benchmark/results/modules",),
+        ("tests/benchmark/results/test_modules",),
     ),
     "running many processes": (
         tuple(f"benchmark/running/{name}" for name in ("schedule", "times", "workers", "cluster")),

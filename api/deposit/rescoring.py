@@ -28,10 +28,11 @@ from benchmark.datasets.export import read_card
 from benchmark.datasets.export_arrays import read_archive, samples_of
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.store import NUMBERS
-from benchmark.running.condition_data import ConditionData, RenderedData, forget
+from benchmark.running.condition_data import forget
 from benchmark.running.kept_stages import DATA, KeptStages
 from benchmark.running.planned import numbers_of
-from benchmark.running.task import Task, measure
+from benchmark.running.stages import ConditionData, RenderedData, Task
+from benchmark.running.task import measure
 
 SCORES = Path("benchmark") / "scores.csv"
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from algorithms.contract import Floats
 from benchmark.error_budget.measure import directions
-from benchmark.metrics.score import separation_deg
+from benchmark.metrics.separation import separation_deg
 from benchmark.plan.parts import installed_parts
 from benchmark.plot_style import svg
 

@@ -18,7 +18,7 @@ from algorithms.contract import Extractor
 from algorithms.discovery import discover_extractors
 from benchmark.assessment.definitions import DEFINITIONS, Definition
 from benchmark.assessment.measures import SCORED, SWEPT, NotMeasuredError, Quantity, Row, Values
-from benchmark.metrics.score import store
+from benchmark.metrics.separation import store
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.results.times import Place, Time
 from benchmark.sweeps.record import swept

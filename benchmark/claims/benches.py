@@ -1,7 +1,7 @@
 """Standard data sets as experiments use them: calibrate a method, and its errors on the test split.
 
 Experiments import the presets, extractors and models that they measure, and name none of them by
-text: what an outcome depends on is then found by following imports (`benchmark.results.closure`).
+text: what an outcome depends on is then found by following imports (`benchmark.results.modules`).
 """
 
 from __future__ import annotations

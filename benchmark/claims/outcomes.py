@@ -17,7 +17,7 @@ import numpy as np
 from benchmark.canonical import digest
 from benchmark.claims.experiment import Trial
 from benchmark.claims.rules import FIRST_TRIAL, Claim
-from benchmark.metrics.score import store
+from benchmark.metrics.separation import store
 from benchmark.results.row_file import Row, RowFile
 from benchmark.results.store import PUBLISHED
 from files.strict_json import refuse_unless, require_members, require_type

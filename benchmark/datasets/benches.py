@@ -14,7 +14,7 @@ import numpy as np
 
 from algorithms.contract import Floats
 from benchmark.contract import Preset
-from benchmark.metrics.score import aligned_error_deg
+from benchmark.metrics.separation import aligned_error_deg
 
 #: Benches that are drawn to say what alignment leaves of their errors, and directions looked at.
 _DRAWN, _DIRECTIONS = 40, 200

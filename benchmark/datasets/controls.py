@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from algorithms.contract import Floats
 from benchmark.contract import Bound, Preset
 from benchmark.datasets.benches import aligned_bench_deg
-from benchmark.metrics.score import separation_deg, store
+from benchmark.metrics.separation import separation_deg, store
 from benchmark.seeds import generator
 from benchmark.simulator.light.sun_disc import tangent_axes
 

@@ -37,7 +37,7 @@ from benchmark.datasets.pins import Pin, Place
 from benchmark.datasets.preview import preview_png
 from benchmark.datasets.samples import samples_hash
 from benchmark.metrics.bounds import Bound
-from benchmark.metrics.score import store
+from benchmark.metrics.separation import store
 from benchmark.progress import ProgressCallback, silent
 from files.atomic import replace_all, require_replaceable
 from files.reading import FileRefusedError

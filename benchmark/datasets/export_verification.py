@@ -25,7 +25,7 @@ from benchmark.datasets.export import CARD, ExportError, card_of, export, read_c
 from benchmark.datasets.export_arrays import read_archive, samples_of, table_text
 from benchmark.datasets.pins import BOUND_TOLERANCE, Pin, Place, bounds_agree
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
-from benchmark.metrics.score import store
+from benchmark.metrics.separation import store
 from benchmark.progress import ProgressCallback, silent
 from files.temporary import temporary_directory
 

@@ -21,8 +21,8 @@ from benchmark.datasets.preset import Preset
 from benchmark.datasets.samples import Samples
 from benchmark.error_budget import perfected
 from benchmark.error_budget.variants import VARIANTS
-from benchmark.metrics.score import separation_deg
-from benchmark.running.task import BENCHES
+from benchmark.metrics.separation import separation_deg
+from benchmark.running.fitting import BENCHES
 from benchmark.simulator.light.memory import memory
 
 #: Input of a calibration: features, Suns, context.

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from benchmark.contract import UnknownNameError
 from benchmark.processes import call_to_end
 from benchmark.results.store import PUBLISHED
-from benchmark.results.unchanged import KeptAnswer
 
 if TYPE_CHECKING:
     from benchmark.running.experiment import RecordedExperiment, Report
@@ -23,12 +22,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     An experiment that keeps nothing is measured whole and printed.
     """
-    asked = list(sys.argv[1:] if arguments is None else arguments)
-    unchanged = None
-    if "--check" in asked and "--directory" not in " ".join(asked):
-        unchanged = KeptAnswer(f"experiments {' '.join(asked)}", [PUBLISHED])
-        if unchanged.recall() is not None:
-            return 0
     from benchmark.running.experiment import RecordedExperiment, experiments  # noqa: PLC0415 - slow
 
     known = experiments()
@@ -43,7 +36,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--all", action="store_true", help="measure every cell, due or not")
     parser.add_argument("--workers", type=int, default=1, metavar="N", help="processes")
     parser.add_argument("--directory", type=Path, default=PUBLISHED, help="of the record")
-    options = parser.parse_intermixed_args(asked)
+    options = parser.parse_intermixed_args(arguments)
     if options.workers < 1:
         parser.error(f"--workers must be at least 1; got {options.workers}")
     if options.name is not None and options.name not in known:
@@ -59,8 +52,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 status |= _reported(experiment, options)
         except UnknownNameError as error:
             parser.error(str(error))
-    if unchanged is not None and status == 0:
-        unchanged.keep(answer=True)
     return status
 
 

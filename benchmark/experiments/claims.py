@@ -11,7 +11,7 @@ from benchmark.claims.outcomes import RECORD, outcome_of, outcome_of_row, plan_d
 from benchmark.claims.plots import file_of, picture
 from benchmark.claims.rules import FIRST_TRIAL, claims
 from benchmark.claims.verification import contradictions
-from benchmark.results.closure import closure_digest
+from benchmark.results.modules import modules_digest
 from benchmark.results.row_file import Row
 from benchmark.running.experiment import RecordedExperiment
 
@@ -30,7 +30,7 @@ class Claims(RecordedExperiment[str]):
     def keys(self) -> Mapping[str, str]:
         """Return the digests of plan and code, apart so that it shows which has changed."""
         return {
-            name: f"{plan_digest(claims()[name])} {closure_digest(f'{one.module}:trial')}"
+            name: f"{plan_digest(claims()[name])} {modules_digest(one.module)}"
             for name, one in find_experiments().items()
         }
 

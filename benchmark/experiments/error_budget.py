@@ -16,16 +16,16 @@ from benchmark.error_budget import plots
 from benchmark.error_budget.measure import score_variants
 from benchmark.error_budget.record import RECORD, SCORE
 from benchmark.metrics.ranking import order
-from benchmark.metrics.score import store
-from benchmark.results.closure import closure_digest
+from benchmark.metrics.separation import store
 from benchmark.results.components import current
 from benchmark.results.digests import short_digest
+from benchmark.results.modules import modules_digest
 from benchmark.results.row_file import Row
 from benchmark.results.store import Store
 from benchmark.running.experiment import RecordedExperiment
 
 #: What measures the variants of a chain, with the data and methods that it is handed.
-_CODE = "benchmark.error_budget.measure:score_variants"
+_CODE = "benchmark.error_budget.measure"
 #: Less is none: another machine's rounding, and where iterations stop.
 _NOTHING_DEG = 1e-6
 #: Data set, extractor, model.
@@ -61,7 +61,7 @@ class ErrorBudget(RecordedExperiment[str]):
             Cell(name, row["condition"], row["extractor"], row["model"])
             for name, row in self.leader_rows.items()
         ]
-        components, code = current(self.parts.only(cells)), closure_digest(_CODE)
+        components, code = current(self.parts.only(cells)), modules_digest(_CODE)
         return {
             cell.dataset: short_digest(
                 [

@@ -12,17 +12,17 @@ from benchmark.learning_curves.leaders import Leader, leaders
 from benchmark.learning_curves.measure import Task, measure
 from benchmark.learning_curves.outcome import row_of
 from benchmark.learning_curves.record import RECORD, published_curves
-from benchmark.results.closure import closure_digest
 from benchmark.results.components import current
 from benchmark.results.digests import short_digest
+from benchmark.results.modules import modules_digest
 from benchmark.results.row_file import Row
 from benchmark.results.store import Store
 from benchmark.running.experiment import RecordedExperiment
 
 #: What measures the curves of a data set, with the data and methods that it is handed.
 _CODE = (
-    "benchmark.learning_curves.measure:measure",
-    "benchmark.learning_curves.outcome:row_of",
+    "benchmark.learning_curves.measure",
+    "benchmark.learning_curves.outcome",
 )
 
 
@@ -48,7 +48,7 @@ class LearningCurves(RecordedExperiment[Leader]):
         wanted = self.cells()
         # digests of what leads only: all of them would take seconds
         components = current(self.parts.only(_cell(leader) for leader in wanted))
-        code = closure_digest(*_CODE)
+        code = modules_digest(*_CODE)
         return {
             leader: short_digest(
                 [

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from itertools import groupby
 
-from benchmark.results.closure import closure_digest
 from benchmark.results.components import current
 from benchmark.results.digests import series_digest, short_digest
+from benchmark.results.modules import modules_digest
 from benchmark.results.row_file import Row
 from benchmark.running.experiment import RecordedExperiment
 from benchmark.sweeps import plots
@@ -18,7 +18,7 @@ from benchmark.sweeps.points import Point
 from benchmark.sweeps.record import RECORD, point_of
 
 #: What measures a point, with the series and methods that it is handed.
-_CODE = "benchmark.sweeps.measure:measure"
+_CODE = "benchmark.sweeps.measure"
 
 
 def series_digests() -> dict[str, str]:
@@ -40,7 +40,7 @@ class Sweeps(RecordedExperiment[Point]):
 
     def keys(self) -> Mapping[Point, str]:
         """Digest the code, series and extractor of each."""
-        code, series = closure_digest(_CODE), series_digests()
+        code, series = modules_digest(_CODE), series_digests()
         extractors = current(self.parts.of_extractors())
         return {
             point: short_digest(

@@ -7,7 +7,8 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from benchmark.contract import ON_BENCH, Cell
-from benchmark.metrics.score import METRICS, store
+from benchmark.metrics.score import METRICS
+from benchmark.metrics.separation import store
 
 Row = Mapping[str, Any]
 

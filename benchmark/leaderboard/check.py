@@ -22,7 +22,8 @@ from benchmark.leaderboard.consistency import contradictions
 from benchmark.leaderboard.pages import PAGE, page
 from benchmark.leaderboard.update import update
 from benchmark.metrics.rings import RINGS
-from benchmark.metrics.score import METRICS, RING_DIGITS, SIGNIFICANT_DIGITS
+from benchmark.metrics.score import METRICS, RING_DIGITS
+from benchmark.metrics.separation import SIGNIFICANT_DIGITS
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback
 from benchmark.results import record_manifest

@@ -11,7 +11,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Literal, get_args
 
 from benchmark.leaderboard.architectures import first_boards
-from benchmark.metrics.score import is_available, store
+from benchmark.metrics.score import is_available
+from benchmark.metrics.separation import store
 
 Board = Mapping[str, Any]
 Row = Mapping[str, Any]

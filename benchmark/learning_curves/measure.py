@@ -24,7 +24,7 @@ from benchmark.datasets.features import features_of
 from benchmark.learning_curves.draws import Rows, sizes, subsets
 from benchmark.learning_curves.leaders import Leader
 from benchmark.metrics.score import score
-from benchmark.running.task import reason_of
+from benchmark.running.fitting import reason_of
 from benchmark.simulator.light.memory import memory
 
 #: Units of the sensor, and draws of poses on each of them.

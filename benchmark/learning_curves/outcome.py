@@ -12,7 +12,8 @@ from benchmark import seeds
 from benchmark.learning_curves.floor import NEAR, Flags, Floor, floor_of, reached_from
 from benchmark.learning_curves.measure import CurveErrors
 from benchmark.learning_curves.reading import Row
-from benchmark.metrics.score import AVAILABLE, store
+from benchmark.metrics.score import AVAILABLE
+from benchmark.metrics.separation import store
 
 #: Digits of errors along a curve, and of shares; floors have those of scores.
 _CURVE_DIGITS, _SHARE_DIGITS = 4, 3

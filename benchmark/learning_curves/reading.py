@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from benchmark.metrics.score import store
+from benchmark.metrics.separation import store
 from files.strict_json import refuse_unless, require_members, require_type
 
 #: A row of the record: plain JSON values.

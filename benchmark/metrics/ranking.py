@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 
 from benchmark.contract import Cell
-from benchmark.metrics.score import is_available, store
+from benchmark.metrics.score import is_available
+from benchmark.metrics.separation import store
 
 Row = Mapping[str, Any]
 

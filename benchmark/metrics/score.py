@@ -17,6 +17,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from algorithms.contract import Floats
 from benchmark.metrics.rings import RINGS, ring_errors
+from benchmark.metrics.separation import (
+    SIGNIFICANT_DIGITS,
+    aligned_error_deg,
+    separation_deg,
+    store,
+)
 
 #: Raised when a metric's definition changes: scores of two versions never stand side by side.
 METRIC_VERSION = 4
@@ -24,11 +30,9 @@ METRIC_VERSION = 4
 #: Share of observable samples that a pipeline has to answer to be ranked among its like.
 AVAILABLE = 0.95
 
-SIGNIFICANT_DIGITS = 5
 RING_DIGITS = 4
 _UNIT_TOLERANCE = 1e-6
 _ROUNDING_DEG = 1e-12
-_FEWEST_ALIGNED = 3
 
 
 @dataclass(frozen=True)
@@ -88,11 +92,6 @@ _BIASES = {"bias_alpha_deg": "rms_alpha_deg", "bias_beta_deg": "rms_beta_deg"}
 METRICS = (*_PLAIN, *(ring.column for ring in RINGS))
 
 
-def store(value: float, digits: int = SIGNIFICANT_DIGITS) -> float | None:
-    """Round a number as results keep it, to significant digits; None where it is not finite."""
-    return float(f"{value:.{digits}g}") if math.isfinite(value) else None
-
-
 def stored_beside(value: float, size: float) -> float | None:
     """Round a number to the last digit that `size` is kept to; None where either is not finite.
 
@@ -114,19 +113,6 @@ def is_available(row: Mapping[str, object]) -> bool:
     """Say whether the pipeline of a stored row answers often enough to be ranked by its error."""
     share = row["availability"]
     return isinstance(share, float | int) and share >= AVAILABLE
-
-
-def separation_deg(first: ArrayLike, second: ArrayLike) -> Floats:
-    """Angle (N,) in degrees between unit vectors (N, 3); exact for tiny angles, NaN for NaN rows.
-
-    The arc tangent of ``|a x b|`` over ``a . b``: the arc cosine loses all below 1e-6 degrees.
-    """
-    a = np.asarray(first, dtype=np.float64)
-    b = np.asarray(second, dtype=np.float64)
-    cross = np.cross(a, b)
-    along = np.einsum("ij,ij->i", a, b)
-    angle: Floats = np.degrees(np.arctan2(np.sqrt(np.einsum("ij,ij->i", cross, cross)), along))
-    return angle
 
 
 def score(
@@ -204,25 +190,6 @@ def score(
         over_bound_unit=over_bound_unit,
         rings_deg=ring_errors(truth[seen], answered[seen], separation_deg(guess, truth)[seen]),
     )
-
-
-def aligned_error_deg(predicted: ArrayLike, sun: ArrayLike) -> Floats:
-    """Errors (N,) in degrees that the best rotation leaves, as an alignment in flight does.
-
-    The rotation is the one that least squares give (Wahba's problem, by singular values); of fewer
-    than three directions it is unknown, and errors stay what they are.
-
-    Parameters
-    ----------
-    predicted, sun
-        Unit vectors (N, 3).
-    """
-    p, s = np.asarray(predicted, np.float64), np.asarray(sun, np.float64)
-    if len(p) < _FEWEST_ALIGNED:
-        return separation_deg(p, s)
-    u, _, vt = np.linalg.svd(s.T @ p)
-    turn = u @ np.diag([1.0, 1.0, float(np.sign(np.linalg.det(u) * np.linalg.det(vt)))]) @ vt
-    return separation_deg(p @ turn.T, s)
 
 
 def repeatability_deg(repeated: ArrayLike) -> float:

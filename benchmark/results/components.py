@@ -16,9 +16,15 @@ from typing import Any
 from benchmark.contract import ON_BENCH, Cell, Preset
 from benchmark.metrics.score import METRIC_VERSION
 from benchmark.plan.parts import Parts
-from benchmark.results.analyses import Analyses
-from benchmark.results.closure import Sources
-from benchmark.results.digests import STAGES, condition_digests, method_digest, stage_digests
+from benchmark.results.digests import (
+    DIGITS,
+    condition_digests,
+    method_digest,
+    method_modules,
+    modules_of,
+    stage_digests,
+)
+from benchmark.results.modules import STAGES, reached
 from files.reading import FileRefusedError
 from files.strict_json import read_json, require_members, require_type
 
@@ -51,12 +57,14 @@ class Components:
     Attributes
     ----------
     stages
-        Digest of the code that makes each stage (`benchmark.results.digests.STAGES`) of data,
+        Digest of the code that makes each stage (`benchmark.results.modules.STAGES`) of data,
         extractors and models.
     datasets
         With version, detector, mask, half field of view, and a digest of each condition.
     extractors, models
         With version and value of the taxonomy.
+    modules
+        Digests of all modules that these import: which of them is why a component has changed.
     metric
         Version of the metric that the numbers are by.
     """
@@ -65,6 +73,7 @@ class Components:
     datasets: Mapping[str, Facts] = field(default_factory=dict)
     extractors: Mapping[str, Facts] = field(default_factory=dict)
     models: Mapping[str, Facts] = field(default_factory=dict)
+    modules: Mapping[str, str] = field(default_factory=dict)
     metric: int = METRIC_VERSION
 
     def cell_key(self, cell: Cell) -> str:
@@ -138,7 +147,8 @@ class Components:
     def update(self, other: Components) -> Components:
         """Return these with what `other` has in their place."""
         kinds = {kind: {**getattr(self, kind), **getattr(other, kind)} for kind in _KINDS}
-        return Components(other.stages, **kinds, metric=other.metric)
+        modules = {**self.modules, **other.modules}
+        return Components(other.stages, **kinds, modules=modules, metric=other.metric)
 
     def only(self, cells: Iterable[Cell]) -> Components:
         """Return what these cells are of."""
@@ -148,8 +158,13 @@ class Components:
             datasets=_name_of(self.datasets, (cell.dataset for cell in wanted)),
             extractors=_name_of(self.extractors, (cell.extractor for cell in wanted)),
             models=_name_of(self.models, (cell.model for cell in wanted)),
+            modules=self.modules,
             metric=self.metric,
         )
+
+    def changed_modules(self, before: Components) -> list[str]:
+        """List the modules of these that are new, or other than before."""
+        return [name for name, digest in self.modules.items() if before.modules.get(name) != digest]
 
     def differences(self, other: Components) -> list[tuple[str, str, str]]:
         """Return (component, digest here, digest there) of what is not alike; empty for none."""
@@ -162,6 +177,7 @@ class Components:
 
     def _digests(self) -> dict[str, str]:
         found = {f"stages/{name}": digest for name, digest in self.stages.items()}
+        found |= {f"modules/{name}": digest for name, digest in self.modules.items()}
         for name, facts in sorted(self.datasets.items()):
             for condition, digest in facts["conditions"].items():
                 found[f"datasets/{name}/{condition}"] = digest
@@ -176,7 +192,7 @@ class Components:
             f'"schema": {SCHEMA_VERSION}',
             f'"metric": {self.metric}',
         ]
-        for kind in ("stages", *_KINDS):
+        for kind in ("stages", *_KINDS, "modules"):
             facts = [(name, getattr(self, kind)[name]) for name in _in_order(getattr(self, kind))]
             listed = ",\n".join(f"{json.dumps(name)}: {_format_value(one)}" for name, one in facts)
             lines.append(f'"{kind}": {{\n{listed}\n}}' if listed else f'"{kind}": {{}}')
@@ -209,18 +225,20 @@ class Components:
                 "the directory and run `sunatlas leaderboard update`"
             )
         try:
-            layout = dict.fromkeys(("stages", *_KINDS), dict)
+            held.setdefault("modules", {})  # of stores written before 0.2.0
+            layout = dict.fromkeys(("stages", *_KINDS, "modules"), dict)
             require_members(held, path, {"schema": int, "metric": int, **layout})
             kinds: dict[str, Any] = {kind: held[kind] for kind in _KINDS}
             for kind, facts in kinds.items():
                 for name, one in facts.items():
                     _require_facts(path, kind, name, one)
-            for kind, digests in [("stages", held["stages"]), *_conditions(held["datasets"])]:
+            plain = [(kind, held[kind]) for kind in ("stages", "modules")]
+            for kind, digests in [*plain, *_conditions(held["datasets"])]:
                 for name, digest in digests.items():
                     require_type(digest, str, path, f"{kind}/{name}")
         except FileRefusedError as error:
             raise ComponentsError(str(error)) from error
-        return cls(stages=held["stages"], **kinds, metric=metric)
+        return cls(held["stages"], **kinds, modules=held["modules"], metric=metric)
 
 
 def current(parts: Parts) -> Components:
@@ -231,15 +249,17 @@ def current(parts: Parts) -> Components:
     parts
         Data sets and implementations.
     """
-    sources = Sources.as_they_are()
-    found = Components(
-        stages=stage_digests(sources),
-        datasets={name: _of_dataset(one, sources) for name, one in parts.presets.items()},
-        extractors={name: _of_method(one, sources) for name, one in parts.extractors.items()},
-        models={name: _of_method(one, sources) for name, one in parts.models.items()},
+    methods = (*parts.extractors.values(), *parts.models.values())
+    made_of = {module for preset in parts.presets.values() for module in modules_of(preset)}
+    made_of.update(module for method in methods for module in method_modules(method))
+    modules = reached(*STAGES.values(), *sorted(made_of))
+    return Components(
+        stages=stage_digests(),
+        datasets={name: _of_dataset(one) for name, one in parts.presets.items()},
+        extractors={name: _of_method(one) for name, one in parts.extractors.items()},
+        models={name: _of_method(one) for name, one in parts.models.items()},
+        modules={name: digest[:DIGITS] for name, digest in modules.items()},
     )
-    Analyses.of_user().keep()
-    return found
 
 
 #: What the file says of a component of each kind.
@@ -268,21 +288,21 @@ def _require_facts(path: Path, kind: str, name: str, facts: Any) -> None:
         raise FileRefusedError(path, f"{kind}/{name}: unknown member {unknown[0]!r}")
 
 
-def _of_dataset(preset: Preset, sources: Sources) -> Facts:
+def _of_dataset(preset: Preset) -> Facts:
     return {
         "version": preset.version,
         "detector": preset.detector,
         "mask": preset.mask,
         "half_fov_deg": preset.geometry.half_fov_deg,
-        "conditions": condition_digests(preset, sources),
+        "conditions": condition_digests(preset),
     }
 
 
-def _of_method(method: Any, sources: Sources) -> Facts:
+def _of_method(method: Any) -> Facts:
     return {
         "version": method.about.version,
         "taxonomy": method.about.taxonomy,
-        "digest": method_digest(method, sources),
+        "digest": method_digest(method),
     }
 
 

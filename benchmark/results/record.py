@@ -180,6 +180,7 @@ class Record:
             datasets=_used(known.datasets, [c.dataset for c in scores] + [p.dataset for p in pins]),
             extractors=_used(known.extractors, [cell.extractor for cell in scores]),
             models=_used(known.models, [cell.model for cell in scores]),
+            modules=known.modules,
             metric=known.metric,
         )
         if self._changed or used != self._components:

@@ -9,89 +9,37 @@ from __future__ import annotations
 import time
 from collections import OrderedDict
 from collections.abc import Hashable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from algorithms.contract import Extractor, Floats
-from algorithms.pipeline import extract_features
-from algorithms.references import ReferenceCorrection
 from benchmark.canonical import digest
 from benchmark.contract import SPLITS, Bound, Cell, Preset, Samples
 from benchmark.datasets.controls import board_facts
-from benchmark.datasets.corrected import correct, correction
+from benchmark.datasets.corrected import correction
 from benchmark.datasets.pins import Pin
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
-from benchmark.metrics.score import store
+from benchmark.metrics.separation import store
 from benchmark.processes import release_free_memory
 from benchmark.running.kept_stages import DATA, TRUTH, KeptStages
+from benchmark.running.readings import correct_readings
+from benchmark.running.stages import ConditionData, RenderedData
 from benchmark.simulator.light.memory import LIMIT_BYTES, memory
 
 #: Datasets under one condition kept per process: the plan hands out a dataset's tasks in a row.
 _KEPT = 2
 #: Bytes of kept observations from which on only one dataset is: a worker stays below 1.2 GB.
 _KEPT_BYTES = 128 * 2**20
-#: Bytes from which on corrected observations are not kept but made again for each extractor, some
-#: samples at a time: so few that they are still in a processor's cache when they are looked at,
-#: and that their memory is used again (glibc returns blocks of 32 MiB to the system).
-_CORRECTED_BYTES = 256 * 2**20
-_BATCH_BYTES = 8 * 2**20
 #: Bytes of light that frames are generated beside, and of frames beyond which it gives way to them.
 _LIGHT_BYTES, _FRAME_BYTES = LIMIT_BYTES * 5 // 8, 192 * 2**20
-
-
-@dataclass(frozen=True)
-class ConditionData:
-    """Samples of every split of a data set under one condition, and what bounds them.
-
-    Attributes
-    ----------
-    preset
-        Of unit 0.
-    splits
-        Samples by split; another unit than the standard one has no split ``repeat``. They are
-        corrected by the unit's references already where there is no `correction`. Without
-        observations where only directions and bounds were asked for (`truth`).
-    bound_deg, bound_unit_deg
-        Cramer-Rao bounds (N,) of the test split, with the unit known and unknown; None for another
-        unit, and the second where there is none.
-    observable
-        Test samples (N,) whose direction is observable.
-    pins
-        Of the standard unit, of the data before correction; none for another.
-    bound
-        As a whole, of the standard unit; None for another.
-    correction
-        By the unit's references, of samples that would take too much memory corrected.
-    features
-        What extractors found, by their classes and splits: for who asks for the same again.
-    """
-
-    preset: Preset
-    splits: dict[str, Samples]
-    bound_deg: Floats | None
-    bound_unit_deg: Floats | None
-    observable: NDArray[np.bool_]
-    pins: tuple[Pin, ...]
-    bound: Bound | None = None
-    correction: ReferenceCorrection | None = None
-    features: dict[tuple[type[Extractor], str], Floats] = field(default_factory=dict)
 
 
 _Place = tuple[str, str, int, str]  # dataset, condition, unit, digest of the parameters
 _kept: OrderedDict[_Place, ConditionData] = OrderedDict()
 #: Which test samples can be observed, of data whose other units asked; a unit is asked of each.
 _observable: dict[_Place, NDArray[np.bool_]] = {}
-
-
-@dataclass(frozen=True)
-class RenderedData:
-    """Data as the sensor reads them, and how they are to be corrected."""
-
-    data: ConditionData
-    correction: ReferenceCorrection | None
 
 
 def generate(
@@ -176,13 +124,6 @@ def _leave_room(splits: Mapping[str, Samples], *owner: Hashable) -> None:
     release_free_memory()
 
 
-def correct_readings(made: RenderedData, preset: Preset) -> ConditionData:
-    """Return data as extractors get them."""
-    splits = dict(made.data.splits)
-    left = _corrected_once(splits, made.correction)
-    return replace(made.data, preset=preset, splits=splits, correction=left)
-
-
 def _rendered_or_kept(
     preset: Preset, condition: str, unit: int, all_observable: bool, kept: KeptStages | None
 ) -> RenderedData:
@@ -222,52 +163,6 @@ def _unseen(samples: Samples) -> Samples:
     """Return samples without observations."""
     nothing = np.empty((len(samples.sun), 0))
     return cast("Samples", replace(cast("Any", samples), observations=nothing))
-
-
-def found_features(data: ConditionData, extractor: Extractor, split: str) -> Floats:
-    """Return what an extractor finds in a split (N, F), found once for all who ask."""
-    place = type(extractor), split
-    if place not in data.features:
-        samples = data.splits[split]
-        step = len(samples.sun)
-        if data.correction is not None:
-            step = max(1, _BATCH_BYTES // (8 * int(np.prod(samples.observations.shape[1:]))))
-        parts = (_part(samples, start, start + step) for start in range(0, len(samples.sun), step))
-        seen = (correct(data.correction, part) for part in parts)
-        found = [extract_features(extractor, one.observations, one.origin_px) for one in seen]
-        data.features[place] = found[0] if len(found) == 1 else np.concatenate(found)
-    return data.features[place]
-
-
-def _part(samples: Samples, start: int, stop: int) -> Samples:
-    """Return some of the samples, as extractors look at them."""
-    rows = slice(start, stop)
-    origin = samples.origin_px
-    return cast(
-        "Samples",
-        replace(
-            cast("Any", samples),
-            observations=samples.observations[rows],
-            sun=samples.sun[rows],
-            origin_px=None if origin is None else origin[rows],
-            context=None,
-            true_sun=None,
-        ),
-    )
-
-
-def _corrected_once(
-    splits: dict[str, Samples], by: ReferenceCorrection | None
-) -> ReferenceCorrection | None:
-    """Put corrected samples in the place of those read; return what is left to correct by."""
-    size = 8 * sum(np.asarray(samples.observations).size for samples in splits.values())
-    later = by if size > _CORRECTED_BYTES else None
-    for split, samples in splits.items():
-        if later is None:
-            splits[split] = correct(by, samples)
-        # methods share them, and what they find in them
-        np.asarray(splits[split].observations).flags.writeable = False
-    return later
 
 
 def forget() -> None:

@@ -24,7 +24,7 @@ from benchmark.results.components import Components, current
 from benchmark.results.record import Record, open_record
 from benchmark.results.store import Store
 from benchmark.running.condition_data import generated_pins, rms_bound
-from benchmark.running.task import reason_of
+from benchmark.running.fitting import reason_of
 from benchmark.running.workers import as_completed
 from benchmark.simulator.light.memory import memory
 

@@ -11,7 +11,9 @@ from benchmark.metrics.score import METRICS
 from benchmark.plan.parts import Parts
 from benchmark.results.csv_tables import Row
 from benchmark.results.samples import CONDITION, Directions, SampleErrors
-from benchmark.running.task import Task, TaskResult, data_condition
+from benchmark.running.fitting import data_condition
+from benchmark.running.stages import Task
+from benchmark.running.task import TaskResult
 
 
 def tasks_of(cells: Iterable[Cell], parts: Parts, pins: Mapping[Place, Pin]) -> list[Task]:

@@ -24,7 +24,8 @@ from benchmark.results.store import Store
 from benchmark.running.kept_stages import KeptStages
 from benchmark.running.planned import cells_of, numbers_of, samples_of, tasks_of
 from benchmark.running.schedule import outcomes
-from benchmark.running.task import Task, TaskResult
+from benchmark.running.stages import Task
+from benchmark.running.task import TaskResult
 
 
 @dataclass(frozen=True)

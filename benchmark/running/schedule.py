@@ -11,10 +11,12 @@ from functools import partial
 
 from algorithms.extractors.frames.multi_spot.pattern_memory import shared_patterns
 from benchmark.processes import release_free_memory
-from benchmark.results.closure import closure_digest
-from benchmark.results.digests import entries_of, method_entries
+from benchmark.results.digests import method_modules, modules_of
+from benchmark.results.modules import STAGES, modules_digest
+from benchmark.running.fitting import data_condition
 from benchmark.running.kept_stages import KeptStages
-from benchmark.running.task import Task, TaskResult, data_condition, measure
+from benchmark.running.stages import Task
+from benchmark.running.task import TaskResult, measure
 from benchmark.running.workers import as_completed
 
 #: What tasks share by which they stay together, and how many pieces a worker there then must be:
@@ -85,9 +87,7 @@ def _measure(kept: KeptStages | None, piece: tuple[Sequence[Task], str | None]) 
 
 def code_of(tasks: Sequence[Task]) -> str:
     """Digest of the code that measures these tasks: of all stages, their data and methods."""
-    entries = {"benchmark.running.task:measure"}
-    for preset in {id(task.preset): task.preset for task in tasks}.values():
-        entries.update(entries_of(preset))
+    found = {"benchmark.running.task", *STAGES.values(), *modules_of(tasks[0].preset)}
     for method in {method for task in tasks for method in (task.extractor, *task.models)}:
-        entries.update(method_entries(method))
-    return closure_digest(*sorted(entries))
+        found.update(method_modules(method))
+    return modules_digest(*sorted(found))

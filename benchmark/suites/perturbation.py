@@ -28,8 +28,12 @@ from benchmark.plan.parts import Parts, installed_parts
 from benchmark.processes import call_to_end
 from benchmark.progress import ProgressCallback, console_progress, silent
 from benchmark.results.store import Store
-from benchmark.running.condition_data import ConditionData, found_features, generate
-from benchmark.running.task import Outcome, Task, data_condition, measured_on
+from benchmark.running.condition_data import generate
+from benchmark.running.fitting import data_condition
+from benchmark.running.judging import Outcome
+from benchmark.running.readings import found_features
+from benchmark.running.stages import ConditionData, Task
+from benchmark.running.task import measured_on
 from benchmark.seeds import generator
 
 #: A value's bits mixed until they are as good as random (SplitMix64's last step): no draw a value,

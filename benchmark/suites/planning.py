@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from benchmark.contract import Cell
 from benchmark.plan.parts import Parts, installed_parts
-from benchmark.results.components import current
+from benchmark.results.components import Components, current
 from benchmark.results.csv_tables import Row
 from benchmark.results.record import Record
 from benchmark.results.store import Store
@@ -29,12 +29,15 @@ class CellPlan:
     missing
         Those that no store holds as code and data now are, in order, each with the reasons:
         ``new``, ``failed`` (before), or which of `benchmark.results.components.KEYED` changed.
+    modules
+        Modules that have changed since the stores' scores were measured, as far as the stores tell.
     stages
         How much of each stage that is, where what is kept beside the stores is used.
     """
 
     cells: tuple[Cell, ...]
     missing: Mapping[Cell, tuple[str, ...]]
+    modules: tuple[str, ...]
     stages: StageCounts
 
 
@@ -69,7 +72,12 @@ def plan(cells: Iterable[Cell], stores: Sequence[Store], *, parts: Parts | None 
             missing[cell] = next((r for r in reasons if r != (NEW,)), (NEW,))
     *others, into = (store.work_directory for store in stores)
     kept = KeptStages.beside(into, components, others)
-    return CellPlan(tuple(wanted), missing, count_stages(missing, components, kept))
+    before = Components()
+    for store in reversed(stores):
+        before = before.update(store.components())
+    modules = components.changed_modules(before) if before.modules and missing else []
+    counted = count_stages(missing, components, kept)
+    return CellPlan(tuple(wanted), missing, tuple(modules), counted)
 
 
 def cells_of(suite: Suite, stores: Sequence[Store], *, parts: Parts | None = None) -> list[Cell]:

@@ -14,7 +14,7 @@ from benchmark.results.components import current
 from benchmark.results.record import open_record
 from benchmark.results.store import Store
 from benchmark.running import pinning
-from benchmark.running.task import data_condition
+from benchmark.running.fitting import data_condition
 from files.temporary import temporary_directory
 
 

@@ -21,7 +21,7 @@ from algorithms.models.geometric.standard_projection import StandardProjection
 from algorithms.pipeline import Pipeline
 from benchmark import datasets
 from benchmark.metrics.bounds import cramer_rao
-from benchmark.metrics.score import separation_deg
+from benchmark.metrics.separation import separation_deg
 from benchmark.seeds import generator
 from benchmark.simulator.flight.time_series import TimedScene
 from benchmark.simulator.light.environment import Earth

@@ -15,7 +15,7 @@ import numpy as np
 from algorithms.contract import Floats
 from benchmark.datasets.corrected import correction
 from benchmark.datasets.features import features_of
-from benchmark.metrics.score import separation_deg
+from benchmark.metrics.separation import separation_deg
 from benchmark.plan.parts import installed_parts
 from benchmark.plot_style import plain_style
 from files.atomic import replace_file

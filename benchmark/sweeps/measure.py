@@ -10,7 +10,7 @@ import numpy as np
 from algorithms.contract import Extractor, Floats, UnusableDataError
 from algorithms.pipeline import check_features
 from algorithms.threads import one_thread
-from benchmark.metrics.score import store
+from benchmark.metrics.separation import store
 from benchmark.results.row_file import Row
 from benchmark.sweeps.plan import SERIES
 from benchmark.sweeps.points import Point

@@ -24,7 +24,6 @@ from api.server import app as service
 from api.server.app import create_app
 from api.server.connections import bounds
 from api.service.knowledge import Knowledge
-from benchmark.results.analyses import Analyses
 
 
 class Client:
@@ -74,11 +73,7 @@ class Client:
 
 @pytest.fixture(scope="session", autouse=True)
 def _own_working_store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Neither read nor touch what this user measured and timed.
-
-    What was found in source files is another matter: it takes each worker seconds to find anew.
-    """
-    Analyses.of_user()  # those of the user, whatever the store is later
+    """Neither read nor touch what this user measured and timed."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SUNATLAS_STORE", str(tmp_path_factory.mktemp("working")))
         yield

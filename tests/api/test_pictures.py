@@ -12,7 +12,7 @@ from api import previews
 from api.previews import Pictures, place
 from benchmark import datasets
 from benchmark.datasets.preview import preview_png
-from benchmark.results import closure, digests
+from benchmark.results import digests, modules
 
 
 @pytest.fixture
@@ -56,7 +56,7 @@ def test_of_other_code_nothing_published_is_shown(
     now = previews.published_preview(name)
     for module, changed, made in (
         (digests, "condition_digests", {"nominal": "another"}),
-        (closure, "closure_digest", "another"),
+        (modules, "modules_digest", "another"),
     ):
         with monkeypatch.context() as patched:
             patched.setattr(module, changed, lambda *_, made=made: made)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
@@ -24,7 +24,6 @@ from api.schema.table import columns_of
 from benchmark.contract import UnknownNameError
 from benchmark.metrics.rings import EDGES_DEG
 from benchmark.results.store import PUBLISHED
-from benchmark.results.unchanged import KeptAnswer
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 app.command("findings")(findings.findings)
@@ -283,10 +282,6 @@ def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only:
 
 def _architectures(query: Asked, form: Format) -> None:
     """Print the best pipeline of each architecture, as the service answers it."""
-    unchanged = KeptAnswer(f"architectures {sorted(query.items())}", [PUBLISHED])
-    if form is Format.TABLE and (known := unchanged.recall()):
-        _tell(*known)
-        return
     from api.cli.asking import ask, knowledge  # noqa: PLC0415 - slow; measuring does without it
     from api.schema.parameters import LARGEST_PAGE  # noqa: PLC0415
     from api.service.leaderboard import architectures  # noqa: PLC0415
@@ -298,15 +293,10 @@ def _architectures(query: Asked, form: Format) -> None:
     if form is Format.TABLE:
         record = knowledge().measurements.record
         line = f"Record: version {record['version']}, sha256 {record['sha256']}"
-        unchanged.keep([rows, line])
-        _tell(rows, line)
+        typer.echo(architectures_text(rows, line_width()), nl=False)
+        typer.echo(line, err=True)
     else:
         emit(rows, columns_of(BestOfArchitecture), form, document=answer.document)
-
-
-def _tell(rows: Sequence[Row], record: str) -> None:
-    typer.echo(architectures_text(rows, line_width()), nl=False)
-    typer.echo(record, err=True)
 
 
 def _overview(query: Asked, form: Format) -> None:

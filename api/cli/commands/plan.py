@@ -14,7 +14,6 @@ from api.cli.measuring import (
     stores_of,
 )
 from api.cli.table_output import Format, FormatOption, emit
-from benchmark.results.unchanged import KeptAnswer
 from benchmark.suites.selection import suite as suite_named
 
 if TYPE_CHECKING:
@@ -46,17 +45,10 @@ def plan(
     """
     chosen = suite_named(str(suite))
     stores = stores_of(store)
-    unchanged = KeptAnswer(f"plan {chosen.name}", [one.directory for one in stores])
-    planned = unchanged.recall() if form is Format.TABLE else None
-    if planned is not None:
-        typer.echo(f"{chosen.name}: {_count(0, planned)}", err=True)
-        return
     from benchmark.suites.planning import cells_of  # noqa: PLC0415 - slow
     from benchmark.suites.planning import plan as planned_of  # noqa: PLC0415 - slow
 
     found = planned_of(cells_of(chosen, stores), stores)
-    if not found.missing:
-        unchanged.keep(len(found.cells))
     rows: list[dict[str, Any]] = [
         {**asdict(cell), "why": _why(cell, reasons)} for cell, reasons in found.missing.items()
     ]
@@ -64,6 +56,7 @@ def plan(
         "suite": chosen.name,
         "planned": len(found.cells),
         "missing": rows,
+        "modules": list(found.modules),
         "stages": asdict(found.stages),
     }
     if form is Format.TABLE:
@@ -94,16 +87,13 @@ def _why(cell: Cell, reasons: tuple[str, ...]) -> str:
 
 
 def _summary(found: CellPlan) -> str:
-    count = _count(len(found.missing), len(found.cells))
+    count = f"{len(found.missing)} of {len(found.cells)} cells to be measured"
     if not found.missing:
         return count
+    if found.modules:
+        count += f"\nchanged modules: {', '.join(found.modules)}"
     todo = found.stages
-    stages = (
-        f"data sets to generate {todo.data}, features to extract {todo.features}, "
-        f"models to fit {todo.predictions}, scores to compute {todo.scores}"
+    return (
+        f"{count}\nby stage: data sets to generate {todo.data}, features to extract "
+        f"{todo.features}, models to fit {todo.predictions}, scores to compute {todo.scores}"
     )
-    return f"{count}\nby stage: {stages}"
-
-
-def _count(missing: int, planned: int) -> str:
-    return f"{missing} of {planned} cells to be measured"

@@ -9,7 +9,7 @@ from statistics import median
 from typing import Any, Self
 
 from benchmark.metrics.intervals import median_interval, share_interval
-from benchmark.metrics.score import store
+from benchmark.metrics.separation import store
 
 Pair = Mapping[str, Any]
 

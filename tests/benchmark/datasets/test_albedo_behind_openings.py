@@ -13,7 +13,7 @@ from algorithms.extractors.currents.photodiode import VoltageBalance
 from algorithms.models.geometric.standard_projection import StandardProjection
 from algorithms.pipeline import Pipeline
 from benchmark import datasets
-from benchmark.metrics.score import separation_deg
+from benchmark.metrics.separation import separation_deg
 
 
 def moved_deg(name: str, condition: str, samples: int) -> np.ndarray:

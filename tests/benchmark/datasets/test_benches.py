@@ -12,7 +12,7 @@ from benchmark.datasets.corrected import (
     reference_condition,
     references_used,
 )
-from benchmark.metrics.score import separation_deg
+from benchmark.metrics.separation import separation_deg
 
 
 @pytest.fixture(scope="module")

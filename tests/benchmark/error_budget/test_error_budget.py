@@ -12,9 +12,10 @@ from benchmark.datasets.corrected import correction
 from benchmark.error_budget import perfected
 from benchmark.error_budget.measure import directions, score_variants
 from benchmark.error_budget.variants import SINGLE, VARIANTS
-from benchmark.metrics.score import separation_deg
+from benchmark.metrics.separation import separation_deg
 from benchmark.plan.parts import installed_parts
-from benchmark.running.task import Task, measure
+from benchmark.running.stages import Task
+from benchmark.running.task import measure
 from benchmark.simulator.readout.references import References
 
 #: Quick data sets of currents, of a dial, of profiles, of frequencies.

@@ -8,7 +8,7 @@ from benchmark.contract import Cell
 from benchmark.datasets.pins import Pin
 from benchmark.metrics.score import METRICS
 from benchmark.results.components import Components
-from benchmark.results.digests import STAGES
+from benchmark.results.modules import STAGES
 
 
 def numbers(rms: float | None = 0.5, **more: Any) -> dict[str, Any]:
@@ -50,6 +50,7 @@ def components(**digests: str) -> Components:
         datasets={name: dataset(name) for name in ("c", "d", "other")},
         extractors={"e": facts("e", taxonomy="BCM")},
         models={name: facts(name, taxonomy="LSQ") for name in ("a", "b", "m", "z")},
+        modules={"package.module": digest("module")},
     )
 
 

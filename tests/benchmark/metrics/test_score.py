@@ -8,14 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from benchmark.metrics.score import (
-    METRICS,
-    is_available,
-    score,
-    separation_deg,
-    store,
-    stored_beside,
-)
+from benchmark.metrics.score import METRICS, is_available, score, stored_beside
+from benchmark.metrics.separation import separation_deg, store
 
 ANGLES = st.floats(1e-9, 179.0)
 NAN = float("nan")

@@ -18,7 +18,7 @@ from benchmark.results.components import (
     ComponentsError,
     current,
 )
-from benchmark.results.digests import STAGES
+from benchmark.results.modules import STAGES
 
 
 def test_components_are_read_back_as_they_were_written(tmp_path):
@@ -98,6 +98,16 @@ def test_differences_name_kind_and_component():
     assert one.differences(fewer)[0] == ("models/a", "of a", "")
 
 
+def test_modules_that_are_new_or_changed_are_named():
+    before, now = components(), components(module="x")
+    assert now.changed_modules(before) == ["package.module"]
+    assert now.changed_modules(now) == []
+    assert before.update(now).modules == now.modules
+    more = replace(now, modules={**before.modules, "package.new": "y"})
+    assert more.changed_modules(before) == ["package.new"]
+    assert more.update(before).modules == more.modules
+
+
 def test_some_are_renewed_and_the_others_stay():
     known = components().update(replace(components(data="x", d="y"), models={}))
     assert known.stages["data"] == "x"
@@ -145,6 +155,11 @@ def test_current_components_are_of_the_code_as_it_is():
         ('"digest": "of e"', '"sum": "of e"', "extractors/e: the member 'digest' is missing"),
         ('"digest": "of e"', '"digest": "of e", "sum": 1', "extractors/e: unknown member 'sum'"),
         ('"stages": {', '"harness": {', "the member 'stages' is missing"),
+        (
+            '"package.module": "of module"',
+            '"package.module": 5',
+            "modules/package.module: expected",
+        ),
     ],
 )
 def test_a_file_of_something_else_is_an_error_that_names_it(tmp_path, old, new, message):

@@ -11,8 +11,8 @@ from fake_atlas import Currents, Diodes, FakeBound, FakeSamples
 
 from algorithms.extractors.frames.multi_spot.pattern_memory import found_once, shared_patterns
 from algorithms.references import ReferenceCorrection
-from benchmark.running import condition_data
-from benchmark.running.condition_data import ConditionData, RenderedData
+from benchmark.running import condition_data, readings
+from benchmark.running.stages import ConditionData, RenderedData
 from benchmark.simulator.light.memory import memory
 
 BY = ReferenceCorrection(np.array([1.0, 2.0, 3.0, 4.0]), np.array([11.0, 32.0, 13.0, 24.0]))
@@ -41,9 +41,9 @@ class Counting(Currents):
 def test_samples_corrected_some_at_a_time_give_the_features_of_all(
     samples: float, sizes: list[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(condition_data, "_BATCH_BYTES", int(samples * READ[0].nbytes))
+    monkeypatch.setattr(readings, "_BATCH_BYTES", int(samples * READ[0].nbytes))
     extractor: Any = Counting(given=([],))
-    found = condition_data.found_features(read(BY), extractor, "test")
+    found = readings.found_features(read(BY), extractor, "test")
     assert extractor.given[0] == sizes
     np.testing.assert_array_equal(found, BY.correct(READ))
 
@@ -52,9 +52,9 @@ def test_samples_corrected_some_at_a_time_give_the_features_of_all(
 def test_readings_are_corrected_at_once_where_memory_allows(
     limit: int, later: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(condition_data, "_CORRECTED_BYTES", limit)
+    monkeypatch.setattr(readings, "_CORRECTED_BYTES", limit)
     preset: Any = Diodes()
-    data = condition_data.correct_readings(RenderedData(read(), BY), preset)
+    data = readings.correct_readings(RenderedData(read(), BY), preset)
     observations = np.asarray(data.splits["test"].observations)
     np.testing.assert_array_equal(observations, READ if later else BY.correct(READ))
     assert data.correction is (BY if later else None)
@@ -63,7 +63,7 @@ def test_readings_are_corrected_at_once_where_memory_allows(
 
 def test_what_one_method_finds_in_corrected_readings_another_need_not_search() -> None:
     preset: Any = Diodes()
-    data = condition_data.correct_readings(RenderedData(read(), BY), preset)
+    data = readings.correct_readings(RenderedData(read(), BY), preset)
     observations, searches = np.asarray(data.splits["test"].observations), []
     with shared_patterns():
         for _ in range(2):

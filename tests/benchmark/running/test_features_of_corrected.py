@@ -9,7 +9,8 @@ from benchmark import datasets
 from benchmark.datasets import features
 from benchmark.datasets.corrected import correct, correction
 from benchmark.plan.parts import installed_parts
-from benchmark.running.condition_data import found_features, generate
+from benchmark.running.condition_data import generate
+from benchmark.running.readings import found_features
 
 CASES = [("ccd-slit", "eigen-analysis"), ("qpd-single-aperture", "voltage-balance")]
 

@@ -10,7 +10,10 @@ import pytest
 from benchmark import datasets
 from benchmark.contract import ON_BENCH
 from benchmark.plan.parts import installed_parts
-from benchmark.running.task import BENCHES, Task, _pooled, measure
+from benchmark.running.fitting import BENCHES
+from benchmark.running.judging import _pooled
+from benchmark.running.stages import Task
+from benchmark.running.task import measure
 
 MODELS = ("lut-polynomial", "slit")
 

@@ -10,7 +10,8 @@ import fake_atlas
 import pytest
 
 from benchmark.running import schedule
-from benchmark.running.task import Task, TaskResult
+from benchmark.running.stages import Task
+from benchmark.running.task import TaskResult
 
 
 def task(dataset: str, condition: str = "quiet", unit: int = 0, extractor: str = "one") -> Task:

@@ -16,10 +16,11 @@ from benchmark.plan.parts import Parts
 from benchmark.progress import silent
 from benchmark.results.samples import CONDITION
 from benchmark.results.times import read_times
-from benchmark.running import condition_data, times
-from benchmark.running.condition_data import ConditionData
+from benchmark.running import condition_data, readings, times
+from benchmark.running.judging import Outcome
 from benchmark.running.planned import samples_of
-from benchmark.running.task import Outcome, Task, TaskResult, measure
+from benchmark.running.stages import ConditionData, Task
+from benchmark.running.task import TaskResult, measure
 from benchmark.simulator.light.memory import memory
 
 
@@ -124,8 +125,8 @@ def test_readings_corrected_some_at_a_time_score_as_those_corrected_at_once(
 ) -> None:
     (at_once,) = measured(Referred(n=40))
     condition_data.forget()
-    monkeypatch.setattr(condition_data, "_CORRECTED_BYTES", 0)
-    monkeypatch.setattr(condition_data, "_BATCH_BYTES", 7 * 4 * 8)
+    monkeypatch.setattr(readings, "_CORRECTED_BYTES", 0)
+    monkeypatch.setattr(readings, "_BATCH_BYTES", 7 * 4 * 8)
     (in_parts,) = measured(Referred(n=40))
     assert at_once.score is not None
     assert at_once.score == in_parts.score

@@ -22,7 +22,7 @@ from benchmark.datasets.export import CARD, ExportError, export
 from benchmark.datasets.export_arrays import read_archive, write_archive
 from benchmark.datasets.export_verification import verify
 from benchmark.datasets.samples import samples_hash
-from benchmark.metrics.score import SIGNIFICANT_DIGITS
+from benchmark.metrics.separation import SIGNIFICANT_DIGITS
 from benchmark.results.store import PUBLISHED, Store
 
 FEW = 5
