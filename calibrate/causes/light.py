@@ -39,6 +39,8 @@ _PLANE = 1e-3
 _STEEPEST = 0.1
 #: Changes of the light over the noise from which what goes with it is told apart.
 _CHANGES = 5.0
+#: Standard deviations from which a part of the level goes with the light.
+_SURELY = 3.0
 #: Refractive index of a window that light may have come through.
 _GLASS = 1.5
 
@@ -139,9 +141,10 @@ def level_of_products(readings: Readings) -> Dark:
 
 
 def without_stray(dark: Dark, readings: Readings) -> Dark:
-    """Return a level of quadrants (N, 4) without what goes with the light.
+    """Return a level of quadrants (N, 4) without what surely goes with the light.
 
-    It is that of `level_of_products` where light hardly differs from row to row: it tells nothing.
+    Its error is that of the level at no light. It is what `level_of_products` found where light
+    hardly differs from row to row, and tells nothing.
     """
     slope, product = _of_products(readings.raw)
     level = float(dark.level[0])
@@ -154,7 +157,9 @@ def without_stray(dark: Dark, readings: Readings) -> Dark:
     at_none, error = _by_blocks(
         np.column_stack([slope * -change, slope * (1.0 + change)]), product, readings.sun
     )
-    return Dark(np.full(4, at_none), error, dark.by, told_apart=True)
+    if abs(at_none - level) > _SURELY * error:
+        level = at_none
+    return Dark(np.full(4, level), error, dark.by, told_apart=True)
 
 
 def _of_products(q: Floats) -> tuple[Floats, Floats]:
