@@ -6,12 +6,11 @@ import asyncio
 import json
 from collections.abc import Iterator, Mapping
 from typing import Any
+from urllib.parse import quote
 
 from typer.testing import CliRunner
 
 from api.cli.command_line import COMMANDS, app, load
-from api.http.openapi_sharing import inlined
-from api.http.reference import target, words
 from api.server.app import create_app
 from api.service.problems import MEDIA_TYPE
 from api.web.negotiation import CSV, JSON
@@ -29,6 +28,7 @@ COMMON_PARAMETERS = frozenset(
 )
 REFUSED = "/v1/studies?detectr=CMOS"
 _SERVED = "http://127.0.0.1:8000"
+_FEW = 6  # words that are listed; of more, as many and how many there are
 
 
 def command_line() -> str:
@@ -70,11 +70,44 @@ def _own_options(text: str) -> str:
     return "\n".join(kept).replace("Options:\n\n", "").removesuffix("Options:")
 
 
+def target(path: str, operation: Mapping[str, Any]) -> tuple[str, Any]:
+    """Return the path with query, and the JSON body (None for none), of an operation's example."""
+    query = []
+    for parameter in operation.get("parameters", ()):
+        if "example" not in parameter:
+            continue
+        given = parameter["example"]
+        if parameter["in"] == "path":
+            path = path.replace(f"{{{parameter['name']}}}", quote(str(given), safe=""))
+        elif parameter["in"] == "query":
+            values = given if isinstance(given, list) else [given]
+            query += [f"{parameter['name']}={quote(str(value), safe='')}" for value in values]
+    content = operation.get("requestBody", {}).get("content", {})
+    body = content.get(JSON, {}).get("example")
+    return path + ("?" + "&".join(query) if query else ""), body
+
+
+def _words(schema: Mapping[str, Any]) -> tuple[list[str], int, str]:
+    """Return some words that a parameter takes, how many there are, and else what it takes."""
+    if schema.get("type") == "array":
+        some, count, said = _words(schema["items"])
+        return some, count, f"{said}; repeatable" if said else "repeatable"
+    if "enum" in schema:
+        return list(schema["enum"][:_FEW]), len(schema["enum"]), ""
+    default = f", {schema['default']} by default" if "default" in schema else ""
+    limits = [
+        f"{said} {schema[key]:g}"
+        for key, said in (("minimum", "from"), ("exclusiveMinimum", "above"), ("maximum", "to"))
+        if key in schema
+    ]
+    return [], 0, " ".join([str(schema.get("type", "any")), *limits]) + default
+
+
 def http_examples() -> str:
     """Return every endpoint with its parameters and the answer to its example."""
     service = create_app()
     parts = []
-    for path, operations in inlined(service.openapi()).items():
+    for path, operations in service.openapi()["paths"].items():
         for method, operation in operations.items():
             parts.append(_operation(service, path, method, operation))
     refused = _ask(service, "GET", REFUSED)
@@ -186,7 +219,7 @@ def _pretty(value: Any, indent: str = "", name: str = "", comma: str = "") -> It
 
 def _takes(schema: Mapping[str, Any]) -> str:
     """Say in words what a parameter's schema takes."""
-    some, count, said = words(schema)
+    some, count, said = _words(schema)
     listed = ", ".join(f"`{word}`" for word in some)
     if count > len(some):
         listed = f"one of {count} values, such as `{some[0]}`"

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from pathlib import Path
 
-from fastapi import Request, Response
+from fastapi import Response
 
 from api.guide import site
 from api.service.problems import Problem, Violation
-from api.web.representations import Representation
-from api.web.static_files import ALREADY_COMPRESSED, CONTENT_TYPES
+from api.web.static_files import CONTENT_TYPES, file_response
 
 INDEX = "index.html"
 _UNBUILT = """<!doctype html>
@@ -27,12 +25,11 @@ _MISSING = """<!doctype html>
 """
 
 
-def respond(request: Request, name: str) -> Response:
+def respond(name: str) -> Response:
     """Give a file of the guide; where it is not built, a page that says how (503).
 
     Parameters
     ----------
-    request : asked
     name : of the file, below /guide/; a directory stands for its index
 
     Raises
@@ -45,24 +42,12 @@ def respond(request: Request, name: str) -> Response:
         return _unavailable(_MISSING.format(install=site.INSTALL))
     if not place.is_dir():
         return _unavailable(_UNBUILT)
-    return _file(place, name or INDEX).respond(request)
-
-
-@lru_cache(maxsize=256)
-def _file(place: Path, name: str) -> Representation:
-    """Return a file of the site, read and compressed once; only what lies in it."""
-    path = place / name
+    path = place / (name or INDEX)
     known = path.suffix in CONTENT_TYPES and ".." not in Path(name).parts
     if not (known and path.is_file() and path.resolve().is_relative_to(place.resolve())):
         raise Problem(404, "unknown-file", errors=[Violation("file", name, "a file of the guide")])
-    return Representation(
-        path.read_bytes(),
-        CONTENT_TYPES[path.suffix],
-        {"Vary": "Accept-Encoding"},
-        compressible=path.suffix not in ALREADY_COMPRESSED,
-    )
+    return file_response(path)
 
 
 def _unavailable(text: str) -> Response:
-    headers = {"Content-Type": "text/html; charset=utf-8", "Cache-Control": "no-store"}
-    return Response(text, 503, headers=headers)
+    return Response(text, 503, headers={"Cache-Control": "no-store"}, media_type="text/html")

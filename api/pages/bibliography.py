@@ -7,6 +7,7 @@ from functools import cache
 from typing import Annotated, Any
 
 import yaml
+from fastapi import Response
 
 from api.citations import blank_bibtex
 from api.metadata.identity import identity
@@ -14,8 +15,7 @@ from api.pages.serving import PageRouter, View
 from api.pages.study import IDENTITIES
 from api.web.answers import Answer
 from api.web.dependencies import NO_PARAMETERS, Known
-from api.web.negotiation import BIBTEX, CONTENT_TYPES
-from api.web.representations import Representation
+from api.web.negotiation import BIBTEX
 
 router = PageRouter()
 
@@ -29,14 +29,13 @@ FORM = "bibliography.yml"
 class MissingMetadata(Answer):
     """The studies of which something is missing, as BibTeX with blanks to be filled in, too."""
 
-    def representation(self, wanted: str) -> Representation:
+    def representation(self, wanted: str) -> Response:
         """Return the answer in a media type."""
         if wanted != BIBTEX:
             return super().representation(wanted)
         incomplete = [row for row in self.document["items"] if row["missing"]]
-        saved = 'attachment; filename="missing.bib"'
-        text = blank_bibtex(incomplete)
-        return Representation(text.encode(), CONTENT_TYPES[BIBTEX], {"Content-Disposition": saved})
+        saved = {"Content-Disposition": 'attachment; filename="missing.bib"'}
+        return self.written(blank_bibtex(incomplete), BIBTEX, **saved)
 
 
 def missing_of(study: Mapping[str, Any]) -> list[str]:

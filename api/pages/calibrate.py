@@ -8,14 +8,13 @@ from dataclasses import replace
 from typing import Any, get_args
 
 from fastapi import APIRouter, Request, Response
+from fastapi.responses import HTMLResponse
 from markupsafe import Markup
 
 from api.pages.rendering import render
-from api.pages.serving import page_bytes
 from api.service.problems import Problem
 from api.web.answers import StrictRoute
 from api.web.calibrations import HTML, archive_of, as_response, checked, made_of
-from api.web.representations import Representation
 from api.web.uploads import Form, read_form
 from calibrate.forms.units import AngleUnit, TemperatureUnit, TimeUnit
 from calibrate.sample import NAME, sample
@@ -54,13 +53,13 @@ _SAMPLE = "sample"
 @router.get("/calibrate")
 async def form(request: Request) -> Response:
     """Give the form; `model` in the query is filled in."""
-    return _page({"model": request.query_params.get("model", "")}).respond(request)
+    return _page({"model": request.query_params.get("model", "")})
 
 
 @router.get(f"/calibrate/{NAME}")
-async def sample_file(request: Request) -> Response:
+def sample_file() -> Response:
     """Give the sample file."""
-    return Representation(sample(), "text/csv; charset=utf-8").respond(request)
+    return Response(sample(), media_type="text/csv")
 
 
 @router.post("/calibrate")
@@ -78,10 +77,9 @@ async def report(request: Request) -> Response:
         shown, status = _page(fields, made=made), 200
     except Problem as problem:
         shown, status = _page(fields, problem=problem.document("/calibrate")), problem.status_code
-    answer = shown.respond(request, conditional=False)
-    answer.status_code = status
-    answer.headers["Cache-Control"] = "no-store"
-    return answer
+    shown.status_code = status
+    shown.headers["Cache-Control"] = "no-store"
+    return shown
 
 
 def _with_sample(sent: Form) -> Form:
@@ -98,7 +96,7 @@ def _page(
     *,
     made: Mapping[str, str] | None = None,
     problem: Mapping[str, Any] | None = None,
-) -> Representation:
+) -> Response:
     choices = {
         "kinds": [(kind, _KINDS.get(kind, kind)) for kind in get_args(Kind) if kind != "frames"],
         "forms": [(form, _FORMS.get(form, form)) for form in get_args(DirectionForm)],
@@ -106,7 +104,7 @@ def _page(
         "time_units": [(unit, unit) for unit in get_args(TimeUnit)],
         "temperature_units": [(unit, unit) for unit in get_args(TemperatureUnit)],
     }
-    return page_bytes(
+    return HTMLResponse(
         render(
             "calibrate/form.html",
             {

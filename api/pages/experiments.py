@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from inspect import getdoc
 from pathlib import PurePosixPath
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Response
 
@@ -16,7 +16,6 @@ from api.service.knowledge import Knowledge
 from api.service.problems import Problem
 from api.web.answers import AnswerRoute
 from api.web.dependencies import NO_PARAMETERS, Known
-from api.web.representations import Representation
 from benchmark.running.experiment import RecordedExperiment, recorded_experiments
 
 router = PageRouter()
@@ -31,11 +30,6 @@ class Drawing(Response):
     """An SVG."""
 
     media_type = SVG
-    media_types: ClassVar = (SVG,)
-
-    def representation(self, wanted: str) -> Representation:
-        """Return the drawing."""
-        return Representation(bytes(self.body), wanted, {"Vary": "Accept"})
 
 
 pictures = APIRouter(route_class=AnswerRoute, include_in_schema=False)

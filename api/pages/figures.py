@@ -21,10 +21,9 @@ from api.schema.figures import FigureQuery, MatrixQuery
 from api.schema.studies import StudyFilters
 from api.service import figures as service
 from api.service.knowledge import Knowledge
-from api.web.answers import Handler, StrictRoute
+from api.web.answers import AnswerRoute
 from api.web.dependencies import NO_PARAMETERS, Known
-from api.web.negotiation import media_type
-from api.web.representations import Representation, RepresentationCache
+from api.web.negotiation import JSON
 from registry.taxonomy import ATTRIBUTES, LEVELS
 from survey_data.reported import QUANTITIES
 
@@ -37,39 +36,22 @@ Cell = tuple[str, str, str]
 """Heading, text, and what stands below it."""
 
 
-class DrawingRoute(StrictRoute):
-    """A route of a drawing, which is made once for each path and query."""
+class Drawing(Response):
+    """An SVG."""
 
-    media_type = SVG
-
-    def get_route_handler(self) -> Handler:
-        """Return what handles a request."""
-        compute = super().get_route_handler()
-
-        async def answer(request: Request) -> Response:
-            media_type(request.headers.get("accept"), (self.media_type,))
-            kept: RepresentationCache = request.app.state.kept
-            asked = (request.scope["path"], request.scope["query_string"], self.media_type)
-            found = kept.get(asked)
-            if found is None:
-                body = bytes((await compute(request)).body)
-                charset = "; charset=utf-8" if self.media_type == SVG else ""
-                found = Representation(body, f"{self.media_type}{charset}")
-                kept.put(asked, found)
-            return found.respond(request)
-
-        return answer
+    media_type = f"{SVG}; charset=utf-8"
+    media_types = (SVG,)
 
 
-class SpecificationRoute(DrawingRoute):
-    """A route of a figure for Plotly."""
+class Specification(Response):
+    """A figure for Plotly."""
 
-    media_type = "application/json"
+    media_type = JSON
 
 
 router = PageRouter()
-drawings = APIRouter(route_class=DrawingRoute, include_in_schema=False)
-specifications = APIRouter(route_class=SpecificationRoute, include_in_schema=False)
+drawings = APIRouter(route_class=AnswerRoute, include_in_schema=False)
+specifications = APIRouter(route_class=AnswerRoute, include_in_schema=False)
 
 
 @router.page("/figures")
@@ -112,42 +94,42 @@ async def figure(
     return _view(known, found, query, request, chosen={}, gaps={})
 
 
-@drawings.get(f"/figures/{MATRIX}.svg", response_class=Response)
+@drawings.get(f"/figures/{MATRIX}.svg", response_class=Drawing)
 async def matrix_drawing(
     known: Known, query: Annotated[MatrixQuery, Query()], request: Request
-) -> Response:
+) -> Drawing:
     """Give the matrix as a drawing."""
     return _document(_matrix(known, query, request))
 
 
-@drawings.get("/figures/{figure}.svg", response_class=Response)
+@drawings.get("/figures/{figure}.svg", response_class=Drawing)
 async def figure_drawing(
     known: Known,
     figure: Annotated[FigureName, Path()],
     query: Annotated[FigureQuery, Query()],
     request: Request,
-) -> Response:
+) -> Drawing:
     """Give a figure as a drawing."""
     return _document(
         drawn(figure, known.of(query.edition).facts, query.by_attribute(), _page(request))
     )
 
 
-@specifications.get(f"/figures/{MATRIX}{PLOTLY}", response_class=Response)
+@specifications.get(f"/figures/{MATRIX}{PLOTLY}", response_class=Specification)
 async def matrix_specification(
     known: Known, query: Annotated[MatrixQuery, Query()], request: Request
-) -> Response:
+) -> Specification:
     """Give the matrix for Plotly."""
-    return Response(specification(_matrix(known, query, request)))
+    return Specification(specification(_matrix(known, query, request)))
 
 
-@specifications.get(f"/figures/{{figure}}{PLOTLY}", response_class=Response)
+@specifications.get(f"/figures/{{figure}}{PLOTLY}", response_class=Specification)
 async def figure_specification(
     known: Known, figure: Annotated[FigureName, Path()], query: Annotated[FigureQuery, Query()]
-) -> Response:
+) -> Specification:
     """Give a figure for Plotly."""
     studies = known.of(query.edition).facts
-    return Response(specification(drawn(figure, studies, query.by_attribute())))
+    return Specification(specification(drawn(figure, studies, query.by_attribute())))
 
 
 def _matrix(known: Knowledge, query: MatrixQuery, request: Request) -> Figure:
@@ -233,11 +215,11 @@ def _abbreviations(known: Knowledge, found: Figure) -> list[tuple[str, str]]:
     return sorted((short, name) for short, name in named.items() if short != name)
 
 
-def _document(found: Figure) -> Response:
+def _document(found: Figure) -> Drawing:
     style = (files("api") / "static" / "styles" / "figures.css").read_text(encoding="utf-8")
     # What places a figure in a page says nothing to a drawing of its own.
     drawing = found.drawings["wide"]
-    return Response(drawing.document(found.title, found.description, style))
+    return Drawing(drawing.document(found.title, found.description, style))
 
 
 def _flow_cells(row: Row) -> list[Cell]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, lru_cache
 from typing import Annotated, Any
 
 from fastapi import Path, Query, Request
@@ -33,6 +33,7 @@ ARCHITECTURE_COLUMNS = (
 SHOWN = 40
 
 
+@lru_cache(4)
 def best_built(known: Knowledge) -> list[dict[str, Any]]:
     """Return the best measured pipeline of every detector and mask that a data set has."""
     return architectures(known.measurements.leaderboard)

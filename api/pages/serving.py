@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from http import HTTPStatus
 from typing import Any, ClassVar
 
 from fastapi import APIRouter, Request, Response
 from fastapi.exceptions import RequestValidationError
+from fastapi.responses import HTMLResponse
 
 from api.metadata.signposting import LandingPage, headers
 from api.pages.rendering import render
 from api.service.documents import Document
 from api.service.problems import Problem
 from api.service.refusals import refusal
-from api.web.answers import Answer, Handler, StrictRoute, as_asked
+from api.web.answers import Answer, Handler, StrictRoute, as_asked, link
 from api.web.negotiation import BIBTEX, CSV, JSON, for_spreadsheets, media_type
-from api.web.representations import Representation, RepresentationCache
 
 HTML = "text/html"
 OFFERED = (HTML, JSON, CSV)
@@ -58,31 +57,24 @@ class View(Response):
         self.landing = landing
         self.context = {"entity": entity, **context}
 
-    def representation(self, wanted: str, path: str = "/", query: str = "") -> Representation:
+    def representation(self, wanted: str, path: str = "/", query: str = "") -> Response:
         """Return the page in a media type; `path` and `query` are what was asked for."""
         if wanted != HTML:
             links = self.landing.links_of_metadata() if self.landing else ()
             answer = Answer.of(self.found) if isinstance(self.found, Document) else self.found
-            return answer.representation(wanted).link(*headers(links))
+            return link(answer.representation(wanted), *headers(links))
         context = {"document": self.found.document, "path": path, "query": query, **self.context}
         links = self.landing.links() if self.landing else ()
-        return page_bytes(render(self.template, context)).link(*headers(links))
-
-
-def page_bytes(text: str) -> Representation:
-    """Return rendered HTML as it is sent."""
-    return Representation(text.encode(), "text/html; charset=utf-8")
+        page = HTMLResponse(render(self.template, context), self.status_code)
+        return link(page, *headers(links))
 
 
 def refusal_page(request: Request, problem: Problem) -> Response:
     """Return the page that tells a person of a refusal."""
     path: str = request.scope["path"]
     context = {"path": path, "query": "", "problem": problem.document(path)}
-    answer = page_bytes(render("problem.html", context))
-    shown = answer.respond(request, conditional=False)
-    shown.status_code = problem.status_code
-    shown.headers["Cache-Control"] = "no-store"
-    return shown
+    headers = {"Cache-Control": "no-store", "Vary": "Accept"}
+    return HTMLResponse(render("problem.html", context), problem.status_code, headers)
 
 
 class PageRoute(StrictRoute):
@@ -97,29 +89,19 @@ class PageRoute(StrictRoute):
         )
 
         async def answer(request: Request) -> Response:
-            kept: RepresentationCache = request.app.state.kept
             path, query = request.scope["path"], _fill(request.scope["query_string"])
             wanted = twin or media_type(request.headers.get("accept"), OFFERED)
-            asked = (path, query, wanted)
             # How a table is written, which is settled here, is no question to a page.
             request.scope["query_string"] = _without_safe(query) if wanted == CSV else query
-            found = kept.get(asked)
-            if found is None:
-                try:
-                    made: View = await compute(request)  # type: ignore[assignment]
-                    found = made.representation(wanted, path, query.decode("latin-1"))
-                    request.scope["query_string"] = query
-                    found = as_asked(found, wanted, request)
-                except (Problem, RequestValidationError) as error:
-                    if wanted != HTML:
-                        raise
-                    return refusal_page(request, _problem(error, request))
-                if made.status_code != HTTPStatus.OK:  # a page that tells of a refusal itself
-                    shown = found.respond(request, conditional=False)
-                    shown.status_code = made.status_code
-                    return shown
-                kept.put(asked, found)
-            return found.respond(request)
+            try:
+                made: View = await compute(request)  # type: ignore[assignment]
+                found = made.representation(wanted, path, query.decode("latin-1"))
+                request.scope["query_string"] = query
+                return as_asked(found, wanted, request)
+            except (Problem, RequestValidationError) as error:
+                if wanted != HTML:
+                    raise
+                return refusal_page(request, _problem(error, request))
 
         return answer
 

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import asyncio
-import gc
 import threading
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -15,15 +14,15 @@ from typing import Any
 
 from fastapi import FastAPI
 from fastapi.routing import APIRoute
+from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
 
 from api.http.openapi import describe
 from api.http.routers import ROUTERS as SERVICE
-from api.http.routers import recommendations
 from api.pages.routers import ROUTERS as PAGES
 from api.server import handlers
 from api.service.knowledge import Knowledge
-from api.web import middleware
-from api.web.representations import RepresentationCache
+from api.web.middleware import EveryResponse
+from api.web.negotiation import PARQUET
 
 DESCRIPTION = (
     "Which sun sensor to build and how to calibrate it: published studies, their algorithms, and "
@@ -33,8 +32,6 @@ DESCRIPTION = (
     "strong `ETag`. Errors are problem documents (RFC 9457) with the nearest valid value. In CSV "
     "an empty cell is an unknown value, and `none stated` is the survey's value `None`."
 )
-#: New objects after which the collector runs: an answer makes thousands, few of them in cycles.
-COLLECTED_AFTER = 20_000
 ROUTERS = (*SERVICE, *PAGES)
 ROUTES = [route for router in ROUTERS for route in router.routes if isinstance(route, APIRoute)]
 
@@ -53,20 +50,22 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
         title="Sun Sensor Atlas",
         version=_version(),
         description=DESCRIPTION,
-        openapi_url=None,  # served by a router, with its ETag
-        docs_url=None,  # would load scripts from elsewhere
+        openapi_url=None,  # served by a router, as /docs is, which loads no script from elsewhere
+        docs_url=None,
         redoc_url=None,
         redirect_slashes=False,
         lifespan=_lifespan,
         generate_unique_id_function=lambda route: route.name,
     )
     app.state.knowledge = Knowledge() if knowledge is None else knowledge
-    app.state.kept = RepresentationCache()
-    # Routes are tried one after another: first what is asked most, and is to be answered at once.
-    for router in sorted(ROUTERS, key=lambda one: one is not recommendations.router):
+    for router in ROUTERS:
         app.include_router(router)
     handlers.install(app, ROUTES)
-    app.add_middleware(middleware.EveryResponse)
+    packed = (*DEFAULT_EXCLUDED_CONTENT_TYPES, PARQUET)
+    app.add_middleware(
+        GZipMiddleware, minimum_size=512, compresslevel=6, exclude_content_types=packed
+    )
+    app.add_middleware(EveryResponse)
 
     describing = threading.Lock()  # FastAPI's part of it is not for two threads at once
 
@@ -82,18 +81,11 @@ def create_app(knowledge: Knowledge | None = None) -> FastAPI:
 
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
-    before = gc.get_threshold()
-    gc.set_threshold(COLLECTED_AFTER)
     app.state.knowledge.load_all()
-    # Who asks for it first shall not wait for it, nor shall all others meanwhile: a thread beside
-    # them would hold up each of their answers. Before a service answers it is nobody's loss.
-    await asyncio.to_thread(app.openapi)  # it asks path functions, each in a loop of its own
-    # What is loaded now stays: the collector need not walk it again for every few answers.
-    gc.collect()
-    gc.freeze()
+    # Now, as it holds up every answer meanwhile; in a thread, as path functions are asked in loops
+    # of their own.
+    await asyncio.to_thread(app.openapi)
     yield
-    gc.unfreeze()
-    gc.set_threshold(*before)
 
 
 def _version() -> str:

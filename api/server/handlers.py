@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from http import HTTPStatus
 
@@ -9,41 +10,51 @@ from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from fastapi.routing import APIRoute
 from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
 
 from api.pages.serving import TWINS, refusal_page
-from api.service.problems import Problem, Violation
+from api.service.problems import MEDIA_TYPE, Problem, Violation
 from api.service.refusals import refusal
-from api.web.problem_responses import respond
 from survey_data.nearest import nearest_name
 
 
 def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
     """Make every refusal and failure of `app`, which serves `routes`, a problem document."""
 
+    @app.exception_handler(HTTPException)
+    @app.exception_handler(Problem)
     async def refused(request: Request, error: HTTPException | Problem) -> Response:
-        if not isinstance(error, Problem):
-            error = _of_framework(error, request, routes)
-            if _is_of_a_person(request):
-                return refusal_page(request, error)
+        if isinstance(error, Problem):
+            return respond(request, error)
+        error = _of_framework(error, request, routes)
+        # Programs ask below /v1, and not for HTML.
+        of_a_person = "text/html" in request.headers.get("accept", "")
+        if of_a_person and not request.scope["path"].startswith("/v1/"):
+            return refusal_page(request, error)
         return respond(request, error)
 
+    @app.exception_handler(RequestValidationError)
     async def invalid(request: Request, error: RequestValidationError) -> Response:
         return respond(request, refusal(error.errors(), request.scope["endpoint"]))
 
+    @app.exception_handler(ClientDisconnect)
+    async def gone(request: Request, _error: ClientDisconnect) -> Response:
+        wrong = Violation("body", None, "all that its length promised")
+        return respond(request, Problem(400, "incomplete-body", errors=[wrong]))
+
+    @app.exception_handler(Exception)
     async def failed(request: Request, _error: Exception) -> Response:
         detail = "The service failed on this request; the cause is in its log."
         return respond(request, Problem(500, "internal-server-error", detail))
 
-    app.exception_handler(HTTPException)(refused)
-    app.exception_handler(Problem)(refused)
-    app.exception_handler(RequestValidationError)(invalid)
-    app.exception_handler(Exception)(failed)
 
-
-def _is_of_a_person(request: Request) -> bool:
-    """Say whether a browser asks for a page: programs ask below /v1, and not for HTML."""
-    accepted = request.headers.get("accept", "")
-    return "text/html" in accepted and not request.scope["path"].startswith("/v1/")
+def respond(request: Request, problem: Problem) -> Response:
+    """Return `problem` as the response to `request`."""
+    # Not the answers' fast serialiser: input may hold lone surrogates, which only escaping carries.
+    # The path is not taken from `request.url`, which fails where the query is not UTF-8.
+    body = json.dumps(problem.document(request.scope["path"]))
+    headers = {"Cache-Control": "no-store", **(problem.headers or {})}
+    return Response(body, problem.status_code, headers, media_type=MEDIA_TYPE)
 
 
 def _of_framework(error: HTTPException, request: Request, routes: Sequence[APIRoute]) -> Problem:

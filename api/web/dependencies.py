@@ -8,7 +8,6 @@ from fastapi import Depends, Query, Request
 
 from api.schema.base import NoParameters, OnlyFormat
 from api.service.knowledge import Knowledge
-from api.web.negotiation import JSON, media_type
 
 
 async def knowledge(request: Request) -> Knowledge:
@@ -17,16 +16,10 @@ async def knowledge(request: Request) -> Knowledge:
     return known
 
 
-async def json_accepted(request: Request) -> None:
-    """Refuse a client that does not take JSON."""
-    media_type(request.headers.get("accept"), (JSON,))
-
-
 async def no_parameters(_query: Annotated[NoParameters, Query()]) -> None:
     """Refuse any query."""
 
 
 Known = Annotated[Knowledge, Depends(knowledge)]
-JSON_ONLY = Depends(json_accepted)
 NO_PARAMETERS = Depends(no_parameters)
 TableOnly = Annotated[OnlyFormat, Query()]

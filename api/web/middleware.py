@@ -1,53 +1,44 @@
-"""What holds for every response: security headers, who may read, HEAD as GET without a body."""
+"""What holds for every response: security headers, who may read, ETag and 304, HEAD as GET."""
 
 from __future__ import annotations
 
+import hashlib
 import time
 
+from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from api.web.observation import keep
 
-_POLICY = {
-    "default-src": "'none'",
-    "script-src": "'self'",
-    # Documentation that is served beside the pages carries style attributes.
-    "style-src": "'self' 'unsafe-inline'",
-    # Downloads are made in the page.
-    "img-src": "'self' data: blob:",
-    "font-src": "'self'",
-    "connect-src": "'self'",
-    "manifest-src": "'self'",
-    "base-uri": "'none'",
-    "form-action": "'self'",
-    "frame-ancestors": "'none'",
+CONTENT_SECURITY_POLICY = (
+    # Documentation beside the pages carries style attributes; downloads are made in the page.
+    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
+    "img-src 'self' data: blob:; font-src 'self'; connect-src 'self'; manifest-src 'self'; "
+    "base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+)
+SECURITY_HEADERS = {
+    "content-security-policy": CONTENT_SECURITY_POLICY,
+    "x-content-type-options": "nosniff",
+    "x-frame-options": "DENY",
+    "referrer-policy": "no-referrer",
+    "cross-origin-opener-policy": "same-origin",
+    "permissions-policy": "camera=(), geolocation=(), microphone=()",
 }
-CONTENT_SECURITY_POLICY = "; ".join(f"{name} {sources}" for name, sources in _POLICY.items())
-SECURITY_HEADERS = [
-    (b"content-security-policy", CONTENT_SECURITY_POLICY.encode()),
-    (b"x-content-type-options", b"nosniff"),
-    (b"x-frame-options", b"DENY"),
-    (b"referrer-policy", b"no-referrer"),
-    (b"cross-origin-opener-policy", b"same-origin"),
-    (b"permissions-policy", b"camera=(), geolocation=(), microphone=()"),
-]
-
-
 #: What a page of any other site may read: all there is to read, as nothing here is secret and
 #: nobody logs in. The page itself is for this site alone.
-SHARED_HEADERS = [
-    (b"access-control-allow-origin", b"*"),
-    (b"access-control-expose-headers", b"ETag, Link, Retry-After"),
-    (b"cross-origin-resource-policy", b"cross-origin"),
-]
-OWN_HEADERS = [(b"cross-origin-resource-policy", b"same-origin")]
-PREFLIGHT_HEADERS = [
-    (b"access-control-allow-methods", b"GET, HEAD, POST"),
-    (b"access-control-allow-headers", b"Accept, Content-Type, If-None-Match"),
-    (b"access-control-max-age", b"86400"),
-    (b"content-length", b"0"),
-    (b"vary", b"Origin, Access-Control-Request-Method"),
-]
+SHARED_HEADERS = {
+    "access-control-allow-origin": "*",
+    "access-control-expose-headers": "ETag, Link, Retry-After",
+    "cross-origin-resource-policy": "cross-origin",
+}
+OWN_HEADERS = {"cross-origin-resource-policy": "same-origin"}
+PREFLIGHT_HEADERS = {
+    "access-control-allow-methods": "GET, HEAD, POST",
+    "access-control-allow-headers": "Accept, Content-Type, If-None-Match",
+    "access-control-max-age": "86400",
+    "content-length": "0",
+    "vary": "Origin, Access-Control-Request-Method",
+}
 
 
 def is_shared(path: str) -> bool:
@@ -56,10 +47,12 @@ def is_shared(path: str) -> bool:
 
 
 class EveryResponse:
-    """ASGI middleware: adds the headers and answers HEAD by GET without its body.
+    """ASGI middleware, the outermost: headers, validators, HEAD, and the log of requests.
 
-    What is answered is counted, timed and logged (`api.web.observation`); a failure counts as 500.
-    A browser's question whether another site may ask (a preflight) is answered here.
+    An answer without `Cache-Control` may be stored and has to be revalidated: facts and scores
+    change with a release. Its strong ETag is a digest of the bytes that travel, so this stands
+    outside the compression. A failure counts as 500. A browser's question whether another site may
+    ask (a preflight) is answered here.
     """
 
     def __init__(self, app: ASGIApp) -> None:
@@ -70,28 +63,45 @@ class EveryResponse:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
+        asked, method = Headers(scope=scope), scope["method"]
         shared = is_shared(scope["path"])
-        more = [*SECURITY_HEADERS, *(SHARED_HEADERS if shared else OWN_HEADERS)]
-        if shared and scope["method"] == "OPTIONS" and _is_preflight(scope):
-            headers = [*more, *PREFLIGHT_HEADERS]
+        more = {**SECURITY_HEADERS, **(SHARED_HEADERS if shared else OWN_HEADERS)}
+        if (
+            shared
+            and method == "OPTIONS"
+            and {"origin", "access-control-request-method"} <= {*asked}
+        ):
+            headers = Headers({**more, **PREFLIGHT_HEADERS}).raw
             await send({"type": "http.response.start", "status": 204, "headers": headers})
             await send({"type": "http.response.body", "body": b""})
             return
-        head = scope["method"] == "HEAD"
-        inner = {**scope, "method": "GET"} if head else scope
+        inner = {**scope, "method": "GET"} if method == "HEAD" else scope
         status, length = 500, 0
+        begin: Message = {}
         start = time.perf_counter()
 
         async def decorated(message: Message) -> None:
-            nonlocal status, length
+            nonlocal status, length, begin
             if message["type"] == "http.response.start":
-                status = message["status"]
-                message["headers"] = [*message["headers"], *more]
-            elif message["type"] == "http.response.body":
-                if head:
-                    message["body"] = b""
-                length += len(message.get("body", b""))
-            await send(message)
+                begin = message  # sent with its body, whose digest it carries
+                return
+            body = message.get("body", b"")
+            if begin:
+                headers = MutableHeaders(raw=begin["headers"])
+                headers.update(more)
+                if begin["status"] == 200 and headers.get("cache-control") != "no-store":
+                    headers["cache-control"] = "no-cache"
+                    headers["etag"] = f'"{hashlib.sha256(body).hexdigest()[:32]}"'
+                    if inner["method"] == "GET" and _matches(asked, headers["etag"]):
+                        begin["status"], body = 304, b""
+                        for name in ("content-type", "content-length", "content-encoding"):
+                            del headers[name]
+                status = begin["status"]
+                await send(begin)
+                begin = {}
+            body = b"" if method == "HEAD" else body
+            length += len(body)
+            await send({**message, "body": body})
 
         try:
             await self.app(inner, receive, decorated)
@@ -99,6 +109,7 @@ class EveryResponse:
             keep(inner, status, length, time.perf_counter() - start)
 
 
-def _is_preflight(scope: Scope) -> bool:
-    names = {name for name, _ in scope["headers"]}
-    return {b"origin", b"access-control-request-method"} <= names
+def _matches(asked: Headers, etag: str) -> bool:
+    """Compare If-None-Match, a list or `*`, weakly with an ETag (RFC 9110, 13.1.2)."""
+    known = asked.get("if-none-match", "").split(",")
+    return any(one.strip() in {"*", etag, f"W/{etag}"} for one in known)

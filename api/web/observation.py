@@ -2,7 +2,7 @@
 
 Labels are templates of routes, never paths as they are asked for: what anybody can make up is no
 label. With several workers their numbers are added up through files in the directory that
-`PROMETHEUS_MULTIPROC_DIR` names, which has to be set before this module is first used.
+`PROMETHEUS_MULTIPROC_DIR` names, which has to be set before a worker imports this module.
 """
 
 from __future__ import annotations
@@ -12,42 +12,26 @@ import logging
 import os
 import sys
 from datetime import UTC, datetime
-from functools import cache
-from typing import TYPE_CHECKING, Any
 
+from prometheus_client import REGISTRY, CollectorRegistry, Counter, Histogram, generate_latest
+from prometheus_client.multiprocess import MultiProcessCollector
 from starlette.types import Scope
-
-if TYPE_CHECKING:
-    from prometheus_client import Counter, Histogram
 
 METHODS = frozenset({"GET", "HEAD", "POST", "OPTIONS", "PUT", "PATCH", "DELETE"})
 UNMATCHED = "unmatched"
 BUCKETS_S = (0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 10.0)
 LONGEST_ECHO = 300  # characters of what a client sent, in a line of the log
-
+REQUESTS = Counter("sunatlas_http_requests", "Requests answered.", ("method", "route", "status"))
+SECONDS = Histogram(
+    "sunatlas_http_seconds", "Time to answer.", ("method", "route"), buckets=BUCKETS_S
+)
 LOG = logging.getLogger("sunatlas.access")
-
-
-@cache
-def _numbers() -> tuple[Counter, Histogram]:
-    from prometheus_client import Counter, Histogram  # noqa: PLC0415 - reads the environment
-
-    labels = ("method", "route", "status")
-    return (
-        Counter("sunatlas_http_requests", "Requests answered.", labels),
-        Histogram("sunatlas_http_seconds", "Time to answer.", labels[:2], buckets=BUCKETS_S),
-    )
 
 
 def exposition() -> bytes:
     """Return the numbers of all workers as Prometheus reads them."""
-    from prometheus_client import REGISTRY, CollectorRegistry, generate_latest  # noqa: PLC0415
-
-    _numbers()
     if "PROMETHEUS_MULTIPROC_DIR" not in os.environ:
         return generate_latest(REGISTRY)
-    from prometheus_client.multiprocess import MultiProcessCollector  # noqa: PLC0415
-
     registry = CollectorRegistry()
     MultiProcessCollector(registry)  # type: ignore[no-untyped-call]
     return generate_latest(registry)
@@ -73,33 +57,22 @@ def keep(scope: Scope, status: int, length: int, seconds: float) -> None:
     """
     route = getattr(scope.get("route"), "path", UNMATCHED)
     method = scope["method"] if scope["method"] in METHODS else "other"
-    requests, times = _numbers()
-    _child(requests, method, route, str(status)).inc()
-    _child(times, method, route).observe(seconds)
-    if LOG.isEnabledFor(logging.INFO) and LOG.handlers:
-        LOG.info(_line(scope, route, status, length, seconds))
-
-
-@cache
-def _child(metric: Any, *labels: str) -> Any:
-    return metric.labels(*labels)
-
-
-def _line(scope: Scope, route: str, status: int, length: int, seconds: float) -> str:
-    headers = dict(scope["headers"])
-    agent = headers.get(b"user-agent", b"").decode("latin-1")
-    query = scope["query_string"].decode("latin-1")
+    REQUESTS.labels(method, route, str(status)).inc()
+    SECONDS.labels(method, route).observe(seconds)
+    if not LOG.handlers:
+        return
+    agent = dict(scope["headers"]).get(b"user-agent", b"")
     line = {
         "time": datetime.now(UTC).isoformat(timespec="milliseconds"),
         "client": scope["client"][0] if scope.get("client") else None,
         "method": scope["method"],
         "path": scope["path"][:LONGEST_ECHO],
-        "query": query[:LONGEST_ECHO],
+        "query": scope["query_string"].decode("latin-1")[:LONGEST_ECHO],
         "route": route,
         "status": status,
         "bytes": length,
         "ms": round(seconds * 1e3, 3),
-        "agent": agent[:LONGEST_ECHO],
+        "agent": agent.decode("latin-1")[:LONGEST_ECHO],
     }
     # Only ASCII: what a client sends cannot break the line, nor the terminal that shows it.
-    return json.dumps(line)
+    LOG.info(json.dumps(line))

@@ -1,21 +1,25 @@
-"""Forms with files (multipart/form-data, RFC 7578), read within bounds."""
+"""Forms with files (multipart/form-data, RFC 7578), read by python-multipart within bounds."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import logging
+from collections.abc import AsyncGenerator, Mapping
 from dataclasses import dataclass
-from email.message import Message
 
 from fastapi import Request
+from starlette.datastructures import FormData, UploadFile
+from starlette.formparsers import MultiPartException, MultiPartParser
 
 from api.service.problems import Problem, Violation
+from api.web.requests import FORM, bounded, in_time, require_body
 from calibrate.uploaded import LARGEST, Upload
 
-#: Bytes of a body: those of the files, a config, and what separates them.
-LARGEST_BODY = LARGEST + 100_000
-#: Bytes of a body too long that are read and thrown away, so that the sender hears the refusal.
-_LARGEST_READ = 4 * LARGEST
-_MOST_PARTS = 40
+#: Bytes of fields, each and all: a config, and what separates parts. Of a body: files beside them.
+LARGEST_FIELD = 100_000
+LARGEST_BODY = LARGEST + LARGEST_FIELD
+#: Files of a form, and fields; python-multipart bounds the heads of each (8 lines of 4 kB).
+MOST_PARTS = 40
+logging.getLogger("python_multipart").setLevel(logging.ERROR)  # what it refuses, we answer
 
 
 @dataclass(frozen=True)
@@ -33,80 +37,66 @@ class Form:
     files: tuple[Upload, ...]
 
 
+class _Parser(MultiPartParser):
+    """A parser that refuses a form without an end, which lacks its last part."""
+
+    ended = False
+
+    def on_end(self) -> None:
+        """Note the last boundary."""
+        self.ended = True
+
+    async def whole(self) -> FormData:
+        """Return the form; where it is refused, its files are closed."""
+        self.stream = self._to_its_end(self.stream)
+        return await self.parse()
+
+    async def _to_its_end(self, stream: AsyncGenerator[bytes, None]) -> AsyncGenerator[bytes, None]:
+        async for chunk in stream:
+            yield chunk
+        if not self.ended:
+            raise MultiPartException("no boundary ends it")
+
+
 async def read_form(request: Request) -> Form:
-    """Return the form that a request sends.
+    """Return the form that a request sends; files wait on disk until all has come.
 
     Raises
     ------
     Problem
-        415 where it is none, 413 where it is too long, 400 where it cannot be read.
+        415 where it is none, 413 where it is too long, 408 where it comes too slowly, 400 where it
+        cannot be read.
     """
-    stated = request.headers.get("content-type", "")
-    media = Message()
-    media["Content-Type"] = stated
-    boundary = media.get_param("boundary")
-    if media.get_content_type() != "multipart/form-data" or not isinstance(boundary, str):
-        error = Violation("Content-Type", stated or None, "multipart/form-data with a boundary")
-        headers = {"Accept": "multipart/form-data"}
-        raise Problem(415, "unsupported-media-type", errors=[error], headers=headers)
-    if request.headers.get("content-encoding", "identity").strip().lower() not in {"", "identity"}:
-        error = Violation("Content-Encoding", request.headers["content-encoding"], "identity")
-        raise Problem(415, "unsupported-media-type", errors=[error])
-    body = await _read(request)
+    require_body(request, FORM, f"{FORM} with a boundary", LARGEST_BODY)
     try:
-        return _parsed(body, boundary.encode("ascii"))
-    except (ValueError, LookupError) as error:
-        wrong = Violation("body", None, f"a form of RFC 7578 ({error})")
-        raise Problem(400, "malformed-form", errors=[wrong]) from error
+        async with in_time() as clock:
+            chunks = bounded(request, LARGEST_BODY, clock)
+            most = {"max_files": MOST_PARTS, "max_fields": MOST_PARTS}
+            parser = _Parser(request.headers, chunks, **most, max_part_size=LARGEST_FIELD)
+            form = await parser.whole()
+    except MultiPartException as error:
+        raise _malformed(str(error.__cause__ or error.message)) from error
+    try:
+        return await _form_of(form)
+    finally:
+        await form.close()
 
 
-async def _read(request: Request) -> bytes:
-    chunks, length = [], 0
-    async for chunk in request.stream():
-        length += len(chunk)
-        if length > _LARGEST_READ:
-            break
-        if length <= LARGEST_BODY:
-            chunks.append(chunk)
-        else:
-            chunks.clear()
-    if length > LARGEST_BODY:
-        error = Violation("body", f"{length} bytes or more", f"at most {LARGEST_BODY} bytes")
-        raise Problem(413, "content-too-large", errors=[error])
-    return b"".join(chunks)
-
-
-def _parsed(body: bytes, boundary: bytes) -> Form:
-    first, *parts = (b"\r\n" + body).split(b"\r\n--" + boundary, _MOST_PARTS + 2)
-    if first or not parts or not parts[-1].startswith(b"--"):
-        raise ValueError("expected parts between boundaries, and an end")
-    if len(parts) > _MOST_PARTS + 1:
-        raise ValueError(f"expected at most {_MOST_PARTS} parts")
+async def _form_of(form: FormData) -> Form:
     fields: dict[str, str] = {}
     files: list[Upload] = []
-    for part in parts[:-1]:
-        head, separator, content = part.partition(b"\r\n\r\n")
-        if not separator:
-            raise ValueError("a part without a head")
-        name, file = _named(head)
-        if file is None:
-            if name in fields:
-                raise ValueError(f"field {name[:40]} stands twice")
-            fields[name] = content.decode("utf-8")
-        elif file or content:
-            files.append(Upload(file, content))
+    for name, value in form.multi_items():
+        if isinstance(value, UploadFile):
+            data = await value.read()
+            if value.filename or data:
+                files.append(Upload(value.filename or "", data))
+        elif name in fields:
+            raise _malformed(f"field {name[:40]} stands twice")
+        else:
+            fields[name] = value
     return Form(fields, tuple(files))
 
 
-def _named(head: bytes) -> tuple[str, str | None]:
-    """Return the name of a part and of its file, None for a field."""
-    for line in head.decode("utf-8").split("\r\n"):
-        key, _, value = line.partition(":")
-        if key.strip().lower() == "content-disposition":
-            stated = Message()
-            stated["Content-Disposition"] = value.strip()
-            name = stated.get_param("name", header="Content-Disposition")
-            file = stated.get_param("filename", header="Content-Disposition")
-            if isinstance(name, str):
-                return name, file if file is None or isinstance(file, str) else "file"
-    raise ValueError("a part without a name")
+def _malformed(reason: str) -> Problem:
+    wrong = Violation("body", None, f"a form of RFC 7578 ({reason})")
+    return Problem(400, "malformed-form", errors=[wrong])

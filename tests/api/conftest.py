@@ -22,7 +22,6 @@ from api.cli import asking
 from api.docs import knowledge as of_docs
 from api.server import app as service
 from api.server.app import create_app
-from api.server.connections import bounds
 from api.service.knowledge import Knowledge
 
 
@@ -119,7 +118,7 @@ def _serving(app: FastAPI, **options: Any) -> Iterator[HTTPConnection]:
     listening.listen()
     listening.setblocking(False)
     # a connection is kept however long the machine lets its next request wait
-    chosen = {**bounds(), "timeout_keep_alive": 600, "lifespan": "off", **options}
+    chosen = {"timeout_keep_alive": 600, "lifespan": "off", **options}
     server = uvicorn.Server(uvicorn.Config(app, log_level="error", access_log=False, **chosen))
     thread = threading.Thread(target=server.run, args=([listening],), daemon=True)
     thread.start()

@@ -5,8 +5,6 @@ Larger is only what is asked for by name: `/v1/leaderboard?whole=true`, `limit` 
 
 import pytest
 
-from api.http.openapi_sharing import inlined
-
 LARGEST = 1_000_000
 LISTS = ("items", "datasets")
 
@@ -15,7 +13,7 @@ LISTS = ("items", "datasets")
 def operations(atlas):
     """Each GET of the description with an address that its examples give, nothing optional."""
     found = {}
-    for path, item in inlined(atlas.get("/openapi.json").json()).items():
+    for path, item in atlas.get("/openapi.json").json()["paths"].items():
         if "get" not in item:
             continue
         asked = {}

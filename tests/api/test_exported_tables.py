@@ -13,12 +13,11 @@ from typer.testing import CliRunner
 
 from api.cli import command_line
 from api.cli.command_line import COMMANDS, app
-from api.http.openapi_sharing import inlined
-from api.http.reference import target
+from api.docs.examples import target
 from api.server import handlers
 from api.web.answers import Answer, AnswerRoute
 from api.web.dependencies import TableOnly
-from api.web.representations import RepresentationCache
+from api.web.middleware import EveryResponse
 from benchmark.leaderboard import pages
 from files.csv_writing import escape_formulas, unescape_formulas
 from registry.taxonomy import NONE_STATED, taxonomy_rows
@@ -43,7 +42,7 @@ WHOLE = (
 
 def tables(atlas: Client) -> list[str]:
     """Addresses of every table: each endpoint's example, whole lists, and pages."""
-    paths = inlined(atlas.get("/openapi.json").json())
+    paths = atlas.get("/openapi.json").json()["paths"]
     found = [
         target(path, methods["get"])[0]
         for path, methods in paths.items()
@@ -117,7 +116,7 @@ def small() -> Iterator[Client]:
         return Answer({"rows": ROWS}, ("name", "value"), lambda: ROWS)
 
     service = FastAPI()
-    service.state.kept = RepresentationCache()
+    service.add_middleware(EveryResponse)
     service.include_router(router)
     handlers.install(service, list(router.routes))
     client = Client(service)

@@ -16,12 +16,18 @@ from uvicorn.supervisors import Multiprocess
 
 from api.cli.working import working_directory
 from api.server import serving
-from api.server.connections import bounds
 from benchmark.processes import take_time_to_end
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
-_QUIET: dict[str, Any] = {"log_level": "warning", "access_log": False}
+#: Of Uvicorn. Clients that are slow, or too many, are for a proxy to hold off (deploy/Caddyfile).
+_OPTIONS: dict[str, Any] = {
+    "log_level": "warning",
+    "access_log": False,
+    "ws": "none",
+    "limit_concurrency": 400,
+    "timeout_graceful_shutdown": 1,
+}
 #: How long workers may take to end, one after another, on a busy machine, s: usually 1.5.
 _WORKERS_END_S = 15.0
 
@@ -63,7 +69,7 @@ def serve(
             take_time_to_end(_WORKERS_END_S)
             _serve_by_many(listener, workers)
             return
-        config = uvicorn.Config(application, **_QUIET, **bounds())
+        config = uvicorn.Config(application, **_OPTIONS)
         uvicorn.Server(config).run(sockets=[listener])
 
 
@@ -74,8 +80,7 @@ def _serve_by_many(listener: socket.socket, workers: int) -> None:
         factory=True,
         workers=workers,
         timeout_worker_healthcheck=60,  # loading takes seconds, and more on a busy machine
-        **_QUIET,
-        **bounds(),
+        **_OPTIONS,
     )
     Multiprocess(config, [listener]).run()
 

@@ -5,56 +5,42 @@ from __future__ import annotations
 from typing import Any
 
 from fastapi import APIRouter, Request, Response
-from pydantic_core import to_json
+from fastapi.responses import JSONResponse
 
-from api.http.reference import reference
 from api.schema.service import Health
 from api.service import metadata as service
 from api.web.answers import StrictRoute
-from api.web.dependencies import JSON_ONLY, NO_PARAMETERS, Known
-from api.web.negotiation import JSON
+from api.web.dependencies import NO_PARAMETERS, Known
+from api.web.negotiation import JSON, media_type
 from api.web.observation import exposition
-from api.web.representations import Representation, RepresentationCache
+from api.web.static_files import page_file
 
 EXPOSITION = "text/plain; version=0.0.4; charset=utf-8"
 
 router = APIRouter(route_class=StrictRoute, dependencies=[NO_PARAMETERS])
 
 
-@router.get(
-    "/healthz", summary="Status of the service", response_model=Health, dependencies=[JSON_ONLY]
-)
+@router.get("/healthz", summary="Status of the service", response_model=Health)
 async def health(request: Request, response: Response, known: Known) -> dict[str, Any]:
     """Return the status of the service, with versions of facts and record (digests of manifests).
 
     Never cached.
     """
+    media_type(request.headers.get("accept"), (JSON,))
     response.headers["Cache-Control"] = "no-store"
     return service.health(known, request.app.version)
 
 
 @router.get("/openapi.json", include_in_schema=False)
 def openapi(request: Request) -> Response:
-    """Give FastAPI's description of the service with an ETag, which it does not give itself."""
-    kept: RepresentationCache = request.app.state.kept
-    found = kept.get("openapi")
-    if found is None:
-        found = Representation(to_json(request.app.openapi()), JSON, {"Vary": "Accept-Encoding"})
-        kept.put("openapi", found)
-    return found.respond(request)
+    """Give the description of the service."""
+    return JSONResponse(request.app.openapi())
 
 
 @router.get("/docs", include_in_schema=False)
-def docs(request: Request) -> Response:
-    """Give the API reference."""
-    kept: RepresentationCache = request.app.state.kept
-    found = kept.get("docs")
-    if found is None:
-        text = reference(request.app.openapi())
-        vary = {"Vary": "Accept-Encoding"}
-        found = Representation(text.encode(), "text/html; charset=utf-8", vary)
-        kept.put("docs", found)
-    return found.respond(request)
+def docs() -> Response:
+    """Give the API reference, made of the description by Swagger UI."""
+    return page_file("reference.html")
 
 
 @router.get("/metrics", include_in_schema=False)

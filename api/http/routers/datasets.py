@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Query
+from fastapi import APIRouter, Path, Query, Response
 
 from api.schema.base import Selected
 from api.schema.datasets import DatasetDetail, Datasets, DatasetsQuery
 from api.schema.samples import SampleErrors, SampleErrorsQuery
 from api.schema.words import DatasetName
 from api.service import datasets as service
-from api.web.answers import Answer, AnswerRoute, Columns, Picture
+from api.web.answers import Answer, AnswerRoute, Columns, Picture, link
 from api.web.dependencies import NO_PARAMETERS, Known, TableOnly
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, default_response_class=Answer)
@@ -79,7 +79,7 @@ async def errors(known: Known, name: Name, query: Annotated[SampleErrorsQuery, Q
     response_class=Columns,
     dependencies=[NO_PARAMETERS],
 )
-def errors_file(known: Known, name: Name) -> Columns:
+def errors_file(known: Known, name: Name) -> Response:
     """Return the published errors of all samples as Parquet.
 
     Columns: extractor, model, unit, sample, error_deg (NaN: no answer) and outcome.
@@ -93,7 +93,7 @@ def errors_file(known: Known, name: Name) -> Columns:
     response_class=Columns,
     dependencies=[NO_PARAMETERS],
 )
-def directions_file(known: Known, name: Name) -> Columns:
+def directions_file(known: Known, name: Name) -> Response:
     """Return the published directions of the test samples as Parquet, to join with the errors.
 
     Columns: sample, sun_x, sun_y, sun_z, observable and bound_deg (NaN: none).
@@ -101,6 +101,7 @@ def directions_file(known: Known, name: Name) -> Columns:
     return _file(known, name, "directions")
 
 
-def _file(known: Known, name: str, kind: str) -> Columns:
+def _file(known: Known, name: str, kind: str) -> Response:
     content = service.file(known, name, kind)
-    return Columns(content, f"{name}.{kind}.parquet", service.links_of(known, name))
+    saved = {"Content-Disposition": f'attachment; filename="{name}.{kind}.parquet"'}
+    return link(Columns(content, headers=saved), *service.links_of(known, name))

@@ -18,6 +18,6 @@ async def to_index(request: Request) -> Response:
 
 
 @router.get("/guide/{name:path}")
-async def static(request: Request, name: str) -> Response:
+def static(name: str) -> Response:
     """Give a file of the guide; what stands in its query is for its scripts."""
-    return respond(request, name)
+    return respond(name)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Request
+from fastapi import APIRouter, Path, Request, Response
 
 from api.metadata import signposting
 from api.metadata.identity import identity
 from api.metadata.terms import LD_JSON, LINKSET
 from api.schema.words import DatasetName
 from api.service import metadata as service
-from api.web.answers import AnswerRoute, LinkDocument
+from api.web.answers import AnswerRoute, LinkDocument, link
 from api.web.dependencies import NO_PARAMETERS, Known
 
 router = APIRouter(prefix="/v1", route_class=AnswerRoute, dependencies=[NO_PARAMETERS])
@@ -39,13 +39,13 @@ class LinkSet(LinkDocument):
     summary="Croissant metadata of a data set",
     response_class=LinkedData,
 )
-async def dataset_croissant(request: Request, known: Known, name: Name) -> LinkedData:
+async def dataset_croissant(request: Request, known: Known, name: Name) -> Response:
     """Files with SHA-256 and column descriptions (MLCommons Croissant 1.0).
 
     Load records with `mlcroissant.Dataset(jsonld=ADDRESS)`.
     """
     found = service.dataset_croissant(known, name, str(request.base_url))
-    return LinkedData(found.document, found.links)
+    return link(LinkedData(found.document), *found.links)
 
 
 @router.get(
@@ -63,10 +63,10 @@ async def dataset_linkset(request: Request, known: Known, name: Name) -> LinkSet
     summary="Croissant metadata of the leaderboard",
     response_class=LinkedData,
 )
-async def leaderboard_croissant(request: Request, known: Known) -> LinkedData:
+async def leaderboard_croissant(request: Request, known: Known) -> Response:
     """Return the table of the leaderboard with SHA-256 and column descriptions."""
     found = service.leaderboard_croissant(known, str(request.base_url))
-    return LinkedData(found.document, found.links)
+    return link(LinkedData(found.document), *found.links)
 
 
 @router.get(
@@ -80,7 +80,7 @@ async def leaderboard_linkset(request: Request) -> LinkSet:
 
 
 @root.get("/codemeta.json", response_class=LinkedData)
-async def software() -> LinkedData:
+async def software() -> Response:
     """Return the description of the software (CodeMeta 3.0)."""
     found = service.software()
-    return LinkedData(found.document, found.links)
+    return link(LinkedData(found.document), *found.links)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Response
 
 from api.web.answers import StrictRoute
 from api.web.dependencies import NO_PARAMETERS
@@ -12,6 +12,6 @@ router = APIRouter(route_class=StrictRoute, include_in_schema=False)
 
 
 @router.get("/page/{name:path}", dependencies=[NO_PARAMETERS])
-async def static(request: Request, name: str) -> Response:
+def static(name: str) -> Response:
     """Give a file of the page."""
-    return page_file(name).respond(request)
+    return page_file(name)

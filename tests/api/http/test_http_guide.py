@@ -3,7 +3,6 @@
 import pytest
 
 from api.guide import site
-from api.http import guide
 
 
 @pytest.fixture
@@ -17,7 +16,6 @@ def place(tmp_path, monkeypatch):
     (tmp_path / "beside.html").write_text("not of the site")
     (place / "out.html").symlink_to(tmp_path / "beside.html")
     monkeypatch.setattr(site, "cached_site", lambda: place)
-    guide._file.cache_clear()
     return place
 
 

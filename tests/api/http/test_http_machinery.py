@@ -1,4 +1,4 @@
-"""Parts of the service on their own: negotiation, validators, the cache, CSV, the nearest word."""
+"""Parts of the service on their own: negotiation, and the nearest word."""
 
 import json
 
@@ -7,8 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from api.service.problems import Problem
-from api.web.negotiation import CSV, JSON, accepts_gzip, media_type
-from api.web.representations import matches
+from api.web.negotiation import CSV, JSON, media_type
 from survey_data.nearest import nearest_name
 
 fuzz = settings(deadline=None, derandomize=True)
@@ -57,28 +56,7 @@ def test_nothing_acceptable_is_a_406(accept):
 @fuzz
 @given(st.text(max_size=60))
 def test_any_accept_header_is_answered_or_refused(header):
-    accepts_gzip(header)
     assert answered(media_type, header, (JSON, CSV)) in (JSON, CSV, 406)
-
-
-@pytest.mark.parametrize(
-    ("header", "same"),
-    [
-        ('"abc"', True),
-        ('W/"abc"', True),
-        ('"x", "abc"', True),
-        ('"x","y" , W/"abc"', True),
-        ("*", True),
-        (" * ", True),
-        ('"ab"', False),
-        ('"x", "y"', False),
-        ("abc", False),
-        ('"a*c"', False),
-        ("", False),
-    ],
-)
-def test_if_none_match_is_a_list_compared_weakly(header, same):
-    assert matches(header, '"abc"') is same
 
 
 @fuzz

@@ -30,7 +30,6 @@ from api.service.pagination import page
 from api.service.problems import Problem
 from api.web.answers import Answer, AnswerRoute
 from api.web.dependencies import Known
-from api.web.representations import RepresentationCache
 
 fuzz = settings(deadline=None, derandomize=True)
 
@@ -66,7 +65,6 @@ def service() -> FastAPI:
     router.get("/")(by_query)
     router.post("/")(by_body)
     app = FastAPI()
-    app.state.kept = RepresentationCache()
     app.state.knowledge = KNOWLEDGE
     app.include_router(router)
     handlers.install(app, router.routes)

@@ -49,5 +49,4 @@ KINDS = {
 BESIDE = {
     "guide": "/guide/index.html",
     "guide, prose": "/guide/guide/scores.html",
-    "reference": "/docs",
 }

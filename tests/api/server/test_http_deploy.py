@@ -16,6 +16,8 @@ import pytest
 import typer
 
 from api.cli.commands.serve import app
+from api.web import requests, uploads
+from calibrate.uploaded import LONGEST_S
 
 ROOT = Path(__file__).resolve().parents[3]
 UNIT = ROOT / "deploy" / "sunatlas.service"
@@ -41,6 +43,16 @@ def test_the_command_is_understood(command):
     context = typer.main.get_command(app).make_context("serve", command[2:])
     assert context.params["workers"] == 2
     assert context.params["access_log"] is True
+
+
+def test_the_proxy_lets_through_what_the_service_takes_in_the_time_it_has():
+    text = (ROOT / "deploy" / "Caddyfile").read_text()
+    (size,) = re.findall(r"max_size ([\d.]+)MB", text)
+    assert float(size) * 1e6 == uploads.LARGEST_BODY
+    minutes = dict(re.findall(r"(read_body|write) (\d+)m", text))
+    slowest_s = requests.PATIENCE_S + uploads.LARGEST_BODY / requests.SLOWEST_PER_S
+    assert float(minutes["read_body"]) * 60 > slowest_s
+    assert float(minutes["write"]) * 60 > slowest_s + LONGEST_S
 
 
 def copied():
