@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from functools import partial
 from itertools import groupby
 from pathlib import Path
@@ -23,6 +24,9 @@ from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import experiment, pinning
 from benchmark.running.planned import FollowUp
 from benchmark.running.runner import Summary, failures, kept_beside, measure_missing
+
+#: From scores and parts to what follows from them.
+Choose = Callable[[Mapping[Cell, Row], Parts], list[Cell]]
 
 
 def update(
@@ -56,14 +60,59 @@ def update(
     StoreLockedError, DaskMissingError, RunInterruptedError
         As `benchmark.running.runner.run`.
     """
-    if workers < 1:
-        raise ValueError(f"workers must be at least 1; got {workers}")
     started = time.perf_counter()
     known = parts or installed_parts()
-    components = current(known)
     first, studied = scope.first(known), scope.studied_pipelines(known)
-    choose = partial(scope.followers, studied=studied)
     store = Store(directory)
+    measured = measure_scope(
+        *(store, known, first, partial(scope.followers, studied=studied), started),
+        workers=workers,
+        progress=progress,
+        scheduler=scheduler,
+    )
+    sweeps = Sweeps(store.directory, known)
+    experiment.update(sweeps, workers, progress)
+    write_page(store)
+    failed = (
+        f"sweep {point} failed: {row['reason']}"
+        for point, row in sweeps.record.read(store.directory).items()
+        if row["status"] == "failed"
+    )
+    seconds = time.perf_counter() - started
+    return replace(measured, warnings=(*measured.warnings, *failed), seconds=seconds)
+
+
+def measure_scope(
+    store: Store,
+    known: Parts,
+    first: list[Cell],
+    choose: Choose,
+    started: float,
+    *,
+    workers: int = 1,
+    progress: ProgressCallback | None = None,
+    scheduler: str | None = None,
+) -> Summary:
+    """Bring the scores and pins of a record up to date, and drop what is not of its scope.
+
+    Parameters
+    ----------
+    store
+        Of the record.
+    known
+        Its data sets, all of which are pinned, and implementations.
+    first
+        What is scored before anything is known, in order.
+    choose
+        Gives what follows from scores, of these parts.
+    started
+        When the caller began, by `time.perf_counter`.
+    workers, progress, scheduler
+        As `update`, as are the errors.
+    """
+    if workers < 1:
+        raise ValueError(f"workers must be at least 1; got {workers}")
+    components = current(known)
     kept = kept_beside(store, components)
     with open_record(store) as record:
         pinned = store.pins()
@@ -93,23 +142,13 @@ def update(
         record.drop(scores=wanted.__contains__, pins=frozenset(pinning.places(known)).__contains__)
         record.write(components)
         failed = failures(sorted(wanted), record)
-    sweeps = Sweeps(store.directory, known)
-    experiment.update(sweeps, workers, progress)
-    write_page(store)
     return Summary(
         store=store.directory,
         planned=len(wanted),
         already_stored=len(wanted) - computed,
         computed=computed,
         failed=failed,
-        warnings=(
-            *pins.warnings,
-            *(
-                f"sweep {point} failed: {row['reason']}"
-                for point, row in sweeps.record.read(store.directory).items()
-                if row["status"] == "failed"
-            ),
-        ),
+        warnings=pins.warnings,
         seconds=time.perf_counter() - started,
     )
 
@@ -117,7 +156,7 @@ def update(
 def _follow_ups(
     first: Iterable[Cell],
     parts: Parts,
-    choose: Callable[[Mapping[Cell, Row], Parts], list[Cell]],
+    choose: Choose,
 ) -> dict[str, FollowUp]:
     """Say by data set what a worker that has measured its first cells goes on with."""
     return {

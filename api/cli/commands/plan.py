@@ -13,7 +13,7 @@ from api.cli.measuring import (
     ManyWorkersOption,
     StoreOption,
     SuiteOption,
-    stores_of,
+    every_store,
 )
 from api.cli.table_output import Format, FormatOption, emit
 from benchmark.results.unchanged import KeptAnswer
@@ -49,7 +49,7 @@ def plan(
     fit, scores to compute. Stages in the cache of the local store are not computed again.
     """
     chosen = suite_named(str(suite))
-    stores = stores_of(store)
+    stores = every_store(store)
     unchanged = KeptAnswer(f"plan {chosen.name}", [one.directory for one in stores])
     planned = unchanged.recall() if form is Format.TABLE else None
     if planned is not None:
