@@ -320,7 +320,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
         *next_poses(readings.sun),
     )  # fmt: skip
-    dark_found = any("dark" in change for one in applied for change in one.change.values())
+    dark_found = any("dark" in str(one.change.get("readings")) for one in applied)
     verdict = withheld(
         replace(verdict, untested=untested_in(readings, stated, dark_found=dark_found)),
         unexplained(readings, excluded, wrong_ones, stated.sensor.half_fov_deg, fold)

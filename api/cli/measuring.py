@@ -18,7 +18,7 @@ import typer
 from api.cli import completion
 from api.cli.working import working_directory
 from benchmark.contract import Cell
-from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.store import PUBLISHED, PUBLISHED_STUDIES, Store
 from benchmark.results.times import read_times
 from benchmark.suites.selection import SUITES
 
@@ -79,6 +79,12 @@ def stores_of(directory: Path | None) -> tuple[Store, Store]:
     return Store(PUBLISHED), Store(working_directory(directory))
 
 
+def every_store(directory: Path | None) -> tuple[Store, Store, Store]:
+    """Return as `stores_of`, with the published results of the sensors of single studies."""
+    published, work = stores_of(directory)
+    return published, Store(PUBLISHED_STUDIES), work
+
+
 @dataclass(frozen=True)
 class ScoredCells:
     """Rows of cells and where they came from.
@@ -121,23 +127,30 @@ def score_cells(
     StoreLockedError, StoreError, DaskMissingError, ClusterError, WorkerLostError
         As `benchmark.running.runner.run`.
     """
+    from benchmark.plan.parts import every_part  # noqa: PLC0415 - slow
     from benchmark.running.runner import run, stale  # noqa: PLC0415 - slow
 
-    wanted = sorted(set(cells))
-    shipped, work = stores_of(directory)
-    elsewhere = stale(wanted, shipped)
-    missing = stale(elsewhere, work)
+    wanted, known = sorted(set(cells)), every_part()
+    *shipped, work = every_store(directory)
+    left, found = wanted, {}
+    for store in shipped:
+        missing = stale(left, store, parts=known)
+        found.update(_rows(store, set(left) - set(missing)))
+        left = missing
+    missing = stale(left, work, parts=known)
     warnings: tuple[str, ...] = ()
     if missing:
-        warnings = run(missing, work, workers, scheduler=scheduler, others=[shipped]).warnings
-    found = {**_rows(shipped, set(wanted) - set(elsewhere)), **_rows(work, set(elsewhere))}
+        warnings = run(
+            missing, work, workers, scheduler=scheduler, parts=known, others=shipped
+        ).warnings
+    found.update(_rows(work, set(left)))
     times = read_times(PUBLISHED)
     for cell, row in found.items():
         row.update(times.columns_of(cell.dataset, cell.extractor, cell.model))
     return ScoredCells(
         rows=[found[cell] for cell in wanted],
-        published_count=len(wanted) - len(elsewhere),
-        stored_count=len(elsewhere) - len(missing),
+        published_count=len(wanted) - len(left),
+        stored_count=len(left) - len(missing),
         measured_count=len(missing),
         directory=work.directory,
         warnings=warnings,

@@ -33,9 +33,11 @@ from api.schema.scores import LeaderboardRow, Score
 from api.schema.table import Model
 from benchmark import datasets
 from benchmark.claims.ledger import Entry, ledger
+from benchmark.datasets.pins import Pin as DataPin
+from benchmark.datasets.pins import Place
 from benchmark.leaderboard.board import build
 from benchmark.learning_curves import record as curves
-from benchmark.results.store import Store
+from benchmark.results.store import PUBLISHED_STUDIES, Store
 from benchmark.sweeps import record as sweeps
 from files.csv_writing import csv_text
 from registry.catalogue import catalogue
@@ -45,6 +47,7 @@ from registry.taxonomy import taxonomy_rows
 _RENAMED = frozenset({"series", "sweep", "point", "unit"})
 _PLACE = ("detector", "mask")
 _PIPELINE = ("dataset", "condition", "extractor", "model")
+_KEY = (*_PIPELINE, "unit")
 _RANKED = (
     *("rank", "group", "tied", *_PIPELINE, "own_deg", "own_se", "on_bench_deg", "on_bench_basis"),
     *("twin_of", "folded", "rms_deg", "low_deg", "high_deg", "unit_rms_deg"),
@@ -88,15 +91,18 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
     ValueError
         Where a file cannot be read, or has a column nothing is known of.
     """
-    store = Store(published)
-    scores = store.rows(unit=None)
-    if not scores:
+    store, beside = Store(published), Store(published.with_name(PUBLISHED_STUDIES.name))
+    compared = store.rows(unit=None)
+    if not compared:
         raise NothingPublishedError(
             f"{store.scores_directory} is missing or empty; run `sunatlas leaderboard update`"
         )
     names = {"extractor": ("algorithms", "name"), "model": ("algorithms", "name")}
     foreign = {"dataset": ("datasets", "name"), **names}
     swept = sweeps.swept(published)
+    scores = sorted(
+        (*compared, *beside.rows(unit=None)), key=lambda row: [row[name] for name in _KEY]
+    )
     return [
         _algorithms(),
         _datasets(),
@@ -107,11 +113,11 @@ def measured_tables(published: Path) -> list[MeasuredTable]:
             "One row a pipeline on a data set in a condition and a unit of the sensor; a pure "
             "function of code and data.",
             scores,
-            primary=(*_PIPELINE, "unit"),
+            primary=_KEY,
             foreign=foreign,
         ),
-        _leaderboard(scores, foreign),
-        _pins(store),
+        _leaderboard(compared, foreign),
+        _pins({**store.pins(), **beside.pins()}),
         *([_sweeps(swept)] if swept else []),
         *_curves(curves.published_curves(published), foreign),
         *_measured_tables(foreign, scores),
@@ -240,13 +246,13 @@ def _leaderboard(
     )
 
 
-def _pins(store: Store) -> MeasuredTable:
+def _pins(pins: Mapping[Place, DataPin]) -> MeasuredTable:
     return _table(
         "data",
         Pin,
         "Generated data",
         "Hash of every generated split of every data set, and its Cramer-Rao bound.",
-        [dataclasses.asdict(pin) for _, pin in sorted(store.pins().items())],
+        [dataclasses.asdict(pin) for _, pin in sorted(pins.items())],
         primary=("dataset", "condition", "split"),
         foreign={"dataset": ("datasets", "name")},
     )
@@ -331,13 +337,14 @@ def _datasets() -> MeasuredTable:
             "description": preset.description,
             "follows": preset.follows,
         }
-        for preset in map(datasets.get, datasets.names())
+        for preset in map(datasets.get, sorted((*datasets.names(), *datasets.study_names())))
     ]
     return _table(
         "datasets",
         DepositedDataset,
-        "Standard data sets",
-        "The simulated sensors that pipelines are scored on.",
+        "Data sets",
+        "The simulated sensors that pipelines are scored on: the standard ones, and sensors of "
+        "single studies, on which no others are scored.",
         rows,
         primary=("name",),
     )

@@ -7,16 +7,19 @@ from typing import Any
 
 import survey_data
 from benchmark.metrics.ranking import own_errors
-from benchmark.plan.combinations import scorable_plan
+from benchmark.plan.combinations import scorable_plan, study_plans
 from benchmark.plan.shown import data_sets
 from registry.fidelity.runnable import ESSENTIAL
 from registry.resolution import resolve_all, resolve_later
 from registry.studies import facts
+from registry.taxonomy import Plan
 from survey_data.editions import editions
 from survey_data.findings.publications import publications
 
 
-def resolution(rows: Sequence[Mapping[str, Any]] = ()) -> list[Mapping[str, Any]]:
+def resolution(
+    rows: Sequence[Mapping[str, Any]] = (), own: Mapping[str, Plan] | None = None
+) -> list[Mapping[str, Any]]:
     """Return a row for each study, pipeline and setting (data set, condition) used for the study.
 
     Of both editions, each study's own beside it.
@@ -25,10 +28,13 @@ def resolution(rows: Sequence[Mapping[str, Any]] = ()) -> list[Mapping[str, Any]
     ----------
     rows : published scores of all units, which grades take errors from; without them no score is
         asked for
+    own : what can be scored on sensors of single studies, by study; that of those simulated by
+        default
     """
+    owned = study_plans() if own is None else own
     plan, shown, known, every = scorable_plan(), data_sets(), facts(), facts("all")
     scores = own_errors(rows) if rows else None
-    resolved = resolve_all(plan, data_sets=shown, facts=known, scores=scores)
+    resolved = resolve_all(plan, own=owned, data_sets=shown, facts=known, scores=scores)
     resolved |= resolve_later(plan, known, every, data_sets=shown, scores=scores)
     return [
         {

@@ -38,6 +38,7 @@ from api.docs.parts import (
     http_examples,
     missing_implementations,
     resolutions,
+    study_sensors,
 )
 from api.metadata import codemeta
 from api.metadata.identity import identity
@@ -58,7 +59,12 @@ PAGES: Mapping[str, Mapping[str, Make]] = {
         "model-pages": model_pages.index,
         "missing": missing_implementations,
     },
-    "datasets.md": {"coverage": coverage, "example": export_example, "datasets": datasets},
+    "datasets.md": {
+        "coverage": coverage,
+        "example": export_example,
+        "datasets": datasets,
+        "study-sensors": study_sensors,
+    },
     "leaderboard.md": {
         "how-sure": boards.how_sure,
         "architectures": boards.best_per_architecture_table,

@@ -98,7 +98,7 @@ def _headline(one: Headline) -> tuple[str, ...]:
     if one.place is None or one.our_deg is None or one.ratio is None:
         return (one.study, published, _angle(one.published.value_deg), "not measured", *["–"] * 6)
     dataset, condition, extractor, model = one.place
-    pin = Store().pins().get((dataset, condition, "test"))
+    pin = knowledge().measurements.pins.get((dataset, condition, "test"))
     bench = None if pin is None or one.published.quantity == "precision" else pin.bench_deg
     return (
         one.study,

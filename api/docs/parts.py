@@ -12,6 +12,7 @@ from api.docs.knowledge import knowledge
 from api.docs.markdown import table as _table
 from api.service import studies as service
 from benchmark.datasets import coverage as simulated
+from benchmark.datasets import study_names
 from registry.fidelity.evidence import FACTOR, SCORE_FACTOR, UNKNOWN_SHARE
 from registry.fidelity.grading import tally_text
 from registry.fidelity.purposes import PURPOSES
@@ -33,6 +34,7 @@ __all__ = [
     "http_examples",
     "missing_implementations",
     "resolutions",
+    "study_sensors",
 ]
 
 
@@ -84,6 +86,12 @@ def datasets() -> str:
     ]
     head = ("data set", "detector", "mask", "readings", "version", "based on")
     return "\n\n".join((_table(head, rows), *map(_card, cards)))
+
+
+def study_sensors() -> str:
+    """Describe the sensors of single studies, with the bound of each condition."""
+    measured = knowledge().measurements
+    return "\n\n".join(_card(measured.card(name)) for name in study_names())
 
 
 def coverage() -> str:

@@ -125,7 +125,7 @@ class StudyRow(Shape):
 class Study(StudyRow):
     """A study. Texts are empty if unknown."""
 
-    sentence: str = Field(description="Implementation and its differences, one sentence.")
+    sentence: str = Field(description="Implementation and differences.")
     runs: Runs = Field(description="Implementation in the Atlas.")
     headline: Headline | None = Field(description="Lowest own error of its best pipelines.")
 
@@ -227,6 +227,7 @@ class StudyDetail(Study):
     attributes: list[AttributeValue]
     reported_accuracy: Reported | None = Field(description="As reported for its own sensor.")
     reported_precision: Reported | None = Field(description="Scatter of repeated readings.")
+    own_sensor: str  # what is stated and assumed of the data set of this study alone; may be empty
     ladder: Ladder | None = Field(description="Rungs below the reported accuracy.")
     departures: list[Departure] = Field(description="Differences from the study.")
     purposes: dict[Purpose, str] = Field(description="What it is run for, with the rules.")

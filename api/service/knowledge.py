@@ -23,7 +23,7 @@ from registry.evidence import Evidence
 from registry.measured_pipelines import Measurements as Measured
 from registry.resolution import Resolution, resolve_all, resolve_later
 from registry.studies import Facts, facts
-from registry.taxonomy import Taxonomy
+from registry.taxonomy import Plan, Taxonomy
 from survey_data import labels
 from survey_data.descriptor import DATA_DIRECTORY
 from survey_data.editions import Choice, Edition, editions
@@ -84,11 +84,22 @@ class Knowledge:
     @cached_property
     def resolutions(self) -> Mapping[str, Resolution]:
         """What is scored of each study, by key."""
-        from benchmark.plan.combinations import scorable_plan  # noqa: PLC0415 - loads the simulator
+        from benchmark.plan.combinations import study_plans  # noqa: PLC0415 - loads the simulator
+
+        return self._resolve(study_plans())
+
+    @cached_property
+    def standard_resolutions(self) -> Mapping[str, Resolution]:
+        """The same on standard data sets alone, where methods can be compared."""
+        return self._resolve({})
+
+    def _resolve(self, own: Mapping[str, Plan]) -> Mapping[str, Resolution]:
+        from benchmark.plan.combinations import scorable_plan  # noqa: PLC0415 - as above
         from benchmark.plan.shown import data_sets  # noqa: PLC0415 - likewise
 
         return resolve_all(
             scorable_plan(),
+            own=own,
             data_sets=data_sets(),
             catalogue=self.catalogue,
             facts=self.facts,

@@ -45,7 +45,7 @@ def ladder(own: Mapping[str, Any] | None, measurements: Measurements) -> dict[st
     return {
         "dataset": dataset,
         "condition": condition,
-        "nominal": condition == measurements.presets[dataset].conditions[0],
+        "nominal": condition == measurements.preset(dataset).conditions[0],
         "own": {name: own[name] for name in _RUNG},
         "best": {name: best[name] for name in _RUNG},
         "bound_deg": measurements.bounds(dataset).get(condition),

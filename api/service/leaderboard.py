@@ -82,10 +82,10 @@ def leaderboard_of_dataset(
 
 
 def findings(known: Knowledge) -> tuple[Finding, ...]:
-    """Return the findings of the published record."""
+    """Return the findings of the published record, which is of standard data sets."""
     from benchmark.leaderboard.findings import (  # noqa: PLC0415 - needs every experiment
         Record,
         findings_of,
     )
 
-    return findings_of(Record.published(), known.resolutions)
+    return findings_of(Record.published(), known.standard_resolutions)

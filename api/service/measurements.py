@@ -18,7 +18,7 @@ from benchmark.learning_curves import record as curves
 from benchmark.metrics.ranking import own_errors, spreads
 from benchmark.results import record_manifest, samples
 from benchmark.results.pipelines import pipelines, standard_benches
-from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.store import PUBLISHED, PUBLISHED_STUDIES, Store
 from benchmark.results.times import Times, read_times
 from benchmark.sweeps.record import swept
 from files import manifest
@@ -62,8 +62,20 @@ class Measurements:
         return {"version": version(), "sha256": self.digest}
 
     @cached_property
+    def _studies_store(self) -> Store:
+        """The published files of the sensors of single studies, beside the others."""
+        directory = self.directory.with_name(PUBLISHED_STUDIES.name)
+        record_manifest.require_unchanged(directory, required=directory == PUBLISHED_STUDIES)
+        return Store(directory)
+
+    @cached_property
     def _every_unit(self) -> Sequence[Row]:
         return self._store.rows(unit=None)
+
+    @cached_property
+    def _with_studies(self) -> Sequence[Row]:
+        """Score rows of all units, those on sensors of single studies too."""
+        return [*self._every_unit, *self._studies_store.rows(unit=None)]
 
     @cached_property
     def scores(self) -> Sequence[Row]:
@@ -74,11 +86,14 @@ class Measurements:
     def score_of(self) -> Mapping[tuple[str, str, str, str], Row]:
         """Score of unit 0 by data set, condition, extractor and model, with the `own_deg` there.
 
-        That is the geometric mean over the units measured under the condition.
+        That is the geometric mean over the units measured under the condition. Sensors of single
+        studies are among the data sets.
         """
-        own = spreads(self._every_unit)
+        own = spreads(self._with_studies)
         found = {}
-        for row in self.scores:
+        for row in self._with_studies:
+            if row["unit"] != 0:
+                continue
             cell = Cell(row["dataset"], row["condition"], row["extractor"], row["model"])
             place = (cell.dataset, cell.condition, cell.extractor, cell.model)
             found[place] = {**row, "own_deg": own[cell].own_deg}
@@ -87,7 +102,7 @@ class Measurements:
     @cached_property
     def own_errors(self) -> Mapping[tuple[str, str, str, str], float | None]:
         """Own error by the same places, degrees; None where no score came of it."""
-        return own_errors(self._every_unit)
+        return own_errors(self._with_studies)
 
     @cached_property
     def nominal(self) -> Mapping[tuple[str, str, str], Row]:
@@ -168,10 +183,16 @@ class Measurements:
 
         return {name: datasets.get(name) for name in datasets.names()}
 
+    def preset(self, dataset: str) -> Preset:
+        """Return a data set, a standard one or the sensor of a study."""
+        from benchmark import datasets  # noqa: PLC0415 - as `presets`
+
+        return datasets.get(dataset)
+
     @cached_property
     def pins(self) -> Mapping[tuple[str, str, str], Pin]:
         """Hashes and bounds of the published data by (data set, condition, split)."""
-        return self._store.pins()
+        return {**self._store.pins(), **self._studies_store.pins()}
 
     @cached_property
     def cards(self) -> Sequence[Row]:
@@ -200,12 +221,12 @@ class Measurements:
         `bounds` are the published ones: the Cramer-Rao bound of the condition, as rms in degrees.
         `data` are the published hashes, and `preview` is where the picture is served.
         """
-        if "_whole_cards" in vars(self):
+        if dataset in vars(self).get("_whole_cards", ()):
             return dict(self._whole_cards[dataset])
         return self._card(dataset)  # the only one that is asked for, as by the command line
 
     def _card(self, dataset: str) -> dict[str, Any]:
-        preset = self.presets[dataset]
+        preset = self.preset(dataset)
         card = preset.card()
         card["setups"] = card["conditions"]
         card["conditions"] = list(preset.conditions)
@@ -229,7 +250,7 @@ class Measurements:
     def _pin(self, dataset: str, condition: str, split: str) -> Pin | None:
         """Return a pin; None where there is none, or it is of another version of the data."""
         pin = self.pins.get((dataset, condition, split))
-        return pin if pin and pin.version == self.presets[dataset].version else None
+        return pin if pin and pin.version == self.preset(dataset).version else None
 
     def bounds(self, dataset: str) -> dict[str, float]:
         """Return the bound (rms, degrees) of each condition of a data set that has one pinned.
@@ -239,7 +260,7 @@ class Measurements:
         """
         return {
             condition: pin.bound_deg
-            for condition in self.presets[dataset].conditions
+            for condition in self.preset(dataset).conditions
             if (pin := self._pin(dataset, condition, "test")) and pin.bound_deg is not None
         }
 

@@ -13,6 +13,7 @@ from api.service.documents import Document, list_document
 from api.service.knowledge import Knowledge
 from api.service.ladder import ladder
 from api.service.pagination import order, page
+from benchmark.leaderboard.headlines import read_differences
 from registry.fidelity.evidence import SCORE_FACTOR, own_error, reason_for_score
 from registry.fidelity.runnable import RunnablePipeline
 from registry.resolution import Resolution
@@ -55,6 +56,7 @@ def study(known: Knowledge, key: StudyKey) -> Document:
         "purposes": dict(resolution.fidelity.purposes),
         "reported_accuracy": _report(found, "accuracy"),
         "reported_precision": _report(found, "precision"),
+        "own_sensor": _own_sensor(resolution, known),
         "ladder": ladder(headline(resolution, known), known.measurements),
         "pipelines": [
             {**pipeline.to_dict(), "scores": _scores(pipeline, known)}
@@ -68,6 +70,14 @@ def study(known: Knowledge, key: StudyKey) -> Document:
 def _report(study: Study, quantity: Quantity) -> dict[str, Any] | None:
     found = study.report(quantity)
     return None if found is None else found.to_dict()
+
+
+def _own_sensor(resolution: Resolution, known: Knowledge) -> str:
+    """Describe the data set that is made after a study alone; empty if it runs on standard ones."""
+    best = resolution.best_pipeline
+    if best is None or best.settings[0].dataset in known.measurements.presets:
+        return ""
+    return known.measurements.preset(best.settings[0].dataset).description
 
 
 def _row(study: Study, known: Knowledge) -> dict[str, Any]:
@@ -175,7 +185,9 @@ def compare_accuracy(known: Knowledge) -> list[dict[str, Any]]:
     """Return a row for every study that reports an accuracy and has a score, the worst first.
 
     The own error is that which the study is graded by. The worst is furthest from a ratio of one.
+    A reason that is no fact of the study says how the two differ, and is none for its grade.
     """
+    differences = read_differences()
     rows = []
     for key, resolution in known.resolutions.items():
         study = known.facts.study(key)
@@ -192,7 +204,8 @@ def compare_accuracy(known: Knowledge) -> list[dict[str, Any]]:
                 "rms_deg": reported.rms_deg,
                 "own_deg": own,
                 "times": own / reported.rms_deg,
-                "reason": reason_for_score(study, known.facts),
+                "reason": reason_for_score(study, known.facts)
+                or differences.get((key, "accuracy"), ""),
             }
         )
     return sorted(rows, key=lambda row: (-abs(math.log(row["times"])), row["key"]))

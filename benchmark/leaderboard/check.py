@@ -118,9 +118,10 @@ def check(
     store = Store(directory)
     known = parts or installed_parts()
     found = [
-        *_by_hand(store),
+        *by_hand(store),
         *(Difference(*pair) for pair in contradictions(store, known)),
-        *_outdated(store, known),
+        *outdated(store, known, scope.published_scope(store.scores(), known)),
+        *_due(store, known),
         *_derive(store),
     ]
     if stored_only:
@@ -209,7 +210,7 @@ def _counts(store: Store) -> dict[tuple[str, str], int]:
     return {place[:2]: pin.n for place, pin in store.pins().items() if place[2] == "test"}
 
 
-def _by_hand(store: Store) -> Iterator[Difference]:
+def by_hand(store: Store) -> Iterator[Difference]:
     """Name what no command wrote so, in the record and, for the published one, in the facts."""
     published = store.directory == PUBLISHED
     problems = record_manifest.changes(store.directory, required=published)
@@ -252,8 +253,18 @@ def _moved_data(committed: Store, measured: Store, kernels: str) -> Iterator[Dif
             yield Difference(file, cell, *pair, kernels)
 
 
-def _outdated(store: Store, parts: Parts) -> Iterator[Difference]:
-    """Find components of other code than there is, and what is stored too much or too little."""
+def outdated(store: Store, parts: Parts, wanted: Collection[Cell]) -> Iterator[Difference]:
+    """Find components of other code than there is, and what is stored too much or too little.
+
+    Parameters
+    ----------
+    store
+        The record.
+    parts
+        Its data sets and implementations.
+    wanted
+        The cells that it is to hold.
+    """
     stored = store.components()
     now = current(parts)
     for name, one, other in stored.differences(now):
@@ -265,11 +276,14 @@ def _outdated(store: Store, parts: Parts) -> Iterator[Difference]:
                 "another: code or parameters have changed" if other else "not installed",
             )
     scores = store.scores()
-    wanted = scope.published_scope(scores, parts)
     yield from _unlike("scores", {str(c) for c in scores}, {str(c) for c in wanted}, "planned")
     pinned = {"/".join(place) for place in store.pins()}
     there = {"/".join(place) for place in pinning.places(parts)}
     yield from _unlike(store.pins_path.name, pinned, there, "pinned")
+
+
+def _due(store: Store, parts: Parts) -> Iterator[Difference]:
+    """Find the cells of recorded experiments that are to be measured again."""
     for name, kind in experiments().items():
         if issubclass(kind, RecordedExperiment) and _is_of(kind, store):
             should = f"renewed by `python -m benchmark.experiments {name}`"

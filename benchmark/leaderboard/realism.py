@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from benchmark.datasets import get, names
+from benchmark.datasets import get, names, study_names
 from benchmark.datasets.realism import HardwareMatch, figures, hardware_matches
 from benchmark.metrics.ranking import order
 from benchmark.metrics.rings import EDGES_DEG, field_error
@@ -47,11 +47,11 @@ def realism(
     Returns
     -------
     list of dict
-        One a data set of the table, by name. ``sensors`` have ``accuracy_ratio`` (our error over
-        their accuracy) and ``precision_ratio`` beside their figures; the data set's own ratios are
-        1 within the range of its sensors' and else those of the nearest. Numbers are None where
-        one of the two is unknown. ``unexplained_differences`` says whether a ratio is beyond
-        `FACTOR` and no sentence says why.
+        One a standard data set of the table, by name. ``sensors`` have ``accuracy_ratio`` (our
+        error over their accuracy) and ``precision_ratio`` beside their figures; the data set's own
+        ratios are 1 within the range of its sensors' and else those of the nearest. Numbers are
+        None where one of the two is unknown. ``unexplained_differences`` says whether a ratio is
+        beyond `FACTOR` and no sentence says why.
     """
     best: dict[str, Row] = {}
     for row in rows:
@@ -60,7 +60,8 @@ def realism(
         if compared and row["rms_deg"] is not None and _before(row, best.get(name)):
             best[name] = row
     every = hardware_matches() if known is None else known
-    return [_beside(every[name], best.get(name)) for name in sorted(every)]
+    compared_names = sorted(every.keys() - frozenset(study_names()))
+    return [_beside(every[name], best.get(name)) for name in compared_names]
 
 
 def unexplained_differences(table: Iterable[Mapping[str, Any]]) -> list[str]:

@@ -28,10 +28,11 @@ from typing import Any
 from benchmark.contract import ON_BENCH, Cell
 from benchmark.metrics.ranking import order
 from benchmark.metrics.score import is_available
-from benchmark.plan.combinations import cells, scorable_plan
+from benchmark.plan.combinations import cells, scorable_plan, study_plans
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.plan.shown import data_sets
 from registry.resolution import resolve_all
+from registry.taxonomy import Plan
 
 Row = Mapping[str, Any]
 #: Keys of studies by detector, mask, extractor and model of a pipeline that they used.
@@ -169,14 +170,18 @@ def studied_pipelines(parts: Parts) -> frozenset[tuple[str, str, str, str]]:
 def studies_of_pipelines() -> Studied:
     """Return which mapped studies used each installed pipeline on its architecture, by their keys.
 
-    As `studied_pipelines` of what is installed; the keys are sorted.
+    As `studied_pipelines` of what is installed, and of a study with a sensor of its own what it
+    runs there; the keys are sorted.
     """
-    return MappingProxyType(_studies_of(installed_parts()))
+    return MappingProxyType(_studies_of(installed_parts(), study_plans()))
 
 
-def _studies_of(parts: Parts) -> dict[tuple[str, str, str, str], tuple[str, ...]]:
+def _studies_of(
+    parts: Parts, own: Mapping[str, Plan] = MappingProxyType({})
+) -> dict[tuple[str, str, str, str], tuple[str, ...]]:
     found: dict[tuple[str, str, str, str], set[str]] = {}
-    resolved = resolve_all(scorable_plan(parts=parts), data_sets=data_sets(parts=parts))
+    shown = data_sets(parts=parts) if not own else data_sets()
+    resolved = resolve_all(scorable_plan(parts=parts), own=own, data_sets=shown)
     for key, resolution in resolved.items():
         for pipeline in resolution.pipelines:
             used = (pipeline.detector, pipeline.mask, pipeline.extractor, pipeline.model)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from benchmark.contract import Cell
@@ -15,10 +17,14 @@ from benchmark.plan.parts import Parts, installed_parts
 from benchmark.progress import ProgressCallback
 from benchmark.results import record_manifest
 from benchmark.results.components import Components, current
+from benchmark.results.csv_tables import Row
 from benchmark.results.record import open_record
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import experiment, pinning
 from benchmark.running.runner import Summary, failures, kept_beside, measure_missing
+
+#: From scores and parts to what follows from them.
+Choose = Callable[[Mapping[Cell, Row], Parts], list[Cell]]
 
 
 def update(
@@ -52,13 +58,59 @@ def update(
     StoreLockedError, DaskMissingError, RunInterruptedError
         As `benchmark.running.runner.run`.
     """
-    if workers < 1:
-        raise ValueError(f"workers must be at least 1; got {workers}")
     started = time.perf_counter()
     known = parts or installed_parts()
-    components = current(known)
     first, studied = scope.first(known), scope.studied_pipelines(known)
     store = Store(directory)
+    measured = measure_scope(
+        *(store, known, first, partial(scope.followers, studied=studied), started),
+        workers=workers,
+        progress=progress,
+        scheduler=scheduler,
+    )
+    sweeps = Sweeps(store.directory, known)
+    experiment.update(sweeps, workers, progress)
+    write_page(store)
+    failed = (
+        f"sweep {point} failed: {row['reason']}"
+        for point, row in sweeps.record.read(store.directory).items()
+        if row["status"] == "failed"
+    )
+    seconds = time.perf_counter() - started
+    return replace(measured, warnings=(*measured.warnings, *failed), seconds=seconds)
+
+
+def measure_scope(
+    store: Store,
+    known: Parts,
+    first: list[Cell],
+    choose: Choose,
+    started: float,
+    *,
+    workers: int = 1,
+    progress: ProgressCallback | None = None,
+    scheduler: str | None = None,
+) -> Summary:
+    """Bring the scores and pins of a record up to date, and drop what is not of its scope.
+
+    Parameters
+    ----------
+    store
+        Of the record.
+    known
+        Its data sets, all of which are pinned, and implementations.
+    first
+        What is scored before anything is known, in order.
+    choose
+        Gives what follows from scores, of these parts.
+    started
+        When the caller began, by `time.perf_counter`.
+    workers, progress, scheduler
+        As `update`, as are the errors.
+    """
+    if workers < 1:
+        raise ValueError(f"workers must be at least 1; got {workers}")
+    components = current(known)
     kept = kept_beside(store, components)
     with open_record(store) as record:
         pinned = store.pins()
@@ -77,7 +129,7 @@ def update(
             )
 
         computed = measured(first)
-        followers = scope.followers(record.scores, known, studied)
+        followers = choose(record.scores, known)
         computed += measured(followers)
         pins = pinning.pin_missing(record, components, known, workers=workers, progress=progress)
         pinning.require_versions(pinned, record.pins.values())
@@ -85,23 +137,13 @@ def update(
         record.drop(scores=wanted.__contains__, pins=frozenset(pinning.places(known)).__contains__)
         record.write(components)
         failed = failures(sorted(wanted), record)
-    sweeps = Sweeps(store.directory, known)
-    experiment.update(sweeps, workers, progress)
-    write_page(store)
     return Summary(
         store=store.directory,
         planned=len(wanted),
         already_stored=len(wanted) - computed,
         computed=computed,
         failed=failed,
-        warnings=(
-            *pins.warnings,
-            *(
-                f"sweep {point} failed: {row['reason']}"
-                for point, row in sweeps.record.read(store.directory).items()
-                if row["status"] == "failed"
-            ),
-        ),
+        warnings=pins.warnings,
         seconds=time.perf_counter() - started,
     )
 

@@ -50,6 +50,8 @@ if TYPE_CHECKING:
 Filter = str | Collection[str] | None
 
 PUBLISHED = Path(__file__).parents[1] / "published"
+#: Of the sensors of single studies: a record of its own, for no board compares anything there.
+PUBLISHED_STUDIES = Path(__file__).parents[1] / "published_studies"
 
 STATUSES = ("ok", "refused", "failed")
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from benchmark.processes import call_to_end
 from benchmark.results import record_manifest, samples
-from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.store import PUBLISHED, PUBLISHED_STUDIES, Store
 from benchmark.running.experiment import RecordedExperiment, experiments
 from files import manifest
 from survey_data import facts_manifest
@@ -23,19 +23,20 @@ from survey_data.problems import SurveyDataError
 def main(arguments: Sequence[str] | None = None) -> int:
     """Take changes by hand into the manifests of facts and record, or name them (exit code 1)."""
     parser = argparse.ArgumentParser(prog=record_manifest.COMMAND, description=main.__doc__)
-    parser.add_argument("--directory", type=Path, default=PUBLISHED, help="of the record")
+    parser.add_argument("--directory", type=Path, help="of one record; the published ones if none")
     parser.add_argument("--check", action="store_true", help="write nothing")
     options = parser.parse_args(arguments)
+    records = (options.directory,) if options.directory else (PUBLISHED, PUBLISHED_STUDIES)
     if options.check:
-        found = [
-            *facts_manifest.changes(),
-            *record_manifest.changes(options.directory, required=options.directory == PUBLISHED),
-        ]
+        found = facts_manifest.changes()
+        for record in records:
+            required = record in (PUBLISHED, PUBLISHED_STUDIES)
+            found += record_manifest.changes(record, required=required)
         for problem in found:
             sys.stderr.write(f"{problem}\n")
         return 1 if found else 0
     try:
-        renewed = [*facts_manifest.renew(), *renew(options.directory)]
+        renewed = [*facts_manifest.renew(), *(name for record in records for name in renew(record))]
     except (SurveyDataError, ValueError) as error:
         sys.stderr.write(f"{error}\n")
         return 1

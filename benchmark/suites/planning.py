@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from benchmark.contract import Cell
-from benchmark.plan.parts import Parts, installed_parts
+from benchmark.plan.parts import Parts, every_part
 from benchmark.results.components import Components, current
 from benchmark.results.csv_tables import Row
 from benchmark.results.record import Record
@@ -61,7 +61,7 @@ def plan(cells: Iterable[Cell], stores: Sequence[Store], *, parts: Parts | None 
     StoreError, ComponentsError
         For a file that cannot be read.
     """
-    known = parts or installed_parts()
+    known = parts or every_part()
     wanted = known_cells(cells, known)
     components = current(known)
     records = [Record(store) for store in stores]
@@ -82,7 +82,7 @@ def plan(cells: Iterable[Cell], stores: Sequence[Store], *, parts: Parts | None 
 
 def cells_of(suite: Suite, stores: Sequence[Store], *, parts: Parts | None = None) -> list[Cell]:
     """Return a suite's cells by the scores that stores hold, of older code or not."""
-    return suite.select(stored_scores(stores), parts or installed_parts())
+    return suite.select(stored_scores(stores), parts or every_part())
 
 
 def stored_scores(stores: Sequence[Store]) -> dict[Cell, Row]:

@@ -42,16 +42,17 @@ class Suite:
 
 
 def _quick(_scores: Scores, parts: Parts) -> list[Cell]:
-    """Select every data set but slow ones, on them every extractor and model once.
+    """Select every standard data set but slow ones, on them every extractor and model once.
 
     Under the first condition, on the standard unit; each on the first data set that it fits, in
     order of names: an extractor before the first model, a model behind an extractor that is read
     there already. A data set with nothing of its own has its first pipeline.
     """
     from benchmark.leaderboard import scope  # noqa: PLC0415 - slow, for who wants names alone
-    from benchmark.plan.parts import Parts  # noqa: PLC0415 - as above
+    from benchmark.plan.parts import Parts, split_parts  # noqa: PLC0415 - as above
 
-    quick = {name: preset for name, preset in parts.presets.items() if name not in NOT_QUICK}
+    known = split_parts(parts)[0].presets
+    quick = {name: preset for name, preset in known.items() if name not in NOT_QUICK}
     plan = scope.first(Parts(quick, parts.extractors, parts.models))
     found: dict[Cell, None] = {}
     extractors: set[str] = set()
@@ -74,10 +75,17 @@ def _quick(_scores: Scores, parts: Parts) -> list[Cell]:
 
 
 def _standard(scores: Scores, parts: Parts) -> list[Cell]:
-    """Select all that is published, by the rule of `benchmark.leaderboard.scope`."""
-    from benchmark.leaderboard import scope  # noqa: PLC0415 - as above
+    """Select all that is published, by the rule of `benchmark.leaderboard.scope`.
 
-    return sorted(scope.published_scope(scores, parts))
+    On sensors of single studies, of these studies' pipelines.
+    """
+    from benchmark.leaderboard import scope, study_record  # noqa: PLC0415 - as above
+    from benchmark.plan.parts import split_parts  # noqa: PLC0415 - as above
+
+    standard, studies = split_parts(parts)
+    return sorted(
+        scope.published_scope(scores, standard) | study_record.published_scope(scores, studies)
+    )
 
 
 SUITES: Mapping[str, Suite] = {

@@ -9,7 +9,7 @@ from pathlib import Path
 from benchmark.contract import Cell
 from benchmark.datasets.pins import Place
 from benchmark.plan.combinations import cells
-from benchmark.plan.parts import Parts, installed_parts
+from benchmark.plan.parts import Parts, every_part
 from benchmark.results.components import current
 from benchmark.results.record import open_record
 from benchmark.results.store import Store
@@ -50,7 +50,7 @@ def tidy(store: Store, *, parts: Parts | None = None) -> TidyResult:
     """
     if not store.directory.is_dir():
         return TidyResult(0, 0, 0, 0)
-    known = parts or installed_parts()
+    known = parts or every_part()
     components = current(known)
     before = _size(store)
     planned, places = frozenset(cells(parts=known)), frozenset(pinning.places(known))

@@ -195,18 +195,19 @@ def update(workers: ManyWorkersOption = AVAILABLE_WORKERS) -> None:
 
     Data that changed without a new version of their data set are refused, with the data sets named.
     """
+    from benchmark.leaderboard import study_record  # noqa: PLC0415 - slow
     from benchmark.leaderboard import update as updating  # noqa: PLC0415 - slow
 
-    summary = updating.update(PUBLISHED, workers)
-    for cell, reason in summary.failed:
-        typer.echo(f"failed: {cell}: {reason}", err=True)
-    for warning in summary.warnings:
-        typer.echo(f"warning: {warning}", err=True)
-    typer.echo(
-        f"{summary.planned} cells, {summary.computed} measured in {summary.seconds:.1f} s, "
-        f"{summary.already_stored} stored before; in {summary.store}",
-        err=True,
-    )
+    for summary in (updating.update(PUBLISHED, workers), study_record.update(workers=workers)):
+        for cell, reason in summary.failed:
+            typer.echo(f"failed: {cell}: {reason}", err=True)
+        for warning in summary.warnings:
+            typer.echo(f"warning: {warning}", err=True)
+        typer.echo(
+            f"{summary.planned} cells, {summary.computed} measured in {summary.seconds:.1f} s, "
+            f"{summary.already_stored} stored before; in {summary.store}",
+            err=True,
+        )
 
 
 @app.command()
@@ -264,8 +265,12 @@ def times(
 
 def _check(workers: int, form: Format, kernels: tuple[str, ...], *, stored_only: bool) -> None:
     from benchmark.leaderboard import check as checking  # noqa: PLC0415 - slow
+    from benchmark.leaderboard import study_record  # noqa: PLC0415 - slow
 
-    found = checking.check(PUBLISHED, workers, stored_only=stored_only, kernels=kernels)
+    found = [
+        *checking.check(PUBLISHED, workers, stored_only=stored_only, kernels=kernels),
+        *study_record.check(workers=workers, stored_only=stored_only),
+    ]
     rows = [{name: getattr(difference, name) for name in DIFFERENCES} for difference in found]
     if rows or form is not Format.TABLE:
         emit(rows, DIFFERENCES, form, title=f"{len(rows)} differences")

@@ -11,7 +11,7 @@ import typer
 from api.cli.measuring import (
     StoreOption,
     SuiteOption,
-    stores_of,
+    every_store,
 )
 from api.cli.table_output import Format, FormatOption, emit
 from benchmark.suites.selection import suite as suite_named
@@ -44,7 +44,7 @@ def plan(
     fit, scores to compute. Stages in the cache of the local store are not computed again.
     """
     chosen = suite_named(str(suite))
-    stores = stores_of(store)
+    stores = every_store(store)
     from benchmark.suites.planning import cells_of  # noqa: PLC0415 - slow
     from benchmark.suites.planning import plan as planned_of  # noqa: PLC0415 - slow
 

@@ -17,9 +17,9 @@ from api.cli.measuring import (
     StoreOption,
     SuiteOption,
     WorkersOption,
+    every_store,
     say_sources,
     score_cells,
-    stores_of,
 )
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit
@@ -29,6 +29,7 @@ from api.schema.table import columns_of
 from api.service import studies
 from benchmark.contract import Cell, UnknownNameError
 from benchmark.plan.combinations import cells
+from benchmark.plan.parts import every_part
 from benchmark.suites.planning import cells_of
 from benchmark.suites.selection import suite as suite_named
 from registry.resolution import Resolution
@@ -95,7 +96,7 @@ def _run_suite(
 ) -> None:
     """Score a suite's cells, and those that follow from their scores."""
     chosen = suite_named(name)
-    stores = stores_of(directory)
+    stores = every_store(directory)
     planned = cells_of(chosen, stores)
     result = score_cells(planned, workers, directory, scheduler)
     measured = result.measured_count
@@ -114,7 +115,7 @@ def _run_suite(
 def _plan(resolution: Resolution, conditions: Sequence[str] | None) -> dict[Cell, list[str]]:
     """Return the study's cells, each with what is assumed where the study does not say."""
     presets = {name for pipeline in resolution.pipelines for name in pipeline.datasets}
-    everything = [cell for name in presets for cell in cells(name)]
+    everything = [cell for name in presets for cell in cells(name, parts=every_part())]
     known = {cell.condition for cell in everything}
     for name in conditions or ():
         if known and name not in known:

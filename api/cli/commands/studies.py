@@ -139,6 +139,8 @@ def _show(key: str, asked: StudyFormat) -> None:
         for departure in study["departures"]:
             way = "unknown" if departure["unknown"] else "differs"
             say(f"  {departure['part']} {way}; raised by: {departure['settled_by']}")
+        if own := study["own_sensor"]:
+            say(f"Its sensor here: {labels.label_of(own)}")
         typer.echo()
     emit(study["attributes"], columns_of(AttributeValue) if form is Format.CSV else DETAILS, form)
     if form is Format.TABLE:

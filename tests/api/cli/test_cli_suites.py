@@ -43,7 +43,7 @@ def small(working: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         {name: known.extractors[name] for name in ("direct", "voltage-balance")},
         {name: known.models[name] for name in ("basic", "qpd")},
     )
-    monkeypatch.setattr(planning, "installed_parts", lambda: few)
+    monkeypatch.setattr(planning, "every_part", lambda: few)
     monkeypatch.setattr(measuring, "PUBLISHED", working.parent / "published")
     return working
 
@@ -89,7 +89,7 @@ def test_a_suite_is_planned_run_and_then_there(small: Path) -> None:
 
 @pytest.mark.slow
 def test_a_plan_says_what_failed_and_how_long_its_like_took(small: Path) -> None:
-    wanted = first(planning.installed_parts())
+    wanted = first(planning.every_part())
     store = Store(small)
     run(wanted, store, progress=lambda *_told: None)
     text = (store.scores_directory / "pd-maskless-cube.csv").read_text()
@@ -127,7 +127,7 @@ def test_a_wrong_call_is_one_line_that_says_what_is_right(
 def published(small: Path) -> Store:
     """A record of the small plan."""
     store = Store(measuring.PUBLISHED)
-    run(first(planning.installed_parts()), store, progress=lambda *_told: None)
+    run(first(planning.every_part()), store, progress=lambda *_told: None)
     return store
 
 

@@ -1,6 +1,7 @@
 """Two findings again from published files: python recompute_findings.py PUBLISHED RESOLUTION.CSV.
 
-With pandas and NumPy alone. RESOLUTION.CSV is the deposit's table of what runs for each study.
+With pandas and NumPy alone. RESOLUTION.CSV is the deposit's table of what runs for each study, made
+of standard data sets alone.
 """
 
 import json

@@ -1,0 +1,60 @@
+"""The record of the sensors of single studies is of the code as it is, and of their pipelines."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from benchmark.contract import ON_BENCH
+from benchmark.leaderboard import scope, study_record
+from benchmark.plan.parts import Parts, every_part, installed_parts, split_parts, study_parts
+from benchmark.results.store import PUBLISHED, PUBLISHED_STUDIES, Store
+from benchmark.suites.selection import suite
+
+
+def test_the_record_is_as_its_commands_wrote_it_and_of_the_code_as_it_is() -> None:
+    assert study_record.check(stored_only=True) == []
+
+
+def test_only_pipelines_of_the_studies_are_scored() -> None:
+    used = study_record.runs(study_parts())
+    scored = {(c.dataset, c.extractor, c.model) for c in Store(PUBLISHED_STUDIES).scores()}
+    assert scored == used
+    assert {dataset for dataset, *_ in used} == set(study_parts().presets)
+    assert ("ccd-multi-slit-ss-411", "ppe", "optical + multi-slit") in used
+
+
+def test_they_are_measured_by_the_rules_of_the_leaderboard() -> None:
+    cells = set(Store(PUBLISHED_STUDIES).scores())
+    for name, preset in study_parts().presets.items():
+        own = {cell for cell in cells if cell.dataset == name}
+        assert {cell.condition for cell in own} == {*preset.conditions, ON_BENCH}
+        units = {cell.unit for cell in own if cell.condition == preset.conditions[0]}
+        assert units == set(range(scope.UNITS))
+
+
+def test_neither_record_holds_cells_of_the_other() -> None:
+    names = {cell.dataset for cell in Store(PUBLISHED_STUDIES).scores()}
+    assert names.isdisjoint(cell.dataset for cell in Store(PUBLISHED).scores())
+    standard, studies = split_parts(every_part())
+    assert standard.presets == installed_parts().presets
+    assert studies.presets == study_parts().presets
+
+
+def test_all_that_is_published_is_the_standard_suite_and_quick_does_without() -> None:
+    scores = {**Store(PUBLISHED).scores(), **Store(PUBLISHED_STUDIES).scores()}
+    assert set(suite("standard").select(scores, every_part())) == set(scores)
+    quick = {cell.dataset for cell in suite("quick").select({}, every_part())}
+    assert quick.isdisjoint(study_parts().presets)
+
+
+@pytest.mark.slow
+def test_a_sensor_is_measured_as_it_is_published(tmp_path: Path) -> None:
+    known = study_parts()
+    name = "pd-maskless-two-pyramids"
+    parts = Parts({name: known.presets[name]}, known.extractors, known.models)
+    summary = study_record.update(tmp_path, parts=parts)
+    assert summary.failed == ()
+    published = Store(PUBLISHED_STUDIES).scores()
+    assert Store(tmp_path).scores() == {c: r for c, r in published.items() if c.dataset == name}
