@@ -233,7 +233,7 @@ def changes_answers(dark: Dark, readings: Readings, noise_deg: float) -> bool:
 
 
 def largest_stray(readings: Readings, noise_deg: float) -> float:
-    """Return how much of every column, if all see it alike, moves answers by as much as noise.
+    """Return how much of every column, if all see it alike, moves answers by half their noise.
 
     Parameters
     ----------
@@ -248,7 +248,7 @@ def largest_stray(readings: Readings, noise_deg: float) -> float:
         In units of the readings: of the light as it is, when a tenth of it goes.
     """
     each = _moved(np.ones(readings.raw.shape[1]), readings.raw, readings.sun)
-    return noise_deg / each
+    return 0.5 * noise_deg / each
 
 
 def _moved(level: Floats, light: Floats, sun: Floats) -> float:

@@ -20,7 +20,7 @@ _DARK = (
 )
 _STRAY = (
     "whether the level found without light is stray light, which goes with the Sun's: answers move "
-    "by as much as their noise at a tenth less light from {:.2g} of it on; readings with the "
+    "by half their noise or more at a tenth less light from {:.2g} of it on; readings with the "
     "sensor covered, or at another light level, would test it"
 )
 _HALF = (
