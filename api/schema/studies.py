@@ -209,14 +209,14 @@ class Rung(Shape):
 
 
 class Ladder(Shape):
-    """A study's own method, the best method and the bound on one data set and condition."""
+    """A study's own method, the best method and the bound in one setting."""
 
     dataset: str
     condition: str
     nominal: bool = Field(description="Whether it is the first condition.")
     own: Rung = Field(description="The study's own method, as in `headline`.")
     best: Rung = Field(description="First pipeline of the leaderboard.")
-    bound_deg: float | None = Field(description="Cramer-Rao bound with the sensor unit known.")
+    bound_deg: float | None = Field(description="Bound with the unit known.")
     bound_unit_deg: float | None = Field(description="Bound with the unit known by references.")
 
 
@@ -227,12 +227,12 @@ class StudyDetail(Study):
     attributes: list[AttributeValue]
     reported_accuracy: Reported | None = Field(description="As reported for its own sensor.")
     reported_precision: Reported | None = Field(description="Scatter of repeated readings.")
-    own_sensor: str  # what is stated and assumed of the data set of this study alone; may be empty
+    own_sensor: str = Field(description="Its own data set, or empty.")
     ladder: Ladder | None = Field(description="Rungs below the reported accuracy.")
     departures: list[Departure] = Field(description="Differences from the study.")
     purposes: dict[Purpose, str] = Field(description="What it is run for, with the rules.")
     pipelines: list[StudyPipeline]
-    gaps: list[Gap] = Field(description="Attributes of the study without a known value.")
+    gaps: list[Gap] = Field(description="Attributes without a known value.")
 
 
 class Edition(Shape):
