@@ -39,7 +39,11 @@ def scheduler(log: Path) -> Iterator[str]:
     with (
         dask.config.set(patient | once),
         distributed.LocalCluster(
-            2, 1, processes=True, dashboard_address=":0", silence_logs="CRITICAL"
+            n_workers=2,
+            threads_per_worker=1,
+            processes=True,
+            dashboard_address=":0",
+            silence_logs="CRITICAL",
         ) as found,
     ):
         yield found.scheduler_address
