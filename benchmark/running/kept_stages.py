@@ -72,11 +72,6 @@ class KeptStages:
         found = (files.get(key) for files in self._all())
         return next((one for one in found if one is not None), None)
 
-    def has(self, stage: str, cell: Cell) -> bool:
-        """Say whether a stage of a cell is kept."""
-        key = self.key(stage, cell)
-        return any(files.has(key) for files in self._all())
-
     def put(self, stage: str, cell: Cell, value: Any, seconds: float) -> None:
         """Keep a stage of a cell that took so long to make."""
         self.files.put(self.key(stage, cell), value, seconds)

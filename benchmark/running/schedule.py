@@ -70,16 +70,16 @@ def pieces(tasks: Sequence[Task], workers: int) -> list[tuple[Task, ...]]:
 
 def _measure(kept: KeptStages | None, piece: tuple[Sequence[Task], str | None]) -> list[TaskResult]:
     tasks, code = piece
-    if code is not None and code != code_of(tasks):
-        raise OtherCodeError(
-            f"a worker has other code for {tasks[0].preset.name} than this process: its numbers "
-            "would be taken for those of the code here; bring both to the same version"
-        )
-    if kept is not None and not kept.files.directory.parent.is_dir():
-        kept = None  # the worker is on another machine
-    # what a preset computes on its way, 50 MB of some, is not to go from process to process
-    own = deepcopy(tasks[0].preset)
     with _ONE_AT_A_TIME, shared_patterns():
+        if code is not None and code != code_of(tasks):
+            raise OtherCodeError(
+                f"a worker has other code for {tasks[0].preset.name} than this process: its "
+                "numbers would be taken for those of the code here; bring both to the same version"
+            )
+        if kept is not None and not kept.files.directory.parent.is_dir():
+            kept = None  # the worker is on another machine
+        # what a preset computes on its way, 50 MB of some, is not to go from process to process
+        own = deepcopy(tasks[0].preset)
         done = [replace(measure(replace(one, preset=own), kept), task=one) for one in tasks]
     release_free_memory()
     return done

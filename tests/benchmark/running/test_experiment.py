@@ -165,22 +165,3 @@ def test_calls_that_make_no_sense_are_refused(
         with pytest.raises(SystemExit):
             command.main(call)
         assert said in capsys.readouterr().err
-
-
-def test_a_check_that_found_nothing_due_is_not_made_again(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    """Until a file changes; a check that found something is."""
-    monkeypatch.setenv("SUNATLAS_STORE", str(tmp_path))
-    monkeypatch.setattr(command, "PUBLISHED", tmp_path / "record")
-    asked: list[str] = []
-
-    def found() -> dict[str, type[RecordedExperiment[Any] | Report[Any]]]:
-        asked.append("looked")
-        return {"sums": Sums}
-
-    monkeypatch.setattr(running, "experiments", found)
-    assert command.main(["--check"]) == command.main(["--check"]) == 0
-    assert asked == ["looked"]
-    assert command.main(["sums", "--check"]) == 0
-    assert len(asked) == 2, "another question"

@@ -61,14 +61,3 @@ def test_what_a_preset_computes_when_it_is_measured_stays_with_the_worker(
     done = list(schedule.outcomes(some, 1, None, None))
     assert [one.task for one in done] == some
     assert len(pickle.dumps(done)) < 10_000
-
-
-def test_what_measures_a_task_is_of_its_data_and_methods_alone() -> None:
-    one, other = task("a"), task("a", "noisy")
-    assert schedule.code_of([one]) == schedule.code_of([one, other])
-    from benchmark.plan.combinations import cells
-    from benchmark.plan.parts import installed_parts
-    from benchmark.running.planned import tasks_of
-
-    real = tasks_of(cells("pd-maskless-cube", "nominal"), installed_parts(), {})
-    assert schedule.code_of(real) != schedule.code_of([one])

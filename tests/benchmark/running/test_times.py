@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import fake_atlas
@@ -12,7 +11,7 @@ import pytest
 from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts
 from benchmark.progress import silent
-from benchmark.results.times import MACHINE, TIMES, read_times
+from benchmark.results.times import read_times
 from benchmark.running import times
 
 TWO = fake_plan.parts(presets=(fake_atlas.Diodes(), fake_atlas.Diodes(name="fake-second")))
@@ -78,6 +77,3 @@ def test_an_interrupted_call_leaves_whole_data_sets_and_the_next_goes_on(
     assert found.machine is not None
     assert (found.machine.processor, found.machine.also_on) == ("first", ("second",))
     assert times.update(tmp_path, silent, parts=TWO, again=True) == 4
-    one = replace(TWO, presets={"fake-diodes": fake_atlas.Diodes()})
-    assert times.update(tmp_path, silent, parts=one) == 0
-    assert {path.name for path in tmp_path.iterdir() if path.suffix != ".lock"} == {TIMES, MACHINE}
