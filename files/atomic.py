@@ -104,7 +104,7 @@ def replace_all(*targets: Path) -> Iterator[tuple[Path, ...]]:
         temporary_directory_beside(first) as scratch,
     ):
         for target in targets:
-            _restore(target)
+            restore(target)
         new = tuple(scratch / target.name for target in targets)
         try:
             yield new
@@ -120,8 +120,8 @@ def _before(target: Path) -> Path:
     return target.with_name(f".{target.name}.before")
 
 
-def _restore(target: Path) -> None:
-    """Put back what a killed process had moved aside, or remove it where that one had ended."""
+def restore(target: Path) -> None:
+    """Put back what a killed process had moved aside; remove it if something is there again."""
     before = _before(target)
     if os.path.lexists(before) and not os.path.lexists(target):
         before.rename(target)

@@ -168,7 +168,7 @@ def test_a_kill_at_any_step_loses_nothing_and_the_next_run_ends_well(
         "    return step\n"
         "Path.rename, Path.replace = dying(Path.rename), dying(Path.replace)\n"
         "atomic = tests.atomic\n"
-        "atomic._restore = lambda _: None\n"
+        "atomic.restore = lambda _: None\n"
         "shutil.rmtree = dying(shutil.rmtree)\n"
         "tests.renew(Path(sys.argv[1]))\n"
     )
