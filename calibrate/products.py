@@ -29,7 +29,7 @@ from calibrate.recalibration import Correction, poses_of
 from calibrate.report.correction import correction_report, outcomes_of
 from calibrate.report.page import Asked, report
 from calibrate.report.requirement import Judged, Requirement
-from files.directories import replace_in_directory
+from files.atomic import replace_in_directory
 
 #: Ends of the names that were written before there was a list of them.
 _ENDS = (
@@ -164,11 +164,11 @@ def write_products(
     """Write every file, all of them or none; returns their paths.
 
     Everything is made before the first is written, and takes its place in one step
-    (`files.directories`): who is killed leaves the files of the calibration before, or these.
+    (`files.atomic`): who is killed leaves the files of the calibration before, or these.
 
     Raises
     ------
-    UnreplaceableDirectoryError
+    UnreplaceableError
         If the directory cannot be replaced as a whole.
     OSError
         If it cannot be written.

@@ -1,20 +1,26 @@
 """Writing files and directories whole or not at all.
 
-Everything is made beside its place and put into it in one step: who reads meanwhile sees the
-earlier content or the new one, never neither, and a process that is killed leaves no half of
-either. What it was making is removed by the next that writes there (`files.temporary`).
+Everything is made beside its place and renamed into it: who reads meanwhile sees the earlier
+content or the new one, and a process that is killed leaves no half of either.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+import shutil
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from files.exchange import exchange
 from files.locks import wait_for_lock
-from files.temporary import remove_stale_files, temporary_directory_beside, temporary_file_beside
+from files.temporary import temporary_directory_beside, temporary_file_beside
+
+#: Entries, of all depths, that a directory may hold whose files are replaced at once.
+MOST_OTHERS = 10_000
+
+
+class UnreplaceableError(ValueError):
+    """A path that cannot be replaced as a whole; the message says why and what could be."""
 
 
 def replace_file(path: Path, content: str | bytes) -> bool:
@@ -43,16 +49,10 @@ def replace_file(path: Path, content: str | bytes) -> bool:
     wanted = content.encode() if isinstance(content, str) else content
     known = path.is_file()
     if known and path.read_bytes() == wanted:
-        remove_stale_files(path.parent, path.name)
         return False
     path.parent.mkdir(parents=True, exist_ok=True)
     with name_file_in_errors(path), temporary_file_beside(path) as scratch:
-        with scratch.open("wb") as file:
-            file.write(wanted)
-            file.flush()
-            os.fsync(file.fileno())
-        if known:
-            scratch.chmod(path.stat().st_mode & 0o777)
+        _write(scratch, wanted, like=path)
         scratch.replace(path)
     return True
 
@@ -72,20 +72,14 @@ def name_file_in_errors(path: Path) -> Iterator[None]:
 def replace_all(*targets: Path) -> Iterator[tuple[Path, ...]]:
     """Make files and directories elsewhere; they take their places when the block ends.
 
-    Each takes its place in one step (`files.exchange`); of several, a kill may leave the
-    first ones new and the last ones old, each whole. Where the file system cannot exchange two
-    directories, an earlier directory stays where it is and its files are replaced one at a time:
-    a kill may then leave new files among old ones, which checksums tell and the next run mends.
-
-    An error in the block leaves the targets as they are, and so does one in putting the new ones
-    in place: what had been there is put back. Another process that replaces the first target
-    waits (`files.locks`).
+    An earlier directory is moved aside for that (`.<name>.before`): a kill in this moment leaves
+    it there, and the next call puts it back first. An error in the block leaves the targets as
+    they are. Another process that replaces the first target waits (`files.locks`).
 
     Parameters
     ----------
     targets
-        Paths in one directory, which is made where it is not there, and goes again after an
-        error; what each holds is replaced.
+        Paths in one directory, which is made where it is not there; what each holds is replaced.
 
     Yields
     ------
@@ -94,7 +88,7 @@ def replace_all(*targets: Path) -> Iterator[tuple[Path, ...]]:
 
     Raises
     ------
-    FileSystemRootError
+    UnreplaceableError
         Where a target is the root of a file system.
     OSError
         Where it cannot be written; one that names no file, as of a full disk, names the first
@@ -102,32 +96,51 @@ def replace_all(*targets: Path) -> Iterator[tuple[Path, ...]]:
     """
     for target in targets:
         require_replaceable(target)
-    # Beside the targets: a rename is only atomic within a file system.
     first = targets[0]
+    first.parent.mkdir(parents=True, exist_ok=True)
     with (
         name_file_in_errors(first),
-        _made_parents(first),
         wait_for_lock(first),
         temporary_directory_beside(first) as scratch,
     ):
-        made, before = scratch / "made", scratch / "before"
-        made.mkdir()
-        before.mkdir()
-        new = tuple(made / target.name for target in targets)
+        for target in targets:
+            restore(target)
+        new = tuple(scratch / target.name for target in targets)
         try:
             yield new
         except OSError as error:
-            if isinstance(error.filename, str) and Path(error.filename).is_relative_to(made):
-                error.filename = str(first.parent / Path(error.filename).relative_to(made))
+            if isinstance(error.filename, str) and Path(error.filename).is_relative_to(scratch):
+                error.filename = str(first.parent / Path(error.filename).relative_to(scratch))
             raise
-        with ExitStack() as undo:
-            for path, target in zip(new, targets, strict=True):
-                _put(path, target, before / target.name, undo)
-            undo.pop_all()
+        for path, target in zip(new, targets, strict=True):
+            _put(path, target)
 
 
-class FileSystemRootError(ValueError):
-    """A path is the root of a file system, which cannot be replaced."""
+def _before(target: Path) -> Path:
+    return target.with_name(f".{target.name}.before")
+
+
+def restore(target: Path) -> None:
+    """Put back what a killed process had moved aside; remove it if something is there again."""
+    before = _before(target)
+    if os.path.lexists(before) and not os.path.lexists(target):
+        before.rename(target)
+    shutil.rmtree(before, ignore_errors=True)
+
+
+def _put(path: Path, target: Path) -> None:
+    """Put what was made into its place."""
+    if not target.is_dir() or target.is_symlink():
+        path.replace(target)
+        return
+    before = _before(target)
+    target.rename(before)
+    try:
+        path.rename(target)
+    except OSError:
+        before.rename(target)
+        raise
+    shutil.rmtree(before, ignore_errors=True)
 
 
 def require_replaceable(path: Path) -> None:
@@ -135,74 +148,96 @@ def require_replaceable(path: Path) -> None:
 
     Raises
     ------
-    FileSystemRootError
+    UnreplaceableError
         Where it is the root of a file system: `/`, a drive, or where one is mounted.
     """
     if not path.name or (path.is_mount() and not path.is_symlink()):
-        raise FileSystemRootError(
+        raise UnreplaceableError(
             f"{path}: the root of a file system cannot be replaced; expected a directory in it; "
             "nothing was written"
         )
 
 
-@contextmanager
-def _made_parents(path: Path) -> Iterator[None]:
-    """Make the directories above a path; after an error those that were made go again."""
-    missing = [parent for parent in path.parents if not parent.exists()]
-    path.parent.mkdir(parents=True, exist_ok=True)
+def require_replaceable_directory(directory: Path) -> None:
+    """Refuse a directory whose files cannot be replaced at once, before anything is made for it.
+
+    Raises
+    ------
+    UnreplaceableError
+        If it is a file, the root of a file system, the current directory or one above it, or
+        holds too many other files.
+    """
     try:
-        yield
-    except BaseException:
-        with suppress(OSError):  # somebody else has put something there
-            for parent in missing:
-                parent.rmdir()
-        raise
+        place = directory.resolve()
+        require_replaceable(place)
+    except (OSError, RuntimeError) as error:  # a loop of symbolic links
+        raise UnreplaceableError(f"{directory}: expected a directory ({error})") from None
+    if os.path.lexists(place) and not place.is_dir():
+        raise UnreplaceableError(f"{directory}: expected a directory; this is a file")
+    if Path.cwd().is_relative_to(place):
+        held = "the current directory" if place == Path.cwd() else "above the current one"
+        raise UnreplaceableError(
+            f"{directory}: expected a directory that can be replaced as a whole; this is {held}. "
+            f"Name one in it, such as {directory / 'calibration'}"
+        )
+    if sum(len(inner) + len(files) for _, inner, files in os.walk(place)) > MOST_OTHERS:
+        raise UnreplaceableError(
+            f"{directory}: expected a directory of at most {MOST_OTHERS} files; name a new one"
+        )
 
 
-def _put(path: Path, target: Path, before: Path, undo: ExitStack) -> None:
-    """Put what was made into its place."""
-    if not os.path.lexists(target):
-        path.rename(target)
-        undo.callback(target.rename, path)
-    elif exchange(path, target):
-        undo.callback(exchange, path, target)
-    elif _is_directory(path) and _is_directory(target):
-        _put_within(path, target, before, undo)
-    else:
-        _put_file(path, target, before, undo)
+def replace_in_directory(
+    directory: Path, files: Mapping[str, bytes], gone: Collection[str] = ()
+) -> None:
+    """Put files into a directory, all of them or none; other files there stay.
 
+    Parameters
+    ----------
+    directory
+        That is made where it is not there, with those above it.
+    files
+        Content by name.
+    gone
+        Names that are not there afterwards.
 
-def _put_within(made: Path, target: Path, before: Path, undo: ExitStack) -> None:
-    """Give a directory the content of another, an entry at a time."""
-    before.mkdir()
-    wanted = {path.name: path for path in made.iterdir()}
-    for name in sorted(wanted):
-        path, place = wanted[name], target / name
-        if not os.path.lexists(place):
-            path.rename(place)
-            undo.callback(place.rename, path)
-        elif _is_directory(path) and _is_directory(place):
-            _put_within(path, place, before / name, undo)
+    Raises
+    ------
+    UnreplaceableError
+        As `require_replaceable_directory`.
+    OSError
+        Where it cannot be written; the directory is as it was.
+    """
+    require_replaceable_directory(directory)
+    place = directory.resolve()
+    with replace_all(place) as (new,):
+        if place.is_dir():
+            others = {*files, *gone}
+            shutil.copytree(
+                place,
+                new,
+                symlinks=True,
+                copy_function=_link,
+                ignore=lambda where, _names: others if Path(where) == place else (),
+            )
         else:
-            _put_file(path, place, before / name, undo)
-    for place in sorted(target.iterdir()):
-        if place.name not in wanted:
-            place.rename(before / place.name)
-            undo.callback((before / place.name).rename, place)
+            new.mkdir()
+        for name, content in files.items():
+            _write(new / name, content, like=place / name)
 
 
-def _put_file(path: Path, place: Path, before: Path, undo: ExitStack) -> None:
-    """Put a file over another, which stays in reach; only a directory has to leave first."""
-    if _is_directory(path) or _is_directory(place):
-        place.rename(before)
-        undo.callback(before.rename, place)
-        path.rename(place)
-        undo.callback(place.rename, path)
-        return
-    os.link(place, before, follow_symlinks=False)
-    path.replace(place)
-    undo.callback(before.replace, place)
+def _link(source: str, target: str) -> None:
+    """Link a file, or copy it where it may not be linked."""
+    try:
+        os.link(source, target, follow_symlinks=False)
+    except OSError:
+        shutil.copy2(source, target, follow_symlinks=False)
 
 
-def _is_directory(path: Path) -> bool:
-    return path.is_dir() and not path.is_symlink()
+def _write(path: Path, content: bytes, like: Path) -> None:
+    """Write a file to the disk, with the permissions of another where there is one."""
+    with path.open("wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+    with suppress(FileNotFoundError):
+        path.chmod(like.stat().st_mode & 0o777)

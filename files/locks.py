@@ -2,9 +2,8 @@
 
 Where writing takes seconds (tables of the survey, an export, a bundle) the second waits, and says
 for whom. Where it may take hours (results, curves, outcomes of claims) it is refused at once. The
-locks are filelock's: the system releases one when its process ends, however it ends, so that none
-can be stale. Beyond filelock, the lock's file names the process, for people, and is removed at the
-end: no lock file stays beside data in a checkout.
+locks are filelock's: the system releases one when its process ends, however it ends. Beyond that
+the lock's file names the process, and is removed at the end.
 """
 
 from __future__ import annotations
@@ -16,13 +15,7 @@ from pathlib import Path
 
 
 class LockedError(RuntimeError):
-    """Another process writes there; the message names both.
-
-    Attributes
-    ----------
-    holder
-        The process, such as ``process 1234``.
-    """
+    """Another process (`holder`, such as ``process 1234``) writes there."""
 
     def __init__(self, holder: str, place: Path, message: str = "") -> None:
         self.holder = holder
@@ -34,37 +27,21 @@ class LockedError(RuntimeError):
 
 
 @contextmanager
-def wait_for_lock(place: Path) -> Iterator[None]:
+def wait_for_lock(place: Path, *, wait: bool = True) -> Iterator[None]:
     """Lock a path; wait, with a line in the log, while another process has locked it.
 
     Parameters
     ----------
     place
         What is written. The lock is a hidden file beside it, in a directory that exists.
+    wait
+        Else LockedError is raised at once.
 
     Raises
     ------
     OSError
         Where no such file can be made.
     """
-    with _lock(place, wait=True):
-        yield
-
-
-@contextmanager
-def lock_or_refuse(place: Path) -> Iterator[None]:
-    """Lock a path as `wait_for_lock`, but raise LockedError at once where another process has."""
-    with _lock(place, wait=False):
-        yield
-
-
-def lock_path(place: Path) -> Path:
-    """Return the path of a place's lock."""
-    return place.with_name(f".{place.name}.lock")
-
-
-@contextmanager
-def _lock(place: Path, *, wait: bool) -> Iterator[None]:
     import logging  # noqa: PLC0415 - with the next, as slow to load as a command's help
 
     from filelock import FileLock, Timeout  # noqa: PLC0415
@@ -89,6 +66,18 @@ def _lock(place: Path, *, wait: bool) -> Iterator[None]:
         with suppress(OSError):
             file.unlink()  # while it is locked: nobody else may have locked this name
         lock.release()
+
+
+@contextmanager
+def lock_or_refuse(place: Path) -> Iterator[None]:
+    """Lock a path as `wait_for_lock`, but raise LockedError at once where another process has."""
+    with wait_for_lock(place, wait=False):
+        yield
+
+
+def lock_path(place: Path) -> Path:
+    """Return the path of a place's lock."""
+    return place.with_name(f".{place.name}.lock")
 
 
 def _holder(file: Path) -> str:

@@ -26,12 +26,12 @@ from api.deposit.verification import Problem
 from api.metadata.identity import identity
 from benchmark import datasets
 from benchmark.contract import SPLITS
-from benchmark.datasets.checksums import ChecksumFileError, contents
 from benchmark.datasets.export import ExportError, read_card
 from benchmark.datasets.export_verification import verify as verify_export
 from benchmark.datasets.pins import Pin, Place
 from benchmark.progress import ProgressCallback, silent
 from benchmark.results.store import PUBLISHED, Store
+from files.checksums import ChecksumFileError, contents
 from files.temporary import temporary_directory
 
 

@@ -36,7 +36,10 @@ from api.metadata.codemeta import codemeta_text
 from api.metadata.errors import write_errors
 from api.metadata.identity import Identity, identity
 from benchmark import datasets
-from benchmark.datasets.checksums import (
+from benchmark.progress import ProgressCallback, silent
+from benchmark.results.store import PUBLISHED, Store
+from files.atomic import replace_all, require_replaceable
+from files.checksums import (
     CHECKSUMS,
     ChecksumFileError,
     contents,
@@ -44,9 +47,6 @@ from benchmark.datasets.checksums import (
     sha256,
     write_checksums,
 )
-from benchmark.progress import ProgressCallback, silent
-from benchmark.results.store import PUBLISHED, Store
-from files.atomic import replace_all, require_replaceable
 from files.manifest import manifest_digest
 from survey_data.descriptor import file_name
 from survey_data.editions import editions

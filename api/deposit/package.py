@@ -9,7 +9,7 @@ from typing import Any
 from api.deposit.deposit_tables import MeasuredTable
 from api.metadata.citation import Author
 from api.metadata.identity import Identity
-from benchmark.datasets.checksums import sha256
+from files.checksums import sha256
 
 DESCRIPTOR = "datapackage.json"
 NAME = "sun-sensor-atlas"

@@ -6,7 +6,7 @@ import zipfile
 from datetime import date
 from pathlib import Path
 
-from benchmark.datasets.checksums import contents
+from files.checksums import contents
 
 _UNIX, _PLAIN_FILE = 3, 0o100644 << 16
 

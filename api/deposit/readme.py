@@ -12,7 +12,7 @@ from api.deposit.frames import FOLDER as FRAMES
 from api.metadata.bundled import FOLDER as CROISSANT
 from api.metadata.citation import repository, unfilled
 from api.metadata.identity import Identity
-from benchmark.datasets.checksums import CHECKSUMS
+from files.checksums import CHECKSUMS
 from survey_data.editions import editions
 
 BIBLIOGRAPHY = "bibliography"

@@ -18,7 +18,7 @@ from api.deposit.forms import of_forms, of_terms
 from api.deposit.limits import excess_size, unfit_names
 from api.deposit.package import DESCRIPTOR, NAME, PROFILE
 from api.metadata.fields import TABLE_SCHEMA
-from benchmark.datasets.checksums import CHECKSUMS, contents, differences, read_checksums
+from files.checksums import CHECKSUMS, contents, differences, read_checksums
 
 Problem = tuple[str, str]
 

@@ -15,9 +15,9 @@ from api.metadata.croissant import PARQUET, DatasetDescription, File, Table, cro
 from api.metadata.identity import Identity
 from api.metadata.served import SUBJECTS, of_dataset, of_record, tables_of_samples
 from benchmark import datasets
-from benchmark.datasets.checksums import contents, sha256
 from benchmark.datasets.export import read_card
 from benchmark.results import samples
+from files.checksums import contents, sha256
 
 FOLDER = "croissant"
 RECORD, SURVEY = "record", "survey"

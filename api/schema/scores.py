@@ -182,7 +182,7 @@ class RecordNamed(Shape):
     """Published results that a leaderboard shows."""
 
     version: str = Field(description="Version of the Atlas; the git tag is `v` plus this.")
-    sha256: str | None = Field(description="SHA-256 of manifest.json; null if none.")
+    sha256: str | None = Field(description="SHA-256 of checksums-sha256.txt; null if none.")
 
 
 class Leaderboard(OpenShape):

@@ -24,14 +24,6 @@ from algorithms.contract import Observation
 from benchmark import datasets
 from benchmark.contract import SPLITS, UnknownNameError
 from benchmark.datasets import Preset
-from benchmark.datasets.checksums import (
-    CHECKSUMS,
-    ChecksumFileError,
-    contents,
-    read_checksums,
-    sha256,
-    write_checksums,
-)
 from benchmark.datasets.export_arrays import columns_of, write_archive, write_table
 from benchmark.datasets.pins import Pin, Place
 from benchmark.datasets.preview import preview_png
@@ -40,6 +32,14 @@ from benchmark.metrics.bounds import Bound
 from benchmark.metrics.separation import store
 from benchmark.progress import ProgressCallback, silent
 from files.atomic import replace_all, require_replaceable
+from files.checksums import (
+    CHECKSUMS,
+    ChecksumFileError,
+    contents,
+    read_checksums,
+    sha256,
+    write_checksums,
+)
 from files.reading import FileRefusedError
 from files.strict_json import read_json
 

@@ -20,13 +20,13 @@ from numpy.typing import NDArray
 
 from benchmark import datasets
 from benchmark.datasets import Preset, UnknownDatasetError
-from benchmark.datasets.checksums import CHECKSUMS, differences, read_checksums, sha256
 from benchmark.datasets.export import CARD, ExportError, card_of, export, read_card
 from benchmark.datasets.export_arrays import read_archive, samples_of, table_text
 from benchmark.datasets.pins import BOUND_TOLERANCE, Pin, Place, bounds_agree
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.metrics.separation import store
 from benchmark.progress import ProgressCallback, silent
+from files.checksums import CHECKSUMS, differences, read_checksums, sha256
 from files.temporary import temporary_directory
 
 Problem = tuple[str, str]

@@ -215,10 +215,8 @@ def by_hand(store: Store) -> Iterator[Difference]:
     published = store.directory == PUBLISHED
     problems = record_manifest.changes(store.directory, required=published)
     for problem in [*problems, *(facts_manifest.changes() if published else ())]:
-        places = [f"row {problem.row}"] if problem.row is not None else []
-        places += [problem.column] if problem.column is not None else []
-        should = f"as `{record_manifest.COMMAND}` has it" if not places else "as it was written"
-        yield Difference(problem.file, ", ".join(places) or "file", problem.message, should)
+        should = f"as `{record_manifest.COMMAND}` has it"
+        yield Difference(problem.file, "file", problem.message, should)
 
 
 def _moved_heads(store: Store, parts: Parts) -> Iterator[Difference]:

@@ -8,7 +8,7 @@ A store is a directory:
 - a file of each recorded experiment (`benchmark.running.experiment`).
 - ``pins.csv``: hash and bound of each generated split (`benchmark.results.pins`).
 - ``components.json``: facts and digests of what the numbers are of.
-- ``manifest.json``: digests of all these, by which a change by hand shows (`files.manifest`).
+- ``checksums-sha256.txt``: of all these, by which a change by hand shows (`files.manifest`).
 
 All depend on code and data only, never on time or machine. A running runner keeps its progress in
 ``.sunatlas/journal.jsonl`` (`benchmark.results.record`).

@@ -11,6 +11,7 @@ from survey_data.additions.faults import Fault, FaultsError, one_of
 from survey_data.additions.toml_lines import TomlDocument
 from survey_data.additions.vocabulary import Definition, Vocabulary
 from survey_data.descriptor import column_types
+from survey_data.importing.bibliography import TURNING
 from survey_data.importing.values import states_nothing
 from survey_data.sources import fault as source_fault
 from survey_data.validation.provenance import TOLD
@@ -19,7 +20,9 @@ from survey_data.validation.rules import number_fault
 Row = Mapping[str, str]
 
 _LONGEST = 5000
-_CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\x85\u2028\u2029\ud800-\udfff\ufffd]")
+_CONTROL = re.compile(
+    rf"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\x85\u2028\u2029\ud800-\udfff\ufffd{TURNING}]"
+)
 _RESOLVER = re.compile(r"^(?:https?://(?:dx\.)?doi\.org/|doi:\s*)", re.IGNORECASE)
 #: Keys of a value beside the columns of its row.
 _BESIDE = ("name", "nearest", "role", "role_note")

@@ -6,6 +6,7 @@ import logging
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,9 @@ from survey_data.problems import SurveyImportError
 SUFFIXES = (".bib", ".bbl", ".ris", ".json")
 _MOST_BYTES = 2_000_000  # thousands of entries; TeX takes half a minute for a million letters
 _LONGEST_FIELD = 20_000
+_MOST_ENTRIES = 10_000
+#: Letters that turn the direction of reading: what follows is not what it looks like.
+TURNING = "\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"
 #: Fields that name where a work is published, first of these that is there.
 _VENUES = (
     *("journal", "journaltitle", "booktitle", "series", "school", "institution"),
@@ -110,16 +114,27 @@ def read_bibliography(path: str | Path) -> tuple[Entry, ...]:
         read = _bbl if "\\bibitem" in text else _bibtex
         expected = "BibTeX (@article{...) or a .bbl (\\bibitem...)"
     try:
-        entries = tuple(read(text, where.name))
+        entries = tuple(islice(read(text, where.name), _MOST_ENTRIES + 1))
     except RecursionError as error:
         raise SurveyImportError(f"{where.name} is nested too deeply") from error
     if not entries:
         raise SurveyImportError(f"{where.name} holds no entry: expected {expected}")
+    if len(entries) > _MOST_ENTRIES:
+        raise SurveyImportError(f"{where.name} has more than {_MOST_ENTRIES} entries")
+    for entry in entries:
+        said = f"{entry.key}{entry.title}{entry.authors}{entry.venue}"
+        if turned := re.search(f"[{TURNING}]", said):
+            raise SurveyImportError(
+                f"{where.name}, line {entry.line}: {entry.key!a} holds the character "
+                f"U+{ord(turned[0]):04X}, which turns the direction of reading"
+            )
     return entries
 
 
 def _bibtex(text: str, name: str) -> Iterator[Entry]:
     """Give the entries of BibTeX, abbreviations and cross-references resolved."""
+    if len(re.findall(r"@\s*\w+\s*[{(]", text)) > _MOST_ENTRIES:
+        raise SurveyImportError(f"{name} has more than {_MOST_ENTRIES} entries")
     blocks = [_sound(block, name) for block in Splitter(text).split().blocks]
     strings: dict[str, str] = {}
     records: list[tuple[BibtexEntry, dict[str, str]]] = []

@@ -7,11 +7,13 @@ from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
+from files.atomic import restore
 from files.locks import wait_for_lock
 from files.manifest import write_recorded
 from files.reading import FileRefusedError
 from files.temporary import temporary_directory
 from survey_data.descriptor import DESCRIPTOR_FILE, file_name, table_names
+from survey_data.editions import FOLDER
 from survey_data.problems import SurveyImportError
 from survey_data.validation.validate import validate
 
@@ -29,6 +31,7 @@ def locked_tables(folder: Path) -> Iterator[None]:
         try:
             with suppress(FileNotFoundError):  # reading says that there are no tables
                 stack.enter_context(wait_for_lock(folder / "tables"))
+                restore(folder / FOLDER)
         except OSError as error:
             raise _unwritable(folder, error) from error
         yield

@@ -199,7 +199,7 @@ def test_one_command_adds_a_study_another_removes_it_and_git_sees_nothing(tmp_pa
         assert shown.exit_code == code, shown.output
         return shown
 
-    for name in (*survey_data.facts_manifest.names(), "manifest.json"):
+    for name in (*survey_data.facts_manifest.names(), "checksums-sha256.txt"):
         target = ours / name
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_bytes((Path(survey_data.__file__).parent / name).read_bytes())

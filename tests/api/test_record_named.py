@@ -37,7 +37,7 @@ def test_a_digest_names_one_record(tmp_path):
 
 
 def test_the_recipe_finds_the_tag_of_a_cited_board(tmp_path):
-    """docs/guide/scores.md: the digest is that of manifest.json at the tag."""
+    """docs/guide/scores.md: the digest is that of checksums-sha256.txt at the tag."""
     git(tmp_path, "init", "--quiet")
     shown = []
     for tag, bound in (("v1", 0.25), ("v2", 0.5)):
@@ -46,7 +46,7 @@ def test_the_recipe_finds_the_tag_of_a_cited_board(tmp_path):
         git(tmp_path, "commit", "--quiet", "--message", tag)
         git(tmp_path, "tag", tag)
     manifests = [
-        git(tmp_path, "show", f"{t}:benchmark/published/manifest.json") for t in ("v1", "v2")
+        git(tmp_path, "show", f"{t}:benchmark/published/checksums-sha256.txt") for t in ("v1", "v2")
     ]
     assert [hashlib.sha256(m).hexdigest() for m in manifests] == shown
     git(tmp_path, "checkout", "--quiet", "v1")
@@ -55,7 +55,7 @@ def test_the_recipe_finds_the_tag_of_a_cited_board(tmp_path):
 
 def test_service_page_command_and_citation_name_the_same_record(atlas):
     record = atlas.get("/v1/leaderboard").json()["record"]
-    manifest = (PUBLISHED / "manifest.json").read_bytes()
+    manifest = (PUBLISHED / "checksums-sha256.txt").read_bytes()
     assert record == {"version": version(), "sha256": hashlib.sha256(manifest).hexdigest()}
     assert record["sha256"] == atlas.get("/healthz").json()["record_sha256"]
     assert record["sha256"] in atlas.get("/leaderboard", accept="text/html").text

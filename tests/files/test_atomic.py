@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import errno
-import itertools
 import os
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 import survey_data
 from files import atomic
-from files.atomic import FileSystemRootError, replace_all, replace_file
+from files.atomic import (
+    UnreplaceableError,
+    replace_all,
+    replace_file,
+    replace_in_directory,
+    require_replaceable_directory,
+)
 
 ROOT = Path(survey_data.__file__).parent.parent
 
@@ -29,6 +33,10 @@ def killed(code: str, *arguments: object) -> None:
     assert subprocess.run(command, check=False, cwd=ROOT, timeout=600).returncode == 9
 
 
+def full(*_: object) -> None:
+    raise OSError(errno.ENOSPC, "No space left on device")
+
+
 def test_text_and_bytes_are_written_as_they_are(tmp_path: Path) -> None:
     path = tmp_path / "made" / "on" / "the" / "way.csv"
     assert replace_file(path, "é\r\n\n")
@@ -39,7 +47,7 @@ def test_text_and_bytes_are_written_as_they_are(tmp_path: Path) -> None:
     assert names(path.parent) == ["way.csv"]
 
 
-def test_a_new_file_may_be_read_by_all_and_an_earlier_one_keeps_its_permissions(
+def test_a_new_file_has_the_umask_s_permissions_and_an_earlier_one_keeps_its_own(
     tmp_path: Path,
 ) -> None:
     path = tmp_path / "file"
@@ -50,36 +58,6 @@ def test_a_new_file_may_be_read_by_all_and_an_earlier_one_keeps_its_permissions(
     path.chmod(0o640)
     replace_file(path, "second")
     assert path.stat().st_mode & 0o777 == 0o640
-
-
-@pytest.mark.parametrize("step", ["fsync", "replace"])
-def test_a_failed_write_leaves_the_earlier_file_and_no_temporary_one(
-    step: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path = tmp_path / "file"
-    replace_file(path, "old")
-
-    def refuse(*_: object) -> None:
-        raise OSError("disk full")
-
-    monkeypatch.setattr(os if step == "fsync" else Path, step, refuse)
-    with pytest.raises(OSError, match="disk full"):
-        replace_file(path, "new")
-    assert path.read_text() == "old"
-    assert names(tmp_path) == ["file"]
-
-
-def test_a_kill_before_the_rename_leaves_the_earlier_file(tmp_path: Path) -> None:
-    path = tmp_path / "file"
-    replace_file(path, "old")
-    code = (
-        "import os, sys; from pathlib import Path\n"
-        "from files.atomic import replace_file\n"
-        "Path.replace = lambda *_: os._exit(9)\n"
-        "replace_file(Path(sys.argv[1]), 'new')\n"
-    )
-    killed(code, path)
-    assert path.read_text() == "old"
 
 
 def test_content_is_on_disk_before_it_takes_its_place(
@@ -102,236 +80,159 @@ def test_content_is_on_disk_before_it_takes_its_place(
     assert steps == ["synced 7", "replaced"]
 
 
-def test_a_place_that_cannot_be_written_is_named(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("no directory")
+def test_a_full_disk_leaves_the_earlier_content_and_is_told_with_the_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def write() -> None:
+        with replace_all(tmp_path / "out") as (made,):
+            made.mkdir()
+            (made / "sub" / "file").write_text("")
+
+    replace_file(tmp_path / "file", "old")
+    replace_in_directory(tmp_path / "out", {"a": b"old"})
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match="No space left") as caught:
+        replace_file(tmp_path / "file", "new")
+    assert caught.value.filename == str(tmp_path / "file")
+    with pytest.raises(OSError, match="No space left") as caught:
+        replace_in_directory(tmp_path / "out", {"a": b"new", "b": b"new"})
+    assert caught.value.filename == str(tmp_path / "out")
+    with pytest.raises(FileNotFoundError) as missing:
+        write()
+    assert missing.value.filename == str(tmp_path / "out" / "sub" / "file")
     with pytest.raises(FileExistsError, match="file"):
         replace_file(tmp_path / "file" / "inside", "new")
-    with pytest.raises(FileExistsError, match="file"), replace_all(tmp_path / "file" / "out"):
-        pytest.fail("nothing can be made there")
-
-
-@pytest.mark.parametrize("writing", ["replace_file(path, 'new')", "replace_all(path).__enter__()"])
-def test_a_directory_without_permission_to_write_is_refused(writing: str, tmp_path: Path) -> None:
-    held = tmp_path / "held"
-    held.mkdir()
-    held.chmod(0o500)
-    code = (
-        "import os, sys; from pathlib import Path\n"
-        "from files.atomic import FileSystemRootError, replace_file, replace_all\n"
-        "path = Path(sys.argv[1]) / 'out'\n"
-        "if os.geteuid() == 0: os.setuid(65534)  # root writes everywhere\n"
-        f"try: {writing}\n"
-        "except PermissionError: os._exit(9)\n"
-    )
-    killed(code, held)
-    held.chmod(0o700)
-    assert names(held) == []
+    assert names(tmp_path) == ["file", "out"]
+    assert (tmp_path / "file").read_text() == (tmp_path / "out" / "a").read_text() == "old"
 
 
 @pytest.fixture
 def earlier(tmp_path: Path) -> Path:
-    """A directory and a file beside it, as an earlier run left them."""
+    """A directory and a file that are there already."""
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "held").write_text("old")
     (tmp_path / "out.zip").write_text("old zip")
     return tmp_path
 
 
-def untouched(directory: Path) -> bool:
-    return (
-        names(directory) == ["out", "out.zip"]
-        and names(directory / "out") == ["held"]
-        and (directory / "out" / "held").read_text() == "old"
-        and (directory / "out.zip").read_text() == "old zip"
-    )
-
-
-def renew(directory: Path) -> None:
-    with replace_all(directory / "out", directory / "out.zip") as (out, zipped):
+def renew(here: Path) -> None:
+    with replace_all(here / "out", here / "out.zip") as (out, packed):
         out.mkdir()
         (out / "new").write_text("new")
-        zipped.write_text("new zip")
+        packed.write_text("new zip")
 
 
-@pytest.mark.parametrize("occupied", [True, False])
-def test_directory_and_file_take_their_places(
-    occupied: bool, tmp_path: Path, request: pytest.FixtureRequest
-) -> None:
-    if occupied:
-        request.getfixturevalue("earlier")
-    renew(tmp_path)
-    assert names(tmp_path) == ["out", "out.zip"]
-    assert names(tmp_path / "out") == ["new"]
-    assert (tmp_path / "out.zip").read_text() == "new zip"
-
-
-def test_an_error_while_making_leaves_what_was_there(earlier: Path) -> None:
-    def half_way() -> None:
-        with replace_all(earlier / "out") as (out,):
-            out.mkdir()
-            (out / "new").write_text("new")
-            raise RuntimeError("half way")
-
-    with pytest.raises(RuntimeError, match="half way"):
-        half_way()
-    assert untouched(earlier)
-
-
-#: What puts new things in place, and how many of its steps `renew` takes on `earlier`.
-WAYS = [("exchange", 2), ("one at a time", 3)]
-STEPS = [(way, step) for way, steps in WAYS for step in range(1, steps + 1)]
-
-
-def counted(
-    way: str, act: Callable[[int], None], patch: Callable[[object, str, object], None]
-) -> None:
-    """Call `act` with its number before every step that puts something in its place."""
-    calls = itertools.count(1)
-
-    def counting(step):
-        def stepping(one, other):
-            act(next(calls))
-            return step(one, other)
-
-        return stepping
-
-    if way == "exchange":
-        patch(atomic, "exchange", counting(atomic.exchange))
-    else:
-        patch(atomic, "exchange", lambda _one, _other: False)
-        patch(Path, "rename", counting(Path.rename))
-        patch(Path, "replace", counting(Path.replace))
-
-
-@pytest.mark.parametrize(("way", "failing"), STEPS)
-def test_whichever_step_fails_everything_is_put_back(
-    way: str, failing: int, earlier: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def refuse(step: int) -> None:
-        if step == failing:
-            raise PermissionError(13, "Permission denied")
-
-    counted(way, refuse, monkeypatch.setattr)
-    with pytest.raises(PermissionError):
-        renew(earlier)
-    assert untouched(earlier)
-
-
-def test_a_file_system_without_an_exchange_gives_the_same(
+def test_a_directory_and_a_file_take_their_places_and_an_error_changes_nothing(
     earlier: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nested directories, an entry of another kind, and one that is no longer wanted."""
-    monkeypatch.setattr(atomic, "exchange", lambda _one, _other: False)
-    for name in ("deep/kept", "deep/gone", "was-directory/inside"):
-        (earlier / "out" / name).parent.mkdir(exist_ok=True)
-        (earlier / "out" / name).write_text("old")
-    with replace_all(earlier / "out") as (out,):
-        (out / "deep").mkdir(parents=True)
-        (out / "deep" / "kept").write_text("new")
-        (out / "was-directory").write_text("new")
-    found = {p.relative_to(earlier): p.read_text() for p in earlier.rglob("*") if p.is_file()}
-    assert found == {
-        Path("out.zip"): "old zip",
-        Path("out/deep/kept"): "new",
-        Path("out/was-directory"): "new",
-    }
+    def fail() -> None:
+        with replace_all(earlier / "out") as (out,):
+            out.mkdir()
+            raise KeyboardInterrupt
 
+    with pytest.raises(KeyboardInterrupt):
+        fail()
+    rename = Path.rename
 
-@pytest.mark.parametrize(("way", "step"), [(way, s) for way, n in WAYS for s in range(1, n + 2)])
-def test_a_kill_at_any_step_leaves_an_out_and_the_next_run_nothing_else(
-    way: str, step: int, earlier: Path
-) -> None:
-    code = (
-        "import os, sys; from pathlib import Path\n"
-        "sys.path.insert(0, 'tests/files')\n"
-        "import shutil, test_atomic as tests\n"
-        "here, way, last = Path(sys.argv[1]), sys.argv[2], int(sys.argv[3])\n"
-        "tests.counted(way, lambda step: os._exit(9) if step == last else None, setattr)\n"
-        "shutil.rmtree = lambda *_, **__: os._exit(9)\n"  # a step later: all is in place
-        "tests.renew(here)\n"
-    )
-    killed(code, earlier, way, step)
-    held = names(earlier / "out")
-    assert held in (
-        [["held"], ["new"]] if way == "exchange" else [["held"], ["held", "new"], ["new"]]
-    )
-    assert (earlier / "out.zip").read_text() in ("old zip", "new zip")
-    assert len(names(earlier)) == 5, "the killed run left its temporary directory and two locks"
+    def refused(self: Path, target: Path) -> Path:
+        if target == earlier / "out" and self.parent != earlier:
+            raise PermissionError(errno.EACCES, "Permission denied")
+        return rename(self, target)
+
+    monkeypatch.setattr(Path, "rename", refused)
+    with pytest.raises(PermissionError):
+        renew(earlier)
+    monkeypatch.undo()
+    assert names(earlier) == ["out", "out.zip"]
+    assert names(earlier / "out") == ["held"]
     renew(earlier)
     assert names(earlier) == ["out", "out.zip"]
     assert names(earlier / "out") == ["new"]
     assert (earlier / "out.zip").read_text() == "new zip"
 
 
-def test_a_new_file_has_the_permissions_that_the_umask_leaves(tmp_path: Path) -> None:
+@pytest.mark.parametrize("step", [1, 2, 3, 4])
+def test_a_kill_at_any_step_loses_nothing_and_the_next_run_ends_well(
+    step: int, earlier: Path
+) -> None:
     code = (
         "import os, sys; from pathlib import Path\n"
-        "from files.atomic import FileSystemRootError, replace_file, replace_all\n"
-        "os.umask(0o077)\n"
-        "here = Path(sys.argv[1])\n"
-        "replace_file(here / 'deep' / 'file', 'mine')\n"
-        "with replace_all(here / 'out') as (out,): out.mkdir(); (out / 'held').write_text('mine')\n"
-        "os._exit(9)\n"
+        "sys.path.insert(0, 'tests/files')\n"
+        "import shutil, test_atomic as tests\n"
+        "left = int(sys.argv[2])\n"
+        "def dying(real):\n"
+        "    def step(*given, **named):\n"
+        "        global left\n"
+        "        left -= 1\n"
+        "        return real(*given, **named) if left else os._exit(9)\n"
+        "    return step\n"
+        "Path.rename, Path.replace = dying(Path.rename), dying(Path.replace)\n"
+        "atomic = tests.atomic\n"
+        "atomic.restore = lambda _: None\n"
+        "shutil.rmtree = dying(shutil.rmtree)\n"
+        "tests.renew(Path(sys.argv[1]))\n"
     )
-    killed(code, tmp_path)
-    found = {str(p.relative_to(tmp_path)): p.stat().st_mode & 0o777 for p in tmp_path.rglob("*")}
-    assert found == {"deep": 0o700, "deep/file": 0o600, "out": 0o700, "out/held": 0o600}
+    killed(code, earlier, step)
+    aside = earlier / ".out.before"
+    kept = [names(path) for path in (aside, earlier / "out") if path.exists()]
+    assert ["held"] in kept or ["new"] in kept
+    if not (earlier / "out").exists():
+        assert kept == [["held"]], "moved aside, and put back by the next"
+        with replace_all(earlier / "out", earlier / "more") as (out, more):
+            assert names(earlier / "out") == ["held"]
+            out.mkdir()
+            more.touch()
+    renew(earlier)
+    assert names(earlier / "out") == ["new"]
+    assert not aside.exists()
 
 
-def test_a_full_disk_is_told_with_the_name_of_the_file(
+FILES = {"a.json": b"new a", "a.c": b"new c"}
+
+
+def test_other_files_of_a_directory_stay_with_their_modes_and_links(tmp_path: Path) -> None:
+    place = tmp_path / "real"
+    replace_in_directory(place, {"a.json": b"old", "gone": b"old", "notes.txt": b"mine"})
+    (place / "sub").mkdir()
+    (place / "sub" / "gone").write_text("mine too")
+    (place / "link").symlink_to("a.json")
+    place.chmod(0o750)
+    (place / "a.json").chmod(0o640)
+    (tmp_path / "out").symlink_to("real")
+    replace_in_directory(tmp_path / "out", FILES, gone=("gone",))
+    assert (tmp_path / "out").is_symlink()
+    assert names(place) == ["a.c", "a.json", "link", "notes.txt", "sub"]
+    assert names(place / "sub") == ["gone"]
+    assert {name: (place / name).read_bytes() for name in FILES} == FILES
+    assert place.stat().st_mode & 0o777 == 0o750
+    assert (place / "a.json").stat().st_mode & 0o777 == 0o640
+    assert (place / "link").readlink() == Path("a.json")
+
+
+def test_what_cannot_be_replaced_as_a_whole_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def full(*_: object) -> None:
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(OSError, match="No space left") as caught:
-        replace_file(tmp_path / "file", "new")
-    assert caught.value.filename == str(tmp_path / "file")
-    with pytest.raises(OSError, match="No space left") as caught, replace_all(tmp_path / "out"):
-        full()
-    assert caught.value.filename == str(tmp_path / "out")
-    assert names(tmp_path) == []
-
-
-def interrupted(out: Path, beside: Path | None = None) -> None:
-    with replace_all(out) as (made,):
-        made.mkdir()
-        if beside is not None:
-            beside.write_text("theirs")
-        raise KeyboardInterrupt
-
-
-def test_directories_above_are_made_and_go_again_after_an_error(tmp_path: Path) -> None:
-    out = tmp_path / "a" / "b" / "out"
-    with pytest.raises(KeyboardInterrupt):
-        interrupted(out)
-    assert list(tmp_path.iterdir()) == []
-    with replace_all(out) as (made,):
-        made.write_text("whole")
-    assert out.read_text() == "whole"
-
-
-def test_a_directory_above_that_somebody_uses_stays_after_an_error(tmp_path: Path) -> None:
-    with pytest.raises(KeyboardInterrupt):
-        interrupted(tmp_path / "a" / "b" / "out", beside=tmp_path / "a" / "theirs")
-    assert [path.name for path in (tmp_path / "a").iterdir()] == ["theirs"]
-
-
-@pytest.mark.parametrize("path", [Path("/"), Path("/proc")])
-def test_the_root_of_a_file_system_is_not_replaced(path: Path) -> None:
-    if not path.is_mount():
-        pytest.skip(f"{path} is no mount here")
-    with pytest.raises(FileSystemRootError, match="cannot be replaced"), replace_all(path):
+    (tmp_path / "file").write_text("")
+    (tmp_path / "loop").symlink_to("loop")
+    (tmp_path / "work").mkdir()
+    monkeypatch.chdir(tmp_path / "work")
+    wrong = {
+        tmp_path / "file": "this is a file",
+        Path(): "this is the current directory",
+        Path(".."): "this is above the current one",
+        Path("/"): "the root of a file system",
+    }
+    for place, said in wrong.items():
+        with pytest.raises(UnreplaceableError, match=said):
+            require_replaceable_directory(place)
+    with pytest.raises((UnreplaceableError, OSError)):
+        replace_in_directory(tmp_path / "loop", FILES)
+    with pytest.raises(UnreplaceableError, match="cannot be replaced"), replace_all(Path("/")):
         pytest.fail("it would be replaced")
-
-
-def test_an_error_of_a_file_being_made_names_its_place(tmp_path: Path) -> None:
-    def write() -> None:
-        with replace_all(tmp_path / "out") as (made,):
-            made.mkdir()
-            (made / "sub" / "file").write_text("")
-
-    with pytest.raises(FileNotFoundError) as raised:
-        write()
-    assert raised.value.filename == str(tmp_path / "out" / "sub" / "file")
+    monkeypatch.setattr(atomic, "MOST_OTHERS", 1)
+    (tmp_path / "held").mkdir()
+    for name in ("a", "b"):
+        (tmp_path / "held" / name).write_text("")
+    with pytest.raises(UnreplaceableError, match="at most 1 files"):
+        replace_in_directory(tmp_path / "held", FILES)
+    assert names(tmp_path / "held") == ["a", "b"]

@@ -29,10 +29,10 @@ def test_a_change_by_hand_is_named_and_taken_over(
     renew = facts_manifest.renew
     monkeypatch.setattr(facts_manifest, "renew", lambda: renew(tables))
     path.write_bytes(path.read_bytes()[:-1] + b"broken,row\n")
-    before = (tables / "manifest.json").read_bytes()
+    before = (tables / "checksums-sha256.txt").read_bytes()
     assert facts_manifest.main() == 1
     assert "studies.csv" in capsys.readouterr().err
-    assert (tables / "manifest.json").read_bytes() == before
+    assert (tables / "checksums-sha256.txt").read_bytes() == before
     shutil.copyfile(DATA_DIRECTORY / "studies.csv", path)
     assert facts_manifest.main() == 0
     assert capsys.readouterr().err == ""

@@ -328,6 +328,9 @@ def test_an_entry_of_another_year_than_its_key_is_taken_and_the_year_shown(copy:
         ('\n@article{A2000, title = "Never', r"line 2: a broken entry .*end of file"),
         ("@article{A2000, title={" + "x" * 20_001 + "}}", "line 1: title is longer than 20000"),
         ("@article{A2000, title=" + "{" * 9000 + "}" * 9000 + "}", "nested too deeply"),
+        ('@string{a="x"}' + "@string{a=a#a}\n" * 1000, "line 15: a is longer than 20000"),
+        ("@misc{a,}\n" * 10_001, r"refs\.bib has more than 10000 entries"),
+        ("@misc{a, title={A \u202e B}}", r"'a' holds the character U\+202E"),
         ('@string{a="%s"}' % ("x" * 9000) + "@string{b=a#a#a}", "b is longer than 20000"),
     ],
 )

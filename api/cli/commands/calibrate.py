@@ -170,14 +170,14 @@ def _checked(stated: list[str], out: Path) -> tuple[Any, ...]:
         RequirementError,
         requirement,
     )
-    from files.directories import (  # noqa: PLC0415 - as above
-        UnreplaceableDirectoryError,
+    from files.atomic import (  # noqa: PLC0415 - as above
+        UnreplaceableError,
         require_replaceable_directory,
     )
 
     try:
         require_replaceable_directory(out)
-    except UnreplaceableDirectoryError as error:
+    except UnreplaceableError as error:
         raise WrongCallError(f"--out: {error}") from None
     try:
         return tuple(requirement(text) for text in stated)

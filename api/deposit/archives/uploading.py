@@ -25,8 +25,8 @@ from api.deposit.archives.server import ArchiveError
 from api.deposit.package import NAME
 from api.deposit.packing import pack
 from api.deposit.verification import verify
-from benchmark.datasets.checksums import contents
 from files.atomic import replace_file
+from files.checksums import contents
 from files.temporary import temporary_directory_beside
 
 #: Files that are also sent by themselves, to be read or searched without the zip.

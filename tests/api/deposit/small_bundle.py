@@ -16,7 +16,7 @@ from api.deposit.packing import pack
 from api.deposit.terms import terms
 from api.metadata.citation import authors
 from api.metadata.identity import Identity, identity
-from benchmark.datasets.checksums import contents, sha256, write_checksums
+from files.checksums import contents, sha256, write_checksums
 from files.temporary import temporary_directory
 
 ZIP = "bundle.zip"

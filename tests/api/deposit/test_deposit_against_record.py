@@ -16,8 +16,8 @@ from api.deposit.database import DATABASE
 from api.deposit.frames import FOLDER
 from api.deposit.package import DESCRIPTOR
 from api.deposit.verification import verify
-from benchmark.datasets.checksums import CHECKSUMS, read_checksums, sha256, write_checksums
 from benchmark.datasets.export import export
+from files.checksums import CHECKSUMS, read_checksums, sha256, write_checksums
 
 pytestmark = pytest.mark.slow  # a bundle and each comparison take seconds
 FRAMES = ("pd-slit",)

@@ -22,7 +22,7 @@ def test_the_archive_holds_the_code_its_lock_file_and_no_more_than_the_checkout(
         top = {member.name.split("/", 1)[0] for member in packed}
     assert top == {"sun_sensor_atlas-0.1.0"}
     wanted = {"pyproject.toml", "requirements.lock", "LICENSE", "CITATION.cff"}
-    wanted |= {"benchmark/published/manifest.json", "tests/api/deposit/test_deposit_code.py"}
+    wanted |= {"benchmark/published/checksums-sha256.txt", "tests/api/deposit/test_deposit_code.py"}
     assert wanted <= names
     ours = {name for name in names if name != "PKG-INFO"}
     assert [name for name in sorted(ours) if not (code_archive.ROOT / name).is_file()] == []

@@ -20,8 +20,8 @@ from api.deposit.database import DATABASE
 from api.deposit.frames import FOLDER
 from api.deposit.package import DESCRIPTOR
 from api.metadata.identity import identity
-from benchmark.datasets.checksums import contents
 from benchmark.datasets.export import CARD, SCHEMA_VERSION
+from files.checksums import contents
 from tests.api.deposit import small_bundle
 from tests.api.deposit.test_deposit_forms import PARQUET
 

@@ -16,9 +16,9 @@ import rispy
 
 from api.deposit.database import NameNotPlainError, sql_name, write_database
 from api.deposit.typed_tables import CellError, typed_tables
-from benchmark.datasets.checksums import CHECKSUMS
 from benchmark.datasets.export_verification import verify as verify_export
 from benchmark.results.store import PUBLISHED, Store
+from files.checksums import CHECKSUMS
 from tests.api.deposit.conftest import FRAMES
 from tests.api.deposit.test_deposit import files
 

@@ -15,7 +15,7 @@ import pytest
 from api.deposit.bundle import Bundle
 from api.metadata.codemeta import NAME, codemeta_text
 from api.metadata.identity import identity
-from benchmark.datasets.checksums import sha256
+from files.checksums import sha256
 
 #: The library warns of packages that it reads other formats with.
 pytestmark = pytest.mark.filterwarnings("ignore::Warning:mlcroissant", "ignore::Warning:rdflib")

@@ -20,7 +20,7 @@ from api.deposit.crate import CRATE
 from api.deposit.database import DATABASE
 from api.deposit.package import DESCRIPTOR
 from api.deposit.verification import UNSEEN, verify
-from benchmark.datasets.checksums import sha256
+from files.checksums import sha256
 from tests.api.deposit import small_bundle
 from tests.api.deposit.test_deposit_verification import agree, change
 

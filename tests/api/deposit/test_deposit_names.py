@@ -8,7 +8,7 @@ import pytest
 
 from api.deposit import limits
 from api.deposit.verification import verify
-from benchmark.datasets.checksums import write_checksums
+from files.checksums import write_checksums
 from tests.api.deposit import small_bundle
 
 NAMES = {

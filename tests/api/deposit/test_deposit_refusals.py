@@ -26,7 +26,7 @@ from api.deposit.packing import PackingError, pack
 from api.deposit.typed_tables import CellError, TypedTable, typed_tables
 from api.deposit.verification import NoBundleError, verify
 from api.metadata import identity
-from benchmark.datasets.checksums import CHECKSUMS, write_checksums
+from files.checksums import CHECKSUMS, write_checksums
 from tests.api.deposit import small_bundle
 from tests.api.deposit.test_deposit_forms import PARQUET, TABLE, found
 from tests.api.deposit.test_deposit_verification import agree

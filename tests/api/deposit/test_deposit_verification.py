@@ -9,7 +9,7 @@ import pytest
 from api.deposit.crate import CRATE
 from api.deposit.package import DESCRIPTOR
 from api.deposit.verification import NoBundleError, verify
-from benchmark.datasets.checksums import (
+from files.checksums import (
     CHECKSUMS,
     ChecksumFileError,
     read_checksums,

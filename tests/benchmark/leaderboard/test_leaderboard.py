@@ -64,7 +64,7 @@ def changed_lines(before, after):
             state[name][0].decode().splitlines() if name in state else []
             for state in (before, after)
         )
-        if one != two and name != "manifest.json":  # digests of the others
+        if one != two and name != "checksums-sha256.txt":  # digests of the others
             found[name] = [line for line in two if line not in one]
     return found
 
@@ -89,7 +89,7 @@ def test_everything_planned_is_measured_and_the_leading_on_other_units(made):
 def test_what_is_committed_is_tables_pins_digests_and_one_page(made):
     assert set(states(made)) == {
         "scores/fake-diodes.csv", "scores/fake-second.csv", "sweeps.csv", "sweeps.json",
-        "pins.csv", "components.json", "manifest.json", PAGE,
+        "pins.csv", "components.json", "checksums-sha256.txt", PAGE,
     }  # fmt: skip
 
 

@@ -81,7 +81,7 @@ def test_it_is_small_and_holds_nothing_that_can_be_derived():
     errors = {f"samples/{name}{kind}.parquet" for name in sets for kind in ("", ".directions")}
     assert names == {
         *tables, *errors, "pins.csv", "sweeps.csv", "sweeps.json", "claims.json", "curves.json",
-        "components.json", "error_budget.json", "leaderboard.md", "manifest.json",
+        "components.json", "error_budget.json", "leaderboard.md", "checksums-sha256.txt",
         "times.csv", "times_machine.json",
     }  # fmt: skip
 

@@ -124,7 +124,7 @@ def test_a_record_is_of_its_files_alone(tmp_path: Path) -> None:
 def test_nothing_is_written_to_a_record_whose_manifest_cannot_be_read(tmp_path: Path) -> None:
     assert record_manifest.write(tmp_path, {"a.csv": "x\n"}, start=True)
     assert not record_manifest.write(tmp_path, {"a.csv": "x\n"})
-    (tmp_path / "manifest.json").write_text("{")
-    with pytest.raises(StoreError, match=r"manifest\.json, line 1: not JSON"):
+    (tmp_path / "checksums-sha256.txt").write_text("{")
+    with pytest.raises(StoreError, match=r"checksums-sha256.txt, line 1: expected 64"):
         record_manifest.write(tmp_path, {"a.csv": "y\n"})
     assert (tmp_path / "a.csv").read_text() == "x\n"

@@ -53,7 +53,7 @@ def test_what_is_written_is_read_back_sorted_whatever_the_order(store, tmp_path)
     assert files(other) == files(store)
     assert {str(path) for path in files(store)} == {
         "scores/c.csv", "scores/d.csv", "pins.csv", "components.json",
-        "manifest.json",
+        "checksums-sha256.txt",
     }  # fmt: skip
 
 
@@ -121,7 +121,7 @@ def test_writing_the_same_again_touches_no_file(store):
     assert {path: path.stat().st_mtime_ns for path in store.directory.rglob("*.*")} == before
     write(store, scores, [pin(n=4)])
     changed = {path for path, then in before.items() if path.stat().st_mtime_ns != then}
-    assert changed == {store.pins_path, store.directory / "manifest.json"}
+    assert changed == {store.pins_path, store.directory / "checksums-sha256.txt"}
 
 
 def test_rows_carry_what_is_known_of_what_they_are_of(store):

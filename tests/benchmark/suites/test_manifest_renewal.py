@@ -42,9 +42,9 @@ def test_a_change_is_named_and_then_taken_over(
 def test_what_cannot_be_read_is_said_and_nothing_taken_over(
     record: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    before = (record / "manifest.json").read_bytes()
+    before = (record / "checksums-sha256.txt").read_bytes()
     scores = record / "scores" / "pd-slit.csv"
     scores.write_text(scores.read_text() + "one cell too few\n")
     assert manifest_renewal.main(["--directory", str(record)]) == 1
     assert "pd-slit" in capsys.readouterr().err
-    assert (record / "manifest.json").read_bytes() == before
+    assert (record / "checksums-sha256.txt").read_bytes() == before

@@ -117,6 +117,7 @@ def test_a_study_of_the_survey_cannot_be_removed_or_added_again(
         ("https://arxiv.org", "http://10.0.0.1", "http://10", "source: a raw address"),
         ("[[detector]]", "[detector]", "[detector]", r"detector: expected tables \[\[detector\]\]"),
         ('"A sun sensor', '"A \\u0007sun sensor', "title =", r"title: holds the character U\+0007"),
+        ('"A sun sensor', '"A \\u202esun sensor', "title =", r"title: holds the character U\+202E"),
         ("https://doi.org/10.1234/made.up", "made.up", "doi =", "doi: expected a DOI such as"),
     ],
 )  # fmt: skip

@@ -20,6 +20,7 @@ from survey_data.additions.writing import (
     verify_study,
 )
 from survey_data.editions import EXTENSION_TABLES, editions
+from survey_data.importing.writing import locked_tables
 from survey_data.problems import SurveyImportError
 from tests.survey_data.additions.offered_study import CONFIRMED, content, offered
 
@@ -38,7 +39,6 @@ import os, sys
 from pathlib import Path
 from survey_data.additions import writing
 count, folder, path = int(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3])
-import files.atomic as whole
 def counted(real):
     def step(*given, **more):
         global count
@@ -50,7 +50,6 @@ def counted(real):
     return step
 for name in ("replace", "rename", "unlink", "rmdir", "mkdir"):
     setattr(os, name, counted(getattr(os, name)))
-whole.exchange = counted(whole.exchange)
 writing.add_study(writing.read_study(path, folder), folder, apply=True)
 """
 
@@ -69,6 +68,8 @@ def test_a_kill_between_any_two_steps_leaves_the_study_whole_or_away(recorded: P
             check=False,
         )
         assert ran.returncode in (0, -signal.SIGKILL), ran.stderr
+        with locked_tables(recorded):  # as the next that writes
+            pass
         assert facts_manifest.changes(recorded) == []
         assert survey_data.validate(recorded) == []
         tables = survey_data.load(recorded)
@@ -77,11 +78,12 @@ def test_a_kill_between_any_two_steps_leaves_the_study_whole_or_away(recorded: P
         assert (tables.extension_attributes["study"] == "Doe2030").any() == there
         if there:
             remove_study("Doe2030", recorded, apply=True)
-        else:  # what was left is cleared by the next that writes
+        else:
             addition = read_study(path, recorded)
             add_study(addition, recorded, apply=True)
             remove_study("Doe2030", recorded, apply=True)
-        assert content(recorded) == begun
+        held = content(recorded).items()  # what is half made stays for a day
+        assert {name: data for name, data in held if ".sunatlas" not in name} == begun
         if ran.returncode == 0:
             break
     assert seen >= {(False, -signal.SIGKILL), (True, -signal.SIGKILL), (True, 0)}

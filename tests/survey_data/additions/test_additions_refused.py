@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 from typing import Any
 
@@ -11,14 +10,12 @@ import pytest
 
 from survey_data.additions.addition_reader import read_addition
 from survey_data.additions.faults import FaultsError
-from survey_data.additions.issue_form import form, main, template_of
 from survey_data.additions.publications import choose, read_publications
 from survey_data.additions.toml_lines import parse_toml
 from survey_data.additions.vocabulary import Vocabulary
 from survey_data.additions.writing import UnknownStudyError, add_study, read_study, remove_study
 from survey_data.problems import SurveyImportError
 from tests.survey_data.additions.offered_study import STUDY, content, line_of, offered, refused
-from tests.survey_data.additions.test_issue_form import FILLED, body
 
 ROLE = 'role = "proposed"'
 
@@ -182,22 +179,3 @@ def test_the_only_publication_takes_the_key_that_is_asked_for() -> None:
     assert choose([only], None, "refs.bib") is only
     assert choose([only], "Doe2030", "refs.bib") is only
     assert choose([only], "Doe2030a", "refs.bib") == {**only, "key": "Doe2030a"}
-
-
-def test_blank_lines_of_an_issue_s_field_say_nothing(known: Vocabulary) -> None:
-    with_blanks = FILLED["Model representation"].replace("\n", "\n\n  \n")
-    assert with_blanks != FILLED["Model representation"]
-    text = template_of(body({**FILLED, "Model representation": with_blanks}), known)
-    assert text == template_of(body(FILLED), known)
-    assert len(re.findall(r"^\[\[model\]\]$", text, re.MULTILINE)) == 2
-
-
-def test_the_form_is_printed_and_an_event_needs_a_file_to_write(
-    known: Vocabulary, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["--form"]) == 0
-    assert capsys.readouterr().out == form(known)
-    with pytest.raises(SystemExit) as stopped:
-        main([str(tmp_path / "event.json")])
-    assert stopped.value.code == 2
-    assert "expected EVENT.json and STUDY.toml, or --form" in capsys.readouterr().err

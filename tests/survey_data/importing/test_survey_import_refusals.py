@@ -155,10 +155,10 @@ def test_a_folder_where_no_lock_can_be_made_is_refused(tmp_path: Path) -> None:
 
 
 def test_an_import_beside_a_damaged_manifest_writes_nothing(copy: Any) -> None:
-    (copy.directory / FILE).write_text('{"schema": 2, "files": {}}', encoding="utf-8")
+    (copy.directory / FILE).write_text("{}\n", encoding="utf-8")
     path = copy.directory / "theirs.txt"
     path.write_text("Key;Mask\nAlvi2014;Lens\n", encoding="utf-8")
     before = copy.path("attributes").read_bytes()
-    with pytest.raises(SurveyImportError, match=r"manifest\.json: expected schema 1, got 2"):
+    with pytest.raises(SurveyImportError, match=r"checksums-sha256.txt, line 1: expected 64"):
         import_table(path, copy.directory, apply=True)
     assert copy.path("attributes").read_bytes() == before

@@ -17,13 +17,13 @@ from benchmark import datasets
 from benchmark.contract import SPLITS, UnknownNameError
 from benchmark.datasets import Samples, UnknownDatasetError
 from benchmark.datasets import export as dataset_export
-from benchmark.datasets.checksums import CHECKSUMS, ChecksumFileError, write_checksums
 from benchmark.datasets.export import CARD, ExportError, export
 from benchmark.datasets.export_arrays import read_archive, write_archive
 from benchmark.datasets.export_verification import verify
 from benchmark.datasets.samples import samples_hash
 from benchmark.metrics.separation import SIGNIFICANT_DIGITS
 from benchmark.results.store import PUBLISHED, Store
+from files.checksums import CHECKSUMS, ChecksumFileError, write_checksums
 
 FEW = 5
 PINS = Store(PUBLISHED).pins()

@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 
 from benchmark import datasets
-from benchmark.datasets.checksums import write_checksums
 from benchmark.datasets.export import CARD, export
 from benchmark.datasets.export_arrays import read_archive, write_archive
 from benchmark.datasets.export_verification import verify
 from benchmark.datasets.pins import Pin
+from files.checksums import write_checksums
 
 NAME, PATH = "pd-slit", "nominal/test.npz"
 PLACE = (NAME, "nominal", "test")

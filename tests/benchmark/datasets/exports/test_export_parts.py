@@ -11,7 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmark.datasets.checksums import (
+from benchmark.datasets.export import ExportError, export
+from benchmark.datasets.export_arrays import columns_of, read_archive, write_archive, write_table
+from benchmark.datasets.export_verification import verify
+from files.checksums import (
     CHECKSUMS,
     ChecksumFileError,
     contents,
@@ -19,9 +22,6 @@ from benchmark.datasets.checksums import (
     read_checksums,
     write_checksums,
 )
-from benchmark.datasets.export import ExportError, export
-from benchmark.datasets.export_arrays import columns_of, read_archive, write_archive, write_table
-from benchmark.datasets.export_verification import verify
 
 ARRAYS = {
     "observations": np.arange(8.0).reshape(2, 4) / 3,

@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 
 from benchmark.datasets import export_verification
-from benchmark.datasets.checksums import write_checksums
 from benchmark.datasets.export import CARD, ExportError, export
 from benchmark.datasets.export_arrays import read_archive, samples_of, write_archive, write_table
 from benchmark.datasets.export_verification import _rms, verify
 from benchmark.datasets.samples import samples_hash
 from benchmark.results.store import PUBLISHED, Store
+from files.checksums import write_checksums
 
 Arrays = dict[str, Any]
 

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
+
+from files.reading import FileRefusedError
 
 CHECKSUMS = "checksums-sha256.txt"
 _LINE = re.compile(r"([0-9a-f]{64}) [ *](.+)")
 
 
-class ChecksumFileError(ValueError):
+class ChecksumFileError(FileRefusedError):
     """The list of checksums cannot be read; the message names file and line."""
 
 
@@ -29,15 +32,19 @@ def contents(directory: Path) -> list[str]:
     )
 
 
+def checksum_text(digests: Mapping[str, str]) -> str:
+    """Return the text of a list of checksums, sorted by file."""
+    return "".join(f"{digests[name]}  {name}\n" for name in sorted(digests))
+
+
 def write_checksums(directory: Path) -> None:
     """List every file under a directory with its checksum, the list itself left out."""
-    lines = [
-        f"{sha256(directory / name)}  {name}\n" for name in contents(directory) if name != CHECKSUMS
-    ]
-    (directory / CHECKSUMS).write_text("".join(lines), "utf-8", newline="\n")
+    names = (name for name in contents(directory) if name != CHECKSUMS)
+    text = checksum_text({name: sha256(directory / name) for name in names})
+    (directory / CHECKSUMS).write_text(text, "utf-8", newline="\n")
 
 
-def read_checksums(directory: Path) -> dict[str, str]:
+def read_checksums(directory: Path, name: str = CHECKSUMS) -> dict[str, str]:
     """Read the checksum of each file, as listed.
 
     Raises
@@ -47,20 +54,22 @@ def read_checksums(directory: Path) -> dict[str, str]:
     ChecksumFileError
         On a line that is no checksum with a path inside the directory, or names a file twice.
     """
-    path = directory / CHECKSUMS
+    path = directory / name
     listed: dict[str, str] = {}
     for number, line in enumerate(path.read_text("utf-8", "replace").splitlines(), start=1):
         found = _LINE.fullmatch(line)
-        name = found[2] if found else ""
-        pure = PurePosixPath(name)
+        file = found[2] if found else ""
+        pure = PurePosixPath(file)
         if found is None or pure.is_absolute() or ".." in pure.parts:
             raise ChecksumFileError(
-                f"{path}, line {number}: expected 64 hexadecimal digits, two spaces and a path "
-                f"inside the directory; got {line[:120]!r}"
+                path,
+                "expected 64 hexadecimal digits, two spaces and a path inside the directory; got "
+                f"{line[:120]!r}",
+                number,
             )
-        if name in listed:
-            raise ChecksumFileError(f"{path}, line {number}: {name} is listed twice")
-        listed[name] = found[1]
+        if file in listed:
+            raise ChecksumFileError(path, f"{file} is listed twice", number)
+        listed[file] = found[1]
     return listed
 
 
