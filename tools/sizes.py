@@ -61,7 +61,6 @@ PARTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         tuple(
             f"api/cli/{name}"
             for name in (
-                "layout",
                 "options",
                 "table_output",
                 "wrong_call",
