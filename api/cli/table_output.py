@@ -22,6 +22,7 @@ Row = Mapping[str, Any]
 
 
 GAP = 2  # between columns
+READABLE = 24  # characters of a column below which a longer text is hard to read
 #: Characters of a line where nothing says how many there are.
 COLUMNS = 80
 NARROWEST = 20
@@ -98,11 +99,11 @@ def table(
     numeric = {at for at, name in enumerate(columns) if name in right or _is_numeric(rows, name)}
     least, most = [], []
     for at, (heading, *texts) in enumerate(zip(headings, *cells, strict=True)):
-        words = [
-            text if at in numeric else max(text.split(), key=len, default="") for text in texts
-        ]
-        least.append(max(map(len, (*heading.split(), *words)), default=0))
-        most.append(max(map(len, (heading, *texts))))
+        longest = max(map(len, texts), default=0)
+        words = [word for text in texts for word in ([text] if at in numeric else text.split())]
+        prose_needs = READABLE if longest > READABLE and at not in numeric else 0
+        least.append(max(prose_needs, *map(len, (*heading.split(), *words))))
+        most.append(max(len(heading), longest))
     spare = room - sum(least) - GAP * (len(columns) - 1)
     if spare < 0:
         pairs = ([f"{h}: {c}" for h, c in zip(headings, row, strict=True) if c] for row in cells)
