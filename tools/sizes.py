@@ -39,14 +39,16 @@ PARTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     ),
     "HTTP machinery": (
         ("api/web/", "api/server/", "api/http/openapi", "api/http/reference"),
-        ("tests/api/server/", "tests/api/http/test_http_machinery"),
+        (
+            *("tests/api/server/", "tests/api/http/test_http_machinery"),
+            "tests/api/browser/test_page_reference",
+        ),
     ),
     "docs and guide": (("api/docs/", "api/guide/"), ("tests/api/docs/", "tests/api/guide/")),
     "command line: layout": (
         tuple(
             f"api/cli/{name}"
             for name in (
-                "layout",
                 "options",
                 "table_output",
                 "wrong_call",

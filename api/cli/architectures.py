@@ -112,7 +112,7 @@ def _many(number: int, one: str, several: str | None = None) -> str:
 
 
 def _paragraph(label: str, words: str, width: int) -> Sequence[str]:
-    left = f"{_INDENT}{label}".ljust(_LABEL + 2)
+    left = f"{_INDENT}{label} ".ljust(_LABEL + 2)
     if width < 2 * _NARROW:  # a column of labels leaves too little beside it
         return prose(f"{label}: {words}", width, f"{_INDENT}  ", _INDENT)
     return prose(words, width, " " * len(left), left)

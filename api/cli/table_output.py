@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import os
 import sys
+import textwrap
 from collections.abc import Collection, Mapping, Sequence
 from enum import StrEnum
 from typing import Annotated, Any
@@ -14,12 +16,13 @@ import typer
 
 from api.cells import cell, plain_value
 from api.cli import spreadsheets
-from api.cli.layout import Column, laid_out, wrap
 from api.schema.table import csv_of
 
 Row = Mapping[str, Any]
 
 
+GAP = 2  # between columns
+READABLE = 24  # characters of a column below which a longer text is hard to read
 #: Characters of a line where nothing says how many there are.
 COLUMNS = 80
 NARROWEST = 20
@@ -78,20 +81,63 @@ def table(
     rule: bool = True,
     bold: bool = False,
 ) -> str:
-    """Return rows as lines of at most `width` characters: see `api.cli.layout`.
+    """Return rows as lines of at most `width` characters.
+
+    Where columns do not fit side by side, each row is a list of its columns with their names.
 
     Parameters
     ----------
     rows, columns : as `emit`
     width, indent : of every line
-    right : columns whose text is a number
+    right : columns whose text is a number, which is never divided
     rule : below the heading
     bold : the heading
     """
-    made = laid_out([_column(rows, name, name in right) for name in columns], width, indent)
-    heading = [typer.style(line, bold=True) for line in made.heading] if bold else made.heading
-    ruled = [indent + "-" * (made.width - len(indent))] if rule else []
-    return "\n".join([*heading, *ruled, *made.rows])
+    room = width - len(indent)
+    headings = [name.replace("_", " ") for name in columns]
+    cells = [[_show(row.get(name)) for name in columns] for row in rows]
+    numeric = {at for at, name in enumerate(columns) if name in right or _is_numeric(rows, name)}
+    least, most = [], []
+    for at, (heading, *texts) in enumerate(zip(headings, *cells, strict=True)):
+        longest = max(map(len, texts), default=0)
+        words = [word for text in texts for word in ([text] if at in numeric else text.split())]
+        prose_needs = READABLE if longest > READABLE and at not in numeric else 0
+        least.append(max(prose_needs, *map(len, (*heading.split(), *words))))
+        most.append(max(len(heading), longest))
+    spare = room - sum(least) - GAP * (len(columns) - 1)
+    if spare < 0:
+        pairs = ([f"{h}: {c}" for h, c in zip(headings, row, strict=True) if c] for row in cells)
+        lines = [line for one in pairs for line in _wrapped("; ".join(one), room, "", "  ")]
+        return "\n".join(f"{indent}{line}" for line in lines)
+    widths = list(least)
+    # What wants least first: it may be content with less than its share.
+    for left, at in enumerate(sorted(range(len(least)), key=lambda at: most[at] - least[at])):
+        widths[at] += min(most[at] - least[at], spare // (len(columns) - left))
+        spare -= widths[at] - least[at]
+    head = _side_by_side([headings], widths, numeric)
+    body = _side_by_side(cells, widths, numeric)
+    ruled = ["-" * max(map(len, (*head, *body)), default=0)] if rule else []
+    head = [typer.style(line, bold=True) for line in head] if bold else head
+    return "\n".join(f"{indent}{line}" for line in (*head, *ruled, *body))
+
+
+def _side_by_side(
+    rows: Sequence[Sequence[str]], widths: Sequence[int], numeric: Collection[int]
+) -> list[str]:
+    """Return the lines of rows, each cell wrapped in its column."""
+    from rich.console import Console  # noqa: PLC0415 - the help does without it
+    from rich.table import Table  # noqa: PLC0415 - as above
+    from rich.text import Text  # noqa: PLC0415 - as above
+
+    drawn = Table(box=None, pad_edge=False, padding=(0, GAP, 0, 0), show_header=False)
+    for at, width in enumerate(widths):
+        drawn.add_column(justify="right" if at in numeric else "left", width=width, overflow="fold")
+    for row in rows:
+        drawn.add_row(*map(Text, row))
+    console = Console(file=io.StringIO(), width=sum(widths) + GAP * len(widths), color_system=None)
+    with console.capture() as captured:
+        console.print(drawn)
+    return [line.rstrip() for line in captured.get().splitlines()]
 
 
 def emit_json(document: Any) -> None:
@@ -119,8 +165,17 @@ def prose(words: str, width: int, then: str = "", first: str = "") -> list[str]:
     then : before the second and further lines
     first : before the first, as long as `then`
     """
-    lines = wrap(words, min(width, PROSE) - len(then))
-    return [f"{then if place else first}{line}" for place, line in enumerate(lines)]
+    return _wrapped(words, min(width, PROSE), first, then)
+
+
+def _wrapped(words: str, width: int, first: str, then: str) -> list[str]:
+    return textwrap.wrap(
+        words,
+        width,
+        initial_indent=first,
+        subsequent_indent=then,
+        break_on_hyphens=False,
+    )
 
 
 def line_width() -> int:
@@ -152,14 +207,9 @@ def _style() -> bool:
     return sys.stdout.isatty() and not os.environ.get("NO_COLOR")
 
 
-def _column(rows: Sequence[Row], name: str, right: bool) -> Column:
-    values = [row.get(name) for row in rows]
-    numeric = right or any(map(_numeric, values))
-    return Column(name.replace("_", " "), [_show(value) for value in values], numeric)
-
-
-def _numeric(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+def _is_numeric(rows: Sequence[Row], name: str) -> bool:
+    values = (row.get(name) for row in rows)
+    return any(isinstance(one, int | float) and not isinstance(one, bool) for one in values)
 
 
 def _show(value: Any) -> str:

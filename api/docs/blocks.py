@@ -1,4 +1,4 @@
-"""Fenced blocks of pages, run in order as a reader would run them.
+"""Fenced blocks of pages, found by Sybil and run in order as a reader would run them.
 
 On a page Python blocks share one namespace, and all blocks one working directory. What a Python
 block prints stands in the `text` block behind it; a `console` block holds commands (`$ ...`) with
@@ -13,9 +13,11 @@ import io
 import re
 import shlex
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+
+from sybil import Document, Example
+from sybil.evaluators.python import PythonEvaluator
+from sybil.parsers.markdown.lexers import RawFencedCodeBlockLexer
 
 from api.docs.commands import CommandError, run
 
@@ -27,10 +29,7 @@ NOT_RUN: Mapping[tuple[str, ...], str] = {
     ("sunatlas", "rank"): "needs the page's file: the recipes' test runs it in a copy of the tree",
 }
 
-_FENCE = re.compile(
-    r"^(?P<indent>[ ]*)```(?P<language>[a-z]+)?(?P<info>[^\n`]*)\n(?P<body>.*?)^(?P=indent)```$",
-    re.DOTALL | re.MULTILINE,
-)
+_BLOCKS = RawFencedCodeBlockLexer(re.compile(r"(?P<language>[a-z]*)(?P<info>[^\n]*)\n"))
 _REASON = re.compile(r"<!-- not run: (?P<reason>[^>]+?) -->\s*\Z")
 
 
@@ -38,16 +37,15 @@ class BlockError(Exception):
     """A block does not run, or prints something else; the message names page and line."""
 
 
-@dataclass(frozen=True)
 class Block:
     """A fenced block.
 
     Attributes
     ----------
-    language
-        As stated; empty where none is.
-    info
-        What else stands behind the language.
+    example
+        As Sybil has it.
+    language, info
+        As stated, and what stands behind that; empty where nothing is.
     body
         Its lines, without the fence's indent.
     line
@@ -58,46 +56,27 @@ class Block:
         Why it is not run; empty where it is.
     """
 
-    language: str
-    info: str
-    body: str
-    line: int
-    start: int
-    end: int
-    reason: str
+    def __init__(self, example: Example) -> None:
+        text, lexemes = example.document.text, example.region.lexemes
+        self.example, self.line, self.body = example, example.line, str(example.parsed)
+        self.language, self.info = lexemes["language"], lexemes["info"].strip()
+        self.start = example.start + example.parsed.offset
+        self.end = text.rindex("\n", 0, example.end) + 1
+        found = _REASON.search(text, 0, example.start)
+        self.reason = "" if found is None else found["reason"]
 
 
-@dataclass
-class Ran:
-    """What came of a page: how much ran, and what did not, with reasons."""
-
-    text: str
-    python: int = 0
-    commands: int = 0
-    left_out: list[tuple[str, str]] = field(default_factory=list)
-
-
-def blocks(text: str) -> list[Block]:
-    """Return the fenced blocks of a page, in order."""
-    found = []
-    for match in _FENCE.finditer(text):
-        reason = _REASON.search(text, 0, match.start())
-        indent = match["indent"]
-        found.append(
-            Block(
-                match["language"] or "",
-                match["info"].strip(),
-                re.sub(f"^{indent}", "", match["body"], flags=re.MULTILINE),
-                text.count("\n", 0, match.start()) + 1,
-                match.start("body"),
-                match.end("body"),
-                "" if reason is None else reason["reason"],
-            )
-        )
-    return found
+def blocks(text: str, page: str = "") -> list[Block]:
+    """Return the fenced blocks of a page, in order; those of Python share a namespace."""
+    document = Document(text, page)
+    document.namespace["__name__"] = page
+    for region in _BLOCKS(document):
+        region.parsed = region.lexemes["source"]
+        document.add(region)
+    return [Block(example) for example in document]
 
 
-def rerun(page: str, text: str, directory: Path) -> Ran:
+def rerun(page: str, text: str, directory: Path) -> str:
     """Run a page's blocks; return its text with what they print now.
 
     Parameters
@@ -111,51 +90,45 @@ def rerun(page: str, text: str, directory: Path) -> Ran:
     BlockError
         Where a block fails, or prints what no block behind it shows.
     """
-    found = blocks(text)
-    namespace: dict[str, Any] = {"__name__": page}
-    ran = Ran(text)
-    printed: dict[int, str] = {}
+    found = blocks(text, page)
+    printed: dict[Block, str] = {}
     with contextlib.chdir(directory):
-        for number, block in enumerate(found):
+        for block, behind in zip(found, [*found[1:], None], strict=True):
             where = f"{page}, line {block.line}"
             if block.reason:
-                ran.left_out.append((f"{block.language} block, line {block.line}", block.reason))
-            elif block.language == "python" and not block.info:
-                said = _python(block, where, namespace)
-                ran.python += 1
-                behind = found[number + 1] if number + 1 < len(found) else None
+                continue
+            if block.language == "python" and not block.info:
+                said = _python(block, where)
                 shown = behind is not None and _is_output(text, block, behind)
                 if bool(said) != shown:
                     what = "prints, and no text block shows it" if said else "prints nothing"
                     raise BlockError(f"{where}: {what}")
                 if behind is not None and shown:
-                    printed[number + 1] = said
+                    printed[behind] = said
             elif block.language in {"console", "sh"}:
-                printed[number] = "".join(_commands(block, where, ran))
-    for number in sorted(printed, reverse=True):
-        block = found[number]
-        ran.text = ran.text[: block.start] + printed[number] + ran.text[block.end :]
-    return ran
+                printed[block] = "".join(_commands(block, where))
+    for block in sorted(printed, key=lambda block: block.start, reverse=True):
+        text = text[: block.start] + printed[block] + text[block.end :]
+    return text
 
 
 def _is_output(text: str, block: Block, behind: Block) -> bool:
-    between = text[block.end : behind.start].removeprefix("```")
-    return behind.language == "text" and between.split("```text")[0].strip() == ""
+    between = text[block.example.end : behind.example.start]
+    return behind.language == "text" and not between.strip()
 
 
-def _python(block: Block, where: str, namespace: dict[str, Any]) -> str:
+def _python(block: Block, where: str) -> str:
     """Run a block of Python; return what it prints, without blanks that end a line."""
     said = io.StringIO()
     try:
-        code = compile("\n" * block.line + block.body, where.partition(",")[0], "exec")
         with contextlib.redirect_stdout(said):
-            exec(code, namespace)  # noqa: S102 - the page's own example
+            PythonEvaluator()(block.example)
     except Exception as error:
         raise BlockError(f"{where} fails: {type(error).__name__}: {error}") from error
     return "".join(f"{line.rstrip()}\n" for line in said.getvalue().splitlines())
 
 
-def _commands(block: Block, where: str, ran: Ran) -> Iterator[str]:
+def _commands(block: Block, where: str) -> Iterator[str]:
     """Run the commands of a block; give its lines with what each prints now."""
     shown = block.language == "console"
     for command, before in _split(block.body, shown=shown):
@@ -163,17 +136,13 @@ def _commands(block: Block, where: str, ran: Ran) -> Iterator[str]:
         words = shlex.split(command.replace("\\\n", " "), comments=True)
         if not words:
             continue
-        reason = reason_not_to_run(words)
-        if reason:
-            ran.left_out.append((command, reason))
-            if shown:
-                yield before
+        if reason_not_to_run(words):
+            yield before
             continue
         try:
             said = run(words)
         except CommandError as error:
             raise BlockError(f"{where}: `{command}`: {error}") from error
-        ran.commands += 1
         if shown:
             yield said
 

@@ -192,7 +192,7 @@ def _renewed(page: str, parts: Mapping[str, Make], directory: Path) -> str:
 
 def _rerun(page: str, directory: Path) -> str:
     with temporary_directory() as scratch:
-        return rerun(page, (directory / page).read_text("utf-8"), scratch).text
+        return rerun(page, (directory / page).read_text("utf-8"), scratch)
 
 
 def regenerate(directory: Path = DIRECTORY, *, write: bool = True) -> list[str]:

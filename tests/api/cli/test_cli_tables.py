@@ -53,9 +53,9 @@ def test_every_row_keeps_its_words_at_every_width(arguments, names, listed, widt
     assert rows
     text = shown(*arguments, width=width)
     assert max(map(len, text.splitlines())) <= width
-    there = set(re.split(r"[\s+,>]+", text))
+    there = set(re.split(r"[\s+,;>]+", text))
     for row, name in itertools.product(rows, names):
-        for word in re.split(r"[\s+]+", row[name] or ""):
+        for word in re.split(r"[\s+;]+", row[name] or ""):
             assert not word or word in there, (name, row[name])
 
 
