@@ -115,13 +115,13 @@ docs: $(DEVELOPING) ## regenerate the generated parts of docs/
 # `make lock UPGRADE=--upgrade` takes the newest versions; without it, pins that still fit stay.
 COMPILE := uv pip compile --quiet --python-version 3.11 --no-header --no-strip-extras pyproject.toml
 LOCK := $(COMPILE) --generate-hashes --no-emit-index-url --no-annotate $(UPGRADE)
-EXTRAS := --extra deposit --extra distributed --extra guide
+EXTRAS := --extra cluster --extra deposit --extra guide --extra serve
 lock: ## renew the lock files from pyproject.toml (needs uv on the PATH)
-	$(LOCK) --universal --group build --extra guide -o requirements.lock
+	$(LOCK) --universal --group build --extra guide --extra serve -o requirements.lock
 	$(LOCK) --universal --group dev $(EXTRAS) --constraints requirements.lock -o requirements-dev.lock
 	$(PYTHON) -m tools.lock_beyond requirements.lock requirements-dev.lock
 	mkdir -p out
-	$(COMPILE) --upgrade --resolution lowest-direct --group build --extra guide -o out/lowest.txt
+	$(COMPILE) --upgrade --resolution lowest-direct --group build --extra guide --extra serve -o out/lowest.txt
 	$(LOCK) --group checked $(EXTRAS) --constraints out/lowest.txt -o requirements-lowest.lock
 
 clean: ## remove the virtual environment and caches

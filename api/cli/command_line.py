@@ -58,6 +58,19 @@ COMMANDS: dict[str, str] = {
     "completion": "Print the shell completion script.",
     "compile": "Compile all numerical kernels now.",
 }
+#: Packages that not every command needs, and the extras that bring them.
+EXTRAS = {
+    **dict.fromkeys(("hatchling", "httpx", "tenacity"), "deposit"),
+    **dict.fromkeys(("distributed",), "cluster"),
+    **dict.fromkeys(("furo", "myst_parser", "sphinx"), "guide"),
+    **dict.fromkeys(
+        (
+            *("fastapi", "fastapi_offline", "latex2mathml", "plotly", "prometheus_client"),
+            *("python_multipart", "starlette", "uvicorn"),
+        ),
+        "serve",
+    ),
+}
 DEBUG = "SUNATLAS_DEBUG"
 _NO_ROOM = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF})
 _OURS = frozenset(
@@ -112,8 +125,7 @@ class LazyCommands(TyperGroup):
         except Exception as error:
             if not (is_known(error) or termination_requested()):
                 raise
-            quoted = isinstance(error, LookupError) and error.args  # str() would quote the message
-            _stop(error, 1, str(error.args[0] if quoted else error))
+            _stop(error, 1, _message(error))
         if status == INTERRUPTED:
             status = exit_code()
         sys.exit(status if isinstance(status, int) else 0)
@@ -122,9 +134,24 @@ class LazyCommands(TyperGroup):
 def is_known(error: BaseException) -> bool:
     """Say whether an error is foreseen: of the file system, or of a class defined in this project.
 
-    A ValueError, KeyError or the like that NumPy or the interpreter raised is not.
+    So is an extra that is not installed. A ValueError, KeyError or the like that NumPy or the
+    interpreter raised is not.
     """
-    return isinstance(error, OSError) or type(error).__module__.partition(".")[0] in _OURS
+    ours = type(error).__module__.partition(".")[0] in _OURS
+    return ours or isinstance(error, OSError) or _missing_of(error) in EXTRAS
+
+
+def _missing_of(error: BaseException) -> str:
+    """Return the package that is not there, where that is the error; else nothing."""
+    return str(error.name).partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
+
+
+def _message(error: BaseException) -> str:
+    if (missing := _missing_of(error)) in EXTRAS:
+        install = f"pip install 'sun-sensor-atlas[{EXTRAS[missing]}]'"
+        return f"this needs the package {missing!r}: {install}"
+    quoted = isinstance(error, LookupError) and error.args  # str() would quote the message
+    return str(error.args[0] if quoted else error)
 
 
 def load(name: str) -> Any:

@@ -58,8 +58,7 @@ SchedulerOption = Annotated[
     str | None,
     typer.Option(
         help=(
-            "Address of a Dask scheduler, such as tcp://127.0.0.1:8786; needs the extra "
-            "'distributed'."
+            "Address of a Dask scheduler, such as tcp://127.0.0.1:8786; needs the extra 'cluster'."
         ),
         show_default=False,
     ),

@@ -7,15 +7,8 @@ from concurrent.futures import Future
 from contextlib import contextmanager
 from typing import Any
 
+import distributed  # an extra
 from joblib._dask import DaskDistributedBackend
-
-try:
-    import distributed
-except ImportError as error:
-    raise ImportError(
-        "measuring on a Dask scheduler needs the package 'distributed'; install it beside this one "
-        "(pip install distributed) or leave the scheduler out"
-    ) from error
 
 #: Seconds to wait for the scheduler, and then for a worker to be there.
 _PATIENCE_S = 30
