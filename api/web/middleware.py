@@ -89,7 +89,8 @@ class EveryResponse:
             if begin:
                 headers = MutableHeaders(raw=begin["headers"])
                 headers.update(more)
-                if begin["status"] == 200 and headers.get("cache-control") != "no-store":
+                whole = begin["status"] == 200 and not message.get("more_body")
+                if whole and headers.get("cache-control") != "no-store":
                     headers["cache-control"] = "no-cache"
                     headers["etag"] = f'"{hashlib.sha256(body).hexdigest()[:32]}"'
                     if inner["method"] == "GET" and _matches(asked, headers["etag"]):
