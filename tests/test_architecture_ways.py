@@ -117,6 +117,6 @@ def test_a_query_passes_the_functions_listed_from_http_to_answer() -> None:
         "registry/judging.py: Question.matching_places",
         "api/service/recommendations.py: document",
         "api/web/answers.py: Answer.representation",
-        "api/web/representations.py: Representation.respond",
+        "api/web/answers.py: as_asked",
     ]
     assert on_the_way(ask, landmarks) == ways

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import time
 
 from starlette.datastructures import Headers, MutableHeaders
@@ -41,6 +42,10 @@ PREFLIGHT_HEADERS = {
 }
 
 
+#: An Accept-Encoding that Starlette, which looks for the word, would take for a yes.
+_NO_GZIP = re.compile(rb"gzip\s*;\s*q=0(\.0*)?\s*(,|\Z)", re.IGNORECASE)
+
+
 def is_shared(path: str) -> bool:
     """Say whether pages of other sites may read what stands at a path."""
     return path.startswith("/v1/") or path.endswith((".json", ".csv")) or path == "/healthz"
@@ -75,7 +80,12 @@ class EveryResponse:
             await send({"type": "http.response.start", "status": 204, "headers": headers})
             await send({"type": "http.response.body", "body": b""})
             return
-        inner = {**scope, "method": "GET"} if method == "HEAD" else scope
+        taken = [
+            (name, value)
+            for name, value in scope["headers"]
+            if not (name == b"accept-encoding" and _NO_GZIP.search(value))
+        ]
+        inner = {**scope, "headers": taken, "method": "GET" if method == "HEAD" else method}
         status, length = 500, 0
         begin: Message = {}
         start = time.perf_counter()
@@ -89,7 +99,8 @@ class EveryResponse:
             if begin:
                 headers = MutableHeaders(raw=begin["headers"])
                 headers.update(more)
-                if begin["status"] == 200 and headers.get("cache-control") != "no-store":
+                whole = begin["status"] == 200 and not message.get("more_body")
+                if whole and headers.get("cache-control") != "no-store":
                     headers["cache-control"] = "no-cache"
                     headers["etag"] = f'"{hashlib.sha256(body).hexdigest()[:32]}"'
                     if inner["method"] == "GET" and _matches(asked, headers["etag"]):

@@ -71,6 +71,13 @@ def test_gzip_carries_the_same_bytes_under_another_etag(atlas, path):
     assert "Accept-Encoding" in zipped.headers["vary"]
 
 
+@pytest.mark.parametrize("refused", ["gzip;q=0", "GZIP ; q=0.00, br", "identity", ""])
+def test_who_refuses_gzip_is_not_sent_it(atlas, refused):
+    plain, body = raw_body(atlas, "/v1/taxonomy", {"Accept-Encoding": refused})
+    assert "content-encoding" not in plain.headers
+    assert body.startswith(b"{")
+
+
 @pytest.mark.parametrize("path", [p for p in PATHS if p != "/"])
 def test_head_is_get_without_a_body(atlas, path):
     get = atlas.get(path, headers=PLAIN)
