@@ -9,11 +9,11 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 
 #: Cells that a spreadsheet takes for a formula, as OWASP lists their first characters
 #: (https://owasp.org/www-community/attacks/CSV_Injection), also behind white space; apostrophes
-#: before them count as well, so that what `escape_formulas` does can be undone.
+#: before them count as well, so that who takes one apostrophe away has what there was.
 _FORMULA = re.compile(r"'*(?:[\t\r\n]|\s*[=+\-@＝＋－＠])")
 #: The same after a semicolon, at which spreadsheets of many countries cut; a quote opens a cell.
 _AFTER_SEMICOLON = re.compile(r"""'*"*'*(?:[\t\r\n]|\s*[=+\-@＝＋－＠])""")
@@ -51,45 +51,15 @@ def escape_formulas(text: str) -> str:
     Parameters
     ----------
     text : CSV with a header; commas separate cells
-
-    Returns
-    -------
-    str
-        The same table; `unescape_formulas` gives the first back.
     """
-    return _each_cell(text, escape_cell)
-
-
-def unescape_formulas(text: str) -> str:
-    """Return the CSV text that `escape_formulas` was given."""
-    return _each_cell(text, unescape_cell)
-
-
-def escape_cell(cell: str) -> str:
-    """Return a cell as `escape_formulas` writes it."""
-    if _NUMBER.fullmatch(cell):
-        return cell
-    return _each_part(cell, lambda part, formula: f"'{part}" if formula.match(part) else part)
-
-
-def unescape_cell(cell: str) -> str:
-    """Return the cell that `escape_cell` was given."""
-    return _each_part(
-        cell,
-        lambda part, formula: part[1:] if part.startswith("'") and formula.match(part) else part,
-    )
-
-
-def _each_part(cell: str, change: Callable[[str, re.Pattern[str]], str]) -> str:
-    first, *rest = cell.split(";")
-    return ";".join([change(first, _FORMULA), *(change(p, _AFTER_SEMICOLON) for p in rest)])
-
-
-def _each_cell(text: str, change: Callable[[str], str]) -> str:
-    rows = ([change(cell) for cell in row] for row in _records(text))
+    rows = ([_escape(cell) for cell in row] for row in csv.reader(io.StringIO(text, newline="")))
     header = next(rows, None)
     return "" if header is None else csv_text(header, rows)
 
 
-def _records(text: str) -> Iterator[list[str]]:
-    return csv.reader(io.StringIO(text, newline=""))
+def _escape(cell: str) -> str:
+    if _NUMBER.fullmatch(cell):
+        return cell
+    first, *rest = cell.split(";")
+    parts = [(first, _FORMULA), *((part, _AFTER_SEMICOLON) for part in rest)]
+    return ";".join(f"'{part}" if formula.match(part) else part for part, formula in parts)

@@ -47,14 +47,13 @@ def parse_json(text: str, path: Path) -> Any:
             parse_constant=_refused,
             parse_float=_finite,
         )
+        _refuse_deep(value)
     except json.JSONDecodeError as error:
         raise FileRefusedError(path, f"not JSON: {error.msg}", error.lineno) from error
     except RecursionError as error:
         raise FileRefusedError(path, f"not JSON: nested deeper than {DEEPEST}") from error
     except ValueError as error:
         raise FileRefusedError(path, f"not JSON: {error}") from error
-    if _depth(value) > DEEPEST:
-        raise FileRefusedError(path, f"not JSON: nested deeper than {DEEPEST}")
     return value
 
 
@@ -135,17 +134,9 @@ def _finite(text: str) -> float:
     return number
 
 
-def _depth(value: Any) -> int:
-    """Return how deep arrays and objects nest; level by level, as recursion has its own limit."""
-    level, depth = [value], 0
-    while level:
-        level = [
-            inner
-            for one in level
-            if isinstance(one, dict | list)
-            for inner in (one.values() if isinstance(one, dict) else one)
-        ]
-        depth += 1
-        if depth > DEEPEST:
-            break
-    return depth
+def _refuse_deep(value: Any, left: int = DEEPEST) -> None:
+    if isinstance(value, dict | list):
+        if left == 0:
+            raise ValueError(f"nested deeper than {DEEPEST}")
+        for inner in value.values() if isinstance(value, dict) else value:
+            _refuse_deep(inner, left - 1)
