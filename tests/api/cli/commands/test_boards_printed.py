@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 from api.cli import asking
 from api.cli.command_line import app
 from api.service.knowledge import Knowledge
-from benchmark.leaderboard import check
+from benchmark.leaderboard import check, study_record
 from benchmark.leaderboard.check import Difference
 from benchmark.leaderboard.pages import FORMATS
 from benchmark.results.store import PUBLISHED
@@ -51,6 +51,7 @@ class Checked:
 def checked(monkeypatch: pytest.MonkeyPatch) -> Checked:
     found = Checked()
     monkeypatch.setattr(check, "check", found)
+    monkeypatch.setattr(study_record, "check", lambda **_: [])
     return found
 
 
