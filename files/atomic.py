@@ -6,8 +6,10 @@ content or the new one, and a process that is killed leaves no half of either.
 
 from __future__ import annotations
 
+import ctypes
 import os
 import shutil
+import sys
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -72,8 +74,9 @@ def name_file_in_errors(path: Path) -> Iterator[None]:
 def replace_all(*targets: Path) -> Iterator[tuple[Path, ...]]:
     """Make files and directories elsewhere; they take their places when the block ends.
 
-    An earlier directory is moved aside for that (`.<name>.before`): a kill in this moment leaves
-    it there, and the next call puts it back first. An error in the block leaves the targets as
+    A directory changes places with the earlier one, on Linux at once. Elsewhere the earlier one is
+    moved aside for that (`.<name>.before`): a kill in this moment leaves it there, and the next
+    call puts it back first. An error in the block leaves the targets as
     they are. Another process that replaces the first target waits (`files.locks`).
 
     Parameters
@@ -133,6 +136,8 @@ def _put(path: Path, target: Path) -> None:
     if not target.is_dir() or target.is_symlink():
         path.replace(target)
         return
+    if _exchange(path, target):  # the earlier one goes with what it was made in
+        return
     before = _before(target)
     target.rename(before)
     try:
@@ -141,6 +146,16 @@ def _put(path: Path, target: Path) -> None:
         before.rename(target)
         raise
     shutil.rmtree(before, ignore_errors=True)
+
+
+def _exchange(one: Path, other: Path) -> bool:
+    """Let two paths change places at once; False where the system or its file system cannot."""
+    if sys.platform != "linux":
+        return False
+    here, exchange = -100, 2  # AT_FDCWD, RENAME_EXCHANGE
+    renameat2 = getattr(ctypes.CDLL(None), "renameat2", None)
+    done = renameat2 and renameat2(here, os.fsencode(one), here, os.fsencode(other), exchange)
+    return done == 0
 
 
 def require_replaceable(path: Path) -> None:
