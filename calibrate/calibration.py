@@ -320,7 +320,7 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         chosen.rms_deg, residual, noise, stated.bench.floor_deg, split, patterns,
         *next_poses(readings.sun),
     )  # fmt: skip
-    dark_found = any("dark" in str(one.change.get("readings")) for one in applied)
+    dark_found = any(_states_dark(one) for one in applied)
     verdict = withheld(
         replace(verdict, untested=untested_in(readings, stated, dark_found=dark_found)),
         unexplained(readings, excluded, wrong_ones, stated.sensor.half_fov_deg, fold)
@@ -338,6 +338,11 @@ def _calibrated(  # noqa: PLR0915, PLR0917 - the steps in their order
         limits=limits_of(readings, stated, joined_levels(file.bad)),
         columns=tuple(tables[0].columns),
     )  # fmt: skip
+
+
+def _states_dark(finding: Finding) -> bool:
+    readings = finding.change.get("readings")
+    return isinstance(readings, dict) and "dark" in readings
 
 
 def _by_error(one: Candidate) -> tuple[bool, bool, float]:
