@@ -65,12 +65,6 @@ def writing_checked(path: Path) -> Iterator[CheckedFile]:
         scratch.replace(path)
 
 
-def write_checked(path: Path, content: bytes) -> None:
-    """Write content, as `writing_checked`."""
-    with writing_checked(path) as file:
-        file.write(content)
-
-
 @contextmanager
 def reading_checked(path: Path) -> Iterator[BinaryIO | None]:
     """Yield a file that was written so, to be read from front to back behind its digest.
@@ -87,9 +81,3 @@ def reading_checked(path: Path) -> Iterator[BinaryIO | None]:
         whole = hashlib.file_digest(file, "sha256").digest() == written
         file.seek(_DIGEST_BYTES)
         yield file if whole else None
-
-
-def read_checked(path: Path) -> bytes | None:
-    """Return what `write_checked` wrote; None where there is no such file, or a damaged one."""
-    with reading_checked(path) as file:
-        return None if file is None else file.read()

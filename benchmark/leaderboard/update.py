@@ -100,7 +100,7 @@ def measure_scope(
     known
         Its data sets, all of which are pinned, and implementations.
     first
-        What is scored before anything is known, in order.
+        Cells of the first round, in order.
     choose
         Gives what follows from scores, of these parts.
     started

@@ -94,7 +94,7 @@ def _tables() -> Path:
 
 
 def _begin(coordinator: int, tables: Path) -> None:
-    """Begin as a worker, which keeps what it knows of a data set until the next one comes."""
+    """Prepare a worker process: stop with its parent, and share tables of light."""
     process_executor._USE_PSUTIL = False  # noqa: SLF001 - else it is taken for a leak, and replaced
     work_for(coordinator)
     memory.share_tables(tables)

@@ -37,7 +37,7 @@ _TOO_MUCH = 1.118
 _PLANE = 1e-3
 #: Cosine of the largest incidence whose tangents are used.
 _STEEPEST = 0.1
-#: Changes of the light over the noise from which what goes with it is told apart.
+#: Least change of the light, over the noise, at which stray light and dark are separated.
 _CHANGES = 5.0
 #: Standard deviations from which a part of the level goes with the light.
 _SURELY = 3.0
@@ -58,7 +58,7 @@ class Dark:
     by : str
         What told it.
     told_apart : bool
-        Whether it is told from light that all columns see alike and that goes with the Sun's.
+        Whether stray light, which is proportional to the Sun's, is separated from it.
     """
 
     level: Floats

@@ -45,7 +45,7 @@ def limits_of(readings: Readings, settings: Settings, levels: Mapping[str, Level
         That were fitted.
     settings : Settings
     levels : mapping of str to Level
-        Values that stand for no reading, by column, as `calibrate.causes.bad_cells` finds them.
+        Placeholder values by column, such as -999, found by `calibrate.causes.bad_cells`.
     """
     known = [levels.get(name, Level()) for name in settings.readings.columns]
     least, most = 0.0, np.inf

@@ -69,7 +69,7 @@ class ThermalChamberPreset(Preset):
     chambers
         Temperatures by condition; every condition has one.
     drawn
-        What its drawing says beyond its geometry, by the names of `registry.fidelity.evidence`.
+        Facts of its drawing beyond the geometry, named as in `registry.fidelity.evidence`.
     """
 
     chambers: Mapping[str, Chamber] = field(default_factory=dict)

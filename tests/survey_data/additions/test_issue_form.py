@@ -29,7 +29,7 @@ def known() -> Vocabulary:
 
 
 def event(text: str, end: str = "\n") -> dict[str, object]:
-    """What GitHub tells of an issue whose form holds this text."""
+    """GitHub's data of an issue whose form has this text."""
     body = f"### The study\n\n```toml\n{text}```".replace("\n", end)
     return {"action": "opened", "issue": {"body": body}}
 
