@@ -8,18 +8,18 @@ from __future__ import annotations
 
 import json
 import shutil
-import sqlite3
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import closing
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from api.deposit import bundle as building
-from api.deposit.bundle import Sources, fill, write_other_forms
+from api.deposit.bundle import Sources, fill
 from api.deposit.code_archive import write_code_as_in
 from api.deposit.database import DATABASE
 from api.deposit.deposit_tables import measured_tables, read_descriptor
+from api.deposit.forms import FOLDER as FORMS
+from api.deposit.forms import unlike, write_other_forms
 from api.deposit.frames import FOLDER, sample
 from api.deposit.package import DESCRIPTOR
 from api.deposit.verification import Problem
@@ -114,34 +114,10 @@ def _of_frames(
 def _as_in(bundle: Path, made: Path, descriptor: Mapping[str, Any]) -> None:
     """Write Parquet and SQLite; take the bundle's own where another library packed the same."""
     write_other_forms(made, descriptor)
-    forms = [f"parquet/{path.name}" for path in (made / "parquet").iterdir()]
-    for name in [*forms, DATABASE]:
-        same = _same_database if name == DATABASE else _same_parquet
-        if (bundle / name).is_file() and _holds(same, bundle / name, made / name):
-            shutil.copyfile(bundle / name, made / name)
-
-
-def _holds(same: Callable[[Path, Path], bool], one: Path, other: Path) -> bool:
-    if one.read_bytes() == other.read_bytes():
-        return False  # nothing to take
-    try:
-        return same(one, other)
-    except Exception:  # noqa: BLE001 - whatever a mangled file leads its reader to
-        return False
-
-
-def _same_parquet(one: Path, other: Path) -> bool:
-    from pyarrow import parquet  # noqa: PLC0415 - part of an extra
-
-    return bool(parquet.read_table(one).equals(parquet.read_table(other), check_metadata=True))
-
-
-def _same_database(one: Path, other: Path) -> bool:
-    texts = []
-    for path in (one, other):
-        with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)) as base:
-            texts.append(list(base.iterdump()))
-    return texts[0] == texts[1]
+    for path in [*(made / FORMS).iterdir(), made / DATABASE]:
+        theirs = bundle / path.relative_to(made)
+        if theirs.is_file() and not unlike(theirs, path):
+            shutil.copyfile(theirs, path)
 
 
 def _unlike(bundle: Path, made: Path) -> Iterator[Problem]:

@@ -20,15 +20,13 @@ import survey_data
 from api.citations import bibtex, ris
 from api.deposit.code_archive import archive_of, write_code
 from api.deposit.crate import CRATE, crate
-from api.deposit.database import DATABASE, write_database
 from api.deposit.deposit_tables import MeasuredTable, frames_table, measured_tables, read_descriptor
+from api.deposit.forms import write_other_forms
 from api.deposit.frames import write_frames
 from api.deposit.package import DESCRIPTOR, NAME, package
 from api.deposit.packing import pack
-from api.deposit.parquet import write_parquet
 from api.deposit.readme import BIBLIOGRAPHY, readme
 from api.deposit.terms import FACTS, terms
-from api.deposit.typed_tables import typed_tables
 from api.metadata.bundled import documents
 from api.metadata.citation import of_dataset
 from api.metadata.codemeta import NAME as CODEMETA
@@ -145,14 +143,6 @@ def build(
         pack(bundle, zipped, f"{NAME}-{who.version}", who.released)
     progress(total, total, "")
     return Bundle(out, archive, tuple(contents(out)))
-
-
-def write_other_forms(bundle: Path, descriptor: Mapping[str, Any]) -> None:
-    """Write the tables of a bundle as Parquet and SQLite, too."""
-    tables = typed_tables(bundle, descriptor)
-    for table in tables:
-        write_parquet(table, bundle / "parquet" / f"{table.name}.parquet")
-    write_database(tables, bundle / DATABASE)
 
 
 def fill(

@@ -1,14 +1,13 @@
-"""Whether the other forms of a bundle's tables hold what its CSV do, and its terms those stated.
+"""Tables of a bundle in other forms, Parquet and SQLite: written, and held against the CSV.
 
-Checksums are made by whoever made the bundle. What can be seen in it alone is seen here: every
-Parquet file and the database are read to the end and compared with the tables, and the licences
-stand where they belong.
+Checksums are made by whoever made the bundle. What can be seen in it alone is seen here: the other
+forms are made again of the tables in CSV, and the licences stand where they belong.
 """
 
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -16,16 +15,28 @@ from typing import Any
 from api.deposit.crate import CRATE, licence_address
 from api.deposit.database import DATABASE, write_database
 from api.deposit.package import CC_BY, MIT
-from api.deposit.parquet import arrow_table
+from api.deposit.parquet import write_parquet
 from api.deposit.terms import FACTS, terms
-from api.deposit.typed_tables import TypedTable, typed_tables
+from api.deposit.typed_tables import typed_tables
 from api.metadata.identity import identity
 from files.temporary import temporary_directory
 
 Problem = tuple[str, str]
 FOLDER = "parquet"
-#: To what a mangled Parquet file leads its reader, beside Arrow's own errors.
-_UNREADABLE = (OSError, ValueError, LookupError, TypeError, NotImplementedError, MemoryError)
+
+
+def write_other_forms(bundle: Path, descriptor: Mapping[str, Any], out: Path | None = None) -> None:
+    """Write the tables of a bundle as Parquet and SQLite, too; into `out`, the bundle by default.
+
+    Raises
+    ------
+    CellError, NameNotPlainError, sqlite3.Error
+        Where the tables are not what the descriptor says, or their keys do not hold.
+    """
+    tables = typed_tables(bundle, descriptor)
+    for table in tables:
+        write_parquet(table, (out or bundle) / FOLDER / f"{table.name}.parquet")
+    write_database(tables, (out or bundle) / DATABASE)
 
 
 def of_forms(bundle: Path, package: Mapping[str, Any], listed: Mapping[str, str]) -> list[Problem]:
@@ -37,50 +48,72 @@ def of_forms(bundle: Path, package: Mapping[str, Any], listed: Mapping[str, str]
     package : its descriptor
     listed : checksums by path
     """
+    with temporary_directory() as made:
+        try:
+            write_other_forms(bundle, package, made)
+        except (ValueError, LookupError, TypeError, ArithmeticError, sqlite3.Error) as error:
+            said = str(error).removeprefix(f"{bundle}/")
+            return [("datapackage.json", f"no other form can be made of the tables ({said})")]
+        expected = {f"{FOLDER}/{path.name}" for path in (made / FOLDER).iterdir()} | {DATABASE}
+        there = {name for name in listed if name.startswith(f"{FOLDER}/") or name == DATABASE}
+        wrong = [(name, "no table of this bundle") for name in sorted(there - expected)]
+        wrong += [(name, "missing") for name in sorted(expected - there)]
+        wrong += [
+            (name, text)
+            for name in sorted(there & expected)
+            if (text := unlike(bundle / name, made / name))
+        ]
+    return wrong + list(_of_measurements(bundle, package))
+
+
+def unlike(path: Path, made: Path) -> str:
+    """Say in what a Parquet file or a database differs from one made here; "" where it does not."""
+    if path.read_bytes() == made.read_bytes():
+        return ""
     try:
-        return _of_forms(bundle, package, listed)
-    except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError) as error:
-        said = str(error).removeprefix(f"{bundle}/")
-        return [("datapackage.json", f"no other form can be made of the tables ({said})")]
-
-
-def _of_forms(bundle: Path, package: Mapping[str, Any], listed: Mapping[str, str]) -> list[Problem]:
-    tables = typed_tables(bundle, package)
-    expected = {f"{FOLDER}/{table.name}.parquet": table for table in tables}
-    there = {name for name in listed if name.startswith(f"{FOLDER}/")}
-    wrong = [(name, "no table of this bundle") for name in sorted(there - expected.keys())]
-    for name, table in expected.items():
-        text = _of_parquet(bundle / name, table) if name in there else "missing"
-        wrong += [(name, text)] if text else []
-    wrong += list(_of_measurements(bundle, package))
-    text = _of_database(bundle / DATABASE, tables) if DATABASE in listed else "missing"
-    return wrong + ([(DATABASE, text)] if text else [])
-
-
-def _of_parquet(path: Path, table: TypedTable) -> str | None:
-    from pyarrow import ArrowException, parquet  # noqa: PLC0415 - half a second
-
-    wanted = arrow_table(table)
-    try:
-        with parquet.ParquetFile(path) as file:
-            if file.metadata.num_rows != wanted.num_rows:
-                return f"has {file.metadata.num_rows} rows, the table in CSV has {wanted.num_rows}"
-            found = file.read()
-    except (*_UNREADABLE, ArrowException) as error:
+        same = (_same_tables if path.suffix == ".sqlite" else _same_parquet)(path, made)
+    except Exception as error:  # noqa: BLE001 - whatever a mangled file leads its reader to
         return f"cannot be read to its end ({_one_line(error)})"
-    if not found.schema.equals(wanted.schema, check_metadata=True):
-        return "has other columns than the table in CSV, or says other things of them"
-    for name in wanted.column_names:
-        one, other = found.column(name), wanted.column(name)
-        # As text where they are not equal: NaN never is, not even to itself.
-        if not one.equals(other) and repr(one.to_pylist()) != repr(other.to_pylist()):
-            return f"column {name} holds other values than the table in CSV"
-    return None
+    return "" if same else "holds other tables than the CSV of this bundle"
+
+
+def _same_parquet(path: Path, made: Path) -> bool:
+    from pyarrow import parquet  # noqa: PLC0415 - half a second
+
+    one, other = parquet.read_table(path), parquet.read_table(made)
+    if not one.schema.equals(other.schema, check_metadata=True):
+        return False
+    # As text where they are not equal: NaN never is, not even to itself.
+    return bool(one.equals(other)) or repr(one.to_pylist()) == repr(other.to_pylist())
+
+
+def _same_tables(path: Path, made: Path) -> bool:
+    with closing(_opened(path)) as theirs, closing(_opened(made)) as ours:
+        schema = "SELECT type, name, tbl_name, sql FROM sqlite_schema ORDER BY type, name"
+        wanted = ours.execute(schema).fetchall()
+        if theirs.execute(schema).fetchall() != wanted:
+            return False
+        if theirs.execute("PRAGMA integrity_check(1)").fetchone()[0] != "ok":
+            return False
+        rows = (
+            f'SELECT * FROM "{name}" ORDER BY rowid'  # noqa: S608 - a name of our own
+            for kind, name, *_ in wanted
+            if kind == "table"
+        )
+        return all(theirs.execute(row).fetchall() == ours.execute(row).fetchall() for row in rows)
+
+
+def _opened(path: Path) -> sqlite3.Connection:
+    """Open a database to be read, whatever it is: nothing in it is run, nothing beside it read."""
+    base = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro&immutable=1", uri=True)
+    base.execute("PRAGMA trusted_schema = OFF")
+    base.execute("PRAGMA cell_size_check = ON")
+    return base
 
 
 def _of_measurements(bundle: Path, package: Mapping[str, Any]) -> Iterator[Problem]:
     """Read the Parquet files to the end that have no other form."""
-    from pyarrow import ArrowException, parquet  # noqa: PLC0415
+    from pyarrow import parquet  # noqa: PLC0415 - half a second
 
     for resource in package["resources"]:
         if not resource["path"].endswith(".parquet"):
@@ -89,7 +122,7 @@ def _of_measurements(bundle: Path, package: Mapping[str, Any]) -> Iterator[Probl
             with parquet.ParquetFile(bundle / resource["path"]) as file:
                 counted = sum(batch.num_rows for batch in file.iter_batches())
                 named, said = file.schema_arrow.names, file.metadata.num_rows
-        except (*_UNREADABLE, ArrowException) as error:
+        except Exception as error:  # noqa: BLE001 - whatever a mangled file leads its reader to
             yield resource["path"], f"cannot be read to its end ({_one_line(error)})"
             continue
         if counted != said:
@@ -97,51 +130,6 @@ def _of_measurements(bundle: Path, package: Mapping[str, Any]) -> Iterator[Probl
         for name in named:
             if f" {name}: " not in str(resource.get("description")):
                 yield resource["path"], f"column {name} is not described"
-
-
-def _of_database(path: Path, tables: Sequence[TypedTable]) -> str | None:
-    with temporary_directory() as temporary:
-        made = temporary / DATABASE
-        try:
-            write_database(tables, made)
-        except sqlite3.Error as error:
-            return f"cannot be made of the tables in CSV ({error})"
-        if made.read_bytes() == path.read_bytes():
-            return None
-        try:
-            return _unlike(path, made)
-        except (sqlite3.Error, sqlite3.Warning, OverflowError, UnicodeDecodeError) as error:
-            return f"cannot be read to its end ({_one_line(error)})"
-
-
-def _unlike(path: Path, made: Path) -> str | None:
-    """Say in what one database differs from another, whose tables are trusted."""
-    with closing(_open_record(path)) as theirs, closing(_open_record(made)) as ours:
-        schema = "SELECT type, name, tbl_name, sql FROM sqlite_schema ORDER BY type, name"
-        if theirs.execute(schema).fetchall() != (wanted := ours.execute(schema).fetchall()):
-            return "has other tables than the tables in CSV make"
-        whole = theirs.execute("PRAGMA integrity_check(1)").fetchone()[0]
-        if whole != "ok":
-            return f"is damaged ({_one_line(whole)})"
-        for kind, name, *_ in wanted:
-            if kind != "table":
-                continue
-            rows = f'SELECT * FROM "{name}" ORDER BY rowid'  # noqa: S608 - a name of our own
-            found, held = theirs.execute(rows), ours.execute(rows)
-            for number, row in enumerate(held, start=1):
-                if found.fetchone() != row:
-                    return f"table {name}, row {number} is another than in CSV"
-            if found.fetchone() is not None:
-                return f"table {name} has more rows than the table in CSV"
-    return None
-
-
-def _open_record(path: Path) -> sqlite3.Connection:
-    """Open a database to be read, whatever it is: nothing in it is run, nothing beside it read."""
-    base = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro&immutable=1", uri=True)
-    base.execute("PRAGMA trusted_schema = OFF")
-    base.execute("PRAGMA cell_size_check = ON")
-    return base
 
 
 def of_terms(

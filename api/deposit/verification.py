@@ -8,10 +8,18 @@ it is ever asked.
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    ValidationError,
+)
 
 from api.deposit.crate import CRATE, SPECIFICATION
 from api.deposit.forms import of_forms, of_terms
@@ -22,47 +30,85 @@ from files.checksums import CHECKSUMS, contents, differences, read_checksums
 
 Problem = tuple[str, str]
 
-#: Members that a bundle's descriptor has; whatever else a descriptor may have points elsewhere or
-#: says how to read, and is refused.
-_PACKAGE = {
-    "$schema": str,
-    "name": str,
-    "title": str,
-    "description": str,
-    "version": str,
-    "created": str,
-    "licenses": list,
-    "contributors": list,
-    "sources": list,
-    "keywords": list,
-    "resources": list,
-}
-_RESOURCE = {
-    "name": str,
-    "type": str,
-    "title": str,
-    "description": str,
-    "path": str,
-    "format": str,
-    "mediatype": str,
-    "encoding": str,
-    "bytes": int,
-    "hash": str,
-    "licenses": list,
-    "schema": dict,
-}
-_SCHEMA = {
-    "$schema": str,
-    "fields": list,
-    "missingValues": list,
-    "primaryKey": list,
-    "foreignKeys": list,
-    "uniqueKeys": list,
-}
-_FIELD = {"name": str, "type": str, "description": str, "constraints": dict}
-_CONSTRAINTS = {"enum", "minimum", "maximum", "pattern", "required", "unique"}
-_VERSION = re.compile(r"[0-9][0-9A-Za-z.+-]{0,40}")
-_CREATED = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}T00:00:00Z")
+
+class _Member(BaseModel):
+    """A part of a bundle's descriptor.
+
+    Whatever else a descriptor may have points elsewhere or says how to read, and is refused.
+    """
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+
+class _Constraints(_Member):
+    enum: list[Any] | None = None
+    minimum: Any = None
+    maximum: Any = None
+    pattern: str | None = None
+    required: bool | None = None
+    unique: bool | None = None
+
+
+class _Field(_Member):
+    name: str
+    type: str
+    description: str = ""
+    constraints: _Constraints | None = None
+
+
+class _Schema(_Member):
+    profile: Literal[TABLE_SCHEMA] = Field(TABLE_SCHEMA, alias="$schema")  # type: ignore[valid-type]
+    fields_: list[_Field] = Field(alias="fields")
+    missing_values: list[Any] = Field([], alias="missingValues")
+    primary_key: list[Any] = Field([], alias="primaryKey")
+    foreign_keys: list[Any] = Field([], alias="foreignKeys")
+    unique_keys: list[Any] = Field([], alias="uniqueKeys")
+
+
+class _File(_Member):
+    """A resource; a table or any other file."""
+
+    name: str
+    title: str
+    description: str
+    path: str
+    format: str | None = None
+    mediatype: str | None = None
+    bytes: int
+    hash: str
+    licenses: list[Any] = []
+
+
+class _Table(_File):
+    type: Literal["table"]
+    format: Literal["csv"]
+    encoding: Literal["utf-8"]
+    schema_: _Schema = Field(alias="schema")
+
+
+def _kind(resource: Any) -> str:
+    named = isinstance(resource, dict) and str(resource.get("path")).endswith(".csv")
+    return "table" if named or (isinstance(resource, dict) and "type" in resource) else "file"
+
+
+_Resource = Annotated[
+    Annotated[_Table, Tag("table")] | Annotated[_File, Tag("file")], Discriminator(_kind)
+]
+
+
+class _Package(_Member):
+    profile: Literal[PROFILE] = Field(alias="$schema")  # type: ignore[valid-type]
+    name: Literal[NAME]  # type: ignore[valid-type]
+    title: str
+    description: str
+    version: str = Field(pattern=r"^[0-9][0-9A-Za-z.+-]{0,40}$")
+    created: str = Field(pattern=r"^[0-9]{4}-[0-9]{2}-[0-9]{2}T00:00:00Z$")
+    licenses: list[Any] = []
+    contributors: list[Any]
+    sources: list[Any]
+    keywords: list[Any]
+    resources: list[_Resource] = Field(min_length=1)
+
 
 #: What cannot be seen in a bundle alone.
 UNSEEN = (
@@ -127,74 +173,26 @@ def _document(path: Path) -> dict[str, Any] | str:
 def _of_package(
     package: Mapping[str, Any], directory: Path, listed: Mapping[str, str]
 ) -> Iterator[str]:
-    yield from _members("the package", package, _PACKAGE)
-    for name, expected in (("$schema", PROFILE), ("name", NAME)):
-        if package.get(name) != expected:
-            yield f"{name} is {_short(package.get(name))}, expected {expected}"
-    for name, pattern in (("version", _VERSION), ("created", _CREATED)):
-        if not pattern.fullmatch(str(package.get(name))):
-            yield f"{name} is {_short(package.get(name))}, expected as {pattern.pattern}"
-    resources = package.get("resources")
-    if not isinstance(resources, list) or not resources:
-        yield "no resources"
+    try:
+        read = _Package.model_validate(package)
+    except ValidationError as error:
+        for one in error.errors(include_url=False):
+            place = ".".join(str(part) for part in one["loc"] if part not in ("table", "file"))
+            yield f"{place[:80]}: {one['msg']}; got {_short(one['input'])}"
         return
     seen: set[str] = set()
-    for number, resource in enumerate(resources, start=1):
-        if not isinstance(resource, dict):
-            yield f"resource {number} is {_short(resource)}, expected an object"
-            continue
-        named = resource.get("name")
-        what = f"resource {named if isinstance(named, str) else number}"
-        if str(named) in seen:
+    for resource in read.resources:
+        what = f"resource {resource.name[:80]}"
+        if resource.name in seen:
             yield f"{what} stands there twice"
-        seen.add(str(named))
-        yield from _of_resource(what, resource, directory, listed)
-
-
-def _of_resource(
-    what: str, resource: Mapping[str, Any], directory: Path, listed: Mapping[str, str]
-) -> Iterator[str]:
-    yield from _members(what, resource, _RESOURCE)
-    path = resource.get("path")
-    if not isinstance(path, str) or path not in listed:
-        yield f"{what}: path is {_short(path)}, expected a file that {CHECKSUMS} lists"
-        return
-    if resource.get("hash") != f"sha256:{listed[path]}":
-        yield f"{what}: hash is not that of {path} in {CHECKSUMS}"
-    if resource.get("bytes") != (directory / path).stat().st_size:
-        yield f"{what}: bytes are not those of {path}"
-    if resource.get("type") == "table":
-        yield from _of_table(what, resource)
-    elif "type" in resource or "schema" in resource or path.endswith(".csv"):
-        yield f"{what}: expected a table with its schema"
-
-
-def _of_table(what: str, resource: Mapping[str, Any]) -> Iterator[str]:
-    if (resource.get("format"), resource.get("encoding")) != ("csv", "utf-8"):
-        yield f"{what}: expected format csv, encoding utf-8"
-    schema = resource.get("schema")
-    if not isinstance(schema, dict):
-        yield f"{what}: schema is {_short(schema)}, expected an object"
-        return
-    yield from _members(f"{what}, schema", schema, _SCHEMA)
-    if schema.get("$schema", TABLE_SCHEMA) != TABLE_SCHEMA:
-        yield f"{what}, schema: $schema is {_short(schema['$schema'])}, expected {TABLE_SCHEMA}"
-    fields = schema.get("fields")
-    for field in fields if isinstance(fields, list) else [fields]:
-        if not isinstance(field, dict):
-            yield f"{what}, schema: a field is {_short(field)}, expected an object"
+        seen.add(resource.name)
+        if resource.path not in listed:
+            yield f"{what}: path is {_short(resource.path)}; expected a file of {CHECKSUMS}"
             continue
-        yield from _members(f"{what}, a field", field, _FIELD)
-        if unknown := set(field.get("constraints") or ()) - _CONSTRAINTS:
-            yield f"{what}, a field: constraint {_short(min(unknown))} is none of a bundle's"
-
-
-def _members(what: str, found: Mapping[str, Any], known: Mapping[str, type]) -> Iterator[str]:
-    for name, value in found.items():
-        if name not in known:
-            yield f"{what}: {_short(name)} is no member of a bundle's descriptor"
-        elif not isinstance(value, known[name]) or isinstance(value, bool):
-            yield f"{what}: {name} is {_short(value)}, expected {known[name].__name__}"
+        if resource.hash != f"sha256:{listed[resource.path]}":
+            yield f"{what}: hash is not that of {resource.path} in {CHECKSUMS}"
+        if resource.bytes != (directory / resource.path).stat().st_size:
+            yield f"{what}: bytes are not those of {resource.path}"
 
 
 def _of_crate(

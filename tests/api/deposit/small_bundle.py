@@ -8,9 +8,9 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
-from api.deposit.bundle import write_other_forms
 from api.deposit.crate import CRATE, crate
 from api.deposit.deposit_tables import MeasuredTable
+from api.deposit.forms import write_other_forms
 from api.deposit.package import DESCRIPTOR, package
 from api.deposit.packing import pack
 from api.deposit.terms import terms

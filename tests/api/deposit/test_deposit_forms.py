@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import shutil
 import sqlite3
 from contextlib import closing
@@ -15,9 +14,9 @@ from pyarrow import parquet
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
-from api.deposit.bundle import write_other_forms
 from api.deposit.crate import CRATE
 from api.deposit.database import DATABASE
+from api.deposit.forms import write_other_forms
 from api.deposit.package import DESCRIPTOR
 from api.deposit.verification import UNSEEN, verify
 from files.checksums import sha256
@@ -51,15 +50,7 @@ def test_a_table_changed_in_csv_alone_is_seen_in_the_other_forms(small):
     (small / TABLE).write_text("name\nb\n")
     problems = found(small)
     assert problems.keys() == {PARQUET, DATABASE}
-    assert "column name holds other values" in problems[PARQUET]
-    assert "table one, row 1 is another" in problems[DATABASE]
-
-
-def test_a_table_of_other_rows_is_seen_by_its_count(small):
-    (small / TABLE).write_text("name\na\nb\n")
-    problems = found(small)
-    assert re.findall(r"\d+", problems[PARQUET]) == ["1", "2"]
-    assert DATABASE in problems
+    assert set(problems.values()) == {"holds other tables than the CSV of this bundle"}
 
 
 def test_a_number_changed_in_every_form_is_not_seen_and_this_is_said(small):
@@ -149,7 +140,7 @@ def test_a_parquet_that_another_release_wrote_holds_the_same(small):
 def test_a_parquet_of_other_columns_is_seen(small, table):
     """The last one lacks what its column means."""
     parquet.write_table(table, small / PARQUET)
-    assert "other columns" in found(small)[PARQUET]
+    assert found(small).keys() == {PARQUET}
 
 
 ERRORS = "benchmark/samples/x.parquet"
