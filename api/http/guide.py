@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from fastapi import Response
+from starlette.staticfiles import StaticFiles
 
 from api.guide import site
-from api.service.problems import Problem, Violation
-from api.web.static_files import CONTENT_TYPES, file_response
+from api.web.static_files import file_of
 
 INDEX = "index.html"
 _UNBUILT = """<!doctype html>
@@ -42,11 +40,7 @@ def respond(name: str) -> Response:
         return _unavailable(_MISSING.format(install=site.INSTALL))
     if not place.is_dir():
         return _unavailable(_UNBUILT)
-    path = place / (name or INDEX)
-    known = path.suffix in CONTENT_TYPES and ".." not in Path(name).parts
-    if not (known and path.is_file() and path.resolve().is_relative_to(place.resolve())):
-        raise Problem(404, "unknown-file", errors=[Violation("file", name, "a file of the guide")])
-    return file_response(path)
+    return file_of(StaticFiles(directory=place), name or INDEX, "guide")
 
 
 def _unavailable(text: str) -> Response:

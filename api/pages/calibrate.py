@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any, get_args
 
 from fastapi import APIRouter, Request, Response
@@ -12,14 +11,13 @@ from fastapi.responses import HTMLResponse
 from markupsafe import Markup
 
 from api.pages.rendering import render
+from api.service import calibrations as service
 from api.service.problems import Problem
 from api.web.answers import StrictRoute
-from api.web.calibrations import HTML, archive_of, as_response, checked, made_of
-from api.web.uploads import Form, read_form
+from api.web.calibrations import ANSWERS, HTML, as_response, sent
 from calibrate.forms.units import AngleUnit, TemperatureUnit, TimeUnit
 from calibrate.sample import NAME, sample
-from calibrate.settings import Form as DirectionForm
-from calibrate.settings import Kind
+from calibrate.settings import Form, Kind
 from calibrate.uploaded import LARGEST, LONGEST_S, MOST_ROWS, Upload
 
 #: Kinds of readings and forms of directions as the form calls them.
@@ -67,11 +65,13 @@ async def report(request: Request) -> Response:
     """Give the form with the report below it, or beside it why there is none."""
     fields: Mapping[str, str] = {}
     try:
-        sent = await read_form(request)
-        fields = sent.fields
-        sent = _with_sample(sent)
-        wanted = checked(sent) or HTML
-        made = await made_of(sent)
+        fields, files = await sent(request)
+        asked = {name: value for name, value in fields.items() if name != _SAMPLE}
+        if _SAMPLE in fields:  # what was set up for another file does not fit this one
+            asked, files = {**asked, "config": ""}, (Upload(NAME, sample()),)
+        read = service.read(asked, files)
+        made = await service.calibrated(read, files)
+        wanted = ANSWERS.get(read.answer, HTML)
         if wanted != HTML:
             return as_response(made, wanted)
         shown, status = _page(fields, made=made), 200
@@ -82,15 +82,6 @@ async def report(request: Request) -> Response:
     return shown
 
 
-def _with_sample(sent: Form) -> Form:
-    """Return a form with the sample in the place of files where its button was pressed."""
-    if _SAMPLE not in sent.fields:
-        return sent
-    fields = {name: value for name, value in sent.fields.items() if name != _SAMPLE}
-    # what was set up for another file does not fit this one
-    return replace(sent, fields={**fields, "config": ""}, files=(Upload(NAME, sample()),))
-
-
 def _page(
     fields: Mapping[str, str],
     *,
@@ -99,7 +90,7 @@ def _page(
 ) -> Response:
     choices = {
         "kinds": [(kind, _KINDS.get(kind, kind)) for kind in get_args(Kind) if kind != "frames"],
-        "forms": [(form, _FORMS.get(form, form)) for form in get_args(DirectionForm)],
+        "forms": [(form, _FORMS.get(form, form)) for form in get_args(Form)],
         "angle_units": [(unit, unit) for unit in get_args(AngleUnit)],
         "time_units": [(unit, unit) for unit in get_args(TimeUnit)],
         "temperature_units": [(unit, unit) for unit in get_args(TemperatureUnit)],
@@ -131,7 +122,7 @@ def _shown(made: Mapping[str, str]) -> dict[str, Any]:
     return {
         "style": Markup(style),  # noqa: S704 - of our own template
         "article": Markup(article),  # noqa: S704 - escaped by it
-        "archive": "data:application/zip;base64," + b64encode(archive_of(made)).decode(),
+        "archive": "data:application/zip;base64," + b64encode(service.archive_of(made)).decode(),
         "page": "data:text/html;charset=utf-8;base64," + b64encode(whole.encode()).decode(),
         "files": list(made),
     }

@@ -1,7 +1,6 @@
 """The service as the processes of a server make it: each for itself, set up by the environment.
 
-`SUNATLAS_ACCESS_LOG` (any text) writes a line a request; `SUNATLAS_WORKING` names the working
-directory, where pictures are kept that had to be drawn.
+`SUNATLAS_WORKING` names the working directory, where pictures are kept that had to be drawn.
 """
 
 from __future__ import annotations
@@ -13,10 +12,8 @@ from fastapi import FastAPI
 
 from api.server.app import create_app
 from api.service.knowledge import Knowledge
-from api.web.observation import log_requests
 from benchmark.processes import end_in_time
 
-ACCESS_LOG = "SUNATLAS_ACCESS_LOG"
 WORKING = "SUNATLAS_WORKING"
 
 
@@ -27,8 +24,6 @@ def application(*, loaded: bool = False) -> FastAPI:
     ----------
     loaded : whether to load everything at once; else at start-up
     """
-    if os.environ.get(ACCESS_LOG):
-        log_requests()
     working = os.environ.get(WORKING)
     known = Knowledge(working=Path(working) if working else None)
     if loaded:

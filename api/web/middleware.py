@@ -7,9 +7,10 @@ import re
 import time
 
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from api.web.observation import keep
+from api.web.observation import count
 
 CONTENT_SECURITY_POLICY = (
     # Documentation beside the pages carries style attributes; downloads are made in the page.
@@ -37,7 +38,6 @@ PREFLIGHT_HEADERS = {
     "access-control-allow-methods": "GET, HEAD, POST",
     "access-control-allow-headers": "Accept, Content-Type, If-None-Match",
     "access-control-max-age": "86400",
-    "content-length": "0",
     "vary": "Origin, Access-Control-Request-Method",
 }
 
@@ -52,7 +52,7 @@ def is_shared(path: str) -> bool:
 
 
 class EveryResponse:
-    """ASGI middleware, the outermost: headers, validators, HEAD, and the log of requests.
+    """ASGI middleware, the outermost: headers, validators, HEAD as GET, and counts.
 
     An answer without `Cache-Control` may be stored and has to be revalidated: facts and scores
     change with a release. Its strong ETag is a digest of the bytes that travel, so this stands
@@ -68,17 +68,11 @@ class EveryResponse:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        asked, method = Headers(scope=scope), scope["method"]
-        shared = is_shared(scope["path"])
+        asked, method, shared = Headers(scope=scope), scope["method"], is_shared(scope["path"])
         more = {**SECURITY_HEADERS, **(SHARED_HEADERS if shared else OWN_HEADERS)}
-        if (
-            shared
-            and method == "OPTIONS"
-            and {"origin", "access-control-request-method"} <= {*asked}
-        ):
-            headers = Headers({**more, **PREFLIGHT_HEADERS}).raw
-            await send({"type": "http.response.start", "status": 204, "headers": headers})
-            await send({"type": "http.response.body", "body": b""})
+        preflight = method == "OPTIONS" and "access-control-request-method" in asked
+        if shared and preflight and "origin" in asked:
+            await Response(None, 204, {**more, **PREFLIGHT_HEADERS})(scope, receive, send)
             return
         taken = [
             (name, value)
@@ -86,38 +80,34 @@ class EveryResponse:
             if not (name == b"accept-encoding" and _NO_GZIP.search(value))
         ]
         inner = {**scope, "headers": taken, "method": "GET" if method == "HEAD" else method}
-        status, length = 500, 0
-        begin: Message = {}
+        begin: Message = {"status": 500}
+        body = b""
         start = time.perf_counter()
 
         async def decorated(message: Message) -> None:
-            nonlocal status, length, begin
+            nonlocal begin, body
             if message["type"] == "http.response.start":
                 begin = message  # sent with its body, whose digest it carries
                 return
-            body = message.get("body", b"")
-            if begin:
-                headers = MutableHeaders(raw=begin["headers"])
-                headers.update(more)
-                whole = begin["status"] == 200 and not message.get("more_body")
-                if whole and headers.get("cache-control") != "no-store":
-                    headers["cache-control"] = "no-cache"
-                    headers["etag"] = f'"{hashlib.sha256(body).hexdigest()[:32]}"'
-                    if inner["method"] == "GET" and _matches(asked, headers["etag"]):
-                        begin["status"], body = 304, b""
-                        for name in ("content-type", "content-length", "content-encoding"):
-                            del headers[name]
-                status = begin["status"]
-                await send(begin)
-                begin = {}
-            body = b"" if method == "HEAD" else body
-            length += len(body)
-            await send({**message, "body": body})
+            body += message.get("body", b"")
+            if message.get("more_body"):
+                return
+            headers = MutableHeaders(raw=begin["headers"])
+            headers.update(more)
+            if begin["status"] == 200 and headers.get("cache-control") != "no-store":
+                headers["cache-control"] = "no-cache"
+                headers["etag"] = f'"{hashlib.sha256(body).hexdigest()[:32]}"'
+                if inner["method"] == "GET" and _matches(asked, headers["etag"]):
+                    begin["status"], body = 304, b""
+                    for name in ("content-type", "content-length", "content-encoding"):
+                        del headers[name]
+            await send(begin)
+            await send({"type": message["type"], "body": b"" if method == "HEAD" else body})
 
         try:
             await self.app(inner, receive, decorated)
         finally:
-            keep(inner, status, length, time.perf_counter() - start)
+            count(inner, begin["status"], time.perf_counter() - start)
 
 
 def _matches(asked: Headers, etag: str) -> bool:

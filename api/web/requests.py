@@ -4,25 +4,33 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import AsyncGenerator, AsyncIterator
-from contextlib import asynccontextmanager
+import logging
+from collections.abc import AsyncGenerator
 from functools import cached_property
 from typing import Any, NoReturn
 from urllib.parse import parse_qsl
 
 from python_multipart.multipart import parse_options_header
-from starlette.datastructures import QueryParams
+from starlette.datastructures import FormData, QueryParams
 from starlette.exceptions import HTTPException
+from starlette.formparsers import MultiPartException
 from starlette.requests import Request
 
 from api.service.problems import Problem, Violation
+from calibrate.uploaded import LARGEST
 
-FORM = "multipart/form-data"
+JSON, FORM = "application/json", "multipart/form-data"
 MOST_FIELDS = 500  # of one query
-LARGEST_BODY = 64 * 1024  # bytes; the longest sensible set of requirements is a twentieth of it
+LARGEST_JSON = 64 * 1024  # bytes; the longest sensible set of requirements is a twentieth of it
+#: Bytes of the fields of a form, each and all: a config, and what separates parts; with files.
+LARGEST_FIELD = 100_000
+LARGEST_FORM = LARGEST + LARGEST_FIELD
+#: Files of a form, and fields; python-multipart bounds the heads of each (8 lines of 4 kB).
+MOST_PARTS = 40
 #: A body that brings fewer bytes a second, after so many seconds, is given up.
 SLOWEST_PER_S, PATIENCE_S = 20_000, 10.0
 _LONGEST_TYPE = 500  # characters of a Content-Type that are read: parsing it takes their square
+logging.getLogger("python_multipart").setLevel(logging.ERROR)  # what it refuses, we answer
 
 
 class BodyProblem(Problem, HTTPException):
@@ -39,7 +47,10 @@ class StrictQuery(QueryParams):
 
 
 class StrictRequest(Request):
-    """A request whose query and JSON body are read whole and to the letter, or refused."""
+    """A request whose query, JSON or form is read whole and to the letter, or refused."""
+
+    _largest = LARGEST_JSON  # bytes of the body
+    _last = b""  # what it has to end with
 
     @cached_property  # FastAPI reads it once a dependency
     def query_params(self) -> StrictQuery:
@@ -60,13 +71,9 @@ class StrictRequest(Request):
         return StrictQuery(pairs)
 
     async def body(self) -> bytes:
-        """Return the body; a `Problem` (415, 413) where it is no JSON in UTF-8, or too long."""
-        if not hasattr(self, "_body"):
-            require_body(self, "application/json", "application/json in UTF-8", LARGEST_BODY)
-            async with in_time() as clock:
-                chunks = [chunk async for chunk in bounded(self, LARGEST_BODY, clock)]
-            self._body = b"".join(chunks)
-        return self._body or self._parse(b"")  # which FastAPI would take for no body
+        """Return the body; a `Problem` (415, 413, 408) where it is no JSON, or too long."""
+        self._require(JSON, "application/json in UTF-8")
+        return await super().body() or self._parse(b"")  # which FastAPI would take for no body
 
     async def json(self) -> Any:
         """Return the parsed body: RFC 8259, so no NaN, no Infinity, and no member twice.
@@ -78,6 +85,73 @@ class StrictRequest(Request):
         """
         return self._parse(await self.body())
 
+    async def form(self, **_: Any) -> FormData:  # type: ignore[override]  # awaited alone
+        """Return the form (RFC 7578) in the body; its files wait on disk until all has come.
+
+        Raises
+        ------
+        Problem
+            415, 413, 408 as `body`, and 400 where it cannot be read or has a field twice.
+        """
+        self._largest = LARGEST_FORM
+        self._last = b"--%s--" % self._require(FORM, f"{FORM} with a boundary")
+        most = {"max_files": MOST_PARTS, "max_fields": MOST_PARTS}
+        try:
+            form = await super().form(**most, max_part_size=LARGEST_FIELD)
+        except BodyProblem:
+            raise
+        except (MultiPartException, HTTPException) as error:
+            refused = error if isinstance(error, MultiPartException) else error.__context__
+            raise _malformed(str(getattr(refused, "__cause__", None) or refused)) from error
+        named = [name for name, value in form.multi_items() if isinstance(value, str)]
+        twice = next((name for name in named if named.count(name) > 1), None)
+        if twice is not None:
+            await form.close()
+            raise _malformed(f"field {twice[:40]} stands twice")
+        return form
+
+    async def stream(self) -> AsyncGenerator[bytes, None]:
+        """Yield the body; a `Problem` (413, 408) where it is too long or comes too slowly."""
+        clock, chunks = asyncio.get_running_loop().time, super().stream()
+        begun, length, end = clock(), 0, b""
+        while True:
+            left = begun + PATIENCE_S + length / SLOWEST_PER_S - clock()
+            try:
+                async with asyncio.timeout(left):
+                    chunk = await anext(chunks, None)
+            except TimeoutError as error:
+                expected = f"at least {SLOWEST_PER_S} bytes/s after {PATIENCE_S:g} s"
+                wrong = Violation("body", "fewer", expected)
+                raise BodyProblem(408, "request-timeout", errors=[wrong]) from error
+            if chunk is None and self._last not in end:
+                raise MultiPartException("no boundary ends it")
+            if chunk is None:
+                return
+            length += len(chunk)
+            if length > self._largest:
+                raise self._too_long(f"{length} or more")
+            end = (end + chunk)[-_LONGEST_TYPE:]
+            yield chunk
+
+    def _require(self, media: str, expected: str) -> bytes:
+        """Refuse a body by its headers, before it is read; return the boundary of a form."""
+        stated = self.headers.get("content-type")
+        kind, options = parse_options_header((stated or "")[:_LONGEST_TYPE])
+        plain = options.get(b"charset", b"utf-8").lower() == b"utf-8"
+        if kind != media.encode() or not plain or (media == FORM and b"boundary" not in options):
+            raise _unsupported("Content-Type", stated, expected, {"Accept": media})
+        coding = self.headers.get("content-encoding", "identity")
+        if coding.strip().lower() not in {"", "identity"}:
+            expected, headers = (
+                "identity: bodies are not compressed",
+                {"Accept-Encoding": "identity"},
+            )
+            raise _unsupported("Content-Encoding", coding, expected, headers)
+        length = self.headers.get("content-length", "")
+        if length.isdecimal() and int(length) > self._largest:
+            raise self._too_long(length)
+        return options.get(b"boundary", b"")
+
     def _parse(self, body: bytes) -> Any:
         try:
             return json.loads(
@@ -88,68 +162,21 @@ class StrictRequest(Request):
             violation = Violation("body", None, f"JSON in UTF-8 ({reason})")
             raise BodyProblem(400, "malformed-json", errors=[violation]) from error
 
-
-def require_body(request: Request, media: str, expected: str, largest: int) -> None:
-    """Refuse a body by its headers, before it is read.
-
-    Raises
-    ------
-    Problem
-        415 for another media type or charset, a form without a boundary, a body that is
-        compressed; 413 for one of more than `largest` bytes.
-    """
-    stated = request.headers.get("content-type")
-    kind, options = parse_options_header((stated or "")[:_LONGEST_TYPE])
-    plain = options.get(b"charset", b"utf-8").lower() == b"utf-8"
-    bound = b"boundary" in options or media != FORM
-    if not (kind == media.encode() and plain and bound):
-        error = Violation("Content-Type", stated, expected)
-        headers = {"Accept": media}
-        raise BodyProblem(415, "unsupported-media-type", errors=[error], headers=headers)
-    coding = request.headers.get("content-encoding", "identity")
-    if coding.strip().lower() not in {"", "identity"}:
-        error = Violation("Content-Encoding", coding, "identity: bodies are not compressed")
-        headers = {"Accept-Encoding": "identity"}
-        raise BodyProblem(415, "unsupported-media-type", errors=[error], headers=headers)
-    length = request.headers.get("content-length", "")
-    if length.isdecimal() and int(length) > largest:
-        raise _too_long(length, largest)
+    def _too_long(self, came: str) -> BodyProblem:
+        error = Violation("body", f"{came} bytes", f"at most {self._largest} bytes")
+        return BodyProblem(413, "content-too-large", errors=[error])
 
 
-@asynccontextmanager
-async def in_time() -> AsyncIterator[asyncio.Timeout]:
-    """Give the end of a body's time, which `bounded` puts off; a `Problem` (408) after it."""
-    try:
-        async with asyncio.timeout(PATIENCE_S) as clock:
-            yield clock
-    except TimeoutError as error:
-        expected = f"at least {SLOWEST_PER_S} bytes/s after {PATIENCE_S:g} s"
-        wrong = Violation("body", "fewer", expected)
-        raise BodyProblem(408, "request-timeout", errors=[wrong]) from error
+def _unsupported(
+    header: str, came: str | None, expected: str, headers: dict[str, str]
+) -> BodyProblem:
+    error = Violation(header, came, expected)
+    return BodyProblem(415, "unsupported-media-type", errors=[error], headers=headers)
 
 
-async def bounded(
-    request: Request, largest: int, clock: asyncio.Timeout
-) -> AsyncGenerator[bytes, None]:
-    """Yield a body, each byte of which puts the end of the `clock` off.
-
-    Raises
-    ------
-    Problem
-        413 once it is longer than `largest` bytes.
-    """
-    begun, length = asyncio.get_running_loop().time(), 0
-    async for chunk in request.stream():
-        length += len(chunk)
-        if length > largest:
-            raise _too_long(f"{length} or more", largest)
-        clock.reschedule(begun + PATIENCE_S + length / SLOWEST_PER_S)
-        yield chunk
-
-
-def _too_long(came: str, largest: int) -> BodyProblem:
-    error = Violation("body", f"{came} bytes", f"at most {largest} bytes")
-    return BodyProblem(413, "content-too-large", errors=[error])
+def _malformed(reason: str) -> BodyProblem:
+    wrong = Violation("body", None, f"a form of RFC 7578 ({reason})")
+    return BodyProblem(400, "malformed-form", errors=[wrong])
 
 
 def _refuse_constant(name: str) -> NoReturn:

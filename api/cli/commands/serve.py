@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import copy
 import gc
 import os
 import socket
@@ -12,6 +13,7 @@ from typing import Annotated, Any
 
 import typer
 import uvicorn
+from uvicorn.config import LOGGING_CONFIG
 from uvicorn.supervisors import Multiprocess
 
 from api.cli.working import working_directory
@@ -22,12 +24,13 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 #: Of Uvicorn. Clients that are slow, or too many, are for a proxy to hold off (deploy/Caddyfile).
 _OPTIONS: dict[str, Any] = {
-    "log_level": "warning",
-    "access_log": False,
     "ws": "none",
     "limit_concurrency": 400,
     "timeout_graceful_shutdown": 1,
 }
+#: Uvicorn's own, which says nothing of starts and stops.
+_LOG: dict[str, Any] = copy.deepcopy(LOGGING_CONFIG)
+_LOG["loggers"]["uvicorn"]["level"] = "WARNING"
 #: How long workers may take to end, one after another, on a busy machine, s: usually 1.5.
 _WORKERS_END_S = 15.0
 
@@ -43,7 +46,7 @@ def serve(
         typer.Option(min=1, max=64, help="Number of processes, each with all data loaded."),
     ] = 1,
     access_log: Annotated[
-        bool, typer.Option("--access-log", help="Print a JSON line per request.")
+        bool, typer.Option("--access-log", help="Print a line per request.")
     ] = False,
 ) -> None:
     """Serve the web pages, the guide and the HTTP API.
@@ -53,7 +56,6 @@ def serve(
     (`sunatlas guide build`). Stop with Ctrl-C.
     """
     os.environ[serving.WORKING] = str(working_directory())
-    os.environ[serving.ACCESS_LOG] = "1" if access_log else ""
     listener = listen(host, port)
     with listener, contextlib.ExitStack() as stack:
         # Loaded before anything is served: damaged facts are refused in one sentence.
@@ -67,19 +69,21 @@ def serve(
                 tempfile.TemporaryDirectory(prefix="sunatlas-metrics-")
             )
             take_time_to_end(_WORKERS_END_S)
-            _serve_by_many(listener, workers)
+            _serve_by_many(listener, workers, access_log=access_log)
             return
-        config = uvicorn.Config(application, **_OPTIONS)
+        config = uvicorn.Config(application, access_log=access_log, log_config=_LOG, **_OPTIONS)
         uvicorn.Server(config).run(sockets=[listener])
 
 
-def _serve_by_many(listener: socket.socket, workers: int) -> None:
+def _serve_by_many(listener: socket.socket, workers: int, *, access_log: bool) -> None:
     """Serve by several processes that share a listening socket, until a signal ends them."""
     config = uvicorn.Config(
         "api.server.serving:application_of_worker",
         factory=True,
         workers=workers,
         timeout_worker_healthcheck=60,  # loading takes seconds, and more on a busy machine
+        access_log=access_log,
+        log_config=_LOG,
         **_OPTIONS,
     )
     Multiprocess(config, [listener]).run()

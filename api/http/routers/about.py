@@ -13,7 +13,7 @@ from api.web.answers import StrictRoute
 from api.web.dependencies import NO_PARAMETERS, Known
 from api.web.negotiation import JSON, media_type
 from api.web.observation import exposition
-from api.web.static_files import page_file
+from api.web.static_files import PAGE, file_of
 
 EXPOSITION = "text/plain; version=0.0.4; charset=utf-8"
 
@@ -40,7 +40,7 @@ def openapi(request: Request) -> Response:
 @router.get("/docs", include_in_schema=False)
 def docs() -> Response:
     """Give the API reference, made of the description by Swagger UI."""
-    return page_file("reference.html")
+    return file_of(PAGE, "reference.html", "page")
 
 
 @router.get("/metrics", include_in_schema=False)

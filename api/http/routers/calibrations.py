@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from fastapi import APIRouter, Request, Response
+from fastapi.responses import JSONResponse
 
+from api.schema.calibrations import CalibrationFields
+from api.service import calibrations as service
 from api.web.answers import StrictRoute
-from api.web.calibrations import ANSWERS, HTML, OFFERED, ZIP, calibrated, previewed
+from api.web.calibrations import ANSWERS, HTML, OFFERED, ZIP, as_response, sent
 from api.web.dependencies import NO_PARAMETERS
 from api.web.negotiation import JSON, media_type
 
@@ -28,26 +31,7 @@ _BODY: dict[str, Any] = {
                         "description": "CSV, Parquet, NumPy or Excel; each a run of one sensor. "
                         "10 MB and 100,000 rows in all.",
                     },
-                    "config": {
-                        **_TEXT,
-                        "description": "TOML, as `sunatlas calibrate --init` writes it; guessed "
-                        "from the header by default.",
-                    },
-                    "model": {**_TEXT, "description": "The only model tried; all by default."},
-                    "apply": {
-                        **_TEXT,
-                        "enum": ["true", "false"],
-                        "description": "Whether conventions found with certainty are applied.",
-                    },
-                    "require": {
-                        **_TEXT,
-                        "description": "Largest error allowed, such as `0.1deg@3sigma,60deg`.",
-                    },
-                    "answer": {
-                        **_TEXT,
-                        "enum": list(ANSWERS),
-                        "description": "Before `Accept`: calibration, report, or all files.",
-                    },
+                    **CalibrationFields.model_json_schema()["properties"],
                 },
             },
             "example": {
@@ -112,7 +96,9 @@ async def calibrations(request: Request) -> Response:
     Same as `sunatlas calibrate`, with a limit of 60 s. Uploaded files are deleted after the answer.
     """
     wanted = media_type(request.headers.get("accept"), OFFERED)
-    return await calibrated(request, wanted)
+    given, files = await sent(request)
+    fields = service.read(given, files)
+    return as_response(await service.calibrated(fields, files), ANSWERS.get(fields.answer, wanted))
 
 
 @router.post(
@@ -130,4 +116,6 @@ async def calibrations(request: Request) -> Response:
 )
 async def preview(request: Request) -> Response:
     """Guess the columns of a file from names and first rows. The file is deleted afterwards."""
-    return await previewed(request)
+    given, files = await sent(request)
+    service.read(given, files)
+    return JSONResponse(await service.previewed(files), headers={"Cache-Control": "no-store"})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import dataclasses
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +14,13 @@ from prometheus_client.parser import text_string_to_metric_families
 from prometheus_client.values import MultiProcessValue
 from starlette.types import Message, Scope
 
-from api.server import serving
 from api.server.app import create_app
+from api.service import calibrations
 from api.service.asking import ask
 from api.service.knowledge import Knowledge
 from api.service.problems import Problem
 from api.service.studies import studies
-from api.web import calibrations, observation, requests
+from api.web import observation, requests
 from api.web.requests import StrictRequest
 from tests.api.conftest import Client
 
@@ -42,30 +42,7 @@ def test_numbers_of_all_workers_are_added_up(
     assert found == {"sunatlas_http_requests_total": 5.0}
 
 
-@pytest.fixture
-def log(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """The access log, which a test may set up: it is afterwards as it was."""
-    for name in ("handlers", "propagate", "level"):
-        monkeypatch.setattr(observation.LOG, name, getattr(observation.LOG, name))
-    yield
-    monkeypatch.undo()
-    observation.LOG.manager._clear_cache()  # type: ignore[attr-defined]
-
-
 SCOPE: Scope = {"type": "http", "method": "GET", "path": "/x", "query_string": b"", "headers": []}
-
-
-@pytest.mark.usefixtures("log")
-@pytest.mark.parametrize("wanted", ["", "yes"])
-def test_requests_are_written_to_standard_output_where_the_environment_asks_for_it(
-    wanted: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setenv(serving.ACCESS_LOG, wanted)
-    serving.application()
-    observation.keep(SCOPE, 200, 7, 0.5)
-    written = capsys.readouterr().out
-    assert written.count("\n") == (1 if wanted else 0)
-    assert ('"bytes": 7, "ms": 500.0' in written) is bool(wanted)
 
 
 def test_a_status_of_the_framework_is_a_problem_named_after_it(
@@ -97,7 +74,7 @@ def test_a_second_calibration_at_once_is_told_when_to_come_back(
 def test_a_body_without_an_end_is_read_no_further_than_the_limit(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(requests, "LARGEST_BODY", 40)
+    monkeypatch.setattr(requests, "LARGEST_JSON", 40)
     sent = 0
 
     async def receive() -> Message:

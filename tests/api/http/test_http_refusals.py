@@ -71,7 +71,7 @@ def test_an_unknown_path_is_a_404_with_the_nearest(atlas, path, nearest):
         ("/v1/flows/errors", "chart", "error"),
         ("/v1/flows/sunburst", "chart", "model-sunburst"),
         ("/v1/leaderboard/cmos-single-apertures", "dataset", "cmos-single-aperture"),
-        ("/page/pgae.js", "file", "page.js"),
+        ("/page/pgae.js", "file", None),
     ],
 )
 def test_an_unknown_part_of_a_path_is_a_404_with_the_nearest(atlas, path, parameter, nearest):
@@ -79,7 +79,10 @@ def test_an_unknown_part_of_a_path_is_a_404_with_the_nearest(atlas, path, parame
     assert (error["parameter"], error["nearest"]) == (parameter, nearest)
 
 
-@pytest.mark.parametrize("path", ["/page/../service.py", "/page/..%2fservice.py", "/page//etc/x"])
+@pytest.mark.parametrize(
+    "path",
+    ["/page/../service.py", "/page/..%2fservice.py", "/page//etc/x", "/page/styles", "/page/%00"],
+)
 def test_only_files_of_the_page_are_served(atlas, path):
     problem(atlas.get(path), 404)
 

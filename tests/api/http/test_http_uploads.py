@@ -6,19 +6,19 @@ import asyncio
 from collections.abc import Iterable, Iterator
 
 import pytest
-from fastapi import Request
 from starlette.types import Message
 
 from api.service.problems import Problem
-from api.web import uploads
-from api.web.uploads import Form, read_form
+from api.web import requests
+from api.web.calibrations import sent
+from api.web.requests import StrictRequest
 from calibrate.uploaded import Upload
 
 FIELD = b'Content-Disposition: form-data; name="%s"\r\n\r\n%s'
 FILE = b'Content-Disposition: form-data; name="file"; filename="%s"\r\n\r\n%s'
 
 
-def form_of(chunks: Iterable[bytes], **headers: str) -> Form:
+def form_of(chunks: Iterable[bytes], **headers: str) -> tuple[dict[str, str], tuple[Upload, ...]]:
     """Read a form that arrives in chunks; names of headers have _ for -."""
     named = {"content_type": "multipart/form-data; boundary=a", **headers}
     scope = {
@@ -31,7 +31,7 @@ def form_of(chunks: Iterable[bytes], **headers: str) -> Form:
         chunk = next(waiting, None)
         return {"type": "http.request", "body": chunk or b"", "more_body": chunk is not None}
 
-    return asyncio.run(read_form(Request(scope, receive)))
+    return asyncio.run(sent(StrictRequest(scope, receive)))
 
 
 def body(*parts: bytes) -> bytes:
@@ -41,13 +41,13 @@ def body(*parts: bytes) -> bytes:
 def test_fields_and_files_are_told_apart_whatever_else_stands_in_a_head() -> None:
     """A field for files that was left empty (no name, no content) is no file."""
     typed = b"Content-Type: text/csv\r\n" + FILE % (b"b.csv", b"1,2\r\n3,4")
-    sent = body(FIELD % (b"apply", b"true"), typed, FILE % (b"", b""))
-    form = form_of(sent[at : at + 7] for at in range(0, len(sent), 7))
-    assert form == Form({"apply": "true"}, (Upload("b.csv", b"1,2\r\n3,4"),))
+    whole = body(FIELD % (b"apply", b"true"), typed, FILE % (b"", b""))
+    form = form_of(whole[at : at + 7] for at in range(0, len(whole), 7))
+    assert form == ({"apply": "true"}, (Upload("b.csv", b"1,2\r\n3,4"),))
 
 
 @pytest.mark.parametrize(
-    ("sent", "reason"),
+    ("whole", "reason"),
     [
         (body(b"no end of the head"), "Found invalid character"),
         (body(b"Content-Type: text/csv\r\n\r\n1,2"), '"name" must be provided'),
@@ -64,14 +64,14 @@ def test_fields_and_files_are_told_apart_whatever_else_stands_in_a_head() -> Non
         (b"", "no boundary ends it"),
     ],
 )
-def test_a_body_that_is_no_form_is_refused_with_the_reason(sent: bytes, reason: str) -> None:
+def test_a_body_that_is_no_form_is_refused_with_the_reason(whole: bytes, reason: str) -> None:
     with pytest.raises(Problem) as refused:
-        form_of([sent])
+        form_of([whole])
     assert (refused.value.status_code, refused.value.detail.count(reason)) == (400, 1)
 
 
 def test_forty_parts_are_taken() -> None:
-    assert len(form_of([body(*(FIELD % (b"f%d" % n, b"") for n in range(40)))]).fields) == 40
+    assert len(form_of([body(*(FIELD % (b"f%d" % n, b"") for n in range(40)))])[0]) == 40
 
 
 @pytest.mark.parametrize("coding", ["gzip", "br, identity"])
@@ -86,7 +86,7 @@ def test_a_packed_body_is_refused_by_its_coding(coding: str) -> None:
 def test_a_body_without_an_end_is_read_no_further_than_the_limit(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(uploads, "LARGEST_BODY", 400)
+    monkeypatch.setattr(requests, "LARGEST_FORM", 400)
     read = 0
 
     def endless() -> Iterator[bytes]:

@@ -13,7 +13,7 @@ from fastapi.routing import APIRoute
 from api.addresses import NAVIGATION
 from api.pages.routers import ROUTERS
 from api.pages.serving import PageRouter
-from api.web.static_files import page_files
+from api.web.static_files import PAGE
 from tests.api.conftest import Client
 from tests.api.pages.addresses import KINDS
 from tests.api.pages.test_pages_content import text_of
@@ -83,7 +83,7 @@ def test_nothing_is_inline_and_nothing_comes_from_elsewhere(page: Page) -> None:
     ]:
         assert not urlsplit(address).netloc, (tag, address)
         if address.startswith("/page/"):
-            assert address.removeprefix("/page/") in page_files()
+            assert PAGE.lookup_path(address.removeprefix("/page/"))[0], address
 
 
 def test_there_is_one_heading_of_the_page_and_none_is_skipped(page: Page) -> None:

@@ -16,7 +16,7 @@ import pytest
 import typer
 
 from api.cli.commands.serve import app
-from api.web import requests, uploads
+from api.web import requests
 from calibrate.uploaded import LONGEST_S
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -48,9 +48,9 @@ def test_the_command_is_understood(command):
 def test_the_proxy_lets_through_what_the_service_takes_in_the_time_it_has():
     text = (ROOT / "deploy" / "Caddyfile").read_text()
     (size,) = re.findall(r"max_size ([\d.]+)MB", text)
-    assert float(size) * 1e6 == uploads.LARGEST_BODY
+    assert float(size) * 1e6 == requests.LARGEST_FORM
     minutes = dict(re.findall(r"(read_body|write) (\d+)m", text))
-    slowest_s = requests.PATIENCE_S + uploads.LARGEST_BODY / requests.SLOWEST_PER_S
+    slowest_s = requests.PATIENCE_S + requests.LARGEST_FORM / requests.SLOWEST_PER_S
     assert float(minutes["read_body"]) * 60 > slowest_s
     assert float(minutes["write"]) * 60 > slowest_s + LONGEST_S
 

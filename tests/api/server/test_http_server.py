@@ -115,4 +115,4 @@ def test_an_upload_is_given_up_by_its_rate_and_not_by_its_time(connection, monke
     ]
     body.append(b"\r\n--a--\r\n")
     steady = send(connection, posted(*FORM, sum(map(len, body))), *body)
-    assert b":unknown-field" in steady, "read to its end"
+    assert b":unknown-parameter" in steady, "read to its end"
