@@ -134,11 +134,18 @@ class LazyCommands(TyperGroup):
 def is_known(error: BaseException) -> bool:
     """Say whether an error is foreseen: of the file system, or of a class defined in this project.
 
-    So is an extra that is not installed. A ValueError, KeyError or the like that NumPy or the
-    interpreter raised is not.
+    So is an extra that is not installed, and a lack of memory. A ValueError, KeyError or the like
+    that NumPy or the interpreter raised is not.
     """
     ours = type(error).__module__.partition(".")[0] in _OURS
-    return ours or isinstance(error, OSError) or _missing_of(error) in EXTRAS
+    missing = _missing_of(error) in EXTRAS
+    return ours or isinstance(error, OSError) or missing or _lacks_memory(error)
+
+
+def _lacks_memory(error: BaseException) -> bool:
+    """Say whether memory is what failed; a library that finds no room says so in its words."""
+    unmapped = isinstance(error, ImportError) and "failed to map segment" in str(error)
+    return unmapped or isinstance(error, MemoryError)
 
 
 def _missing_of(error: BaseException) -> str:
@@ -150,6 +157,8 @@ def _message(error: BaseException) -> str:
     if (missing := _missing_of(error)) in EXTRAS:
         install = f"pip install 'sun-sensor-atlas[{EXTRAS[missing]}]'"
         return f"this needs the package {missing!r}: {install}"
+    if _lacks_memory(error):
+        return "out of memory; allow this process more (`ulimit -v`), or use fewer --workers"
     quoted = isinstance(error, LookupError) and error.args  # str() would quote the message
     return str(error.args[0] if quoted else error)
 

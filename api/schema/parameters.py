@@ -20,6 +20,10 @@ DEFAULT_PAGE = 200
 MOST_VALUES = 100  # of one parameter
 
 
+class WordsUnreadableError(Exception):
+    """The words of a closed list could not be read; the message says why."""
+
+
 @dataclass(frozen=True)
 class OneOf:
     """One of a closed list of words; `words` is called when they are needed."""
@@ -40,7 +44,11 @@ class OneOf:
         return {"type": "string", "enum": words} if words else {"type": "string", "maxLength": 0}
 
     def _check(self, word: str) -> str:
-        if word not in self.words():
+        try:
+            words = self.words()
+        except (ValueError, AssertionError) as error:  # Pydantic would take it for the word's fault
+            raise WordsUnreadableError(str(error)) from error
+        if word not in words:
             raise ValueError("not one of the words")
         return word
 

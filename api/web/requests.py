@@ -49,7 +49,6 @@ class StrictQuery(QueryParams):
 class StrictRequest(Request):
     """A request whose query, JSON or form is read whole and to the letter, or refused."""
 
-    _largest = LARGEST_JSON  # bytes of the body
     _last = b""  # what it has to end with
 
     @cached_property  # FastAPI reads it once a dependency
@@ -72,6 +71,7 @@ class StrictRequest(Request):
 
     async def body(self) -> bytes:
         """Return the body; a `Problem` (415, 413, 408) where it is no JSON, or too long."""
+        self._largest = LARGEST_JSON
         self._require(JSON, "application/json in UTF-8")
         return await super().body() or self._parse(b"")  # which FastAPI would take for no body
 

@@ -18,7 +18,7 @@ from api.cli.measuring import (
 )
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit
-from api.cli.wrong_call import WrongCallError
+from api.cli.wrong_call import WrongCallError, only_beside
 from api.schema.scores import Score, ScoresQuery
 from api.schema.table import columns_of
 from benchmark.plan.combinations import Exclusion, cells, list_exclusions
@@ -34,6 +34,7 @@ COLUMNS = (
 @app.command()
 @asked_by(ScoresQuery, "dataset", "condition", "extractor", "model")
 def benchmark(
+    context: typer.Context,
     *,
     asked: Asked,
     data: Annotated[
@@ -61,8 +62,7 @@ def benchmark(
     are kept in the local store (see --store), so that an interrupted run can be continued.
     """
     if data is not None:
-        if others := sorted(name for name, given in asked.items() if given and name != "model"):
-            raise WrongCallError(f"--data takes --model and --config; got --{others[0]}, too")
+        only_beside(context, "--data", "--config", "--model", "--format", "--safe")
         _on_own_data(data, config, list(asked.get("model") or ()) or None, form)
         return
     if config is not None:

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import shlex
 import sys
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from api.cli.wrong_call import WrongCallError
+from api.cli.wrong_call import WrongCallError, only_beside
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 
 @app.command()
 def calibrate(
+    context: typer.Context,
     *,
     files: Annotated[
         list[Path],
@@ -114,19 +114,12 @@ def calibrate(
     from files.atomic import replace_file  # noqa: PLC0415 - as above
 
     if onto is not None:
-        _refuse_beside_onto(
-            {
-                "--config": config,
-                "--init": init,
-                "--certificate": certificate,
-                "--factory": factory,
-                "--apply": apply,
-                "--thorough": thorough,
-                "--model": model,
-            }
-        )
+        only_beside(context, "--onto", "--out", "--name", "--require")
         return _correct(files, onto, out, name, _checked(require or [], out))
     if init is not None:
+        only_beside(context, "--init")
+        if len(files) > 1:
+            raise WrongCallError(f"--init describes one file; got {len(files)}")
         table = read_table(table_in(files[0]) if files[0].is_dir() else files[0])
         replace_file(init, template_of(table))
         typer.echo(
@@ -193,15 +186,6 @@ def _compared(found: Any, files: list[Path], factory: Path | None) -> Any:
     if factory is None:
         return None
     return compared_with(factory, found, read_sources(files, found.settings).tables)
-
-
-def _refuse_beside_onto(options: Mapping[str, Any]) -> None:
-    given = [name for name, value in options.items() if value]
-    if given:
-        raise WrongCallError(
-            f"--onto corrects a calibration by its own settings and model; leave out "
-            f"{', '.join(given)}"
-        )
 
 
 def _correct(

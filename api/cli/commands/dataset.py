@@ -13,7 +13,7 @@ from api.cli.commands import dataset_fetch
 from api.cli.measuring import AVAILABLE_WORKERS, ManyWorkersOption
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, say
-from api.cli.wrong_call import WrongCallError
+from api.cli.wrong_call import WrongCallError, given
 from api.schema.datasets import BuiltSensorRow, Data, Dataset, RealismQuery
 from api.schema.samples import SampleError, SampleErrorsQuery
 from api.schema.scores import ScoresQuery
@@ -140,6 +140,7 @@ def export(
 @app.command()
 @asked_by(SampleErrorsQuery, "extractor", "model", "unit")
 def errors(
+    context: typer.Context,
     name: NameArgument,
     *,
     asked: Asked,
@@ -160,6 +161,8 @@ def errors(
     for a missing answer. A data set has up to a million rows: choose a pipeline, or write to a
     file.
     """
+    if out is not None and "--format" in given(context) and (form, out.suffix) != ("csv", ".csv"):
+        raise WrongCallError("--out writes CSV or Parquet by the file's name, not by --format")
     ask(dataset_errors, {**asked, "limit": 1}, name=name)  # refuses what does not fit
     measured = knowledge().measurements
     if out is not None and out.suffix == ".parquet":

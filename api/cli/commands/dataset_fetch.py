@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from api.cli.table_output import Format, FormatOption, emit
-from api.cli.wrong_call import WrongCallError
+from api.cli.wrong_call import WrongCallError, given, only_beside
 
 if TYPE_CHECKING:
     from api.real.sets import RealSet
 
 
 def fetch(
+    context: typer.Context,
     name: Annotated[
         str | None,
         typer.Argument(help="Name of the set; without one they are listed.", show_default=False),
@@ -41,8 +42,10 @@ def fetch(
     from api.real.sets import SETS  # noqa: PLC0415 - as above
 
     if name is None:
-        if scores or out is not None:
-            raise WrongCallError(f"name a set of real readings: {', '.join(SETS)}")
+        if options := given(context):
+            raise WrongCallError(
+                f"{', '.join(options)}: name a set of real readings: {', '.join(SETS)}"
+            )
         for one in SETS.values():
             typer.echo(f"{one.name}: {one.about} ({one.licence})")
         return
@@ -51,8 +54,10 @@ def fetch(
             f"there is no set of real readings {name!r} (there are {', '.join(SETS)})"
         )
     if scores:
+        only_beside(context, "--scores", "--format", "--safe")
         _print_scores(SETS[name], form)
         return
+    only_beside(context, "a download", "--out")
     written = run(SETS[name], out or Path(name))
     typer.echo(f"wrote {', '.join(path.name for path in written)} in {out or name}")
     typer.echo(f"cite: {SETS[name].citation}")

@@ -96,6 +96,8 @@ def verify(
     --alone checks the bundle without this version's data: Parquet files, database and licences are
     compared with the tables. It cannot detect a number that was changed in every form of its table.
     """
+    if alone and quick:
+        raise WrongCallError("--quick is of the comparison that --alone leaves out: give one")
     wrong = verified(directory)
     if not (wrong or alone):
         with console_progress("verifying the bundle") as progress:

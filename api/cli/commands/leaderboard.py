@@ -17,7 +17,7 @@ from api.cli.measuring import (
 )
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, FormatOption, emit, line_width
-from api.cli.wrong_call import WrongCallError
+from api.cli.wrong_call import WrongCallError, given
 from api.schema.boards import BestOfArchitecture, OverviewQuery, PartOverview
 from api.schema.scores import LeaderboardRow
 from api.schema.table import columns_of
@@ -41,7 +41,7 @@ WIDEST_COLUMNS = (
     *("rank", "dataset", "condition", "extractor", "model", "widest_field_deg", "half_fov_deg"),
     *("own_deg", "availability", "false_sun"),
 )
-_OF_CHECK = frozenset({"--check", "--stored", "--kernels", "--workers", "--form", "--safe"})
+_OF_CHECK = frozenset({"--check", "--stored", "--kernels", "--workers", "--format", "--safe"})
 DIFFERENCES = ("file", "cell", "committed", "measured", "kernels")
 
 Row = Mapping[str, Any]
@@ -140,7 +140,9 @@ def leaderboard(
         _require_no_options(context)
         return
     listing = each or dataset or condition or field is not None or max_error is not None
-    _refuse_beside_check(_given(context), check=check)
+    _refuse_beside_check(given(context), check=check)
+    if each and dataset:
+        raise WrongCallError("--each shows the best of every data set, --dataset all of one")
     if overview and listing:
         raise WrongCallError("--overview counts over data sets: it does not list them")
     if asked and listing:
@@ -159,32 +161,26 @@ def leaderboard(
         _show(dataset or [], condition or [], field, max_error, form)
 
 
-def _given(context: typer.Context) -> list[str]:
-    """Return the options that the call has."""
-    return [
-        f"--{name.replace('_', '-')}"
-        for name in context.params
-        if (source := context.get_parameter_source(name)) and source.name == "COMMANDLINE"
-    ]
-
-
-def _refuse_beside_check(given: list[str], *, check: bool) -> None:
+def _refuse_beside_check(options: list[str], *, check: bool) -> None:
     """Refuse options that the check, or anything else, would pass over in silence."""
-    if not check and "--workers" in given:
+    if not check and "--workers" in options:
         raise WrongCallError("--workers goes with --check: nothing else here is measured")
-    narrowing = [name for name in given if name not in _OF_CHECK]
+    narrowing = [name for name in options if name not in _OF_CHECK]
     if check and narrowing:
         raise WrongCallError(
             f"--check takes all that is published: leave out {', '.join(narrowing)}; "
             "`sunatlas verify` measures a part"
         )
+    idle = [name for name in ("--workers", "--kernels") if name in options]
+    if check and idle and "--stored" in options:
+        raise WrongCallError(f"--stored measures nothing: leave out {', '.join(idle)}")
 
 
 def _require_no_options(context: typer.Context) -> None:
     """Refuse options before a command, which would be passed over in silence."""
-    if given := _given(context):
+    if options := given(context):
         raise WrongCallError(
-            f"{', '.join(given)} before `{context.invoked_subcommand}`: options of a command "
+            f"{', '.join(options)} before `{context.invoked_subcommand}`: options of a command "
             "stand behind it"
         )
 

@@ -38,7 +38,7 @@ def rank(
         str,
         typer.Argument(
             autocompletion=completion.extractors,
-            help="Name, such as squared-centroid, or file of the algorithm.",
+            help="Name, such as tm, or file of the algorithm.",
             show_default=False,
         ),
     ],

@@ -13,7 +13,7 @@ from api.cli import completion
 from api.cli.asking import ask, knowledge
 from api.cli.options import Asked, asked_by
 from api.cli.table_output import Format, emit, emit_json, say, write
-from api.cli.wrong_call import WrongCallError
+from api.cli.wrong_call import WrongCallError, only_beside
 from api.schema.parameters import LARGEST_PAGE
 from api.schema.studies import AttributeValue, StudiesQuery, StudyRow
 from api.schema.table import columns_of
@@ -47,6 +47,7 @@ class StudyFormat(StrEnum):
 @app.command()
 @asked_by(StudiesQuery, *ATTRIBUTES, "grade", "state", "edition", "year_min", "year_max", "q")
 def studies(
+    context: typer.Context,
     key: Annotated[
         str | None,
         typer.Argument(
@@ -83,17 +84,17 @@ def studies(
     complete if every value of the study is implemented. --published compares the accuracy that
     studies report with the own error here, worst first.
     """
-    if published and (key is not None or asked != {"edition": "survey"} or form in FORMS):
+    if published and (key is not None or form in FORMS):
         raise WrongCallError("--published compares every study of the survey, as a table")
     if published:
+        only_beside(context, "--published", "--format", "--safe")
         rows = service.compare_accuracy(knowledge())
         title = service.say_comparison(rows)
         emit(rows, service.COMPARED, Format(form), document=rows, title=title)
     elif key is None:
         _list(asked, form)
-    elif asked != {"edition": "survey"}:
-        raise WrongCallError("a study's key takes no filters beside it")
     else:
+        only_beside(context, "a study's key", "--format", "--safe")
         _show(key, form)
 
 

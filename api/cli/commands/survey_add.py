@@ -11,7 +11,7 @@ import typer
 
 from api.cli.survey_options import ApplyOption, DataOption
 from api.cli.table_output import Format, FormatOption, emit, emit_json, say
-from api.cli.wrong_call import WrongCallError
+from api.cli.wrong_call import WrongCallError, only_beside
 from files.atomic import replace_file
 from survey_data.additions.addition_reader import Addition
 from survey_data.additions.faults import FaultsError
@@ -27,6 +27,7 @@ _PIPELINES = ("detector", "mask", "extractor", "model", "datasets", "assumed")
 
 
 def add(
+    context: typer.Context,
     file: Annotated[
         Path | None,
         typer.Argument(
@@ -71,9 +72,10 @@ def add(
     filled in.
     """
     folder = data or DATA_DIRECTORY
+    if key is not None and (file is None or file.suffix.casefold() not in SUFFIXES):
+        raise WrongCallError("--key chooses in a bibliography, which FILE is not")
     if init is not None:
-        if apply or attributes is not None:
-            raise WrongCallError("--init writes a template and takes no --apply or --attributes")
+        only_beside(context, "--init", "--key", "--data")
         _write_template(init, file, key, folder)
         return
     if file is None:

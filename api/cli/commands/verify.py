@@ -53,6 +53,8 @@ def verify(
     may cause are counted; all others are printed with file and cell, and the exit code is 1.
     Nothing is written.
     """
+    if suite is not None and sample is None and seed is not None:
+        raise WrongCallError("--suite without --sample takes every cell: --seed draws none")
     record, _ = stores_of(None)
     published = record.scores()
     if not published:

@@ -33,8 +33,8 @@ TWINS = (
     (("studies", "Chang2008"), "/v1/studies/Chang2008", columns_of(AttributeValue)),
     (("recommend",), "/v1/recommendations", columns_of(RecommendationRow)),
     (
-        ("recommend", "--survive", "albedo", "--task", "Accuracy", "--limit", "3"),
-        "/v1/recommendations?survive=albedo&task=Accuracy&limit=3",
+        ("recommend", "--survive", "albedo", "--task", "Accuracy"),
+        "/v1/recommendations?survive=albedo&task=Accuracy",
         columns_of(RecommendationRow),
     ),
     (

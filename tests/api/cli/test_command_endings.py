@@ -17,6 +17,7 @@ from typer.core import TyperCommand
 from api.cli import command_line
 from benchmark import processes
 
+NO_MEMORY = "out of memory; allow this process more (`ulimit -v`), or use fewer --workers"
 FULL = OSError(errno.ENOSPC, "No space left on device")
 
 
@@ -72,6 +73,17 @@ def raising(error: BaseException) -> Callable[[], None]:
         (FULL, 1, "sunatlas: standard output: No space left on device\n"),
         (OSError(errno.EACCES, "Denied"), 1, "sunatlas: Denied\n"),
         (OSError(errno.EACCES, "Denied", "/a/b.csv"), 1, "sunatlas: /a/b.csv: Denied\n"),
+        (MemoryError(), 1, f"sunatlas: {NO_MEMORY}\n"),
+        (
+            ImportError("x.so: failed to map segment from shared object"),
+            1,
+            f"sunatlas: {NO_MEMORY}\n",
+        ),
+        (
+            OSError(errno.EMFILE, "Too many open files", "/a"),
+            1,
+            "sunatlas: /a: Too many open files\n",
+        ),
         (
             OSError(errno.EACCES, "Denied", "/a/.b.lock"),
             1,

@@ -37,8 +37,8 @@ def add(*arguments: object) -> Any:
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (("--init", "Doe2030", "--apply"), "--init writes a template and takes no --apply"),
-        (("--init", "Doe2030", "--attributes", "a.toml"), "takes no --apply or --attributes"),
+        (("--init", "Doe2030", "--apply"), "--init goes without --apply"),
+        (("--init", "Doe2030", "--attributes", "a.toml"), "--init goes without --attributes"),
         ((), "expected a file, or --init KEY for a template"),
         (("--init", "Doe2030", "new.txt"), "a file that ends in .toml; got 'new.txt'"),
     ],
