@@ -23,9 +23,7 @@ Row = Mapping[str, Any]
 
 GAP = 2  # between columns
 READABLE = 24  # characters of a column below which a longer text is hard to read
-#: Characters of a line where nothing says how many there are.
-COLUMNS = 80
-NARROWEST = 20
+NARROWEST = 20  # characters of a line
 #: Prose in longer lines is hard to read.
 PROSE = 100
 
@@ -179,21 +177,10 @@ def _wrapped(words: str, width: int, first: str, then: str) -> list[str]:
 
 
 def line_width() -> int:
-    """Return the characters of a line: $COLUMNS, else the terminal's, else 80.
+    """Return the characters of a line: $COLUMNS, else the terminal's, else 80."""
+    from rich.console import Console  # noqa: PLC0415 - the help does without it
 
-    Where stdout goes to a pager, the terminal is found by stderr or stdin.
-    """
-    given = os.environ.get("COLUMNS", "")
-    if given.isdecimal() and int(given) > 0:
-        return max(NARROWEST, int(given))
-    for stream in (sys.stdout, sys.stderr, sys.stdin):
-        try:
-            columns = os.get_terminal_size(stream.fileno()).columns
-        except (OSError, ValueError, AttributeError):
-            continue  # no terminal, or closed
-        if columns > 0:
-            return max(NARROWEST, columns)
-    return COLUMNS
+    return max(NARROWEST, Console(height=1).width)
 
 
 def write(text: str) -> None:
