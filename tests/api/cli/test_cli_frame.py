@@ -91,7 +91,7 @@ def test_version_is_the_project_s():
         (["studies", "Chang208"], "did you mean 'Chang2008'?"),
         (["studies", "--format", "yaml"], "yaml"),
         (["studies", "--year-min", "soon"], "--year-min"),
-        (["studies", "Chang2008", "--detector", "CMOS"], "no filters"),
+        (["studies", "Chang2008", "--detector", "CMOS"], "a study's key goes without --detector"),
         (["recommend", "--task", "Acuracy"], "did you mean 'Accuracy'?"),
         (["recommend", "--exclude-mask", "Slitt"], "did you mean 'Slit'?"),
         (["recommend", "--max-error-deg", "-1"], "--max-error-deg"),
