@@ -1,10 +1,11 @@
-"""The known word that a wrong one was probably meant to be."""
+"""The known word that a wrong one was probably meant to be, and how an error names it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from difflib import SequenceMatcher
 
+_MOST_LISTED = 12
 _LONGEST_COMPARED = 64  # similarity is quadratic in length; no known word is longer
 
 
@@ -36,3 +37,22 @@ def nearest_name(word: str, known: Iterable[str], *, cutoff: float = 0.4) -> str
             if ratio > best_ratio and ratio >= cutoff:
                 best, best_ratio = each, ratio
     return best
+
+
+def one_of(value: object, words: Iterable[str], near: Iterable[tuple[str, str]] = ()) -> str:
+    """Say of which words a value should have been, and which of them is most like it.
+
+    Parameters
+    ----------
+    value
+        What was given.
+    words
+        What is allowed.
+    near
+        Further spellings, each with its word.
+    """
+    allowed, spelt = list(words), dict(near)
+    meant = nearest_name(str(value), [*allowed, *spelt], cutoff=0.5)
+    hint = f", did you mean {spelt.get(meant, meant)}?" if meant else ""
+    listed = ", ".join(allowed[:_MOST_LISTED]) + (", ..." if len(allowed) > _MOST_LISTED else "")
+    return f"expected one of {listed}{hint}"

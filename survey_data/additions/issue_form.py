@@ -10,60 +10,58 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Mapping, Sequence
+import textwrap
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
+from pydantic import BaseModel, ValidationError
 
 from files.atomic import replace_file
 from files.reading import FileRefusedError
 from files.strict_json import read_json
 from survey_data.additions.faults import Fault, FaultsError
 from survey_data.additions.template import empty_template
-from survey_data.additions.vocabulary import Vocabulary, vocabulary
 from survey_data.problems import SurveyImportError
 
 _MOST_CHARACTERS = 65_536  # of an issue's body, by GitHub
 #: What GitHub puts around the text of a field that is rendered as TOML.
 _FENCED = re.compile(r"^```toml\n(.*)^```\s*\Z", re.DOTALL | re.MULTILINE)
+_FORM = """\
+# Written by `python -m survey_data.additions.issue_form --form`.
+name: A study is missing
+description: A study that the survey does not map.
+title: 'Study: '
+labels:
+- study
+body:
+- type: markdown
+  attributes:
+    value: 'For a study that the survey does not map. Fill in the template; every word that it
+      takes stands in its comments. A job reads it and opens a pull request, or answers with what
+      has to be corrected; then edit the issue. The guide explains it: docs/guide/add-a-study.md.'
+- type: textarea
+  id: study
+  attributes:
+    label: The study
+    render: toml
+    value: |
+{template}  validations:
+    required: true
+"""
 
 
-def form(known: Vocabulary) -> str:
+class _Issue(BaseModel):
+    body: str
+
+
+class _Event(BaseModel):
+    issue: _Issue
+
+
+def form() -> str:
     """Return the issue form, as GitHub takes it (YAML)."""
-    import yaml  # noqa: PLC0415 - only the form is YAML
-
-    intro = (
-        "For a study that the survey does not map. Fill in the template; every word that it takes "
-        "stands in its comments. A job reads it and opens a pull request, or answers with what has "
-        "to be corrected; then edit the issue. The guide explains it: docs/guide/add-a-study.md."
-    )
-    template = {"label": "The study", "render": "toml", "value": empty_template(known)}
-    document = {
-        "name": "A study is missing",
-        "description": "A study that the survey does not map.",
-        "title": "Study: ",
-        "labels": ["study"],
-        "body": [
-            {"type": "markdown", "attributes": {"value": intro}},
-            {
-                "type": "textarea",
-                "id": "study",
-                "attributes": template,
-                "validations": {"required": True},
-            },
-        ],
-    }
-
-    class Dumper(yaml.SafeDumper):
-        """Writes texts of several lines as they are."""
-
-    Dumper.add_representer(
-        str,
-        lambda dumper, said: dumper.represent_scalar(
-            "tag:yaml.org,2002:str", said, "|" if "\n" in said else None
-        ),
-    )
-    text: str = yaml.dump(document, None, Dumper, sort_keys=False, allow_unicode=True, width=98)
-    return "# Written by `python -m survey_data.additions.issue_form --form`.\n" + text
+    return _FORM.format(template=textwrap.indent(empty_template(), " " * 6))
 
 
 def template_of(event: Any) -> str:
@@ -74,9 +72,11 @@ def template_of(event: Any) -> str:
     FaultsError
         It is no event of an issue that was filed with the form.
     """
-    issue = event.get("issue") if isinstance(event, Mapping) else None
-    body = issue.get("body") if isinstance(issue, Mapping) else None
-    found = _FENCED.search(body.replace("\r\n", "\n")) if isinstance(body, str) else None
+    try:
+        body = _Event.model_validate(event).issue.body
+    except ValidationError:
+        body = ""
+    found = _FENCED.search(body.replace("\r\n", "\n"))
     if found is None or len(found[1]) > _MOST_CHARACTERS:
         message = f"expected a study in the form, between ```toml and ```, of {_MOST_CHARACTERS} "
         raise FaultsError("issue", [Fault(None, message + "characters at most")])
@@ -93,7 +93,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("template", nargs="?", type=Path, help="file to write")
     options = parser.parse_args(arguments)
     if options.form:
-        sys.stdout.write(form(vocabulary()))
+        sys.stdout.write(form())
         return 0
     if options.template is None:
         parser.error("expected EVENT.json and STUDY.toml, or --form")

@@ -7,8 +7,9 @@ import unicodedata
 from collections.abc import Sequence
 from pathlib import Path
 
-from survey_data.additions.faults import Fault, FaultsError, one_of
+from survey_data.additions.faults import Fault, FaultsError
 from survey_data.importing.bibliography import SUFFIXES, Entry, read_bibliography
+from survey_data.nearest import one_of
 
 Publication = dict[str, str]
 """Columns of the table of studies."""
@@ -36,12 +37,10 @@ def read_publications(path: Path) -> tuple[Publication, ...]:
 def choose(publications: Sequence[Publication], key: str | None, file: str) -> Publication:
     """Return the publication of a key, or the only one; FaultsError where that is not clear."""
     keys = [each["key"] for each in publications]
-    if len(publications) == 1 and not key:
-        return publications[0]
     if key in keys:
         return publications[keys.index(key)]
     if len(publications) == 1:
-        return {**publications[0], "key": str(key)}
+        return {**publications[0], "key": key or keys[0]}
     message = f"holds {len(keys)} publications: choose one with --key ({', '.join(keys[:12])})"
     if key:
         message = f"key {key!r}: {one_of(key, keys)}"
@@ -56,13 +55,4 @@ def _publication(entry: Entry) -> Publication:
         letters = unicodedata.normalize("NFKD", first[-1]) if first else ""
         surname = re.sub(r"[^A-Za-z]", "", letters)
         key = f"{surname}{entry.year}" if surname and entry.year else key if known else ""
-    return {
-        "key": key,
-        "title": entry.title,
-        "authors": entry.authors,
-        "year": entry.year,
-        "venue": entry.venue,
-        "type": entry.kind,
-        "doi": entry.doi,
-        "url": entry.url,
-    }
+    return {**entry.columns(), "key": key}

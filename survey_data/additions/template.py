@@ -1,14 +1,18 @@
-"""Writing a study's template: empty, with every word that may stand in it, or filled with rows."""
+"""Writing a study's template: empty, with every word that may stand in it."""
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
+import textwrap
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
 
-from survey_data.additions.addition_reader import Row
-from survey_data.additions.vocabulary import Definition, Vocabulary
-from survey_data.descriptor import column_types
+from survey_data.additions.offered import Row
+from survey_data.descriptor import DATA_DIRECTORY, column_types, descriptor
+from survey_data.texts import load_texts
+from survey_data.validation.extension import SURVEY_BASES
 
 _HEAD = """\
 # A study for `sunatlas survey add FILE`. Fill in what you know and take away the rest: an attribute
@@ -48,58 +52,77 @@ _SENSORS = """\
 """
 
 
-def empty_template(vocabulary: Vocabulary, publication: Row | None = None) -> str:
+def empty_template(directory: Path = DATA_DIRECTORY, publication: Row | None = None) -> str:
     """Return an empty template, with the allowed words in comments.
 
     Parameters
     ----------
-    vocabulary : the words
+    directory : our tables, whose words are allowed
     publication : what is known of the publication already, by column of the table of studies
     """
-    known = publication or {}
+    tables = load_texts(("attribute_definitions", "bases", "taxonomy", "statistics"), directory)
+    enums = {
+        (resource["name"], field["name"]): field.get("constraints", {}).get("enum", [])
+        for resource in descriptor()["resources"]
+        for field in resource["schema"]["fields"]
+    }
     lines = [_HEAD, "# ---- The publication."]
     for column in column_types("extension_studies"):
-        words = vocabulary.words.get(column)
-        said = ", ".join(words) if words else _PUBLICATION.get(column, "")
+        said = ", ".join(enums["extension_studies", column]) or _PUBLICATION.get(column, "")
         if column == "identity":
             said += f" ({_IDENTITIES})"
-        lines += [
-            f"# {column}: {said}",
-            f"{column} = {_format_value(column, known.get(column, ''))}",
-        ]
-    bases = "; ".join(f"{name} ({_first(said)})" for name, said in vocabulary.bases.items())
-    values = {"bases": "\n#             ".join(_wrap(bases)), "roles": ", ".join(vocabulary.roles)}
-    lines += ["", _EVIDENCE.format(**values)]
-    for definition in vocabulary.definitions.values():
-        lines += [*_of_attribute(definition), ""]
+        value = _format_value(column, (publication or {}).get(column, ""))
+        lines += [f"# {column}: {said}", f"{column} = {value}"]
+    bases = "; ".join(
+        f"{row['basis']} ({_first(row['description'])})"
+        for row in tables.bases
+        if row["basis"] not in SURVEY_BASES
+    )
+    wrapped = textwrap.wrap(bases, 81, break_on_hyphens=False, break_long_words=False)
+    roles = ", ".join(enums["extension_roles", "role"])
+    lines += ["", _EVIDENCE.format(bases="\n#             ".join(wrapped), roles=roles)]
+    for row in tables.attribute_definitions:
+        lines += [*_of_attribute(row, tables), ""]
     return "\n".join([*lines, _SENSORS])
 
 
-def _of_attribute(definition: Definition) -> Iterator[str]:
+def taken_by(key: str, directory: Path = DATA_DIRECTORY) -> str:
+    """Say which study has a key already; empty where none has."""
+    tables = load_texts(("studies", "extension_studies", "references"), directory)
+    whose = {
+        "references": "the survey cites another work under this key",
+        "studies": "a study of the survey has this key",
+        "extension_studies": "a study added already has this key",
+    }
+    for table, said in whose.items():
+        if key.casefold() in {row["key"].casefold() for row in getattr(tables, table)}:
+            return said
+    return ""
+
+
+def _of_attribute(row: Mapping[str, str], tables: Any) -> Iterator[str]:
     """Give the lines of one attribute: what it is, what it may be, an empty table."""
-    several = "" if definition.multiple else "; one value"
-    yield f"# {definition.attribute}: {definition.description}{several}."
-    if definition.words:
-        for value, name in definition.words.items():
-            yield f"#   {value}" + ("" if name == value else f": {name}")
-    else:
-        yield f"#   a number from {definition.minimum:g} to {definition.maximum:g}"
-    yield f"# [[{definition.attribute}]]"
-    yield '# value = ""' if definition.words else "# value ="
+    attribute = row["attribute"]
+    several = "" if row["multiple"] != "false" else "; one value"
+    yield f"# {attribute}: {row['description']}{several}."
+    words = [(r["value"], r["name"]) for r in tables.taxonomy if r["attribute"] == attribute]
+    if row["kind"] == "statistic":
+        words = [(each["kind"], each["name"]) for each in tables.statistics]
+    for value, name in words:
+        yield f"#   {value}" + ("" if name == value else f": {name}")
+    if not words:
+        yield f"#   a number from {float(row['min']):g} to {float(row['max']):g}"
+    yield f"# [[{attribute}]]"
+    yield '# value = ""' if words else "# value ="
     yield from ('# basis = ""', '# source = ""', '# note = ""')
 
 
 def _format_value(column: str, value: str) -> str:
-    """Return a column of the study as TOML."""
-    if column == "year":
-        return value if re.fullmatch(r"[0-9]{1,4}", value) and value[0] != "0" else _text(value)
+    """Return a column of the study as TOML, whose escapes of a text are those of JSON."""
+    if column == "year" and re.fullmatch(r"[1-9][0-9]{0,3}", value):
+        return value
     if column == "authors":
         return json.dumps([n for n in value.split("; ") if n], ensure_ascii=False)
-    return _text(value)
-
-
-def _text(value: str) -> str:
-    """Return a text as a TOML basic string, whose escapes are those of JSON."""
     return json.dumps(value, ensure_ascii=False)
 
 
@@ -107,12 +130,3 @@ def _first(text: str) -> str:
     """Return the first part of a description, as it stands inside a sentence."""
     said = re.split(r"[;,]", text)[0]
     return said[:1].lower() + said[1:]
-
-
-def _wrap(text: str, width: int = 82) -> list[str]:
-    lines = [""]
-    for word in text.split():
-        if len(lines[-1]) + len(word) >= width:
-            lines.append("")
-        lines[-1] = f"{lines[-1]} {word}".strip()
-    return lines

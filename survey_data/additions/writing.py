@@ -6,15 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from files.csv_writing import csv_text
-from files.strict_csv import read_records
-from survey_data.additions.addition_reader import Addition, Row, read_addition
-from survey_data.additions.faults import Fault, FaultsError, one_of
+from survey_data.additions.faults import Fault, FaultsError
+from survey_data.additions.offered import Addition, Row, TomlDocument, read_addition, read_toml
 from survey_data.additions.publications import choose, read_publications
-from survey_data.additions.toml_lines import TomlDocument, read_toml
-from survey_data.additions.vocabulary import vocabulary
-from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
+from survey_data.descriptor import DATA_DIRECTORY, column_types
 from survey_data.editions import FOLDER
-from survey_data.importing.writing import locked_tables, require_valid, write_valid
+from survey_data.importing.writing import locked_tables, require_valid, rows_of, write_valid
+from survey_data.nearest import one_of
 from survey_data.problems import SurveyImportError
 from survey_data.texts import load_texts
 
@@ -54,12 +52,11 @@ def read_study(
     FaultsError
         Names every fault with file and line; SurveyImportError for what is no bibliography.
     """
-    known = vocabulary(directory)
     if path.suffix.casefold() == ".toml":
         if attributes is not None:
             message = "a template has attributes of its own; --attributes goes with a bibliography"
             raise FaultsError(path.name, [Fault(None, message)])
-        return read_addition(read_toml(path), known)
+        return read_addition(read_toml(path), directory)
     beside = path.with_suffix(".toml") if attributes is None else attributes
     document = TomlDocument(path.name, {}, {})
     if attributes is not None or beside.is_file():
@@ -69,7 +66,7 @@ def read_study(
     publication = choose(read_publications(path), wanted, path.name)
     stated = {"identity": "confirmed", "type": "unknown"}
     publication = {**stated, **{name: value for name, value in publication.items() if value}}
-    return read_addition(document, known, publication)
+    return read_addition(document, directory, publication)
 
 
 def add_study(
@@ -158,7 +155,7 @@ def _require_later(key: str, directory: Path) -> None:
     later = [row["key"] for row in tables.extension_studies]
     if key in later:
         return
-    if any(row["key"] == key for row in tables.studies):
+    if key in [row["key"] for row in tables.studies]:
         raise UnknownStudyError(f"{key} is a study of the survey, whose tables stay as they are")
     raise UnknownStudyError(
         f"study {key!r}: {one_of(key, later)}" if later else "there is no study beside the survey's"
@@ -173,7 +170,7 @@ def _change(
 ) -> dict[str, str]:
     """Change tables of the extension that nobody else writes meanwhile."""
     with locked_tables(folder):
-        rows = {name: _rows(folder, _table(name)) for name in (*TABLES, _VERIFICATIONS)}
+        rows = {name: rows_of(folder, _table(name))[1] for name in (*TABLES, _VERIFICATIONS)}
         texts = {
             _table(name): csv_text(list(column_types(_table(name))), found)
             for name, found in changed(rows).items()
@@ -187,10 +184,6 @@ def _change(
 
 def _table(name: str) -> str:
     return name if name == _VERIFICATIONS else f"extension_{name}"
-
-
-def _rows(folder: Path, table: str) -> list[list[str]]:
-    return [c for _, c in read_records(folder / file_name(table), list(column_types(table))).rows]
 
 
 def _sorted(rows: Sequence[list[str]]) -> list[list[str]]:

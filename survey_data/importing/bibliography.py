@@ -31,7 +31,7 @@ from rispy.config import TAG_KEY_MAPPING
 
 from files.reading import FileRefusedError
 from files.strict_json import parse_json
-from survey_data.importing.offered_files import offered_text
+from survey_data.importing.writing import offered_text
 from survey_data.problems import SurveyImportError
 
 SUFFIXES = (".bib", ".bbl", ".ris", ".json")
@@ -93,6 +93,11 @@ class Entry:
     doi: str
     line: int = 1
     url: str = ""
+
+    def columns(self) -> dict[str, str]:
+        """Return it as columns of the table of studies."""
+        names = ("key", "title", "authors", "year", "venue", "doi", "url")
+        return {"type": self.kind} | {name: getattr(self, name) for name in names}
 
 
 def read_bibliography(path: str | Path) -> tuple[Entry, ...]:

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import Any
 
 import pandas as pd
+from pydantic import BaseModel, ConfigDict
 
-from files.json_data import JsonData
-from survey_data.importing.text_similarity import normalise, similarity
-from survey_data.importing.values import UnreadableValueError, ValueReader, column_unit
+from survey_data.importing.values import (
+    UnreadableValueError,
+    ValueReader,
+    column_unit,
+    normalise,
+    similarity,
+)
 from survey_data.nearest import nearest_name
 from survey_data.problems import SurveyImportError
 from survey_data.tables import SurveyTables
@@ -18,6 +24,7 @@ from survey_data.tables import SurveyTables
 IGNORE = "-"
 _LEAST_SCORE = 0.6
 _NAME_WEIGHT = 0.4
+_MOST_READ = 500  # different cells of a column, enough to tell what it holds
 # How tables of studies usually name their bibliographic columns.
 _IDENTIFICATION = {
     "study": ("study", "key", "citation key", "cite key", "bibtex key", "reference", "ref", "id"),
@@ -27,24 +34,24 @@ _IDENTIFICATION = {
 }
 
 
-@dataclass(frozen=True)
-class ColumnMatch:
+class ColumnMatch(BaseModel):
     """A column and what it was taken for.
 
     `name_score` and `value_score` are from 0 to 1 (`value_score` is None where cells say nothing
     on the matter); `how` is ``similarity`` or ``override``.
     """
 
+    model_config = ConfigDict(frozen=True)
+
     column: str
     target: str
     score: float
     name_score: float
     value_score: float | None
-    how: str
+    how: str = "similarity"
 
 
-@dataclass(frozen=True)
-class ColumnMapping(JsonData):
+class ColumnMapping(BaseModel):
     """Every column taken, in the order of the table, and the columns left aside."""
 
     matches: tuple[ColumnMatch, ...]
@@ -60,11 +67,9 @@ class ColumnMapping(JsonData):
         targets = (match.target for match in self.matches)
         return tuple(dict.fromkeys(name for name in targets if name not in _IDENTIFICATION))
 
-
-def targets(tables: SurveyTables) -> tuple[str, ...]:
-    """Return what a column can be mapped to: study, title, authors, year and every attribute."""
-    names = tables.attribute_definitions["attribute"]
-    return (*_IDENTIFICATION, *(str(name) for name in names))
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as JSON data."""
+        return self.model_dump(mode="json")
 
 
 def match_columns(
@@ -79,8 +84,8 @@ def match_columns(
     frame : pandas.DataFrame
         Theirs, as `read_table` returns it.
     overrides : mapping of str to str, optional
-        Column -> target (see `targets`), or ``-`` to leave the column aside. Several columns may
-        be given the same attribute; their values are united.
+        Column -> study, title, authors, year or an attribute, or ``-`` to leave the column aside.
+        Several columns may be given the same attribute; their values are united.
 
     Returns
     -------
@@ -94,88 +99,56 @@ def match_columns(
         An override names an unknown column or target, or no column identifies the study, or
         none holds an attribute.
     """
-    known = targets(tables)
-    given = _check_overrides(frame, known, overrides or {})
-    scorer = _Scorer(tables)
-    taken: dict[str, ColumnMatch] = {}
-    for column, target in given.items():
-        if target != IGNORE:
-            name, values = scorer.name(column, target), scorer.values(frame[column], target)
-            taken[column] = ColumnMatch(column, target, 1.0, name, values, "override")
-    for match in _candidates(frame, known, scorer):
-        used = {other.target for other in taken.values()}
-        if match.column not in given and match.column not in taken and match.target not in used:
-            taken[match.column] = match
-    _add_numbered(frame, given, taken, scorer)
-    mapping = ColumnMapping(
-        matches=tuple(taken[column] for column in frame.columns if column in taken),
-        ignored=tuple(str(column) for column in frame.columns if column not in taken),
-    )
-    _check_sufficient(frame, mapping)
-    return mapping
-
-
-def _candidates(frame: pd.DataFrame, known: tuple[str, ...], scorer: _Scorer) -> list[ColumnMatch]:
-    found = []
-    for column in frame.columns:
-        for target in known:
-            name, values = scorer.name(column, target), scorer.values(frame[column], target)
-            score = scorer.combine(target, name, values)
-            if score >= _LEAST_SCORE:
-                match = ColumnMatch(
-                    str(column), target, round(score, 3), name, values, "similarity"
-                )
-                found.append(match)
-    order = {str(column): position for position, column in enumerate(frame.columns)}
-    found.sort(key=lambda m: (-m.score, -m.name_score, order[m.column], known.index(m.target)))
-    return found
-
-
-def _add_numbered(
-    frame: pd.DataFrame,
-    given: Mapping[str, str],
-    taken: dict[str, ColumnMatch],
-    scorer: _Scorer,
-) -> None:
-    stems = {
-        _stem(match.column): match.target
-        for match in taken.values()
-        if match.target not in _IDENTIFICATION
+    scorer = _Scorer(tables, frame)
+    known = list(scorer.labels)
+    given = dict(overrides or {})
+    columns = [str(name) for name in frame.columns]
+    _check_overrides(columns, known, given)
+    taken = {
+        column: scorer.match(column, target).model_copy(update={"score": 1.0, "how": "override"})
+        for column, target in given.items()
+        if target != IGNORE
     }
-    for column in map(str, frame.columns):
-        target = stems.get(_stem(column))
-        if column in given or column in taken or target is None:
-            continue
-        name, values = scorer.name(column, target), scorer.values(frame[column], target)
-        score = round(scorer.combine(target, name, values), 3)
-        taken[column] = ColumnMatch(column, target, score, name, values, "similarity")
+    found = [scorer.match(column, target) for column in columns for target in known]
+    found = [match for match in found if match.score >= _LEAST_SCORE and match.column not in given]
+    for match in sorted(found, key=lambda m: (-m.score, -m.name_score)):
+        if match.column not in taken and match.target not in {m.target for m in taken.values()}:
+            taken[match.column] = match
+    stems = {_stem(m.column): m.target for m in taken.values() if m.target not in _IDENTIFICATION}
+    for column in columns:  # numbered ones
+        if column not in given and column not in taken and _stem(column) in stems:
+            taken[column] = scorer.match(column, stems[_stem(column)])
+    mapping = ColumnMapping(
+        matches=tuple(taken[column] for column in columns if column in taken),
+        ignored=tuple(column for column in columns if column not in taken),
+    )
+    targets = {match.target for match in mapping.matches}
+    missing = "" if mapping.attributes else "no column holds an attribute"
+    if not ({"study", "title"} & targets or {"authors", "year"} <= targets):
+        missing = "no column identifies the study: expected a key, a title, or authors and year"
+    if missing:
+        listed = ", ".join(columns)
+        raise SurveyImportError(f"{missing} among {listed}; name it with an override")
+    return mapping
 
 
 def _stem(column: str) -> str:
     return re.sub(r"\s*[0-9]+$", "", normalise(column))
 
 
-def _check_overrides(
-    frame: pd.DataFrame, known: tuple[str, ...], overrides: Mapping[str, str]
-) -> dict[str, str]:
-    for column, target in overrides.items():
-        if column not in frame.columns:
-            columns = [str(name) for name in frame.columns]
-            raise SurveyImportError(
-                f"no such column{_nearest(column, columns)}; there are {', '.join(columns)}",
-                column=column,
-            )
-        if target not in known and target != IGNORE:
-            raise SurveyImportError(
-                f"cannot be mapped to {target!r}{_nearest(target, list(known))}; "
-                f"expected {', '.join(known)} or {IGNORE}",
-                column=column,
-            )
-    for target in _IDENTIFICATION:
-        columns = [column for column, chosen in overrides.items() if chosen == target]
-        if len(columns) > 1:
-            raise SurveyImportError(f"{target} takes one column, got {columns}", column=columns[1])
-    return dict(overrides)
+def _check_overrides(columns: list[str], known: list[str], given: Mapping[str, str]) -> None:
+    for column, target in given.items():
+        message = ""
+        if column not in columns:
+            message = f"no such column{_nearest(column, columns)}; there are {', '.join(columns)}"
+        elif target not in known and target != IGNORE:
+            listed = f"expected {', '.join(known)} or {IGNORE}"
+            message = f"cannot be mapped to {target!r}{_nearest(target, known)}; {listed}"
+        elif target in _IDENTIFICATION and list(given.values()).count(target) > 1:
+            named = [name for name, chosen in given.items() if chosen == target]
+            message = f"{target} takes one column, got {named}"
+        if message:
+            raise SurveyImportError(message, column=column)
 
 
 def _nearest(text: str, names: list[str]) -> str:
@@ -183,60 +156,72 @@ def _nearest(text: str, names: list[str]) -> str:
     return f" (did you mean {near!r}?)" if near else ""
 
 
-def _check_sufficient(frame: pd.DataFrame, mapping: ColumnMapping) -> None:
-    columns = ", ".join(map(str, frame.columns))
-    has = {match.target for match in mapping.matches}
-    if not ({"study", "title"} & has or {"authors", "year"} <= has):
-        raise SurveyImportError(
-            "no column identifies the study: expected a key, a title, or authors and year among "
-            f"{columns}; name it with an override"
-        )
-    if not mapping.attributes:
-        raise SurveyImportError(
-            f"no column holds an attribute among {columns}; name it with an override"
-        )
-
-
 class _Scorer:
-    """Scores a column for a target, remembering what the cells were read as."""
+    """Scores columns of a table for targets, remembering what the cells were read as."""
 
-    def __init__(self, tables: SurveyTables) -> None:
-        self._reader = ValueReader(tables)
-        self._labels: dict[str, tuple[str, ...]] = dict(_IDENTIFICATION)
+    def __init__(self, tables: SurveyTables, frame: pd.DataFrame) -> None:
+        self._frame = frame
+        reader = ValueReader(tables)
+        self.labels: dict[str, tuple[str, ...]] = dict(_IDENTIFICATION)
+        self._numeric, self._words = set(), set()
         for row in tables.attribute_definitions.to_dict("records"):
-            spellings = (row["attribute"], row["name"], *str(row["synonyms"]).split(";"))
-            self._labels[str(row["attribute"])] = tuple(map(str, spellings))
-        self._categorical = {
-            target
-            for target in self._labels
-            if target not in _IDENTIFICATION and not self._reader.is_numeric(target)
-        }
+            attribute = str(row["attribute"])
+            self.labels[attribute] = (attribute, row["name"], *str(row["synonyms"]).split(";"))
+            if reader.is_numeric(attribute):
+                self._numeric.add(attribute)
+            elif row["kind"] == "categorical":
+                self._words.add(attribute)
         references = tables.references["key"].dropna()
         self._keys = {str(key).casefold() for key in [*tables.studies["key"], *references]}
         self._titles = {normalise(str(title)) for title in tables.studies["title"].dropna()}
-        self._readable: dict[tuple[str, str, str], bool] = {}
 
-    def name(self, column: object, target: str) -> float:
-        """Return how much a column's name is like a target's names."""
-        plain = normalise(str(column))
-        best = 0.0
-        for label in map(normalise, self._labels[target]):
-            score = similarity(plain, label)
+        @cache
+        def is_value(target: str, text: str, unit: str) -> bool:
+            try:
+                return bool(reader.read(target, text, unit))
+            except UnreadableValueError:
+                return False
+
+        self._is_value = is_value
+
+    def match(self, column: str, target: str) -> ColumnMatch:
+        """Return how well a column fits a target."""
+        name, values = max(self._names(column, target)), self._values(column, target)
+        identifies = target in {"study", "title"}
+        if values is None:
+            score = name
+        elif identifies or target not in {*_IDENTIFICATION, *self._numeric}:
+            score = _NAME_WEIGHT * name + (1 - _NAME_WEIGHT) * values
+        else:
+            score = name if values >= 0.5 else 0.0  # numbers fit many columns: the name decides
+        # A column called as ours is not passed over for cells that cannot be read: they are shown.
+        if name == 1.0 and values is not None and (values > 0 or identifies):
+            score = max(score, _LEAST_SCORE)
+        return ColumnMatch(
+            column=column,
+            target=target,
+            score=round(score, 3),
+            name_score=round(name, 3),
+            value_score=values,
+        )
+
+    def _names(self, column: str, target: str) -> Iterator[float]:
+        plain = normalise(column)
+        for label in map(normalise, self.labels[target]):
+            yield similarity(plain, label)
             if set(label.split()) <= set(plain.split()):
-                score = max(score, 0.8)
-            best = max(best, score)
-        return round(best, 3)
+                yield 0.8
 
-    def values(self, cells: pd.Series, target: str) -> float | None:
+    def _values(self, column: str, target: str) -> float | None:
         """Return the share of a column's cells that can be a target's; None: they say nothing."""
-        texts = [str(cell) for cell in cells.dropna()]
-        if not texts:
+        counts = self._frame[column].dropna().value_counts(sort=False)[:_MOST_READ]
+        if counts.empty:
             return 0.0
         if target == "authors":
             return None
-        unit = column_unit(str(cells.name))
-        fitting = sum(self._fits(text, target, unit) for text in texts)
-        return round(fitting / len(texts), 3)
+        unit = column_unit(column)
+        fitting = sum(n for text, n in counts.items() if self._fits(str(text), target, unit))
+        return round(fitting / int(counts.sum()), 3)
 
     def _fits(self, text: str, target: str, unit: str) -> bool:
         if target == "study":
@@ -247,23 +232,6 @@ class _Scorer:
             return re.fullmatch(r"(19|20)[0-9]{2}", text) is not None
         if target == "accuracy" and re.match(r"[<≤±~]?\s*[0-9]", text):
             return False  # a number is the reported accuracy, not its class
-        cell = (target, text, unit)
-        if cell not in self._readable:
-            try:
-                self._readable[cell] = bool(self._reader.read(target, text, unit))
-            except UnreadableValueError:
-                self._readable[cell] = False
-        return self._readable[cell]
-
-    def combine(self, target: str, name: float, values: float | None) -> float:
-        """Return the score of a column for a target."""
-        identifies = target in {"study", "title"}
-        if values is None:
-            return name
-        if identifies or target in self._categorical:
-            score = _NAME_WEIGHT * name + (1 - _NAME_WEIGHT) * values
-        else:
-            score = name if values >= 0.5 else 0.0  # numbers fit many columns: the name decides
-        # A column called as ours is not passed over for cells that cannot be read: they are shown.
-        called_so = name == 1.0 and (values > 0 or identifies)
-        return max(score, _LEAST_SCORE) if called_so else score
+        if target in self._words and re.fullmatch(r"[-+0-9.,e]+", text):
+            return False
+        return self._is_value(target, text, unit)

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
-import pandas as pd
+from pydantic import BaseModel, ConfigDict
 
 from files.csv_writing import csv_text
-from files.json_data import JsonData
-from files.strict_csv import read_records
-from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
+from survey_data.descriptor import DATA_DIRECTORY
 from survey_data.importing.bibliography import Entry, read_bibliography
-from survey_data.importing.text_similarity import normalise, similarity
-from survey_data.importing.writing import locked_tables, write_valid
+from survey_data.importing.values import normalise, similarity
+from survey_data.importing.writing import locked_tables, rows_of, write_valid
 from survey_data.problems import SurveyImportError
 from survey_data.sources import fault
 from survey_data.tables import SurveyTables, load
@@ -30,8 +27,11 @@ _OPEN = ("unknown", "ambiguous", "recalled")
 Kind = Literal["new", "changed", "conflict", "kept"]
 
 
-@dataclass(frozen=True)
-class IdentityDifference(JsonData):
+class _Frozen(BaseModel):
+    model_config = ConfigDict(frozen=True)
+
+
+class IdentityDifference(_Frozen):
     """A cell of a study that the bibliography says otherwise.
 
     ``new``: ours is empty. ``changed``: the identity was not confirmed, or the study was named to
@@ -47,9 +47,12 @@ class IdentityDifference(JsonData):
     identity: str
     line: int
 
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as JSON data."""
+        return self.model_dump(mode="json")
 
-@dataclass(frozen=True)
-class BibliographyPlan(JsonData):
+
+class BibliographyPlan(_Frozen):
     """What a bibliography changes in the table of studies.
 
     ``settled`` are the studies whose identity it confirms; ``left_aside`` its keys that are no
@@ -77,7 +80,7 @@ class BibliographyPlan(JsonData):
     def to_dict(self) -> dict[str, Any]:
         """Return it as JSON data."""
         aside = [{"key": key, "reason": reason} for key, reason in self.left_aside]
-        return {**super().to_dict(), "left_aside": aside}
+        return {**self.model_dump(mode="json"), "left_aside": aside}
 
 
 def import_bibliography(
@@ -120,7 +123,7 @@ def import_bibliography(
         if not apply or not (plan.edits or plan.settled):
             return plan
         write_valid(folder, {_TABLE: _edit(folder, plan)})
-        return replace(plan, written=len(plan.edits))
+        return plan.model_copy(update={"written": len(plan.edits)})
 
 
 def plan_identities(
@@ -136,70 +139,72 @@ def plan_identities(
     SurveyImportError
         The entries say nothing of one of `replaced`.
     """
-    rows = {str(row["key"]): row for row in tables.studies.to_dict("records")}
-    meant = tables.references.dropna(subset=["mapped_key"])
-    also = dict(zip(meant["key"], meant["mapped_key"], strict=True))
-    other = {str(key) for key in tables.references["key"]} - {str(key) for key in also}
+    studies = tables.studies.astype("object").fillna("").astype(str).to_dict("records")
+    rows = {row["key"]: {str(name): cell for name, cell in row.items()} for row in studies}
+    references = tables.references.fillna("")
+    also = dict(zip(references["key"], references["mapped_key"], strict=True))
     differences: list[IdentityDifference] = []
     settled: list[str] = []
     left: list[tuple[str, str]] = []
     seen: set[str] = set()
     count = 0
-    for entry in entries:
-        count += 1
-        key = str(also.get(entry.key, entry.key))
-        reason = _refusal(entry, key, rows, seen)
+    for count, entry in enumerate(entries, 1):  # noqa: B007 - told
+        key = str(also.get(entry.key) or entry.key)
+        reason = ""
+        if key not in rows:
+            reason = "no study has this key"
+        elif key in seen:
+            reason = "stands twice in the bibliography; the first is taken"
+        elif not entry.title:
+            reason = "no title can be read"
         if reason:
-            if entry.key not in other:
+            if also.get(entry.key) != "":  # a work that the survey cites beside its studies
                 left.append((entry.key, reason))
             continue
         seen.add(key)
-        row = {name: _text(rows[key][name]) for name in (*_COLUMNS, "year", "identity")}
-        found = _differences(key, row, entry, by_hand=key in replaced)
+        found = _differences(rows[key], entry, by_hand=key in replaced)
         differences += found
-        if row["identity"] in _OPEN or (key in replaced and found):
+        if rows[key]["identity"] in _OPEN or (key in replaced and found):
             settled.append(key)
     if unsaid := sorted(replaced - seen):
         raise SurveyImportError(f"{source} says nothing of {', '.join(unsaid)}, to be replaced")
-    missing = tuple(key for key in rows if key not in seen)
-    return BibliographyPlan(source, count, tuple(differences), tuple(settled), tuple(left), missing)
-
-
-def _refusal(entry: Entry, key: str, rows: Mapping[str, object], seen: set[str]) -> str:
-    """Say why an entry tells nothing of a study; empty where it does."""
-    if key not in rows:
-        return "no study has this key"
-    if key in seen:
-        return "stands twice in the bibliography; the first is taken"
-    if not entry.title:
-        return "no title can be read"
-    return ""
+    return BibliographyPlan(
+        source=source,
+        entries=count,
+        differences=tuple(differences),
+        settled=tuple(settled),
+        left_aside=tuple(left),
+        missing=tuple(key for key in rows if key not in seen),
+    )
 
 
 def _differences(
-    key: str, row: Mapping[str, str], entry: Entry, *, by_hand: bool
+    row: Mapping[str, str], entry: Entry, *, by_hand: bool
 ) -> list[IdentityDifference]:
-    theirs = {
-        "title": entry.title,
-        "authors": entry.authors,
-        "venue": entry.venue,
-        "type": "" if entry.kind == "unknown" else entry.kind,
-        "doi": entry.doi,
-        "url": _address(entry, row),
-    }
+    theirs = entry.columns()
+    theirs["type"] = "" if entry.kind == "unknown" else entry.kind
+    theirs["url"] = _address(entry, row)
     found = []
-    for column, said in theirs.items():
-        ours = row[column]
+    for column in (*_COLUMNS, "year"):
+        ours, said = row[column], theirs[column]
         if not said or _same(column, ours, said):
             continue
-        empty = not ours or (column == "type" and ours == "unknown")
-        open_to_change = by_hand or row["identity"] in _OPEN
-        kind: Kind = "new" if empty else "changed" if open_to_change else "conflict"
-        found.append(IdentityDifference(key, column, kind, ours, said, row["identity"], entry.line))
-    if entry.year not in ("", row["year"]):
+        kind: Kind = "conflict"
+        if column == "year":
+            kind = "kept"
+        elif not ours or (column == "type" and ours == "unknown"):
+            kind = "new"
+        elif by_hand or row["identity"] in _OPEN:
+            kind = "changed"
         found.append(
             IdentityDifference(
-                key, "year", "kept", row["year"], entry.year, row["identity"], entry.line
+                study=row["key"],
+                column=column,
+                kind=kind,
+                ours=ours,
+                theirs=said,
+                identity=row["identity"],
+                line=entry.line,
             )
         )
     return found
@@ -213,7 +218,7 @@ def _address(entry: Entry, row: Mapping[str, str]) -> str:
 
 def _same(column: str, ours: str, theirs: str) -> bool:
     """Say whether two texts mean the same, spelling and abbreviation aside."""
-    if column in {"doi", "type"}:
+    if column in {"doi", "type", "year"}:
         return ours.casefold() == theirs.casefold()
     if column == "authors":
         return _surnames(ours) == _surnames(theirs)
@@ -229,14 +234,9 @@ def _surnames(authors: str) -> list[str]:
     return [normalise(name).split()[-1] for name in authors.split(";") if normalise(name)]
 
 
-def _text(cell: object) -> str:
-    return "" if pd.isna(cell) else str(cell)  # type: ignore[call-overload]
-
-
 def _edit(folder: Path, plan: BibliographyPlan) -> str:
     """Return the text of studies.csv with the plan's cells in it."""
-    header = list(column_types(_TABLE))
-    rows = [list(c) for _, c in read_records(folder / file_name(_TABLE), header).rows]
+    header, rows = rows_of(folder, _TABLE)
     at = {name: index for index, name in enumerate(header)}
     by_key = {row[at["key"]]: row for row in rows}
     for edit in plan.edits:

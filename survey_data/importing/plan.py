@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import pandas as pd
+from pydantic import BaseModel, ConfigDict
 
-from files.json_data import JsonData
 from files.problems import Problem
 from survey_data.importing.columns import ColumnMapping
 from survey_data.importing.studies import StudyFinder, StudyNotFoundError, cell_text
@@ -29,8 +30,11 @@ _SAME_NUMBER = 5e-3  # tables round their angles to two or three digits
 Kind = Literal["new", "changed", "confirmed", "conflict"]
 
 
-@dataclass(frozen=True)
-class Difference(JsonData):
+class _Frozen(BaseModel):
+    model_config = ConfigDict(frozen=True)
+
+
+class Difference(_Frozen):
     """A cell (study, attribute) that another table states otherwise, or on better evidence.
 
     `basis` is ours, the strongest of the cell. `kind`: ``new`` (ours is unknown), ``changed``,
@@ -47,17 +51,19 @@ class Difference(JsonData):
     row: int
     column: str
 
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as JSON data."""
+        return self.model_dump(mode="json")
 
-@dataclass(frozen=True)
-class UnmatchedRow:
+
+class UnmatchedRow(_Frozen):
     """A row of another table that is about none of our studies, and why."""
 
     row: int
     reason: str
 
 
-@dataclass(frozen=True)
-class Withdrawn:
+class Withdrawn(_Frozen):
     """A row of ours that rests on a value which another table replaces, and so goes with it."""
 
     table: str
@@ -66,8 +72,7 @@ class Withdrawn:
     note: str
 
 
-@dataclass(frozen=True)
-class ImportPlan(JsonData):
+class ImportPlan(_Frozen):
     """What an import would do.
 
     `differences` holds new, changed and conflicting cells, `confirmed` the cells whose basis
@@ -93,14 +98,10 @@ class ImportPlan(JsonData):
         taken = tuple(entry for entry in self.differences if entry.kind != "conflict")
         return taken + self.confirmed
 
-    def after_writing(self) -> ImportPlan:
-        """Return the plan with its edits counted as written."""
-        return replace(self, written=len(self.edits))
-
     def to_dict(self) -> dict[str, Any]:
         """Return it as JSON data."""
         matched = [{"row": row, "study": study} for row, study in self.matched]
-        return {**super().to_dict(), "matched": matched}
+        return {**self.model_dump(mode="json"), "matched": matched}
 
 
 @dataclass(frozen=True)
@@ -145,78 +146,57 @@ def plan_import(
     if not matched:
         reason = f": row {unmatched[0].row}, {unmatched[0].reason}" if unmatched else ""
         raise SurveyImportError(f"no row of {source} is about one of our studies{reason}")
-    single = {
-        str(row["attribute"])
-        for row in tables.attribute_definitions.to_dict("records")
-        if not row["multiple"]
-    }
+    definitions = tables.attribute_definitions
+    single = set(definitions.loc[~definitions["multiple"], "attribute"])
+    columns = [match for match in mapping.matches if match.target in mapping.attributes]
     stated: dict[tuple[str, str], dict[str, ValueMatch]] = {}
     place: dict[tuple[str, str], tuple[int, str]] = {}
-    for row, study in matched:
-        for match in mapping.matches:
-            if match.target not in mapping.attributes:
-                continue
-            text = cell_text(frame, row, match.column)
-            try:
-                values = reader.read(match.target, text, column_unit(match.column))
-            except UnreadableValueError as error:
-                errors.append(Problem(source, row, match.column, str(error)))
-                continue
-            cell = (study, match.target)
-            for value in values:
+    for (row, study), match in itertools.product(matched, columns):
+        cell = (study, match.target)
+        text = cell_text(frame, row, match.column)
+        try:
+            for value in reader.read(match.target, text, column_unit(match.column)):
                 stated.setdefault(cell, {}).setdefault(value.value, value)
                 place.setdefault(cell, (row, match.column))
-            if match.target in single and len(stated.get(cell, ())) > 1:
-                found = ", ".join(stated[cell])
-                message = f"{study} takes one {match.target}, got {found}"
-                errors.append(Problem(source, row, match.column, message))
-    found_cells = _compare(tables, stated, place)
-    guesses = {
-        (value.attribute, value.text): value
-        for values in stated.values()
-        for value in values.values()
-        if value.score < 1
-    }
+        except UnreadableValueError as error:
+            errors.append(Problem(source, row, match.column, str(error)))
+            continue
+        if match.target in single and len(stated.get(cell, ())) > 1:
+            message = f"{study} takes one {match.target}, got {', '.join(stated[cell])}"
+            errors.append(Problem(source, row, match.column, message))
+    found = _compare(tables, stated, place)
+    values = [value for cell in stated.values() for value in cell.values() if value.score < 1]
     return ImportPlan(
         source=source,
         mapping=mapping,
         matched=tuple(matched),
         unmatched=tuple(unmatched),
-        differences=tuple(entry for entry in found_cells if entry.kind != "confirmed"),
-        confirmed=tuple(entry for entry in found_cells if entry.kind == "confirmed"),
-        guesses=tuple(guesses.values()),
+        differences=tuple(entry for entry in found if entry.kind != "confirmed"),
+        confirmed=tuple(entry for entry in found if entry.kind == "confirmed"),
+        guesses=tuple({(value.attribute, value.text): value for value in values}.values()),
         errors=tuple(errors),
-        withdrawn=_withdrawn(tables, found_cells),
+        withdrawn=tuple(_withdrawn(tables, found)),
     )
 
 
-def _withdrawn(tables: SurveyTables, cells: Iterable[Difference]) -> tuple[Withdrawn, ...]:
-    """Return the rows of our other tables that rest on values that cells replace."""
+def _withdrawn(tables: SurveyTables, cells: Iterable[Difference]) -> Iterator[Withdrawn]:
+    """Give the rows of our other tables that rest on values that cells replace."""
     gone = {
         (cell.study, cell.attribute, value)
         for cell in cells
         if cell.kind == "changed"
         for value in set(cell.ours) - set(cell.theirs)
     }
-    roles = (
-        Withdrawn("roles", row["study"], row["value"], f"{row['role']}: {row['note']}")
-        for row in tables.roles.fillna("").to_dict("records")
-        if (row["study"], row["attribute"], row["value"]) in gone
-    )
-    pairs = (
-        Withdrawn("architectures", row["study"], f"{row['detector']} + {row['mask']}", row["note"])
-        for row in tables.architectures.fillna("").to_dict("records")
-        if any((row["study"], part, row[part]) in gone for part in ("detector", "mask"))
-    )
-    models = (
-        Withdrawn(
-            table, row["study"], " + ".join(row[name] for name in RESTING[table]), row["note"]
-        )
-        for table in ("compensated_models", "method_variants")
-        for row in getattr(tables, table).fillna("").to_dict("records")
-        if any((row["study"], "model", row[name]) in gone for name in RESTING[table])
-    )
-    return (*roles, *pairs, *models)
+    for table, names in RESTING.items():
+        for row in getattr(tables, table).fillna("").to_dict("records"):
+            if table == "roles":
+                rests, note = [(row["attribute"], row["value"])], f"{row['role']}: {row['note']}"
+            else:
+                parts = names if table == "architectures" else ["model"] * len(names)
+                rests, note = [*zip(parts, map(row.get, names), strict=True)], row["note"]
+            if any((row["study"], *each) in gone for each in rests):
+                value = " + ".join(row[name] for name in names)
+                yield Withdrawn(table=table, study=row["study"], value=value, note=note)
 
 
 def require_readable(plan: ImportPlan) -> None:
@@ -246,7 +226,7 @@ def _match_rows(
         try:
             study = finder.find(said["study"], said["title"], said["authors"], said["year"])
         except StudyNotFoundError as error:
-            unmatched.append(UnmatchedRow(row, str(error)))
+            unmatched.append(UnmatchedRow(row=row, reason=str(error)))
             continue
         identity = tuple(said.values())
         first_row, first = named.setdefault(study, (row, identity))
@@ -286,26 +266,24 @@ def _compare(
             kind = "conflict"
         else:
             kind = "changed" if cell.values else "new"
-        row, column = place[study, attribute]
-        found.append(
-            Difference(study, attribute, cell.values, theirs, cell.basis, kind, row, column)
+        said = Difference(
+            study=study,
+            attribute=attribute,
+            ours=cell.values,
+            theirs=theirs,
+            basis=cell.basis,
+            kind=kind,
+            row=place[study, attribute][0],
+            column=place[study, attribute][1],
         )
-        if kind == "changed" and attribute in KIND_OF:
-            found += _kind_of_another(ours, stated, found[-1])
+        found.append(said)
+        # The kind of a replaced accuracy or precision is unspecified, unless theirs says it.
+        of_kind = KIND_OF.get(attribute, "")
+        old = ours.get((study, of_kind))
+        if kind == "changed" and old is not None and (study, of_kind) not in stated:
+            changed = {"attribute": of_kind, "ours": old.values, "theirs": (UNSPECIFIED,)}
+            found += [said.model_copy(update=changed)] if old.values != (UNSPECIFIED,) else []
     return found
-
-
-def _kind_of_another(
-    ours: Mapping[tuple[str, str], _Cell],
-    stated: Mapping[tuple[str, str], Mapping[str, ValueMatch]],
-    number: Difference,
-) -> list[Difference]:
-    """Return the kind of a replaced accuracy or precision as unspecified, unless theirs says it."""
-    kind = KIND_OF[number.attribute]
-    cell = ours.get((number.study, kind))
-    if cell is None or cell.values == (UNSPECIFIED,) or (number.study, kind) in stated:
-        return []
-    return [replace(number, attribute=kind, ours=cell.values, theirs=(UNSPECIFIED,))]
 
 
 def _print_text(tables: SurveyTables) -> dict[tuple[str, str], list[set[str]]]:

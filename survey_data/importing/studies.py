@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from survey_data.importing.text_similarity import normalise, similarity
+from survey_data.importing.values import normalise, similarity
 from survey_data.tables import SurveyTables
 
 _LEAST_SCORE = 0.92
@@ -53,19 +53,20 @@ class StudyFinder:
         StudyNotFoundError
             Says why none was found, or which several could be meant.
         """
-        reasons = []
-        if key:
-            found = self._by_key.get(key.strip().casefold())
-            if found is not None:
-                return found
-            reasons.append(f"no study has the key {key!r}")
-        for given, search in ((title, self._find_title), (authors and year, None)):
-            if not given:
-                continue
-            try:
-                return search(title) if search else self._find_author(authors, year)
-            except StudyNotFoundError as error:
-                reasons.append(str(error))
+        found = self._by_key.get(key.strip().casefold())
+        if found is not None:
+            return found
+        reasons = [f"no study has the key {key!r}"] if key else []
+        try:
+            if title:
+                return self._find_title(title)
+        except StudyNotFoundError as error:
+            reasons.append(str(error))
+        try:
+            if authors and year:
+                return self._find_author(authors, year)
+        except StudyNotFoundError as error:
+            reasons.append(str(error))
         raise StudyNotFoundError("; ".join(reasons) or "the row names no study")
 
     def _find_title(self, title: str) -> str:
@@ -78,10 +79,9 @@ class StudyFinder:
         return keys[0]
 
     def _keys_of_like_title(self, plain: str) -> list[str]:
-        ranked = sorted(
-            ((similarity(plain, other), other) for other in self._titles if _close(plain, other)),
-            reverse=True,
-        )
+        lengths = (0.8 * len(plain), len(plain) / 0.8)  # others cannot be so much alike
+        near = [other for other in self._titles if lengths[0] <= len(other) <= lengths[1]]
+        ranked = sorted(((similarity(plain, other), other) for other in near), reverse=True)
         if not ranked or ranked[0][0] < _LEAST_SCORE:
             return []
         likeliest = [other for score, other in ranked if ranked[0][0] - score < _LEAST_LEAD]
@@ -102,12 +102,6 @@ class StudyFinder:
 
 def _letters(text: str) -> str:
     return normalise(text).replace(" ", "")
-
-
-def _close(one: str, other: str) -> bool:
-    """Say whether two titles are of similar length, the cheap condition for a high similarity."""
-    longest = max(len(one), len(other))
-    return longest > 0 and min(len(one), len(other)) >= 0.8 * longest
 
 
 def cell_text(frame: pd.DataFrame, row: int, column: str | None) -> str:

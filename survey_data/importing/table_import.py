@@ -7,8 +7,7 @@ from contextlib import nullcontext
 from pathlib import Path
 
 from files.csv_writing import csv_text
-from files.strict_csv import read_records
-from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
+from survey_data.descriptor import DATA_DIRECTORY
 from survey_data.importing.columns import match_columns
 from survey_data.importing.plan import (
     AUTHORS_BASIS,
@@ -18,7 +17,7 @@ from survey_data.importing.plan import (
     require_readable,
 )
 from survey_data.importing.table_reader import read_table
-from survey_data.importing.writing import locked_tables, write_valid
+from survey_data.importing.writing import locked_tables, rows_of, write_valid
 from survey_data.tables import RESTING, SurveyTables, load
 
 _TABLE = "attributes"
@@ -62,7 +61,6 @@ def import_table(
         Our own tables cannot be read.
     """
     frame = read_table(path, sheet)
-
     folder = DATA_DIRECTORY if directory is None else Path(directory)
     with locked_tables(folder) if apply else nullcontext():
         tables = load(folder)
@@ -90,7 +88,7 @@ def _write(folder: Path, tables: SurveyTables, plan: ImportPlan) -> ImportPlan:
     if counts:
         texts["counts"] = _count(folder, counts)
     write_valid(folder, texts)
-    return plan.after_writing()
+    return plan.model_copy(update={"written": len(plan.edits)})
 
 
 def _authors_doi(tables: SurveyTables) -> str:
@@ -100,18 +98,16 @@ def _authors_doi(tables: SurveyTables) -> str:
 
 def _without(folder: Path, table: str, gone: set[tuple[str, str]]) -> tuple[str, int]:
     """Return a table without rows, given by study and value or pair, and how many are left."""
-    header = list(column_types(table))
+    header, rows = rows_of(folder, table)
     places = [header.index(name) for name in RESTING[table]]
-    rows = [cells for _, cells in read_records(folder / file_name(table), header).rows]
     kept = [c for c in rows if (c[0], " + ".join(c[at] for at in places)) not in gone]
     return csv_text(header, kept), len(kept)
 
 
 def _count(folder: Path, counts: Mapping[str, int]) -> str:
     """Return the text of counts.csv with the rows that tables have now."""
-    header = list(column_types("counts"))
+    header, rows = rows_of(folder, "counts")
     named, column, held = map(header.index, ("table", "column", "held"))
-    rows = [cells for _, cells in read_records(folder / file_name("counts"), header).rows]
     for cells in rows:
         if not cells[column] and cells[named] in counts:
             cells[held] = str(counts[cells[named]])
@@ -120,28 +116,14 @@ def _count(folder: Path, counts: Mapping[str, int]) -> str:
 
 def _edit(folder: Path, plan: ImportPlan, doi: str) -> str:
     """Return the text of attributes.csv with the plan's cells replaced where they stand."""
-    header = list(column_types(_TABLE))
-    rows = [cells for _, cells in read_records(folder / file_name(_TABLE), header).rows]
-    waiting = {(edit.study, edit.attribute): edit for edit in plan.edits}
-    last = {cells[0]: index for index, cells in enumerate(rows)}
-    present = {(cells[0], cells[1]) for cells in rows}
-    written: set[tuple[str, str]] = set()
-    edited: list[list[str]] = []
-    for index, cells in enumerate(rows):
-        at = (cells[0], cells[1])
-        if at not in waiting:
-            edited.append(cells)
-        elif at not in written:
-            written.add(at)
-            replaced = [old for old in rows if (old[0], old[1]) == at]
-            edited += _rows_of(waiting[at], replaced, doi)
-        if last[cells[0]] == index:
-            edited += [
-                row
-                for (study, attribute), edit in waiting.items()
-                if study == cells[0] and (study, attribute) not in present
-                for row in _rows_of(edit, [], doi)
-            ]
+    header, rows = rows_of(folder, _TABLE)
+    held: dict[str, dict[str, list[list[str]]]] = {}
+    for cells in rows:
+        held.setdefault(cells[0], {}).setdefault(cells[1], []).append(cells)
+    for edit in plan.edits:
+        of_study = held[edit.study]
+        of_study[edit.attribute] = _rows_of(edit, of_study.get(edit.attribute, []), doi)
+    edited = [row for study in held.values() for cell in study.values() for row in cell]
     return csv_text(header, edited)
 
 

@@ -1,7 +1,8 @@
 """Reading a table somebody else made: CSV with any usual delimiter, or XLSX.
 
-What a workbook says of its own size is not believed: cells are read as a stream, up to fixed
-numbers of bytes, rows and cells.
+What a workbook says of its own size is not believed: the places of its cells are looked through
+before any cell is read, and cells are read as a stream, up to fixed numbers of bytes, rows and
+cells.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from typing import Any
 
 import pandas as pd
 
-from survey_data.importing.offered_files import offered_bytes
+from survey_data.importing.writing import offered_bytes
 from survey_data.problems import SurveyImportError
 
 #: What the parts of a workbook may unpack to, together.
@@ -35,8 +36,12 @@ _DELIMITERS = (",", ";", "\t", "|")
 _ZIP_MAGIC = b"PK\x03\x04"
 _OLD_EXCEL_MAGIC = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _WORKBOOK_SUFFIXES = {".xlsx", ".xlsm"}
-_SHEET_CELL = re.compile(rb"<(?:\w+:)?c[\s/>]")
-_SHEET_PLACE = re.compile(rb'<(?:\w+:)?(?:row|c)\s(?:[^>]*\s)?r="([A-Z]{0,3})([0-9]{1,20})"')
+#: A row or a cell of a sheet, its place where it says one, and what stands behind it.
+_PLACE = re.compile(
+    rb'<(?:\w+:)?(row|c)(?=[\s/>])(?:(?:[^<>]*?\s)?r="([A-Z]{0,3})([0-9]{1,20})")?'
+    rb"([^<>]*)>(?=(.{0,2}))",
+    re.DOTALL,
+)
 #: What a spreadsheet writes where a formula fails; read as text it would pass for "not stated".
 _ERRORS = frozenset({"#N/A", "#VALUE!", "#REF!", "#DIV/0!", "#NAME?", "#NUM!", "#NULL!"})
 
@@ -82,26 +87,22 @@ def read_table(path: str | Path, sheet: str | None = None) -> pd.DataFrame:
             else f"{path.name} is a zip archive or workbook, not CSV; a workbook ends in .xlsx"
         )
     if named_workbook:
-        rows = _read_workbook(path.name, data, sheet)
-    elif sheet is not None:
+        return _as_frame(path.name, _read_workbook(path.name, data, sheet))
+    if sheet is not None:
         raise SurveyImportError(f"{path.name} is no workbook and has no sheet {sheet!r}")
-    else:
-        rows = _read_text(_decode(path.name, data))
-    return _as_frame(path.name, rows)
+    return _as_frame(path.name, _read_text(_decode(path.name, data)))
 
 
 def _read_workbook(name: str, data: bytes, wanted: str | None) -> list[Row]:
     from openpyxl import load_workbook  # noqa: PLC0415 - most calls read CSV
 
     try:
-        has_formulas = _check_archive(name, data)
-        with warnings.catch_warnings():
+        with zipfile.ZipFile(io.BytesIO(data)) as archive, warnings.catch_warnings():
+            _check_archive(name, archive)
             warnings.simplefilter("ignore")  # of styles and validations that it drops
             values = load_workbook(io.BytesIO(data), read_only=True, data_only=True)
-            title, rows = _chosen_sheet(name, values, wanted)
-            if rows and has_formulas:
-                written = load_workbook(io.BytesIO(data), read_only=True)
-                _require_computed(values[title], written[title])
+            formulas = load_workbook(io.BytesIO(data), read_only=True)
+            rows = _rows_of_sheet(name, values, formulas, wanted)
     except SurveyImportError:
         raise
     except Exception as error:  # a mangled part leads openpyxl to raise anything
@@ -111,68 +112,82 @@ def _read_workbook(name: str, data: bytes, wanted: str | None) -> list[Row]:
     return [(number, cells + [""] * (width - len(cells))) for number, cells in rows]
 
 
-def _check_archive(name: str, data: bytes) -> bool:
-    """Refuse an archive that is too large, or rows out of order; say whether there are formulas.
+def _check_archive(name: str, archive: zipfile.ZipFile) -> None:
+    """Refuse an archive that is too large, and sheets with cells too far out or out of order.
 
     No more of a part is unpacked than its stated size, so that a size that lies gains nothing.
-    openpyxl passes over a row or a cell that stands before its neighbour.
     """
-    has_formulas = False
-    with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        members = archive.infolist()
-        if sum(member.file_size for member in members) > LARGEST_UNPACKED:
-            raise SurveyImportError(f"{name} unpacks to more than {LARGEST_UNPACKED} bytes")
-        if len(set(archive.namelist())) < len(members):
-            raise SurveyImportError(f"{name} holds two files of one name")
-        for member in archive.namelist():
-            part = archive.read(member)
-            if part.count(b"<") > _MOST_TAGS:
-                raise SurveyImportError(f"{name}: {member} has more than {_MOST_TAGS} tags")
-            if "worksheets/" not in member:
-                continue
-            has_formulas |= b"<f" in part
-            if sum(1 for _ in _SHEET_CELL.finditer(part)) > LARGEST_CELLS:
-                raise SurveyImportError(f"{name} has more than {LARGEST_CELLS} cells")
-            before = (0, 0, b"")
-            for letters, digits in _SHEET_PLACE.findall(part):
-                place = (int(digits), len(letters), letters)
-                what = f"cell {letters.decode()}" if letters else "row "
-                if place <= before:
-                    message = f"{what}{place[0]} stands twice or out of order"
-                    raise SurveyImportError(message, row=place[0])
-                if place[0] > _LAST_ROW:
-                    raise SurveyImportError(f"{name} has a row {place[0]}, a sheet {_LAST_ROW}")
-                before = place
-    return has_formulas
+    members = archive.infolist()
+    if sum(member.file_size for member in members) > LARGEST_UNPACKED:
+        raise SurveyImportError(f"{name} unpacks to more than {LARGEST_UNPACKED} bytes")
+    if len(set(archive.namelist())) < len(members):
+        raise SurveyImportError(f"{name} holds two files of one name")
+    for member in archive.namelist():
+        part = archive.read(member)
+        if part.count(b"<") > _MOST_TAGS:
+            raise SurveyImportError(f"{name}: {member} has more than {_MOST_TAGS} tags")
+        if "worksheets/" in member:
+            _check_places(name, part)
 
 
-def _chosen_sheet(name: str, book: Any, wanted: str | None) -> tuple[str, list[Row]]:
-    """Return the sheet that is wanted, or the first visible one with rows, and its rows."""
-    titles = [sheet.title for sheet in book.worksheets]
-    if wanted is not None:
-        if wanted not in titles:
-            raise SurveyImportError(f"{name} has no sheet {wanted!r}; it has {', '.join(titles)}")
-        return wanted, list(_filled_rows(name, book[wanted]))
-    visible = [title for title in titles if book[title].sheet_state == "visible"]
-    for title in visible:
-        if rows := list(_filled_rows(name, book[title])):
-            return title, rows
-    hidden = [title for title in titles if title not in visible]
-    if any(any(_filled_rows(name, book[title])) for title in hidden):
+def _check_places(name: str, part: bytes) -> None:
+    """Check where the cells of a sheet are; openpyxl passes over one that is out of order."""
+    count = 0
+    before = (0, 0, b"")
+    for kind, letters, digits, end, behind in (m.groups() for m in _PLACE.finditer(part)):
+        count += kind == b"c"
+        if count > LARGEST_CELLS:
+            raise SurveyImportError(f"{name} has more than {LARGEST_CELLS} cells")
+        if not digits:
+            continue
+        place = (int(digits), len(letters), letters)
+        what = f"cell {letters.decode()}" if letters else "row "
+        if place <= before:
+            message = f"{what}{place[0]} stands twice or out of order"
+            raise SurveyImportError(message, row=place[0])
+        if place[0] > _LAST_ROW:
+            raise SurveyImportError(f"{name} has a row {place[0]}, a sheet {_LAST_ROW}")
+        is_empty = end.endswith(b"/") or behind == b"</"
+        if letters and place[1:] > (2, b"IV") and not is_empty:
+            message = f"{what}{place[0]}: a table has at most {LARGEST_COLUMNS} columns"
+            raise SurveyImportError(message, row=place[0])
+        before = place
+
+
+def _rows_of_sheet(name: str, values: Any, formulas: Any, wanted: str | None) -> list[Row]:
+    """Return the rows of the sheet that is wanted, or of the first visible one with rows."""
+    titles = [sheet.title for sheet in values.worksheets]
+    if wanted is not None and wanted not in titles:
+        raise SurveyImportError(f"{name} has no sheet {wanted!r}; it has {', '.join(titles)}")
+    hidden = []
+    sheets = [values[title] for title in titles if wanted in (None, title)]
+    for sheet in sorted(sheets, key=lambda sheet: sheet.sheet_state != "visible"):
+        rows = list(_filled_rows(name, sheet, formulas[sheet.title]))
+        if rows and (wanted or sheet.sheet_state == "visible"):
+            return rows
+        hidden += [sheet.title] if rows else []
+    if hidden:
         raise SurveyImportError(
             f"{name} has rows in hidden sheets alone ({', '.join(hidden)}); name one with --sheet"
         )
-    return "", []
+    return []
 
 
-def _filled_rows(name: str, sheet: Any) -> Iterator[Row]:
+def _filled_rows(name: str, sheet: Any, formulas: Any) -> Iterator[Row]:
     """Give the rows of a sheet that hold anything, without the cells behind the last filled one."""
     sheet.reset_dimensions()
+    formulas.reset_dimensions()
     count = filled = 0
-    for number, row in enumerate(sheet.rows, 1):
+    missing = []
+    for number, (row, written) in enumerate(zip(sheet.rows, formulas.rows, strict=True), 1):
         count += len(row)
         if count > LARGEST_CELLS:
             raise SurveyImportError(f"{name} has more than {LARGEST_CELLS} cells")
+        missing += [
+            formula.coordinate
+            for cell, formula in zip(row, written, strict=True)
+            if formula.data_type == "f" and cell.value is None and cell.data_type != "str"
+        ]
         texts = [_text(f"sheet {sheet.title}", cell) for cell in row]
         while texts and not texts[-1]:
             texts.pop()
@@ -181,21 +196,10 @@ def _filled_rows(name: str, sheet: Any) -> Iterator[Row]:
             raise SurveyImportError(f"{name} has more than {LARGEST_ROWS} rows")
         if texts:
             yield number, texts
-
-
-def _require_computed(values: Any, formulas: Any) -> None:
-    """Refuse formulas without a value, which a workbook has that no spreadsheet has saved."""
-    formulas.reset_dimensions()
-    without = [
-        formula.coordinate
-        for row, written in zip(values.rows, formulas.rows, strict=True)
-        for cell, formula in zip(row, written, strict=True)
-        if formula.data_type == "f" and cell.value is None and cell.data_type != "str"
-    ]
-    if without:
-        more = f" and {len(without) - 10} more" if len(without) > 10 else ""
+    if missing:
+        more = f" and {len(missing) - 10} more" if len(missing) > 10 else ""
         raise SurveyImportError(
-            f"sheet {values.title}: formulas without a value in {', '.join(without[:10])}{more}; "
+            f"sheet {sheet.title}: formulas without a value in {', '.join(missing[:10])}{more}; "
             "open the workbook where it was made, let it compute, and save it"
         )
 
@@ -211,8 +215,6 @@ def _text(sheet: str, cell: Any) -> str:
         wrong = f"an error ({text}) is no value of a table"
     elif isinstance(value, bool):
         wrong = f"a truth value ({text}) is no value of a table"
-    elif text and cell.column > LARGEST_COLUMNS:
-        wrong = f"a table has at most {LARGEST_COLUMNS} columns"
     elif len(text) > LONGEST_CELL:
         wrong = f"longer than {LONGEST_CELL} characters"
     if wrong:
@@ -245,12 +247,14 @@ def _read_text(text: str) -> list[Row]:
     header = next((line for line in text.splitlines() if line.strip()), "")
     if len(header) > _LONGEST_LINE:
         raise SurveyImportError(f"the header is longer than {_LONGEST_LINE} characters", row=1)
-    delimiter = max(_DELIMITERS, key=lambda mark: _columns(header, mark))
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
     rows: list[Row] = []
     start = 1
     count = 0
     try:
+        delimiter = max(
+            _DELIMITERS, key=lambda mark: len(next(csv.reader([header], delimiter=mark)))
+        )
+        reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
         for cells in reader:
             count += len(cells)
             if count > LARGEST_CELLS:
@@ -260,13 +264,6 @@ def _read_text(text: str) -> list[Row]:
     except csv.Error as error:
         raise SurveyImportError(f"broken CSV: {error}", row=start) from error
     return rows
-
-
-def _columns(header: str, delimiter: str) -> int:
-    try:
-        return len(next(csv.reader([header], delimiter=delimiter)))
-    except csv.Error:  # a field beyond the limit, which reading the rows names
-        return 0
 
 
 def _as_frame(name: str, rows: Sequence[Row]) -> pd.DataFrame:
@@ -301,8 +298,8 @@ def _as_frame(name: str, rows: Sequence[Row]) -> pd.DataFrame:
 
 def _check_cells(number: int, cells: Sequence[str], header: Sequence[str]) -> None:
     """Refuse a row of another length, and cells that say that something went wrong before."""
+    said = ""
     for place, cell in enumerate(cells):
-        said = ""
         if "\ufffd" in cell:
             said = f"{cell[:80]!r} holds U+FFFD, a letter that was lost"
         elif cell in _ERRORS:
@@ -313,8 +310,5 @@ def _check_cells(number: int, cells: Sequence[str], header: Sequence[str]) -> No
             column = header[min(place, len(header) - 1)]
             raise SurveyImportError(said, row=number, column=column)
     if len(cells) < len(header):
-        raise SurveyImportError(
-            f"the row ends after {len(cells)} of {len(header)} cells",
-            row=number,
-            column=header[len(cells)],
-        )
+        said = f"the row ends after {len(cells)} of {len(header)} cells"
+        raise SurveyImportError(said, row=number, column=header[len(cells)])

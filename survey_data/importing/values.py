@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+import unicodedata
+from difflib import SequenceMatcher
+from typing import Any
 
-import pandas as pd
+from pydantic import BaseModel, ConfigDict
 
 from survey_data.accuracy_classes import accuracy_class
-from survey_data.importing.text_similarity import normalise, similarity
 from survey_data.tables import SurveyTables
 
 _LEAST_SCORE = 0.85
@@ -20,6 +20,7 @@ _NOT_STATED = {
     *("not stated", "not reported", "tbd", "null"),
 }
 _DEGREES = {"deg": 1.0, "arcmin": 1 / 60, "arcsec": 1 / 3600}
+_MARKS = {"'": "arcmin", '"': "arcsec", "''": "arcsec"}
 _UNIT = r"deg(?:ree)?s?|°|arc-?\s?min(?:ute)?s?|'|′|arc-?\s?sec(?:ond)?s?|\"|″|''"
 _ANGLE = re.compile(
     rf"[~≈=]{{0,2}}\s*(?P<half>±|\+/-|\+-)?\s*(?P<number>[0-9]+(?:[.,][0-9]+)?(?:e-?[0-9]+)?)"
@@ -27,12 +28,23 @@ _ANGLE = re.compile(
     rf"(?:\s*[x×]\s*(?P<second>[0-9]+(?:[.,][0-9]+)?)\s*(?:{_UNIT})?)?",
     re.IGNORECASE,
 )
-
-
 _INEQUALITY = re.compile(r"[<≤>≥]|[<>]=")
 #: Longer texts list no values: a cell of all 137 of them is shorter.
 _LONGEST = 5000
 _SHOWN = 80
+
+
+def normalise(text: str) -> str:
+    """Return a label in lower case, without accents, punctuation and plural endings."""
+    decomposed = unicodedata.normalize("NFKD", text)
+    plain = "".join(letter for letter in decomposed if not unicodedata.combining(letter))
+    words = re.findall(r"[^\W_]+", plain.casefold())
+    return " ".join(re.sub(r"(?<=..[^s])s$", "", word) for word in words)
+
+
+def similarity(one: str, other: str) -> float:
+    """Return how alike two normalised labels are, from 0 to 1."""
+    return 1.0 if one == other else SequenceMatcher(None, one, other, autojunk=False).ratio()
 
 
 def states_nothing(text: str) -> bool:
@@ -44,9 +56,10 @@ class UnreadableValueError(ValueError):
     """A cell's text is no value of the attribute."""
 
 
-@dataclass(frozen=True)
-class ValueMatch:
+class ValueMatch(BaseModel):
     """A piece of a cell and the value it was read as; score 1 is a known spelling."""
+
+    model_config = ConfigDict(frozen=True)
 
     attribute: str
     text: str
@@ -59,25 +72,31 @@ class ValueReader:
 
     def __init__(self, tables: SurveyTables) -> None:
         self._tables = tables
-        self._definitions = tables.attribute_definitions.set_index("attribute")
+        rows = tables.attribute_definitions.to_dict("records")
+        self._definitions = {str(row["attribute"]): row for row in rows}
+        spelt: list[Any] = [
+            *tables.aliases[["attribute", "alias", "value"]].itertuples(index=False)
+        ]
+        spelt += tables.taxonomy[["attribute", "name", "value"]].itertuples(index=False)
+        kinds = tables.statistics
+        for attribute, definition in self._definitions.items():
+            if definition["kind"] == "statistic":
+                for kind, name in zip(kinds["kind"], kinds["name"], strict=True):
+                    spelt += [(attribute, name, kind), (attribute, kind, kind)]
         # attribute -> normalised spelling -> values it may stand for
         self._spellings: dict[str, dict[str, set[str]]] = {}
-        spelt = [(row["attribute"], row["alias"], row["value"]) for row in _rows(tables.aliases)]
-        spelt += [(row["attribute"], row["name"], row["value"]) for row in _rows(tables.taxonomy)]
-        statistics = _rows(tables.statistics)
-        for attribute, kind in self._definitions["kind"].items():
-            if kind == "statistic":
-                spelt += [(str(attribute), row["name"], row["kind"]) for row in statistics]
-                spelt += [(str(attribute), row["kind"], row["kind"]) for row in statistics]
         for attribute, spelling, value in spelt:
-            of_attribute = self._spellings.setdefault(attribute, {})
-            of_attribute.setdefault(normalise(spelling), set()).add(value)
-        for row in _rows(tables.taxonomy):  # a value's own label means that value and no other
-            self._spellings[row["attribute"]][normalise(row["value"])] = {row["value"]}
+            of_attribute = self._spellings.setdefault(str(attribute), {})
+            of_attribute.setdefault(normalise(str(spelling)), set()).add(str(value))
+        # a value's own label means that value and no other
+        for attribute, value in zip(
+            tables.taxonomy["attribute"], tables.taxonomy["value"], strict=True
+        ):
+            self._spellings[attribute][normalise(value)] = {value}
 
     def is_numeric(self, attribute: str) -> bool:
         """Say whether the attribute holds numbers."""
-        return bool(self._definitions.loc[attribute, "kind"] == "numeric")
+        return bool(self._definitions[attribute]["kind"] == "numeric")
 
     def read(self, attribute: str, text: str, unit: str = "deg") -> list[ValueMatch]:
         """Return the values a cell states, in their order; an empty list where it states none.
@@ -116,8 +135,7 @@ class ValueReader:
         return list(matches.values())
 
     def _states_something(self, attribute: str, text: str) -> bool:
-        plain = normalise(text)
-        is_value = plain == "none" and "none" in self._spellings.get(attribute, {})
+        is_value = normalise(text) == "none" and "none" in self._spellings.get(attribute, {})
         return is_value or not states_nothing(text)
 
     def _lookup(self, attribute: str, text: str) -> set[str]:
@@ -126,31 +144,29 @@ class ValueReader:
     def _read_compound(self, attribute: str, piece: str, unit: str) -> list[ValueMatch]:
         if attribute == "accuracy" and (_ANGLE.fullmatch(piece) or _INEQUALITY.match(piece)):
             degrees = self._degrees(attribute, piece, unit)
-            return [
-                ValueMatch(attribute, piece, accuracy_class(self._tables.taxonomy, degrees), 1.0)
-            ]
-        parts = _split(piece, r"[/&+]|\band\b")
-        if len(parts) > 1 and not self._lookup(attribute, piece):
-            try:
-                return [self._read_piece(attribute, piece)]
-            except UnreadableValueError:
-                return [self._read_piece(attribute, part) for part in parts]
-        return [self._read_piece(attribute, piece)]
+            value = accuracy_class(self._tables.taxonomy, degrees)
+            return [ValueMatch(attribute=attribute, text=piece, value=value, score=1.0)]
+        try:
+            return [self._read_piece(attribute, piece)]
+        except UnreadableValueError:
+            parts = _split(piece, r"[/&+]|\band\b")
+            if len(parts) < 2 or self._lookup(attribute, piece):
+                raise
+        return [self._read_piece(attribute, part) for part in parts]
 
     def _read_piece(self, attribute: str, piece: str) -> ValueMatch:
-        exact = self._lookup(attribute, piece)
-        if len(exact) == 1:
-            return ValueMatch(attribute, piece, next(iter(exact)), 1.0)
-        if exact:
+        exact = sorted(self._lookup(attribute, piece))
+        if len(exact) > 1:
             raise UnreadableValueError(
-                f"{piece!r} may stand for {' or '.join(sorted(exact))} of {attribute}"
+                f"{piece!r} may stand for {' or '.join(exact)} of {attribute}"
             )
-        ranked = self._rank(attribute, normalise(piece))
+        ranked = [(1.0, value) for value in exact] or self._rank(attribute, normalise(piece))
         if ranked:
             score, value = ranked[0]
             lead = score - ranked[1][0] if len(ranked) > 1 else score
             if score >= _LEAST_SCORE and lead >= _LEAST_LEAD:
-                return ValueMatch(attribute, piece, value, round(score, 3))
+                score = round(score, 3)
+                return ValueMatch(attribute=attribute, text=piece, value=value, score=score)
         nearest = f"; the nearest is {ranked[0][1]!r} ({ranked[0][0]:.2f})" if ranked else ""
         raise UnreadableValueError(f"{piece!r} is no value of {attribute}{nearest}")
 
@@ -158,23 +174,21 @@ class ValueReader:
         best: dict[str, float] = {}
         for spelling, values in self._spellings[attribute].items():
             shorter, longer = sorted((len(plain), len(spelling)))
-            if shorter < max(_LEAST_LENGTH, longer / 3) or len(values) > 1:
-                continue
-            value = next(iter(values))
-            best[value] = max(best.get(value, 0.0), similarity(plain, spelling))
+            if shorter >= max(_LEAST_LENGTH, longer / 3) and len(values) == 1:
+                value = next(iter(values))
+                best[value] = max(best.get(value, 0.0), similarity(plain, spelling))
         return sorted(
             ((score, value) for value, score in best.items()), key=lambda e: (-e[0], e[1])
         )
 
     def _read_number(self, attribute: str, text: str, unit: str) -> ValueMatch:
         degrees = self._degrees(attribute, text, unit)
-        definition = self._definitions.loc[attribute]
-        if not definition["min"] <= degrees <= definition["max"]:
+        least, most = (float(self._definitions[attribute][name]) for name in ("min", "max"))
+        if not least <= degrees <= most:
             raise UnreadableValueError(
-                f"{text!r} is out of range: expected {attribute} from {definition['min']:g} to "
-                f"{definition['max']:g} deg"
+                f"{text!r} is out of range: expected {attribute} from {least:g} to {most:g} deg"
             )
-        return ValueMatch(attribute, text, f"{degrees:.6g}", 1.0)
+        return ValueMatch(attribute=attribute, text=text, value=f"{degrees:.6g}", score=1.0)
 
     def _degrees(self, attribute: str, text: str, unit: str) -> float:
         if _INEQUALITY.match(text.strip()):
@@ -188,9 +202,10 @@ class ValueReader:
         second = match["second"]
         if second is not None and float(second.replace(",", ".")) != number:
             raise UnreadableValueError(f"two different angles in {text!r}: {attribute} takes one")
-        degrees = number * _DEGREES[_unit_name(match["unit"]) or unit]
+        said = match["unit"] or unit
+        degrees = number * _DEGREES[_MARKS.get(said) or column_unit(said)]
         if match["half"] and self.is_numeric(attribute):
-            degrees *= float(str(self._definitions.loc[attribute, "plus_minus_factor"]))
+            degrees *= float(self._definitions[attribute]["plus_minus_factor"])
         return degrees
 
 
@@ -203,42 +218,7 @@ def column_unit(column: str) -> str:
     return "deg"
 
 
-def _unit_name(unit: str | None) -> str | None:
-    if unit is None:
-        return None
-    plain = unit.casefold()
-    if "sec" in plain or plain in {'"', "″", "''"}:
-        return "arcsec"
-    if "min" in plain or plain in {"'", "′"}:
-        return "arcmin"
-    return "deg"
-
-
 def _split(text: str, mark: str) -> list[str]:
-    """Split at a mark that stands outside parentheses, in one pass over the text."""
-    pieces = [""]
-    for inside, part in _parenthesise(text):
-        if inside:
-            pieces[-1] += part
-            continue
-        first, *rest = re.split(f"(?:{mark})", part)
-        pieces[-1] += first
-        pieces += rest
-    return [piece.strip() for piece in pieces if piece.strip()]
-
-
-def _parenthesise(text: str) -> Iterator[tuple[bool, str]]:
-    """Yield (whether in parentheses, part); a parenthesis that is never closed encloses nothing."""
-    at = 0
-    for found in re.finditer(r"\([^()]*\)", text):
-        yield False, text[at : found.start()]
-        yield True, found[0]
-        at = found.end()
-    yield False, text[at:]
-
-
-def _rows(frame: pd.DataFrame) -> list[dict[str, str]]:
-    return [
-        {str(name): str(cell) for name, cell in record.items()}
-        for record in frame.to_dict("records")
-    ]
+    """Split at a mark outside parentheses; one that is never closed encloses nothing."""
+    cut = re.sub(rf"(\([^()]*\))|{mark}", lambda found: found[1] or "\x00", text)
+    return [piece.strip() for piece in cut.split("\x00") if piece.strip()]

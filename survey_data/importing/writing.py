@@ -1,4 +1,4 @@
-"""Writing tables anew: only if all of them stay valid, and whole or not at all."""
+"""Reading what is offered, and writing tables anew: only valid ones, whole or not at all."""
 
 from __future__ import annotations
 
@@ -10,12 +10,37 @@ from pathlib import Path
 from files.atomic import restore
 from files.locks import wait_for_lock
 from files.manifest import write_recorded
-from files.reading import FileRefusedError
+from files.reading import FileRefusedError, read_bytes
+from files.strict_csv import read_records
 from files.temporary import temporary_directory
-from survey_data.descriptor import DESCRIPTOR_FILE, file_name, table_names
+from survey_data.descriptor import DESCRIPTOR_FILE, column_types, file_name, table_names
 from survey_data.editions import FOLDER
 from survey_data.problems import SurveyImportError
 from survey_data.validation.validate import validate
+
+
+def offered_bytes(path: Path, largest: int) -> bytes:
+    """Return the bytes of a file; SurveyImportError where it cannot be read or is larger."""
+    try:
+        return read_bytes(path, largest)
+    except FileNotFoundError as error:
+        raise SurveyImportError(f"cannot read {path}: {error.strerror}") from error
+    except FileRefusedError as error:
+        raise SurveyImportError(f"cannot read {path}: {error.reason}") from error
+
+
+def offered_text(path: Path, largest: int) -> str:
+    """Return the text of a UTF-8 file; raises as `offered_bytes`."""
+    try:
+        return offered_bytes(path, largest).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise SurveyImportError(f"{path.name} is not UTF-8 text") from error
+
+
+def rows_of(folder: Path, table: str) -> tuple[list[str], list[list[str]]]:
+    """Return the columns of one of our tables, and its rows as text."""
+    header = list(column_types(table))
+    return header, [cells for _, cells in read_records(folder / file_name(table), header).rows]
 
 
 @contextmanager
@@ -76,8 +101,7 @@ def require_valid(folder: Path, texts: Mapping[str, str]) -> None:
             shutil.copyfile(folder / name, scratch / name)
         for table, text in texts.items():
             (scratch / file_name(table)).write_text(text, encoding="utf-8", newline="")
-        problems = validate(scratch)
+        problems = tuple(validate(scratch))
     if problems:
-        raise SurveyImportError(
-            f"the tables would not be valid: {problems[0]}", problems=tuple(problems)
-        )
+        message = f"the tables would not be valid: {problems[0]}"
+        raise SurveyImportError(message, problems=problems)

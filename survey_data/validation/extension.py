@@ -12,8 +12,8 @@ from survey_data.editions import BY_STUDY
 from survey_data.validation.cells import Frames, Rule, known_values, problem, texts
 
 #: Tables that a rule of studies may look at beside those of the edition.
-_SHARED = frozenset(
-    {"taxonomy", "attribute_definitions", "bases", "statistics", "sources", "labels"}
+SHARED = frozenset(
+    {"taxonomy", "attribute_definitions", "aliases", "bases", "statistics", "sources", "labels"}
 )
 #: Evidence that only the survey, or its authors' own table, gives.
 SURVEY_BASES = ("survey-table", "authors-table", "survey-text")
@@ -30,7 +30,7 @@ def check_extension(
     rules : those of the survey's studies; of them the ones that ask for nothing but studies and
         vocabulary hold for these too
     """
-    later = {name: frames[name] for name in _SHARED if name in frames}
+    later = {name: frames[name] for name in SHARED if name in frames}
     for name in BY_STUDY:
         if f"extension_{name}" in frames:
             later[name] = frames[f"extension_{name}"]
@@ -38,7 +38,7 @@ def check_extension(
     found = [
         replace(each, file=own.get(each.file, each.file))
         for needed, rule in rules
-        if needed and {*needed} <= _SHARED | {*BY_STUDY} and {*needed} & {*BY_STUDY}
+        if needed and {*needed} <= SHARED | {*BY_STUDY} and {*needed} & {*BY_STUDY}
         if all(name in later for name in needed)
         for each in rule(later)
     ]

@@ -16,6 +16,8 @@ from files.problems import Problem
 from survey_data.accuracy_classes import class_disagreements
 from survey_data.descriptor import primary_key
 from survey_data.findings.grammar import FindingSyntaxError, Vocabulary, parse_clause
+from survey_data.importing.values import states_nothing
+from survey_data.nearest import one_of
 from survey_data.reported import KIND_OF
 from survey_data.tables import FIRST_ROW
 from survey_data.validation import built_sensors, citations, provenance
@@ -38,7 +40,7 @@ def check_rules(frames: Frames) -> list[Problem]:
 def _values_belong(frames: Frames) -> Iterator[Problem]:
     """Check that a value is of its attribute's vocabulary, or a number in its range."""
     vocabulary = Vocabulary(frames["taxonomy"]).values
-    kinds = {kind for _, (kind,) in texts(frames["statistics"], "kind")}
+    kinds = [kind for _, (kind,) in texts(frames["statistics"], "kind")]
     rows = frames["attribute_definitions"].to_dict("records")
     definitions = {str(row["attribute"]): row for row in rows}
     for index, (attribute, value) in texts(frames["attributes"], "attribute", "value"):
@@ -50,11 +52,31 @@ def _values_belong(frames: Frames) -> Iterator[Problem]:
             if value not in (vocabulary.get(attribute, ()) if categorical else kinds):
                 of = "taxonomy value" if categorical else "kind"
                 message = f"unknown {of} {value!r} of {attribute}"
-                yield problem("attributes", index, "value", message)
+                words = kinds if not categorical else _words(frames, attribute)
+                if states_nothing(value):
+                    hint = f"{one_of('', words)}; what is not stated has the basis unknown"
+                else:
+                    hint = one_of(value, words, _spellings(frames, attribute))
+                yield problem("attributes", index, "value", f"{message}: {hint}")
             continue
         fault = number_fault(value, definition["min"], definition["max"])
         if fault is not None:
             yield problem("attributes", index, "value", f"{attribute}: {fault}")
+
+
+def _words(frames: Frames, attribute: str) -> list[str]:
+    """Return the values of an attribute in the order of the taxonomy."""
+    cells = texts(frames["taxonomy"], "attribute", "value")
+    return [value for _, (of, value) in cells if of == attribute]
+
+
+def _spellings(frames: Frames, attribute: str) -> Iterator[tuple[str, str]]:
+    """Give the other names of an attribute's values, each with its value."""
+    for table, column in (("aliases", "alias"), ("taxonomy", "name")):
+        if table in frames:
+            for _, (of, name, value) in texts(frames[table], "attribute", column, "value"):
+                if of == attribute:
+                    yield name, value
 
 
 def number_fault(text: str, least: float, most: float) -> str | None:

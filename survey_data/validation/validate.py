@@ -7,7 +7,7 @@ Three passes, each over what the pass before found sound: the form of every file
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -20,14 +20,22 @@ from files.strict_json import read_json
 from survey_data.descriptor import (
     DATA_DIRECTORY,
     DESCRIPTOR_FILE,
+    column_types,
     descriptor,
     file_name,
     primary_key,
     table_names,
 )
+from survey_data.nearest import one_of
 from survey_data.table_records import read_table_records
 from survey_data.tables import MAY_BE_EMPTY, typed_frame
 from survey_data.validation.rules import check_rules
+
+_FORMS = {
+    "key": "letters, four digits of the year and at most one small letter",
+    "doi": "a DOI such as 10.3390/s21010001",
+    "url": "an address that starts with https:// or http://",
+}
 
 
 def validate(directory: str | Path | None = None) -> list[Problem]:
@@ -63,14 +71,25 @@ def validate(directory: str | Path | None = None) -> list[Problem]:
             )
         if not records.problems:
             sound[table] = records
-    problems += _check_schema(sound)
+    problems += check_records(sound, sound)
+    return sorted(set(problems), key=lambda p: (p.file, p.row or 0, p.column or "", p.message))
+
+
+def check_records(sound: Mapping[str, Records], named: Collection[str]) -> list[Problem]:
+    """Return the problems of the content of tables whose form is sound.
+
+    Parameters
+    ----------
+    sound : the tables by name; rules run where all that they need are there
+    named : those whose types, enumerations and keys are checked
+    """
+    problems = _check_schema({name: sound[name] for name in named})
     frames = {}
     for table, records in sound.items():
         frame, flaws = typed_frame(table, records)
         if not flaws:  # frictionless has named them
             frames[table] = frame
-    problems += check_rules(frames)
-    return sorted(set(problems), key=lambda p: (p.file, p.row or 0, p.column or "", p.message))
+    return problems + check_rules(frames)
 
 
 def _check_descriptor(folder: Path) -> list[Problem]:
@@ -146,6 +165,29 @@ def _as_problem(table: str, error: Any, rows: list[tuple[int, list[str]]]) -> Pr
         names = getattr(error, "field_names", None)
         column = names[-1] if error.type == "foreign-key" and names else primary_key(table)[0]
     note = error.note or error.message
+    if error.type == "constraint-error":
+        return Problem(file_name(table), row, str(column), _broken_constraint(table, error))
+    if error.type == "type-error":
+        kind = column_types(table)[str(column)]
+        return Problem(file_name(table), row, str(column), f"expected a {kind}, got {error.cell!r}")
     if error.type == "primary-key":
         note = f"duplicate row: the key ({', '.join(primary_key(table))}) stands already: {note}"
     return Problem(file_name(table), row, str(column), f"{error.title}: {note}")
+
+
+def _broken_constraint(table: str, error: Any) -> str:
+    """Say in words what a cell should have been by its column's constraints."""
+    fields = next(r for r in descriptor()["resources"] if r["name"] == table)["schema"]["fields"]
+    constraints = next(f for f in fields if f["name"] == error.field_name)["constraints"]
+    broken = str(error.note).split('"')[1]
+    if broken == "required":
+        return "expected a value, got none"
+    if broken == "enum":
+        return f"{error.cell!r}: {one_of(error.cell, constraints['enum'])}"
+    if broken == "pattern":
+        form = _FORMS.get(error.field_name, constraints["pattern"])
+        return f"expected {form}, got {error.cell!r}"
+    limits = " to ".join(
+        str(constraints[name]) for name in ("minimum", "maximum") if name in constraints
+    )
+    return f"expected {limits}, got {error.cell!r}" if limits else str(error.note)

@@ -13,7 +13,6 @@ import pytest
 
 import survey_data
 from files.manifest import FILE
-from survey_data.additions.vocabulary import Vocabulary, vocabulary
 from survey_data.descriptor import DATA_DIRECTORY, DESCRIPTOR_FILE, file_name, table_names
 
 
@@ -66,11 +65,6 @@ def tables() -> survey_data.SurveyTables:
 @pytest.fixture
 def copy(tmp_path: Path) -> Copy:
     return copy_data(tmp_path)
-
-
-@pytest.fixture(scope="session")
-def known() -> Vocabulary:
-    return vocabulary()
 
 
 @pytest.fixture

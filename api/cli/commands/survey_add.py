@@ -13,11 +13,10 @@ from api.cli.survey_options import ApplyOption, DataOption
 from api.cli.table_output import Format, FormatOption, emit, emit_json, say
 from api.cli.wrong_call import WrongCallError, only_beside
 from files.atomic import replace_file
-from survey_data.additions.addition_reader import Addition
 from survey_data.additions.faults import FaultsError
+from survey_data.additions.offered import Addition
 from survey_data.additions.publications import choose, read_publications
-from survey_data.additions.template import empty_template
-from survey_data.additions.vocabulary import vocabulary
+from survey_data.additions.template import empty_template, taken_by
 from survey_data.additions.writing import add_study, read_study, remove_study, verify_study
 from survey_data.descriptor import DATA_DIRECTORY
 from survey_data.importing.bibliography import SUFFIXES
@@ -147,14 +146,13 @@ def _write_template(key: str, file: Path | None, chosen_key: str | None, folder:
     """Print an empty template, or write it into a file that is not there yet."""
     digits = "".join(letter for letter in key if letter.isdigit())
     publication = {"key": key, "year": digits}
-    known = vocabulary(folder)
-    if taken := known.used_names.get(key.casefold()):
+    if taken := taken_by(key, folder):
         raise WrongCallError(f"--init: {key}: {taken}")
     if file is not None and file.suffix.casefold() in SUFFIXES:
         found = choose(read_publications(file), chosen_key, file.name)
-        typer.echo(empty_template(known, {**found, "key": key}), nl=False)
+        typer.echo(empty_template(folder, {**found, "key": key}), nl=False)
         return
-    text = empty_template(known, publication)
+    text = empty_template(folder, publication)
     if file is None:
         typer.echo(text, nl=False)
         return

@@ -6,10 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from survey_data.additions.addition_reader import read_addition
 from survey_data.additions.faults import FaultsError
-from survey_data.additions.toml_lines import parse_toml
-from survey_data.additions.vocabulary import Vocabulary
+from survey_data.additions.offered import parse_toml, read_addition
 
 STUDY = """\
 key = "Doe2031a"
@@ -63,9 +61,9 @@ def offered(folder: Path, text: str = STUDY, name: str = "study.toml") -> Path:
     return path
 
 
-def refused(known: Vocabulary, text: str) -> list[tuple[int | None, str]]:
+def refused(text: str) -> list[tuple[int | None, str]]:
     with pytest.raises(FaultsError) as error:
-        read_addition(parse_toml(text, "study.toml"), known)
+        read_addition(parse_toml(text, "study.toml"))
     return [(fault.line, fault.message) for fault in error.value.faults]
 
 

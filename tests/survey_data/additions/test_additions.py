@@ -11,11 +11,9 @@ import pytest
 import survey_data
 from files import manifest
 from survey_data import facts_manifest
-from survey_data.additions.addition_reader import read_addition
 from survey_data.additions.faults import FaultsError
+from survey_data.additions.offered import parse_toml, read_addition
 from survey_data.additions.template import empty_template
-from survey_data.additions.toml_lines import parse_toml
-from survey_data.additions.vocabulary import Vocabulary
 from survey_data.additions.writing import (
     UnknownStudyError,
     add_study,
@@ -83,15 +81,13 @@ def test_without_apply_nothing_is_written(recorded: Path) -> None:
     assert content(recorded) == before
 
 
-def test_a_study_of_the_survey_cannot_be_removed_or_added_again(
-    recorded: Path, known: Vocabulary
-) -> None:
+def test_a_study_of_the_survey_cannot_be_removed_or_added_again(recorded: Path) -> None:
     with pytest.raises(UnknownStudyError, match="Chang2008"):
         remove_study("Chang2008", recorded, apply=True)
-    for key, said in (("Chang2008", "of the survey"), ("Herman2025a", "another work")):
+    for key, said in (("Chang2008", "of the survey"), ("Herman2025a", "survey cites")):
         year = key[-4:] if key[-1].isdigit() else key[-5:-1]
         text = STUDY.replace("Doe2030", key).replace("2030", year)
-        assert (1, said in refused(known, text)[0][1]) == (refused(known, text)[0][0], True)
+        assert (1, said in refused(text)[0][1]) == (refused(text)[0][0], True)
     with pytest.raises(UnknownStudyError, match="did you mean Chang2008"):
         verify_study({**CONFIRMED, "study": "Chang208"}, recorded)
 
@@ -99,19 +95,19 @@ def test_a_study_of_the_survey_cannot_be_removed_or_added_again(
 @pytest.mark.parametrize(
     ("right", "wrong", "at", "said"),
     [
-        ('"CMOS"', '"CMOSS"', '"CMOSS"', r"detector 'CMOSS': .*\bPD, .* CMOS\?"),
-        ('"CMOS"', '"APS"', '"APS"', r"detector 'APS': .*did you mean CMOS\?"),
-        ('"title"', '"titel"', '"titel"', r"basis 'titel': .*did you mean title\?"),
-        ('"title"', '"survey-table"', '"survey-table"', "basis 'survey-table': expected one of"),
-        ('"thesis"', '"theses"', '"theses"', r"type 'theses': .*did you mean thesis\?"),
-        ('"proposed"', '"proposes"', '"proposes"', r"role 'proposes': .*mean proposed\?"),
+        ('"CMOS"', '"CMOSS"', '"CMOSS"', r"'CMOSS' of detector: .*\bPD, .* CMOS\?"),
+        ('"CMOS"', '"APS"', '"APS"', r"'APS' of detector: .*did you mean CMOS\?"),
+        ('"title"', '"titel"', '"titel"', r"basis: 'titel': .*did you mean title\?"),
+        ('"title"', '"survey-table"', '"survey-table"', "of a study outside the survey"),
+        ('"thesis"', '"theses"', '"theses"', r"type: 'theses': .*did you mean thesis\?"),
+        ('"proposed"', '"proposes"', '"proposes"', r"role: 'proposes': .*mean proposed\?"),
         ("0.005", "500", "500", r"accuracy_deg: .*\b1e-06\b.*\b180\b.*\b500\b"),
         ("0.005", '"5 arcsec"', '"5 arcsec"', r"accuracy_deg: .*number.*'5 arcsec'"),
-        ("year = 2030", "year = 2029", "year = 2029", r"year 2029: .*\bDoe2030\b.*\b2030\b"),
+        ("year = 2030", "year = 2029", "year = 2029", r"year: .*\bDoe2030\b.*\b2030\b.*2029"),
         ("venue =", "venu =", "venu =", r"key 'venu': .*\bvenue\?"),
         ('basis = "title"', 'base = "title"', "base =", r"unknown key 'base': .*mean basis\?"),
-        ('source = "10.1234/made.up"', "", 'basis = "abstract"', "abstract needs a source"),
-        ('name = "graph network"', "", "nearest = true", "nearest = true needs a name"),
+        ('source = "10.1234/made.up"', "", 'basis = "abstract"', "basis abstract without a source"),
+        ('name = "graph network"', "", "nearest = true", "nearest: needs a name"),
         ("nearest = true", 'nearest = "yes"', "nearest =", "nearest: expected true or false"),
         ("https://arxiv.org", "https://scribd.com", "https://scribd", "source: .*document sharing"),
         ("https://arxiv.org", "http://10.0.0.1", "http://10", "source: a raw address"),
@@ -121,12 +117,10 @@ def test_a_study_of_the_survey_cannot_be_removed_or_added_again(
         ("https://doi.org/10.1234/made.up", "made.up", "doi =", "doi: expected a DOI such as"),
     ],
 )  # fmt: skip
-def test_a_damaged_template_is_refused_by_line(
-    known: Vocabulary, right: str, wrong: str, at: str, said: str
-) -> None:
+def test_a_damaged_template_is_refused_by_line(right: str, wrong: str, at: str, said: str) -> None:
     assert right in STUDY
     text = STUDY.replace(right, wrong, 1)
-    faults = refused(known, text)
+    faults = refused(text)
     assert any(
         line == line_of(text, at) and re.search(said, message) for line, message in faults
     ), faults
@@ -156,21 +150,21 @@ def test_every_fault_is_listed_in_the_order_of_lines(recorded: Path) -> None:
         ("x = " + "[" * 3000, None),
     ],
 )
-def test_what_is_no_toml_is_refused(known: Vocabulary, text: str, line: int | None) -> None:
-    (fault,) = refused(known, text)
+def test_what_is_no_toml_is_refused(text: str, line: int | None) -> None:
+    (fault,) = refused(text)
     assert line is None or fault[0] == line
 
 
-def test_values_and_evidence_of_one_cell_are_held_together(known: Vocabulary) -> None:
+def test_values_and_evidence_of_one_cell_are_held_together() -> None:
     twice = STUDY + '\n[[detector]]\nvalue = "CMOS"\nbasis = "title"\n'
-    assert "stands twice" in refused(known, twice)[0][1]
+    assert "stands already in line 19" in refused(twice)[0][1]
     beside = STUDY + '\n[[detector]]\nbasis = "unknown"\n'
-    assert "unknown beside a value" in refused(known, beside)[0][1]
+    assert "unknown beside a value" in refused(beside)[0][1]
     single = STUDY + '\n[[accuracy_deg]]\nvalue = 1\nbasis = "title"\n'
-    assert "one value at most" in refused(known, single)[0][1]
+    assert "which admits one" in refused(single)[0][1]
 
 
-def test_sensors_of_a_study_use_each_of_its_values(known: Vocabulary, recorded: Path) -> None:
+def test_sensors_of_a_study_use_each_of_its_values(recorded: Path) -> None:
     sensors = (
         STUDY.replace(
             'basis = "unknown"\nnote = "the text does not say"', 'value = "Slit"\nbasis = "title"'
@@ -180,35 +174,39 @@ def test_sensors_of_a_study_use_each_of_its_values(known: Vocabulary, recorded: 
     )
     pair = '[[architecture]]\ndetector = "{}"\nmask = "{}"\nbasis = "title"\n'
     text = sensors + pair.format("CMOS", "Lens")
-    assert {tuple(message.split()[:2]) for _, message in refused(known, text)} == {
-        ("detector", "'PDA'"),
-        ("mask", "'Slit'"),
-    }
+    on_none = "{0}: Doe2030 has the {0} {1!r} on none of its sensors"
+    assert [message for _, message in refused(text)] == [
+        on_none.format("detector", "PDA"),
+        on_none.format("mask", "Slit"),
+    ]
     path = offered(recorded, text + pair.format("PDA", "Slit"))
     add_study(read_study(path, recorded), recorded, apply=True)
     assert len(survey_data.load(recorded).extension_architectures) == 2
 
 
-def test_an_empty_template_names_every_word_and_is_refused_only_for_what_is_missing(
-    known: Vocabulary,
-) -> None:
-    text = empty_template(known, {"key": "Doe2030", "year": "2030"})
+def test_an_empty_template_names_every_word_and_is_refused_only_for_what_is_missing() -> None:
+    text = empty_template(publication={"key": "Doe2030", "year": "2030"})
     assert set(tomllib.loads(text)) == {
         *("key", "title", "authors", "year", "venue", "type", "doi", "url", "identity", "note")
     }
-    for definition in known.definitions.values():
-        assert f"# [[{definition.attribute}]]" in text
-        for word, name in definition.words.items():
-            assert f"#   {word}" + ("" if word == name else f": {name}") + "\n" in text
-    assert [message.partition(":")[0] for _, message in refused(known, text)] == [
-        *("title", "type", "doi, url", "identity")
+    tables = survey_data.load()
+    for attribute in tables.attribute_definitions["attribute"]:
+        assert f"# [[{attribute}]]" in text
+    for word, name in zip(tables.taxonomy["value"], tables.taxonomy["name"], strict=True):
+        assert f"#   {word}" + ("" if word == name else f": {name}") + "\n" in text
+    assert [message.partition(":")[0] for _, message in refused(text)] == [
+        *("url", "title", "type", "identity")
     ]
 
 
-def test_uncommented_lines_of_an_empty_template_make_a_study(known: Vocabulary) -> None:
+def test_uncommented_lines_of_an_empty_template_make_a_study() -> None:
     text = empty_template(
-        known,
-        {"key": "Doe2030", "year": "2030", "title": "T", "url": "https://arxiv.org/abs/2030.00001"},
+        publication={
+            "key": "Doe2030",
+            "year": "2030",
+            "title": "T",
+            "url": "https://arxiv.org/abs/2030.00001",
+        },
     )
     text = text.replace('type = ""', 'type = "report"').replace(
         'identity = ""', 'identity = "recalled"'
@@ -216,7 +214,7 @@ def test_uncommented_lines_of_an_empty_template_make_a_study(known: Vocabulary) 
     block = '# [[detector]]\n# value = ""\n# basis = ""\n# source = ""\n# note = ""'
     assert block in text
     filled = '[[detector]]\nvalue = "PD"\nbasis = "title"\n# source = ""\n# note = ""'
-    addition = read_addition(parse_toml(text.replace(block, filled), "t"), known)
+    addition = read_addition(parse_toml(text.replace(block, filled), "t"))
     assert [r["value"] for r in addition.rows["attributes"] if r["attribute"] == "detector"] == [
         "PD"
     ]

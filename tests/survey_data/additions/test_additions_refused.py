@@ -8,11 +8,9 @@ from typing import Any
 
 import pytest
 
-from survey_data.additions.addition_reader import read_addition
 from survey_data.additions.faults import FaultsError
+from survey_data.additions.offered import parse_toml, read_addition
 from survey_data.additions.publications import choose, read_publications
-from survey_data.additions.toml_lines import parse_toml
-from survey_data.additions.vocabulary import Vocabulary
 from survey_data.additions.writing import UnknownStudyError, add_study, read_study, remove_study
 from survey_data.problems import SurveyImportError
 from tests.survey_data.additions.offered_study import STUDY, content, line_of, offered, refused
@@ -29,25 +27,25 @@ ROLE = 'role = "proposed"'
         (
             'basis = "unknown"',
             'name = "a plate"\nbasis = "unknown"',
-            "name = \"a plate\"",
-            "name: only of a value",
+            'basis = "unknown"',
+            "mask: expected a value, got none",
         ),
-        ("value = 0.005", 'value = 0.005\nname = "error"', 'name = "error"', "only of a value of"),
-        (ROLE, 'role_note = "by us"', "role_note =", "role_note without a role"),
-        ('value = "CMOS"', f'value = "CMOS"\n{ROLE}', None, "only of a value of model and extr"),
-        ('basis = "unknown"', 'value = "None"\nbasis = "title"', "value = \"None\"", "mask 'None'"),
+        ("value = 0.005", 'value = 0.005\nname = "error"', None, "'accuracy_deg': expected one of"),
+        (ROLE, 'role_note = "by us"', "role_note =", "role_note: needs a role"),
+        ('value = "CMOS"', f'value = "CMOS"\n{ROLE}', None, "'detector': expected one of model"),
+        ('basis = "unknown"', 'value = "None"\nbasis = "title"', "value = \"None\"", "'None' of mask"),
         ('"Journal', f'"{"x" * 5001}', "venue =", "venue: longer than 5000 characters"),
-        ("[[accuracy_deg]]\nvalue = 0.005", "[[accuracy_deg]]", None, "or the basis unknown"),
-        ('basis = "title"', "", None, "detector: expected a basis, got none"),
-        ('basis = "unknown"', 'basis = "unknown"\nvalue = "Slit"', 'value = "Slit"', "yet a value"),
+        ("[[accuracy_deg]]\nvalue = 0.005", "[[accuracy_deg]]", None, "so the basis must be unknown"),
+        ('basis = "title"', "", None, "basis: expected a value, got none"),
+        ('basis = "unknown"', 'basis = "unknown"\nvalue = "Slit"', None, "yet value 'Slit'"),
     ],
 )  # fmt: skip
 def test_a_fault_of_a_template_is_named_by_its_line(
-    known: Vocabulary, right: str, wrong: str, at: str | None, said: str
+    right: str, wrong: str, at: str | None, said: str
 ) -> None:
     assert right in STUDY
     text = STUDY.replace(right, wrong, 1)
-    ((line, message),) = refused(known, text)
+    ((line, message),) = refused(text)
     assert said in message
     assert at is None or line == line_of(text, at)
 
@@ -82,10 +80,10 @@ def test_a_template_has_attributes_of_its_own(recorded: Path) -> None:
 @pytest.mark.parametrize("suffix", ["ris", "json", "toml"])
 def test_a_file_that_cannot_be_read_says_why(recorded: Path, suffix: str) -> None:
     path = recorded.parent / f"offered.{suffix}"
-    with pytest.raises(SurveyImportError, match=rf"offered\.{suffix}: (there is n|N)o such file"):
+    with pytest.raises(SurveyImportError, match=rf"offered\.{suffix}: No such file"):
         read_study(path, recorded)
     path.write_bytes(b"TY  - JOUR\nTI  - \xff\n")
-    with pytest.raises(SurveyImportError, match="UTF-8 text"):
+    with pytest.raises(SurveyImportError, match="not UTF-8 text"):
         read_study(path, recorded)
     path.unlink()
     path.mkdir()
@@ -93,18 +91,18 @@ def test_a_file_that_cannot_be_read_says_why(recorded: Path, suffix: str) -> Non
         read_study(path, recorded)
 
 
-def test_a_role_needs_no_reason(known: Vocabulary) -> None:
+def test_a_role_needs_no_reason() -> None:
     text = STUDY.replace('note = "chapter 3"\n', "")
-    (role,) = read_addition(parse_toml(text, "study.toml"), known).rows["roles"]
+    (role,) = read_addition(parse_toml(text, "study.toml")).rows["roles"]
     assert (role["role"], role["note"]) == ("proposed", "No reason stated.")
 
 
 @pytest.mark.parametrize("word", ["None", "n/a", "unknown", "not stated"])
-def test_what_is_not_stated_is_no_value_and_no_misspelling(known: Vocabulary, word: str) -> None:
+def test_what_is_not_stated_is_no_value_and_no_misspelling(word: str) -> None:
     text = STUDY.replace(
         '[[mask]]\nbasis = "unknown"', f'[[mask]]\nvalue = "{word}"\nbasis = "title"'
     )
-    ((line, message),) = refused(known, text)
+    ((line, message),) = refused(text)
     assert line == line_of(text, f'value = "{word}"')
     assert message.endswith("; what is not stated has the basis unknown")
     assert "did you mean" not in message
@@ -176,6 +174,5 @@ def test_an_item_of_csl_json_that_is_no_object_is_named(tmp_path: Path) -> None:
 
 def test_the_only_publication_takes_the_key_that_is_asked_for() -> None:
     only = {"key": "Doe2030", "title": "A sun sensor"}
-    assert choose([only], None, "refs.bib") is only
-    assert choose([only], "Doe2030", "refs.bib") is only
+    assert choose([only], None, "refs.bib") == choose([only], "Doe2030", "refs.bib") == only
     assert choose([only], "Doe2030a", "refs.bib") == {**only, "key": "Doe2030a"}

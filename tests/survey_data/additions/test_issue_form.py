@@ -11,21 +11,14 @@ from pathlib import Path
 import pytest
 import yaml
 
-from survey_data.additions.addition_reader import read_addition
 from survey_data.additions.faults import FaultsError
 from survey_data.additions.issue_form import form, main, template_of
-from survey_data.additions.toml_lines import parse_toml
-from survey_data.additions.vocabulary import Vocabulary, vocabulary
+from survey_data.additions.offered import parse_toml, read_addition
 from tests.survey_data.additions.offered_study import STUDY
 
 ROOT = Path(__file__).parents[3]
 FILE = ROOT / ".github" / "ISSUE_TEMPLATE" / "study.yml"
 WORKFLOW = ROOT / ".github" / "workflows" / "study.yml"
-
-
-@pytest.fixture(scope="module")
-def known() -> Vocabulary:
-    return vocabulary()
 
 
 def event(text: str, end: str = "\n") -> dict[str, object]:
@@ -35,23 +28,23 @@ def event(text: str, end: str = "\n") -> dict[str, object]:
 
 
 def test_the_form_is_the_one_that_is_made_from_the_tables(
-    known: Vocabulary, capsys: pytest.CaptureFixture[str]
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    assert FILE.read_text("utf-8") == form(known)
+    assert FILE.read_text("utf-8") == form()
     assert main(["--form"]) == 0
-    assert capsys.readouterr().out == form(known)
-    (_, field) = yaml.safe_load(form(known))["body"]
+    assert capsys.readouterr().out == form()
+    (_, field) = yaml.safe_load(form())["body"]
     empty = field["attributes"]["value"]
     assert template_of(event(empty)) == empty
     assert len(empty) < 20_000, "an issue has room for 65,536"
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n"])
-def test_a_filled_form_is_a_study(known: Vocabulary, end: str) -> None:
-    addition = read_addition(parse_toml(template_of(event(STUDY, end)), "issue"), known)
+def test_a_filled_form_is_a_study(end: str) -> None:
+    addition = read_addition(parse_toml(template_of(event(STUDY, end)), "issue"))
     assert addition.study["authors"] == "Jane Doe; Łukasz Müller"
     fenced = STUDY + '[[task]]\nvalue = "Cost"\nbasis = "title"\nnote = """\n```\n"""\n'
-    addition = read_addition(parse_toml(template_of(event(fenced)), "issue"), known)
+    addition = read_addition(parse_toml(template_of(event(fenced)), "issue"))
     assert "Cost" in {row["value"] for row in addition.rows["attributes"]}
 
 
@@ -65,12 +58,12 @@ HOSTILE = (
 
 
 @pytest.mark.parametrize("words", HOSTILE)
-def test_hostile_words_stay_in_their_own_cell_or_are_refused(known: Vocabulary, words: str) -> None:
+def test_hostile_words_stay_in_their_own_cell_or_are_refused(words: str) -> None:
     for place in ("chapter 3", "A sun sensor that nobody built", "graph network"):
         text = STUDY.replace(place, words)
         assert text != STUDY
         try:
-            addition = read_addition(parse_toml(template_of(event(text)), "issue"), known)
+            addition = read_addition(parse_toml(template_of(event(text)), "issue"))
         except FaultsError:
             continue
         models = {r["value"] for r in addition.rows["attributes"] if r["attribute"] == "model"}

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
-from survey_data.additions.toml_lines import parse_toml
+from survey_data.additions.offered import parse_toml
 
 TEMPLATE = """\
 key = "Doe2030"
