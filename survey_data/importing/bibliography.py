@@ -67,6 +67,10 @@ _CSL_KINDS = {
     "article": "preprint",
     "preprint": "preprint",
 }
+_CSL_MEMBERS = {
+    **{name: name for name in ("title", "volume")},
+    "venue": "container-title", "number": "issue", "pages": "page", "doi": "DOI", "url": "URL",
+}
 _BRACED = r"\{((?:[^{}]++|\{(?:[^{}]++|\{[^{}]*+\})*+\})*+)\}"
 _BBL_ITEM = re.compile(rf"\\bibitem\s*(?:\[(?:[^\[\]{{}}]++|{_BRACED})*+\]\s*)?{_BRACED}")
 _BBL_FIELD = re.compile(rf"\\(?:bibinfo\s*\{{(\w+)\}}|(doi|url)|href)\s*{_BRACED}")
@@ -329,21 +333,11 @@ def _csl(text: str, name: str) -> Iterator[Entry]:
         if not isinstance(item, dict):
             message = f"item {at + 1}: expected an object of CSL JSON, got {type(item).__name__}"
             raise SurveyImportError(f"{name}: {message}")
-        yield _entry(
-            _scalar(item.get("id")),
-            _CSL_KINDS.get(_scalar(item.get("type")), "unknown"),
-            _csl_names(item.get("author")),
-            {
-                "title": _scalar(item.get("title")),
-                "year": _csl_year(item.get("issued")),
-                "venue": _scalar(item.get("container-title")) or _scalar(item.get("publisher")),
-                "volume": _scalar(item.get("volume")),
-                "number": _scalar(item.get("issue")),
-                "pages": _scalar(item.get("page")),
-                "doi": _scalar(item.get("DOI")),
-                "url": _scalar(item.get("URL")),
-            },
-        )
+        said = {name: _scalar(item.get(member)) for name, member in _CSL_MEMBERS.items()}
+        said["venue"] = said["venue"] or _scalar(item.get("publisher"))
+        said["year"] = _csl_year(item.get("issued"))
+        kind = _CSL_KINDS.get(_scalar(item.get("type")), "unknown")
+        yield _entry(_scalar(item.get("id")), kind, _csl_names(item.get("author")), said)
 
 
 def _csl_names(given: Any) -> Iterator[str]:

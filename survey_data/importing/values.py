@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import unicodedata
 from difflib import SequenceMatcher
-from typing import Any
 
 from pydantic import BaseModel, ConfigDict
 
@@ -74,11 +73,11 @@ class ValueReader:
         self._tables = tables
         rows = tables.attribute_definitions.to_dict("records")
         self._definitions = {str(row["attribute"]): row for row in rows}
-        spelt: list[Any] = [
-            *tables.aliases[["attribute", "alias", "value"]].itertuples(index=False)
-        ]
-        spelt += tables.taxonomy[["attribute", "name", "value"]].itertuples(index=False)
         kinds = tables.statistics
+        spelt: list[tuple[str, str, str]] = [
+            *zip(*(tables.aliases[name] for name in ("attribute", "alias", "value")), strict=True),
+            *zip(*(tables.taxonomy[name] for name in ("attribute", "name", "value")), strict=True),
+        ]
         for attribute, definition in self._definitions.items():
             if definition["kind"] == "statistic":
                 for kind, name in zip(kinds["kind"], kinds["name"], strict=True):
@@ -88,11 +87,9 @@ class ValueReader:
         for attribute, spelling, value in spelt:
             of_attribute = self._spellings.setdefault(str(attribute), {})
             of_attribute.setdefault(normalise(str(spelling)), set()).add(str(value))
-        # a value's own label means that value and no other
-        for attribute, value in zip(
-            tables.taxonomy["attribute"], tables.taxonomy["value"], strict=True
-        ):
-            self._spellings[attribute][normalise(value)] = {value}
+        for row in tables.taxonomy.to_dict("records"):
+            # a value's own label means that value and no other
+            self._spellings[row["attribute"]][normalise(row["value"])] = {row["value"]}
 
     def is_numeric(self, attribute: str) -> bool:
         """Say whether the attribute holds numbers."""
