@@ -69,7 +69,11 @@ _CSL_KINDS = {
 }
 _CSL_MEMBERS = {
     **{name: name for name in ("title", "volume")},
-    "venue": "container-title", "number": "issue", "pages": "page", "doi": "DOI", "url": "URL",
+    "venue": "container-title",
+    "number": "issue",
+    "pages": "page",
+    "doi": "DOI",
+    "url": "URL",
 }
 _BRACED = r"\{((?:[^{}]++|\{(?:[^{}]++|\{[^{}]*+\})*+\})*+)\}"
 _BBL_ITEM = re.compile(rf"\\bibitem\s*(?:\[(?:[^\[\]{{}}]++|{_BRACED})*+\]\s*)?{_BRACED}")

@@ -112,15 +112,6 @@ def test_a_publication_is_read_from_each_kind_of_bibliography(
     assert [row["value"] for row in cells if row["attribute"] == "task"] == ["Power"]
 
 
-def test_ris_is_read_as_rispy_reads_it(recorded: Path) -> None:
-    rispy = pytest.importorskip("rispy")
-    (theirs,) = rispy.loads(RIS)
-    study = read_study(offered(recorded, RIS, "refs.ris"), recorded).study
-    natural = [" ".join(reversed(name.split(", "))) for name in theirs["authors"]]
-    assert study["authors"] == "; ".join(natural)
-    assert (study["title"], study["doi"]) == (theirs["title"], theirs["doi"])
-
-
 def test_one_of_several_publications_is_chosen_by_its_key(recorded: Path) -> None:
     other = BIBTEX.replace("{doe,", "{roe,").replace("Jane", "Ann").replace("made.up", "other")
     path = offered(recorded, BIBTEX + "\n" + other.replace("Doe,", "Roe,"), "refs.bib")
