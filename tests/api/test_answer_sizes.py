@@ -38,16 +38,6 @@ def test_no_answer_is_large_unasked(atlas, operations):
             assert len(answer.content) <= LARGEST, (path, accept)
 
 
-@pytest.mark.slow
-def test_of_no_data_set_is_an_answer_large_unasked(atlas):
-    names = [row["name"] for row in atlas.get("/v1/datasets?limit=500").json()["items"]]
-    for name in names:
-        for address in (f"datasets/{name}", f"datasets/{name}/errors", f"leaderboard/{name}"):
-            answer = atlas.get(f"/v1/{address}")
-            assert answer.status_code == 200, address
-            assert len(answer.content) <= LARGEST, address
-
-
 def test_lists_that_grow_with_the_facts_are_paged(atlas, operations):
     for path, (operation, address, query) in operations.items():
         answer = atlas.get(address, params=query)

@@ -10,7 +10,7 @@ import pytest
 import rispy
 from bibtexparser.middlewares import LatexDecodingMiddleware, SeparateCoAuthors, SplitNameParts
 
-from api.citations import FORMS, bibtex, csl_json, names, ris
+from api.citations import FORMS, bibtex, csl_json, ris
 
 STUDY = {
     "key": "A2020",
@@ -103,26 +103,6 @@ def test_an_arxiv_number_is_named_as_one() -> None:
     study = {**STUDY, "type": "preprint", "doi": "10.48550/arXiv.2508.00918"}
     (entry,) = read_bibtex(bibtex([study]))
     assert (entry["eprint"], entry["archiveprefix"]) == ("2508.00918", "arXiv")
-
-
-def test_an_address_that_only_repeats_the_doi_is_left_out() -> None:
-    study = {**STUDY, "doi": "10.1/x", "url": "https://doi.org/10.1/x"}
-    assert "url" not in bibtex([study])
-    assert "UR  -" not in ris([study])
-    assert "url" in bibtex([{**study, "url": "https://www.mdpi.com/x"}])
-
-
-def test_names_are_split_as_bibtex_does() -> None:
-    assert names("N. van der Heiden; He Liang (as printed); et al.") == [
-        ("van der Heiden", "N."), ("Liang", "He"), ("", ""),
-    ]  # fmt: skip
-    assert names("Liang, He; ") == [("Liang", "He")]
-    assert names("") == []
-
-
-def test_a_name_with_and_in_it_is_one_name() -> None:
-    (entry,) = read_bibtex(bibtex([{**STUDY, "authors": "Institute for Science and Technology"}]))
-    assert len(entry["author"]) == 1
 
 
 def test_braces_in_an_address_do_not_end_the_entry() -> None:

@@ -12,40 +12,15 @@ from typer.testing import CliRunner
 
 import survey_data
 from api.cli.command_line import app
-from api.figures.catalogue import MATRIX, TITLES
-from registry.flows import CHARTS
+from api.figures.catalogue import MATRIX
 from registry.studies import facts
 from tests.api.conftest import Client
 
 LATER = "Herman2025c"
-ANSWERS = ("/v1/recommendations", "/v1/recommendations/flow", "/v1/recommendations/designs")
-TABLES = ("/v1/studies", *ANSWERS, *(f"/v1/flows/{name}" for name in CHARTS))
-FIGURES = (*TITLES, MATRIX)
-SENSORS = ("/detectors", "/masks", "/detectors/CMOS", "/masks/Slit", "/architectures/CMOS/Slit")
-PAGES = ("/", "/studies", *(f"/figures/{name}" for name in FIGURES))
-TWINS = ("/answer", "/studies", "/compare", *SENSORS, *(f"/figures/{name}" for name in FIGURES))
 
 
 def later() -> list[str]:
     return [key for key, one in facts("all").studies.items() if one.edition == "extension"]
-
-
-def addresses() -> list[str]:
-    """Every address that takes an edition, in every form."""
-    found = [*PAGES, *SENSORS, *TABLES, "/compare", *(f"/v1/figures/{name}" for name in FIGURES)]
-    found += [f"{path}{suffix}" for path in TWINS for suffix in (".json", ".csv")]
-    found += [f"/figures/{n}{suffix}" for n in FIGURES for suffix in (".svg", ".plotly.json")]
-    return found
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("edition", ["all", pytest.param("survey", marks=pytest.mark.slow)])
-def test_everything_is_served_of_both_editions(atlas: Client, edition: str) -> None:
-    asked = [f"{address}?edition={edition}" for address in addresses()]
-    asked += [f"{path}?format=csv&edition={edition}" for path in TABLES]
-    asked += [f"/figures/{MATRIX}?rows={level}&edition={edition}" for level in ("task", "model")]
-    failed = {at: s for at in asked if (s := atlas.get(at).status_code) != 200}
-    assert failed == {}
 
 
 def test_every_later_study_has_its_page_and_its_endpoint_in_every_form(atlas: Client) -> None:
@@ -73,7 +48,7 @@ def test_the_survey_is_the_default_and_all_has_its_studies_first(atlas: Client) 
     assert len(atlas.table("/v1/studies?limit=500&edition=all")) == len(every)
 
 
-@pytest.mark.parametrize("chart", ["error", "performance", "cross-analysis"])
+@pytest.mark.parametrize("chart", ["error"])
 def test_flows_and_the_evidence_map_count_later_studies_only_where_asked(
     atlas: Client, chart: str
 ) -> None:
@@ -150,18 +125,6 @@ def test_editions_are_cited_by_version(atlas: Client) -> None:
     ]
 
 
-def test_an_unknown_edition_is_refused_with_the_nearest(atlas: Client) -> None:
-    refused = atlas.get("/v1/studies?edition=surve")
-    assert refused.status_code == 422
-    assert refused.json()["errors"][0]["nearest"] == "survey"
-
-
-def test_the_findings_and_counts_are_of_the_survey_alone() -> None:
-    report = survey_data.fidelity(survey_data.load())
-    assert report.studies == 129
-    assert {line.held for line in report.counts if line.id == "studies"} == {129}
-
-
 @pytest.mark.parametrize("command", [["studies"], ["recommend", "--include", "paths"]])
 def test_the_command_line_takes_an_edition(command: list[str]) -> None:
     def keys(*more: str) -> str:
@@ -174,16 +137,6 @@ def test_the_command_line_takes_an_edition(command: list[str]) -> None:
 
     assert not named(keys())
     assert named(keys("--edition", "all"))
-
-
-def test_a_later_study_is_run_from_what_is_published() -> None:
-    shown = CliRunner().invoke(
-        app, ["run", "Sharifi2026", "--condition", "nominal", "--format", "json"]
-    )
-    assert shown.exit_code == 0, shown.stderr
-    document = json.loads(shown.stdout)
-    assert document["scores"]
-    assert document["sources"]["measured"] == 0
 
 
 def test_one_command_adds_a_study_another_removes_it_and_git_sees_nothing(tmp_path: Path) -> None:

@@ -18,9 +18,8 @@ from api.server import handlers
 from api.web.answers import Answer, AnswerRoute
 from api.web.dependencies import TableOnly
 from api.web.middleware import EveryResponse
-from benchmark.leaderboard import pages
 from files.csv_writing import escape_formulas
-from registry.taxonomy import NONE_STATED, taxonomy_rows
+from registry.taxonomy import NONE_STATED
 from tests.api.conftest import Client
 
 WORDS = frozenset({"none", "nan", "null", "n/a", "na", "<na>", "nat", "inf", "-inf", "undefined"})
@@ -73,14 +72,6 @@ def test_no_table_has_a_word_for_what_is_not_known(atlas: Client) -> None:
     assert found == THINGS
 
 
-def test_files_of_the_leaderboard_have_none_either(atlas: Client) -> None:
-    board = atlas.app.state.knowledge.measurements.leaderboard
-    for name in ("leaderboard.csv", "sweeps.csv"):
-        text = pages.FORMATS[name](board)
-        assert text.count("\n") > 1000
-        assert not words_for_nothing(name, text)
-
-
 def test_the_survey_s_none_is_told_apart_from_what_is_unknown(atlas: Client) -> None:
     tables = {row["key"]: row for row in atlas.table("/v1/studies?limit=500")}
     listed = {item["key"]: item for item in atlas.get("/v1/studies?limit=500").json()["items"]}
@@ -90,17 +81,6 @@ def test_the_survey_s_none_is_told_apart_from_what_is_unknown(atlas: Client) -> 
     assert unknown
     assert {tables[key]["model"] for key in none} == {NONE_STATED}
     assert {tables[key]["detector"] for key in unknown} == {""}
-
-
-def test_a_method_without_a_name_in_the_survey_has_an_empty_cell(atlas: Client) -> None:
-    ours = atlas.get("/v1/algorithms?limit=500").json()["items"]
-    ours = [item["name"] for item in ours if item["taxonomy"] == "None"]
-    rows = {row["name"]: row for row in atlas.table("/v1/algorithms?limit=500")}
-    assert ours
-    assert all(rows[name]["taxonomy"] == rows[name]["category"] == "" for name in ours)
-    assert taxonomy_rows("model", "None") == NONE_STATED
-    assert taxonomy_rows("model_taxonomy", "None") is None
-    assert taxonomy_rows("model_taxonomy", "SPM") == "SPM"
 
 
 ROWS = [{"name": '=HYPERLINK("http://x")', "value": -1.5}, {"name": "-", "value": 2}]
@@ -149,17 +129,6 @@ def test_every_table_has_a_form_for_spreadsheets_and_leads_there(atlas: Client) 
         assert "alternate" not in safe.links
 
 
-def test_pages_offer_it(atlas: Client) -> None:
-    for address in ("/", "/studies?mask=Slit", "/datasets/pd-slit", "/figures/error"):
-        page = atlas.get(address, accept="text/html").text
-        offered = re.search(r'href="([^"]+\.csv\?[^"]*safe=true)"', page)
-        assert offered, address
-        assert atlas.get(offered[1].replace("&amp;", "&")).status_code == 200
-    refused = atlas.get("/studies.csv?safe=perhaps")
-    assert refused.status_code == 422
-    assert refused.json()["errors"][0]["parameter"] == "safe"
-
-
 def with_format(command, path):
     """Give (path, command) of all commands below one that print tables."""
     if any("--format" in parameter.opts for parameter in command.params):
@@ -182,17 +151,6 @@ def test_every_command_with_a_table_takes_safe() -> None:
 def run(*arguments: str) -> tuple[int, bytes, str]:
     ended = CliRunner().invoke(app, arguments)
     return ended.exit_code, ended.stdout_bytes, ended.stderr
-
-
-def test_safe_is_of_the_table_and_of_one_call(monkeypatch: pytest.MonkeyPatch) -> None:
-    from api.cli.commands import dataset
-
-    monkeypatch.setattr(dataset, "csv_of", lambda *_: "name\n=1\n")
-    monkeypatch.setattr("api.cli.table_output.csv_of", lambda *_: "name\n=1\n-2\n")
-    plain = run("dataset", "list", "--format", "csv")
-    assert plain == (0, b"name\n=1\n-2\n", "")
-    assert run("dataset", "list", "--format", "csv", "--safe") == (0, b"name\n'=1\n-2\n", "")
-    assert run("dataset", "list", "--format", "csv") == plain
 
 
 @pytest.mark.parametrize("form", [(), ("--format", "json")])

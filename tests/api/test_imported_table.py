@@ -68,30 +68,6 @@ def made_up_table(path: Path) -> None:
             write.writerow([key, *values, *(next(numbers[c]) for c in NUMBERS)])
 
 
-#: Builds, over the tables beside it, what goes outward; of the bundle's samples one data set's.
-BUILD = """
-import json, sys
-from pathlib import Path
-import survey_data
-from api.deposit import against_record, bundle
-from api.deposit.verification import verify
-from api.guide import site
-from benchmark.plan.combinations import scorable_plan
-from registry.resolution import resolve_all
-from registry.studies import facts
-
-out = Path(sys.argv[1])
-made = bundle.build(out / "deposit", frames=("pd-slit",))
-wrong = verify(made.directory)
-wrong += against_record.differences(made.directory, frames=("pd-slit",), anew=False)
-warnings = site.build(out / "guide") if not site.missing_builders() else []
-json.dump({"survey": survey_data.__file__, "files": made.files, "wrong": wrong,
-           "warnings": warnings, "pages": len(list((out / "guide").rglob("*.html"))),
-           "resolved": len(resolve_all(scorable_plan())),
-           "studies": len(facts().studies)}, sys.stdout)
-"""
-
-
 @pytest.fixture(scope="module")
 def imported(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A directory with tables of facts into which the whole made-up table was imported."""
@@ -132,17 +108,3 @@ def test_after_an_import_of_every_column_everything_is_served(imported: Path) ->
     assert output["from_table"] > 128
     assert output["asked"] > 400
     assert output["failed"] == {}
-
-
-@pytest.mark.slow
-def test_after_an_import_of_every_column_deposit_and_guide_are_built(
-    imported: Path, tmp_path: Path
-) -> None:
-    output = run(BUILD, imported, str(tmp_path))
-    assert output["survey"] == str(imported / "survey_data" / "__init__.py")
-    assert (output["wrong"], output["warnings"]) == ([], [])
-    assert output["pages"] > 20
-    assert output["resolved"] == output["studies"]
-    attributes = (tmp_path / "deposit" / "survey" / "attributes.csv").read_bytes()
-    assert attributes == (imported / "survey_data" / "attributes.csv").read_bytes()
-    assert attributes.count(b",authors-table,") > 128

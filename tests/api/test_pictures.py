@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import threading
 from pathlib import Path
 
@@ -12,7 +11,6 @@ from api import previews
 from api.previews import Pictures, place
 from benchmark import datasets
 from benchmark.datasets.preview import preview_png
-from benchmark.results import digests, modules
 
 
 @pytest.fixture
@@ -46,26 +44,6 @@ def test_what_is_published_is_drawn_by_nobody(
     name = datasets.names()[0]
     assert Pictures(tmp_path).png(name) == previews.published_preview(name).read_bytes()
     assert not list(tmp_path.iterdir())
-
-
-def test_of_other_code_nothing_published_is_shown(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Neither of another data set's code or parameters, nor drawn by other code."""
-    name = datasets.names()[-1]
-    now = previews.published_preview(name)
-    for module, changed, made in (
-        (digests, "condition_digests", {"nominal": "another"}),
-        (modules, "modules_digest", "another"),
-    ):
-        with monkeypatch.context() as patched:
-            patched.setattr(module, changed, lambda *_, made=made: made)
-            previews._show.cache_clear()
-            other = previews.published_preview(name)
-        assert other != now
-        assert not other.is_file()
-    previews._show.cache_clear()
-    assert previews.published_preview(name) == now
 
 
 def test_publishing_draws_what_lacks_and_removes_what_is_of_other_code(
@@ -106,30 +84,3 @@ def test_many_who_ask_at_once_have_it_drawn_once(tmp_path: Path, drawn: list[str
     assert drawn == ["a"]
     assert Pictures(tmp_path).png("a") == b"a"
     assert drawn == ["a"]
-
-
-def test_a_store_that_takes_nothing_is_done_without(tmp_path: Path, drawn: list[str]) -> None:
-    store = tmp_path / "store"
-    store.write_text("no directory")
-    assert Pictures(store).png("a") == b"a"
-    assert Pictures(None).png("b") == b"b"
-    assert drawn == ["a", "a", "b"]
-
-
-def test_what_is_not_drawn_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(previews, "_drawn_beside", lambda *_: None)
-    monkeypatch.setattr(previews, "published_preview", lambda _: tmp_path / "of other code")
-    with pytest.raises(RuntimeError, match="never-drawn"):
-        Pictures(tmp_path).png("never-drawn")
-
-
-def test_pictures_of_older_code_are_removed_but_the_newest(tmp_path: Path) -> None:
-
-    for number in range(6):
-        folder = tmp_path / previews.FOLDER / f"older{number}"
-        folder.mkdir(parents=True)
-        os.utime(folder, (number, number))
-    place(tmp_path, "a").parent.mkdir()
-    previews.forget_others(tmp_path)
-    left = {found.name for found in (tmp_path / previews.FOLDER).iterdir()}
-    assert left == {"older3", "older4", "older5", previews.digest()}

@@ -3,12 +3,9 @@
 import hashlib
 import subprocess
 
-import pytest
-import yaml
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
-from api.metadata.citation import of_dataset
 from api.metadata.identity import version
 from api.service.measurements import Measurements
 from benchmark.datasets.pins import Pin
@@ -28,12 +25,6 @@ def git(directory, *arguments):
     who = ("-c", "user.name=a", "-c", "user.email=a@example.org")
     command = ["git", *who, "-C", str(directory), *arguments]
     return subprocess.run(command, check=True, capture_output=True).stdout
-
-
-def test_a_digest_names_one_record(tmp_path):
-    first = write(tmp_path / "one", 0.25)
-    assert write(tmp_path / "two", 0.25) == first
-    assert write(tmp_path / "two", 0.26) != first
 
 
 def test_the_recipe_finds_the_tag_of_a_cited_board(tmp_path):
@@ -61,13 +52,3 @@ def test_service_page_command_and_citation_name_the_same_record(atlas):
     assert record["sha256"] in atlas.get("/leaderboard", accept="text/html").text
     said = CliRunner().invoke(app, ["leaderboard"]).stderr
     assert said == f"Record: version {version()}, sha256 {record['sha256']}\n"
-
-
-@pytest.mark.parametrize("before", [[], [{"type": "doi", "value": "10.5281/zenodo.1"}]])
-def test_the_citation_of_a_deposit_names_its_record(before):
-    text = yaml.safe_dump({"cff-version": "1.2.0", "type": "software", "identifiers": before})
-    found = yaml.safe_load(of_dataset(text, "ab" * 32))
-    assert found["type"] == "dataset"
-    assert found["identifiers"][:-1] == before
-    assert found["identifiers"][-1]["value"] == f"sha256:{'ab' * 32}"
-    assert yaml.safe_load(of_dataset(text))["identifiers"] == before

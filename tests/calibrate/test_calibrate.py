@@ -102,43 +102,22 @@ def test_what_lies_beyond_a_fold_is_left_out(tmp_path):
     assert found.chosen.rms_deg < 0.3
 
 
-@pytest.mark.slow
-def test_a_cross_of_poses_is_said_to_leave_parts_of_the_field_untested(tmp_path):
-    line = np.linspace(-50, 50, 60)
-    cross = np.vstack([np.column_stack([line, 0 * line]), np.column_stack([0 * line, line])])
-    found = calibrate([bench_file(tmp_path / "cross.csv", cross)], models=("homography",))
-    assert found.verdict.word == "poses missing"
-    assert len(found.verdict.next_poses) == 20
-
-
-@pytest.mark.parametrize(
-    "model",
-    [
-        "homography",
-        *(pytest.param(name, marks=pytest.mark.slow) for name in ("pinhole", "polynomial-2d")),
-    ],
-)
-def test_no_model_calls_a_mirrored_file_good_without_leave_to_mirror(model, tmp_path):
+def test_no_model_calls_a_mirrored_file_good_without_leave_to_mirror(tmp_path):
     mirrored = (spots(SUN, 1) - CENTRE) * [-1, 1] + CENTRE
     path = write(tmp_path / "mirrored.csv", HEADER, mirrored, ANGLES)
-    found = calibrate([path], models=(model,))
+    found = calibrate([path], models=("homography",))
     assert found.verdict.word == "conventions uncertain"
     assert "mirror-x" in found.verdict.reason
-    assert calibrate([path], models=(model,), apply=True).verdict.word != "conventions uncertain"
+    again = calibrate([path], models=("homography",), apply=True)
+    assert again.verdict.word != "conventions uncertain"
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_readings_that_have_nothing_to_do_with_the_light_are_refused(seed, tmp_path):
     rng = np.random.default_rng(seed)
     path = write(tmp_path / "random.csv", HEADER, rng.uniform(0, 1000, SUN[:, :2].shape), ANGLES)
     with pytest.raises(UnusableDataError, match="do not belong together"):
         calibrate([path], models=("pinhole", "polynomial-2d"))
-
-
-@pytest.mark.skipif(not SHARED.is_dir(), reason="no ../shared beside this checkout")
-def test_readings_by_chance_are_refused_in_a_sentence():
-    with pytest.raises(UnusableDataError, match="do not belong together"):
-        calibrate([SHARED / "cases" / "faces-random.csv"])
 
 
 @pytest.mark.skipif(not SHARED.is_dir(), reason="no ../shared beside this checkout")
@@ -179,12 +158,9 @@ def test_python_without_the_package_answers_what_the_model_does(camera, written)
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="no C compiler here")
-@pytest.mark.parametrize(
-    "flags",
-    [["-O2", "-fsanitize=undefined,address"], pytest.param(["-O2"], marks=pytest.mark.slow)],
-)
-def test_the_c_code_passes_its_own_test_without_a_warning(camera, flags, written):
-    command = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", *flags]
+def test_the_c_code_passes_its_own_test_without_a_warning(camera, written):
+    flags = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-O2", "-fsanitize=undefined,address"]
+    command = ["gcc", "-std=c99", *flags]
     files = ["-DCAM_SELFTEST", "cam.c", "cam_selftest.c", "-o", "selftest", "-lm"]
     subprocess.run([*command, *files], cwd=written, check=True)
     run = subprocess.run(["./selftest"], cwd=written, check=False, capture_output=True, text=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -21,9 +20,6 @@ from calibrate.certificate.certificate import certificate
 from calibrate.documents import load, save, with_correction
 from calibrate.recalibration import Correction
 from calibrate.recalibration import Errors as CorrectionErrors
-from calibrate.report import pictures
-from calibrate.report.errors import Errors
-from calibrate.table import read_table
 
 VECTOR = ["sun_x", "sun_y", "sun_z"]
 FACES = ["xp", "xm", "yp", "ym", "zp", "zm"]
@@ -76,13 +72,6 @@ def test_a_certificate_of_nine_poses_has_no_noise_no_rings_and_no_parameters(
     assert left <= names_in(certificate(warm))
 
 
-def test_a_pose_measured_twice_alike_is_one_row_that_stands_twice(tmp_path: Path) -> None:
-    file = spots(tmp_path / "twice.csv", bench.grid(5, 30.0), repeats=2)
-    found = calibrate([file], models=("homography",))
-    assert len(found.readings) == 25
-    assert [one.reason for one in found.excluded] == ["duplicate of another row"] * 25
-
-
 def test_readings_too_noisy_for_a_refit_leave_the_fits_spread_unknown(tmp_path: Path) -> None:
     angles = np.random.default_rng(3).uniform(-40.0, 40.0, (100, 2))
     found = calibrate([spots(tmp_path / "noisy.csv", angles, noise=70.0)], models=("linear",))
@@ -111,53 +100,12 @@ def test_azimuths_named_as_rotations_are_found_among_rows_that_seem_behind(tmp_p
     assert found.chosen.rms_deg < 0.02
 
 
-def test_code_is_written_of_a_model_that_reads_a_temperature(
-    warm: Calibration, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(products, "report", lambda *_: "")
-    made = products.products(warm, "box")
-    ends = (".json", ".py", ".h", ".c", "_selftest.c", "_example.c", "_report.html", ".sha256")
-    assert set(made) == {f"box{end}" for end in ends}
-    low, high = json.loads(made["box.json"])["fit"]["temperature_K"]
-    assert 270.0 <= low < high <= 320.0
-    said = re.search(r"const real low = R\((.*)\);", made["box.c"])
-    assert said
-    assert float(said[1]) == pytest.approx(low, abs=1e-6)
-
-
 def test_no_code_says_why(warm: Calibration, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(products, "report", lambda *_: "")
     about = replace(warm.model.about, context=("nadir",))
     made = products.products(replace(warm, model=replace(warm.model, about=about)), "box")
     assert set(made) == {"box.json", "box_no_code.txt", "box_report.html", "box.sha256"}
     assert made["box_no_code.txt"] == "No code was written: code for flight knows no nadir.\n"
-
-
-def test_runs_are_drawn_where_there_are_some_and_poses_without_next_ones(
-    nine: Calibration, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for other in (
-        "_map",
-        "_against_angle",
-        "_histogram",
-        "_uncertainty",
-    ):  # each takes a tenth of a second
-        monkeypatch.setattr(pictures, other, lambda *_: "")
-    readings = replace(nine.readings, run=np.arange(9) % 3, run_names=("first", "second", "third"))
-    verdict = replace(nine.verdict, next_poses=np.empty((0, 3)))
-    found = replace(nine, readings=readings, verdict=verdict)
-    drawn = pictures.pictures(found, Errors.of(found))
-    assert drawn["Mean error of each run"].startswith("<svg")
-    assert drawn["Poses, their hull, and the next to take"].startswith("<svg")
-
-
-def test_a_loaded_calibration_answers_a_table_of_its_columns(
-    nine: Calibration, path: Path, tmp_path: Path
-) -> None:
-    save(nine, tmp_path / "nine.json")
-    answered = load(tmp_path / "nine.json").predict_table(read_table(path))
-    expected = nine.model.predict(nine.readings.features, {})
-    assert np.array_equal(answered, expected, equal_nan=True)
 
 
 def test_a_correction_is_saved_on_top_of_those_before(nine: Calibration, tmp_path: Path) -> None:

@@ -103,7 +103,7 @@ def camera(tmp_path_factory):
         laboratory="Bench & <Sons>", country="FI", serial="7", end=dt.date(2026, 1, 2)
     )
     return calibration.calibrate(
-        made.paths, settings.model_copy(update={"certificate": stated}), models=("pinhole",)
+        [made], settings.model_copy(update={"certificate": stated}), models=("pinhole",)
     )
 
 

@@ -23,7 +23,7 @@ FLAGS = ["-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-pedantic"]
 def made(tmp_path_factory):
     """A calibration of a box of cells, and its files."""
     directory = tmp_path_factory.mktemp("box")
-    found = calibrate(mistakes.on_sphere(directory / "box.csv", 0).paths, models=("trig", "basic"))
+    found = calibrate([mistakes.on_sphere(directory / "box.csv", 0)], models=("trig", "basic"))
     write_products(found, directory / "out", "box")
     return found, directory / "out"
 

@@ -67,13 +67,6 @@ def test_a_picture_that_is_none_is_named_by_its_row(name: str, said: str, tmp_pa
         calibrate([run])
 
 
-def test_a_directory_of_two_tables_is_refused(tmp_path: Path) -> None:
-    for name in ("a.csv", "b.csv"):
-        (tmp_path / name).write_text("x")
-    with pytest.raises(TableError, match=r"expected one table .*a.csv, b.csv"):
-        calibrate([tmp_path])
-
-
 def settings(column: str = "image", **readings: object) -> Settings:
     return Settings.model_validate(
         {
@@ -113,17 +106,6 @@ def test_an_extractor_that_finds_no_spot_in_these_frames_is_refused(
 ) -> None:
     with pytest.raises(SettingsError, match=said):
         with_spots(named("0.png"), tmp_path, settings(extractor=extractor))
-
-
-def test_a_table_without_the_column_of_pictures_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(TableError, match=r"no column 'picture' \(there are image\)"):
-        with_spots(named("0.png"), tmp_path, settings("picture"))
-
-
-def test_a_directory_is_no_picture(tmp_path: Path) -> None:
-    (tmp_path / "0.png").mkdir()
-    with pytest.raises(TableError, match=r"^poses.csv, row 2: expected a file, got a directory"):
-        with_spots(named("0.png"), tmp_path, settings())
 
 
 def one_picture(directory: Path, *pictures: Path | np.ndarray) -> tuple[Table, list[str]]:

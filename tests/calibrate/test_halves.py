@@ -14,7 +14,7 @@ from calibrate.halves import _traces
 def test_a_model_that_fits_is_good_whatever_the_noise(seed, tmp_path):
     """On a grid of odd width every other pose has all four corners: halves were not alike."""
     made = mistakes.untouched(tmp_path / "bench.csv", "electrodes", seed)
-    verdict = calibrate(made.paths, models=("polynomial-2d",)).verdict
+    verdict = calibrate([made], models=("polynomial-2d",)).verdict
     assert verdict.word == "good"
     assert 0.7 < verdict.split_ratio < 2.0  # what is said to be a misfit
 
@@ -22,7 +22,7 @@ def test_a_model_that_fits_is_good_whatever_the_noise(seed, tmp_path):
 @pytest.mark.parametrize("seed", [0, pytest.param(3, marks=pytest.mark.slow)])
 def test_a_model_that_does_not_follow_the_sensor_is_a_misfit(seed, tmp_path):
     made = mistakes.untouched(tmp_path / "bench.csv", "electrodes", seed)
-    verdict = calibrate(made.paths, models=("qpd",)).verdict
+    verdict = calibrate([made], models=("qpd",)).verdict
     assert verdict.word == "model misfit"
     assert verdict.split_ratio > 2.0
 

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from samples import samples
 
-import calibrate.halves as compared_by
 from algorithms.contract import SensorGeometry
 from algorithms.discovery import discover_models
 from calibrate.halves import Halves, halves
@@ -53,10 +52,3 @@ def test_what_is_not_known_is_said_to_be_no_misfit(used: Readings, noise: float)
     found = compared(used, noise)
     assert np.isnan(found.ratio)
     assert found.chance == 1.0
-
-
-@pytest.mark.parametrize("settled", [1, 2])
-def test_halves_of_which_few_refits_settle_are_not_compared(settled: int, monkeypatch) -> None:
-    refits = compared_by.refits
-    monkeypatch.setattr(compared_by, "refits", lambda *given: refits(*given)[:settled])
-    assert np.isnan(compared(camera(GRID)).ratio)

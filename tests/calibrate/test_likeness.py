@@ -37,11 +37,6 @@ def test_ratios_between_models_decide_and_not_their_size():
     assert set(found[0].errors_deg) == set("abcde")
 
 
-def test_few_models_are_like_nothing():
-    nominal = scored("near", "x", a=1.0, b=2.0, c=10.0)
-    assert alike({name: MINE[name] for name in "abc"}, nominal) == []
-
-
 @pytest.mark.parametrize(
     "call", [["--config", "a.toml"], ["--data", "a.csv", "--dataset", "ccd-slit"]]
 )

@@ -61,15 +61,6 @@ def test_a_turned_sensor_is_corrected_by_twelve_poses_one_of_them_wrong(old, tmp
     assert np.nanmean(separation_deg(answered, FRESH)) < 0.02
 
 
-@pytest.mark.slow
-def test_moved_readings_are_told_from_a_turn(old, tmp_path):
-    moved = bench.spots(SUN, 2) + np.array([3.0, -4.0])
-    found = recalibrate([few(tmp_path / "few.csv", moved)], load(old))
-    assert found.kinds == ("offset",)
-    assert found.offset == pytest.approx((3.0, -4.0), abs=0.1)
-    assert found.after.rms_deg < 0.02
-
-
 def test_a_sensor_as_it_was_stays_as_it_is(old, tmp_path):
     found = recalibrate([few(tmp_path / "few.csv", bench.spots(SUN, 2))], load(old))
     assert found.kinds == ()

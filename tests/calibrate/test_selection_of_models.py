@@ -12,7 +12,7 @@ from algorithms.discovery import discover_models
 from calibrate.exclusions import kept_by_model, sound_of
 from calibrate.readings import Readings
 from calibrate.roles import guess
-from calibrate.selection import Candidate, as_cube, compare, fold_of, geometry_of
+from calibrate.selection import Candidate, compare, fold_of, geometry_of
 from calibrate.table import Table
 
 CAMERA = SensorGeometry(focal_length_mm=3.5, pixel_pitch_mm=0.01, centre_px=(512.0, 512.0))
@@ -44,37 +44,9 @@ def test_three_runs_of_twenty_samples_are_left_out_one_by_one() -> None:
     assert fold_of(used.only(used.run < 2))[1] == "blocks of poses"
 
 
-def test_a_number_without_samples_is_no_fold() -> None:
-    used = runs((0, 0), (0.3, 0), (0, 0.3), (-0.3, 0))
-    whole, gap = (compare(u, CAMERA, HOMOGRAPHY)[0] for u in (used, used.only(used.run != 1)))
-    assert whole.refused == gap.refused == ""
-    assert gap.errors is not None
-    assert len(gap.errors) == 3 * 36
-    assert gap.rms_deg == pytest.approx(whole.rms_deg, rel=0.3)
-
-
 def test_runs_of_fields_apart_judge_no_model() -> None:
     found = compare(runs((30, 0), (-20, 25), (-20, -25)), CAMERA, HOMOGRAPHY)
     assert [one.refused for one in found] == ["no sample left out was answered"]
-
-
-def test_what_is_left_along_a_line_when_a_run_is_left_out_is_a_refusal() -> None:
-    line = np.column_stack([np.linspace(-20.0, 20.0, 72), np.zeros(72)])
-    used = camera(np.vstack([line, GRID]), np.repeat([0, 1, 2], 36))
-    spots = used.features.copy()
-    spots[:72, 1] = 512.0  # without noise
-    on_line = samples(spots, used.sun, run=used.run)
-    found = compare(on_line, CAMERA, HOMOGRAPHY)
-    assert "homography" in found[0].refused
-
-
-@pytest.mark.parametrize(
-    ("turned", "exact"), [(4.0, True), (30.0, False)], ids=["a cube a little askew", "no cube"]
-)
-def test_normals_near_the_axes_are_those_of_a_cube(turned: float, exact: bool) -> None:
-    normals = AXES @ bench.turn("z", turned).T
-    found = as_cube(normals)
-    assert np.array_equal(found, AXES if exact else normals)
 
 
 def test_faces_that_nobody_stated_are_told_by_their_light() -> None:

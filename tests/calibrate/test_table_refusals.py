@@ -75,12 +75,6 @@ def test_text_of_another_encoding_is_read_and_its_cells_judged(tmp_path: Path) -
         found.numbers("y")
 
 
-def test_a_column_without_a_name_is_called_by_its_place(tmp_path: Path) -> None:
-    found = read(tmp_path, "bench.csv", b"x,,z\n1,2,3\n")
-    assert list(found.columns) == ["x", "column_2", "z"]
-    assert "column 2 has no name and is called column_2" in found.notes
-
-
 def test_more_rows_than_the_limit_are_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -136,18 +130,3 @@ def test_an_array_of_two_axes_gives_a_column_for_each_place(tmp_path: Path) -> N
     found = read(tmp_path, "bench.npz", npz(spot=spots, run=np.arange(3)))
     assert list(found.columns) == ["spot_0", "spot_1", "run"]
     assert found.numbers("spot_1").tolist() == [2.0, 4.0, 6.0]
-
-
-@pytest.mark.parametrize(
-    ("wanted", "said"),
-    [
-        ("x_pixel", "no column 'x_pixel'; did you mean 'x_pixels'"),
-        ("temperature", r"no column 'temperature' \(there are x_pixels, y_pixels\)"),
-    ],
-)
-def test_a_column_that_is_missing_is_named_with_the_nearest(
-    wanted: str, said: str, tmp_path: Path
-) -> None:
-    found = read(tmp_path, "bench.csv", b"x_pixels,y_pixels\n1,2\n")
-    with pytest.raises(TableError, match=said):
-        found.numbers(wanted)

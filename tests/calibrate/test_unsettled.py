@@ -6,7 +6,7 @@ import os
 
 import numpy as np
 import pytest
-from bench import CENTRE, HEADER, angles_of, grid, spots, sun_of, turn, write
+from bench import CENTRE, HEADER, grid, spots, sun_of, write
 
 from algorithms.contract import UnusableDataError
 from calibrate.calibration import calibrate
@@ -27,22 +27,6 @@ KINDS = {
     "faces": FACES,
     "channels": [f"ch{n}" for n in range(8)],
 }
-
-
-@pytest.mark.parametrize("turned", [0.0, 37.0])
-@pytest.mark.parametrize("runs", [1, 3])
-def test_runs_along_one_axis_claim_no_second_one(turned, runs, tmp_path):
-    line = np.linspace(-50, 50, 60)
-    sun = sun_of(np.column_stack([line, 0 * line])) @ turn("z", turned).T
-    files = [
-        write(tmp_path / f"{n}.csv", HEADER, spots(sun, n), angles_of(sun)) for n in range(runs)
-    ]
-    found = calibrate(files)
-    assert found.verdict.reason.startswith("one-axis calibration")
-    # whatever is read, the answer lies in the plane of the sweep
-    answers = found.model.predict(spots(sun_of(grid(9)), 5))
-    normal = turn("z", turned) @ [1.0, 0.0, 0.0]
-    assert np.nanmax(np.abs(answers @ normal)) < 1e-6
 
 
 def test_a_drawing_refuses_mirrored_axes_unless_it_may_mirror(tmp_path):

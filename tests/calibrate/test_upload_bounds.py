@@ -70,23 +70,6 @@ def refusal(directory: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     return str(said["refused"])
 
 
-def test_rows_beyond_the_bound_are_refused_by_their_number(
-    task: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(uploaded, "MOST_ROWS", 4)
-    assert refusal(task, monkeypatch) == "expected at most 4 rows in all; got 5"
-
-
-def test_files_that_need_more_memory_than_there_is_are_refused(
-    task: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def exhausted(*_: object, **__: object) -> None:
-        raise MemoryError
-
-    monkeypatch.setattr("numpy.column_stack", exhausted)
-    assert "need more memory than a calibration may take" in refusal(task, monkeypatch)
-
-
 @pytest.mark.parametrize("depth", [2_000, 19_000])
 def test_a_config_nested_too_deep_is_said_to_be_at_fault(
     task: Path, monkeypatch: pytest.MonkeyPatch, depth: int

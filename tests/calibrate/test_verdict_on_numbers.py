@@ -53,20 +53,6 @@ def test_a_run_with_an_offset_of_its_own_is_the_pattern() -> None:
     assert found[0].share > 0.5
 
 
-def test_runs_of_one_sample_each_are_no_pattern() -> None:
-    used = samples(SUN[:45], SUN[:45], run=np.minimum(np.arange(45), 43))
-    off = np.zeros((45, 3))
-    off[:40] = normal(40)
-    assert "run" not in " ".join(one.name for one in patterns_in(off, used))
-
-
-@pytest.mark.parametrize("count", [39, 441])
-def test_errors_that_are_few_or_none_go_with_nothing(count: int) -> None:
-    off = normal(count) if count < 40 else np.zeros((count, 3))
-    run = np.arange(count) % 2
-    assert patterns_in(off, samples(SUN[:count], SUN[:count], run=run)) == ()
-
-
 def test_the_next_pose_lies_in_the_hole_of_the_field() -> None:
     hole = bench.sun_of(np.array([[15.0, -10.0]]))
     poses = SUN[separation_deg(SUN, np.broadcast_to(hole, SUN.shape)) > 12.0]

@@ -12,7 +12,6 @@ import survey_data
 from survey_data.descriptor import DATA_DIRECTORY
 from survey_data.hardware import hardware
 from survey_data.problems import SurveyDataError
-from survey_data.reported import statistics
 
 
 def test_it_is_the_table_that_pandas_reads() -> None:
@@ -24,10 +23,6 @@ def test_it_is_the_table_that_pandas_reads() -> None:
         theirs = [None if math.isnan(value) else value for value in frame[column].tolist()]
         assert ours == theirs
     assert {item.basis for item in found.values()} == {"page", "recalled"}
-
-
-def test_every_accuracy_is_of_a_kind_that_has_a_rule() -> None:
-    assert {one.accuracy_kind for one in hardware().values()} <= {*statistics(), ""}
 
 
 def test_a_broken_table_is_named(tmp_path: Path) -> None:

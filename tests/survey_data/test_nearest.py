@@ -29,9 +29,5 @@ def test_the_likeness_asked_for_decides():
     assert nearest_name("slots", iter(["Slit"]), cutoff=0.67) is None
 
 
-def test_of_nothing_nothing_is_like_it():
-    assert nearest_name("word", []) is None
-
-
 def test_of_words_equally_alike_the_first_by_alphabet_is_taken():
     assert nearest_name("Slat", ["Slot", "Slit", "Slut"]) == "Slit"

@@ -7,10 +7,6 @@ import pytest
 from survey_data.processors import UnknownProcessorError, factor, processors
 
 
-def test_the_reference_takes_its_own_time() -> None:
-    assert factor("reference") == 1.0
-
-
 def test_processors_stand_in_the_order_of_their_published_speed() -> None:
     """Rad-hard LEON3FT, RAD750, microcontrollers, Zynq, Raspberry Pi: a class apart each."""
     order = ["raspberry-pi-4", "zynq-7000", "cortex-m7", "cortex-m4", "rad750", "gr712rc"]

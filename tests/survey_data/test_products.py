@@ -6,22 +6,7 @@ from statistics import median
 
 import pytest
 
-import survey_data
-from survey_data.hardware import hardware
 from survey_data.products import Product, built_sensors, products
-
-
-def test_rows_are_those_of_the_table_with_their_families() -> None:
-    frame = survey_data.load().hardware
-    found = built_sensors()
-    assert list(found) == list(hardware()) == frame["id"].tolist()
-    for column in ("group", "study", "family", "supply"):
-        assert [getattr(item, column) for item in found.values()] == list(frame[column].fillna(""))
-    for column in ("update_hz", "power_mw", "mass_g"):
-        stated = {
-            key: value for key, one in found.items() if (value := getattr(one, column)) is not None
-        }
-        assert stated == frame.set_index("id")[column].dropna().to_dict()
 
 
 def test_an_accuracy_is_compared_as_an_rms() -> None:

@@ -29,13 +29,6 @@ def test_a_figure_is_compared_as_the_rms_of_its_kind(kind: str, value: float, rm
     assert reported_accuracies("accuracy", value, kind).rms_deg == pytest.approx(rms, rel=1e-3)
 
 
-def test_a_figure_says_what_it_is() -> None:
-    assert reported_accuracies("precision", 0.002, "1sigma").label == "1-sigma precision"
-    assert reported_accuracies("accuracy", 0.002).label == "accuracy of unspecified kind"
-    with pytest.raises(KeyError):
-        reported_accuracies("accuracy", 0.002, "best")
-
-
 def test_a_one_sigma_precision_is_no_accuracy() -> None:
     """Wei2013 prints 1.1 arcsec, Wang2015 1.32 arcsec, both as precision and 1 sigma."""
     for key, arcsec in (("Wei2013", 1.1), ("Wang2015", 1.32)):
@@ -56,12 +49,6 @@ def test_every_number_of_the_mapping_has_a_kind() -> None:
         kinds = attributes.loc[attributes["attribute"] == kind]
         assert set(kinds["study"]) == with_number[number]
         assert set(kinds["value"]) <= set(statistics())
-
-
-def test_a_heading_of_a_rover_is_no_accuracy_of_a_sun_sensor() -> None:
-    study = facts().studies["TrebiOllennu2001"]
-    assert study.report("accuracy") is None
-    assert "accuracy" in study.unknown
 
 
 def test_cells_that_the_survey_tells_of_rest_on_its_text() -> None:

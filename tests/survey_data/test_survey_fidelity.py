@@ -53,18 +53,6 @@ def test_the_strongest_basis_of_a_cell_is_counted(tables: survey_data.SurveyTabl
     )
 
 
-def test_the_counts_follow_the_tables(tables: survey_data.SurveyTables) -> None:
-    fewer = dataclasses.replace(
-        tables,
-        studies=tables.studies.query("key != 'Wu2001'"),
-        attributes=tables.attributes.query("study != 'Wu2001'"),
-    )
-    report = survey_data.fidelity(fewer)
-    assert report.studies == 128
-    assert "Wu2001" not in report.early_keys
-    assert {line.id: line.held for line in report.counts}["studies-2001"] == 3
-
-
 def test_no_accuracy_is_outside_its_class(tables: survey_data.SurveyTables) -> None:
     assert survey_data.fidelity(tables).class_disagreements == ()
 
@@ -94,11 +82,3 @@ def test_a_number_that_is_a_limit_as_rounded_contradicts_neither_class(
     attributes.loc[at, "value"] = value
     changed = dataclasses.replace(tables, attributes=attributes)
     assert len(survey_data.fidelity(changed).class_disagreements) == count
-
-
-def test_problems_are_carried(tables: survey_data.SurveyTables) -> None:
-    problem = survey_data.Problem("studies.csv", 2, "year", "no year")
-    report = survey_data.fidelity(tables, [problem])
-    assert report.to_dict()["problems"] == [
-        {"file": "studies.csv", "row": 2, "column": "year", "message": "no year"}
-    ]

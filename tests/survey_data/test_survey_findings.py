@@ -296,12 +296,6 @@ def test_values_of_a_condition_are_alternatives() -> None:
     assert made_up("error=B or C&mask=n", "error: A", "top").matching == 1
 
 
-def test_conditions_are_joined_by_and() -> None:
-    verdict = made_up("error=B&mask=n", "error: A", "top")
-    assert verdict.matching == 1
-    assert verdict.verdict == "undecidable"
-
-
 @pytest.mark.parametrize(
     ("given", "expects", "kind", "column"),
     [

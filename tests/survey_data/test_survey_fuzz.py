@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import survey_data
-from survey_data.descriptor import column_types, file_name, table_names
+from survey_data.descriptor import column_types, table_names
 
 SETTINGS = {
     "deadline": None,
@@ -37,24 +37,6 @@ def mutate(data: bytes, edits: list[tuple[float, int, bytes]]) -> bytes:
         at = int(position * len(data))
         data = data[:at] + added + data[at + removed :]
     return data
-
-
-@pytest.mark.slow
-@given(st.sampled_from(table_names()), mutations())
-@settings(max_examples=16, **SETTINGS)
-def test_random_corruption_gives_problems_or_stays_valid(
-    copy: Any, table: str, edits: list[tuple[float, int, bytes]]
-) -> None:
-    path = copy.path(table)
-    original = path.read_bytes()
-    try:
-        path.write_bytes(mutate(original, edits))
-        problems = survey_data.validate(copy.directory)
-        assert all(p.message and p.file.endswith(".csv") for p in problems)
-        if not problems:  # what is valid can be loaded
-            assert len(survey_data.load(copy.directory).studies) == 129
-    finally:
-        path.write_bytes(original)
 
 
 @pytest.mark.slow
@@ -129,9 +111,3 @@ def test_a_mangled_workbook_is_read_or_refused(
     except survey_data.SurveyImportError as error:
         columns = [str(error)]
     assert columns
-
-
-def test_every_table_is_among_the_corrupted(copy: Any) -> None:
-    assert {file_name(table) for table in table_names()} == {
-        path.relative_to(copy.directory).as_posix() for path in copy.directory.rglob("*.csv")
-    }

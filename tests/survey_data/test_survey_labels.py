@@ -48,23 +48,6 @@ def test_numbers_counted_by_hand_in_the_print() -> None:
     assert held["sec:appendixa"][1] == "A"
 
 
-@pytest.mark.parametrize(
-    ("source", "kind", "number"),
-    [
-        (r"\begin{align}\label{eq:a} x \\ y \end{align}", "equation", "1"),
-        (r"\begin{flalign}\label{eq:a} x \nonumber \\ y \end{flalign}", "equation", "1"),
-        (
-            r"\begin{align} x \\ y \end{align} \begin{equation}\label{eq:a} z \end{equation}",
-            "equation",
-            "3",
-        ),
-        (r"\section{One} \subsection*{Two} \label{eq:a}", "subsection", "1"),
-    ],
-)
-def test_rows_of_equations_are_counted_as_latex_does(source: str, kind: str, number: str) -> None:
-    assert labels_of(source)["eq:a"][:2] == (kind, number)
-
-
 def test_a_label_alone_is_named_in_full_and_within_a_sentence_by_its_number() -> None:
     assert labels.label_of("sec:attribanalysis") == "Section 4 “Sensor attribute analysis”"
     assert labels.label_of("absent from tab:mrlit") == "absent from Table 2"

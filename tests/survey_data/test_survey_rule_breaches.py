@@ -211,12 +211,6 @@ def test_an_extractor_is_assessed_by_every_property(frames: Frames) -> None:
     assert (found.row, found.column) == (last + FIRST_ROW, "property")
 
 
-def test_only_the_first_gap_in_numbers_is_named(frames: Frames) -> None:
-    claims = frames["claims"].drop(index=[3, 7]).reset_index(drop=True)
-    (found,) = check_rules({"claims": claims})
-    assert str(found) == "claims.csv, row 5, column id: expected C04 here, got 'C05'"
-
-
 @pytest.mark.parametrize("known", ["Chang2008", "CildenGuler2021"])
 def test_a_confirmation_is_of_a_study_of_either_edition(frames: Frames, known: str) -> None:
     rows = [[study, "Jane Doe", "2030-02-28", "every cell", ""] for study in (known, "Nobody1999")]

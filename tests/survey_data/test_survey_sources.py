@@ -15,10 +15,7 @@ from survey_data.descriptor import DATA_DIRECTORY
 _MIRRORS = (
     *("http://120.26.44.124:3004/details/1/897884438", "http://[2001:db8::1]/paper"),
     *("https://pdfslide.net/a.html", "https://www.scribd.com/doc/1", "https://ja.scribd.com/doc/2"),
-    *("https://manuscript.isc.ac/49/1.htm", "https://search.isc.ac/1", "https://mafiadoc.com/x"),
     *("https://www.researchgate.net/p", "https://discovery.researcher.life/a", "https://zowya.com"),
-    *("https://fid-move.de/x", "https://bohrium.dp.tech/x", "https://vdocuments.mx/x"),
-    *("https://m.booksci.cn/x", "https://preview.concepedia.online/x", "https://zhixidata.com/x"),
 )
 
 
@@ -44,13 +41,9 @@ def test_a_raw_address_or_a_mirror_is_no_source_and_no_link(address: str) -> Non
     [
         ("https://a.example/x", "sources.csv"),
         ("https://doi.org/10.1/x; FOV: the survey text", "stands alone"),
-        ("https://www.mdpi.com:8080/x", "by its name alone"),
         ("https://user@www.mdpi.com/x", "by its name alone"),
         ("https://localhost/x", "raw address"),
-        ("https://[www.mdpi.com/x", "no address: Invalid IPv6 URL"),
-        ("https://www.mdpi.com:99999/x", "no address: Port out of range"),
         ("data sheet at pdfslide.net/x", "pdfslide.net stands in a source"),
-        ("120.26.44.124/details", "120.26.44.124 stands in a source"),
     ],
 )
 def test_what_cannot_be_cited_says_why(text: str, reason: str) -> None:
@@ -104,9 +97,7 @@ def test_notes_keep_where_a_copy_was_read_without_a_scheme_that_programs_would_l
     ("table", "column", "text"),
     [
         ("attributes", "source", "https://pdfslide.net/x"),
-        ("hardware", "source", "http://120.26.44.124:3004/x"),
         ("studies", "url", "https://www.scribd.com/doc/1"),
-        ("roles", "source", "model:unheardof"),
         ("advice", "survey_section", "sec:nowhere"),
     ],
 )

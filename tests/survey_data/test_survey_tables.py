@@ -5,8 +5,6 @@ from __future__ import annotations
 import csv
 import itertools
 import json
-import subprocess
-import sys
 
 import frictionless
 import pandas as pd
@@ -36,11 +34,6 @@ def test_the_descriptor_is_version_2_and_every_file_is_described() -> None:
         assert resource["schema"].keys() & {"primaryKey", "uniqueKeys"}
         for field in resource["schema"]["fields"]:
             assert "categories" not in field  # frictionless does not enforce them
-
-
-def test_the_licence_of_the_data_is_named() -> None:
-    text = (DATA_DIRECTORY / "LICENSE").read_text(encoding="utf-8")
-    assert "https://creativecommons.org/licenses/by/4.0/legalcode" in text
 
 
 def test_the_strict_reader_agrees_with_the_standard_library() -> None:
@@ -103,15 +96,6 @@ def test_the_assessment_is_19_by_21_and_its_known_rows_hold(
     assert totals["Eigen-analysis"] == 16
 
 
-def test_a_study_s_cells_are_as_compiled(tables: survey_data.SurveyTables) -> None:
-    rows = tables.attributes.query("study == 'Antonello2018'")
-    cells = {name: set(group["value"]) for name, group in rows.groupby("attribute")}
-    assert cells["model"] >= {"SECM/Solar", "ICM/Shadow"}
-    assert cells["task"] == {"Accuracy", "Cost", "Power", "Volume"}
-    assert cells["detector"] == {"CMOS"}
-    assert cells["accuracy"] == {"FSS"}
-
-
 @pytest.mark.parametrize(
     ("accuracy_deg", "expected"),
     [
@@ -137,31 +121,6 @@ def test_what_is_no_accuracy_has_no_class(
 ) -> None:
     with pytest.raises(LookupError, match="no accuracy class"):
         accuracy_class(tables.taxonomy, accuracy_deg)
-
-
-def test_importing_the_package_loads_nothing_heavy() -> None:
-    code = (
-        "import sys, survey_data; "
-        "print([m for m in ('pandas', 'numpy', 'frictionless', 'openpyxl') if m in sys.modules])"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        capture_output=True, text=True, check=True, cwd=DATA_DIRECTORY.parent,
-    )  # fmt: skip
-    assert done.stdout.strip() == "[]"
-
-
-def test_every_public_name_is_found_and_others_are_not() -> None:
-    for name in survey_data.__all__:
-        assert callable(getattr(survey_data, name))
-        assert name in dir(survey_data)
-    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
-        _ = survey_data.nothing
-
-
-def test_no_public_name_is_also_a_module() -> None:
-    modules = {path.stem for path in DATA_DIRECTORY.glob("*.py")}
-    assert not modules & set(survey_data.__all__)
 
 
 def test_no_two_values_of_an_attribute_share_a_name(tables: survey_data.SurveyTables) -> None:

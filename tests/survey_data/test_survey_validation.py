@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import survey_data
-from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name, primary_key, table_names
+from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name, table_names
 from survey_data.editions import EXTENSION_TABLES
 
 #: Those of the survey; the tables of those it does not map may be empty (`additions/`).
@@ -98,55 +98,14 @@ def test_broken_form_is_located_in_every_table(kind: str, copy: Any) -> None:
         assert {p.file for p in problems} == {file_name(table)}
 
 
-@pytest.mark.parametrize("kind", FORM)
-def test_broken_form_of_all_tables_at_once_is_reported_for_each(kind: str, copy: Any) -> None:
-    corrupt, row = FORM[kind]
-    for table in ALL:
-        path = copy.path(table)
-        path.write_bytes(corrupt(path.read_bytes()))
-    problems = survey_data.validate(copy.directory)
-    for table in ALL:
-        assert located([p for p in problems if p.file == file_name(table)], row)
-    with pytest.raises(survey_data.SurveyDataError, match=r"row \d+, column \w+: "):
-        survey_data.load(copy.directory)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("table", ALL)
-def test_a_missing_file_is_named_and_nothing_else_is_blamed(table: str, copy: Any) -> None:
+def test_a_missing_file_is_named_and_nothing_else_is_blamed(copy: Any) -> None:
+    table = "taxonomy"
     copy.path(table).unlink()
     problems = survey_data.validate(copy.directory)
     assert survey_data.Problem(file_name(table), None, None, "the file is missing") in problems
     assert {p.file for p in problems} == {file_name(table)}
     with pytest.raises(survey_data.SurveyDataError, match=f"{file_name(table)}: the file is miss"):
         survey_data.load(copy.directory)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("table", ALL)
-def test_a_duplicate_row_and_an_empty_key_are_located_in_every_table(table: str, copy: Any) -> None:
-    copy.edit(table, lambda rows: rows.append(list(rows[1])))
-    column = primary_key(table)[0]
-    copy.set(table, 3, column, "")
-    last = len(copy.rows(table))
-    problems = copy.found(file_name(table))
-    assert any(p.row == last and p.column and "duplicate row" in p.message for p in problems)
-    assert located(problems, 3, column)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("table", ALL)
-def test_a_row_left_out_is_located_in_every_table(table: str, copy: Any) -> None:
-    copy.edit(table, lambda rows: rows.pop(1))
-    problems = survey_data.validate(copy.directory)
-    assert any(p.row is not None and p.column is not None for p in problems)
-    named = {p.file for p in problems}
-    # an attribute row is missed where the study stands and where the printed tables have it
-    assert (
-        (named & {"studies.csv", "study_tables.csv"})
-        if table == "attributes"
-        else (file_name(table) in named)
-    )
 
 
 UNKNOWN = {
@@ -235,26 +194,6 @@ def test_a_cell_has_one_basis(copy: Any) -> None:
     assert any(p.column == "basis" and "two bases" in p.message for p in problems)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("pick", "column", "text", "blamed"),
-    [
-        (lambda c: c[3] == "unknown", "value", None, "value"),
-        (lambda c: c[3] == "unknown", "basis", "title", "basis"),
-        (lambda c: c[3] == "abstract", "value", "", "basis"),
-        (lambda c: c[3] == "abstract", "basis", "unknown", "value"),
-    ],
-)
-def test_unknown_and_empty_go_together(
-    pick: object, column: str, text: str | None, blamed: str, copy: Any
-) -> None:
-    rows = copy.rows("attributes")
-    row = next(i for i, cells in enumerate(rows[1:], 2) if pick(cells))
-    known = next(c[2] for c in rows[1:] if c[1] == rows[row - 1][1] and c[2])
-    copy.set("attributes", row, column, known if text is None else text)
-    assert located(copy.found("attributes.csv"), row, blamed)
-
-
 def test_a_study_without_a_row_for_an_attribute_is_named(copy: Any) -> None:
     copy.edit(
         "attributes",
@@ -264,15 +203,6 @@ def test_a_study_without_a_row_for_an_attribute_is_named(copy: Any) -> None:
     problems = copy.found("studies.csv")
     assert [(p.row, p.column) for p in problems] == [(row, "key")]
     assert "mask" in problems[0].message
-
-
-def test_a_study_has_one_accuracy_class(copy: Any) -> None:
-    rows = copy.rows("attributes")
-    first = next(i for i, c in enumerate(rows) if c[1] == "accuracy" and c[2] == "FSS")
-    another = list(rows[first])
-    another[2] = "CSS"
-    copy.edit("attributes", lambda rows: rows.insert(first + 1, another))
-    assert located(copy.found("attributes.csv"), first + 2, "value")
 
 
 def test_a_printed_cell_must_be_carried_and_a_carried_cell_printed(copy: Any) -> None:
@@ -359,11 +289,6 @@ def test_the_assessment_keeps_one_case_study_an_extractor(copy: Any) -> None:
     assert located(copy.found("feature_assessment.csv"), 3, "case_study")
 
 
-def test_columns_in_another_order_are_reported(copy: Any) -> None:
-    copy.edit("claims", lambda rows: [cells.reverse() for cells in rows] and None)
-    assert located(copy.found("claims.csv"), 1)
-
-
 @pytest.mark.parametrize(
     ("content", "expected"),
     [
@@ -392,9 +317,3 @@ def test_a_weakened_descriptor_is_reported(tmp_path: Path) -> None:
     assert survey_data.Problem(path.name, None, None, "the file is missing") in (
         survey_data.validate(tmp_path)
     )
-
-
-def test_a_problem_reads_as_a_place_and_a_message() -> None:
-    problem = survey_data.Problem("studies.csv", 7, "year", "expected a year")
-    assert str(problem) == f"studies.csv, row 7, column year: {problem.message}"
-    assert problem.to_dict()["row"] == 7

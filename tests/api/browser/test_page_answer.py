@@ -64,45 +64,6 @@ def test_each_architecture_says_which_evidence_meets_which_requirement(wide: Vis
         ]
 
 
-def test_a_stated_bench_stands_beside_the_own_error_and_is_named_where_it_is_in_the_way(
-    wide: Visit,
-) -> None:
-    asked = "max_error_deg=0.02&bench_deg=0.05"
-    found = answer(wide, asked)
-    page = wide.go(f"/?{asked}")
-    (note,) = found["notes"]
-    assert note in page.locator("#answer").inner_text()
-    for row, one in zip(page.locator(".architecture").all(), found["architectures"], strict=True):
-        measured = one["best"] and one["best"]["measured"]
-        if measured and measured["own_deg"] is not None:
-            said = row.locator(".best").inner_text()
-            assert f"own error {degrees(measured['own_deg'])}" in said
-            assert f"on your bench {degrees(measured['on_bench_deg'])}" in said
-
-
-def test_what_nobody_built_stands_last_under_its_own_heading(wide: Visit) -> None:
-    page = wide.go("/?max_error_deg=0.2&detector=CCD")
-    tops = page.evaluate(
-        "() => [...document.querySelectorAll('#architectures, #never-built, .architecture')]"
-        ".map(e => e.id || e.querySelector('.told > .note').textContent)"
-    )
-    at = tops.index("never-built")
-    assert tops[0] == "architectures"
-    assert all("no study, no product" not in said for said in tops[1:at])
-    assert all("no study, no product" in said for said in tops[at + 1 :])
-    assert len(tops) > at + 1
-
-
-def test_contradictions_are_folded_and_at_most_two(wide: Visit) -> None:
-    page = wide.go("/?accuracy=UFSS")
-    said = [one["sentence"] for one in answer(wide, "accuracy=UFSS")["contradictions"]]
-    assert 0 < len(said) <= 2
-    fold = page.locator(".contradictions")
-    assert fold.locator("p").first.is_hidden()
-    fold.locator("summary").click()
-    assert fold.locator("p").all_inner_texts() == said
-
-
 def test_the_answer_goes_on_by_links_without_a_gap(wide: Visit) -> None:
     page = wide.go("/?max_error_deg=0.5")
     found = answer(wide, "max_error_deg=0.5&limit=500")["architectures"]

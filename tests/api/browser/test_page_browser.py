@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from fractions import Fraction
-from itertools import pairwise
 from pathlib import Path
 from urllib.parse import urlsplit
 from urllib.request import urlopen
@@ -12,7 +9,6 @@ from urllib.request import urlopen
 import pytest
 from playwright.sync_api import expect
 
-from registry.studies import facts
 from tests.api.browser.visiting import NARROW, PATIENCE_MS, Visit, get_json, tab_to
 
 pytestmark = pytest.mark.slow
@@ -72,25 +68,6 @@ def test_a_shared_address_fills_the_form_and_asks_the_same_question(wide: Visit)
     assert sorted(form.split("&")) == sorted([*asked.split("&"), "detector=CMOS", "detector=CCD"])
 
 
-def test_empty_fields_ask_for_nothing_and_leave_the_address(wide: Visit) -> None:
-    page = wide.go("/?max_error_deg=&detector=&mission=&min_fov_deg=120")
-    answer = get_json(f"{wide.address}/v1/recommendations?min_fov_deg=120")
-    assert wide.architectures() == answer["count"]
-    page.locator('[name="max_error_deg"]').fill("0.1")
-    page.locator('[name="max_error_deg"]').press("Enter")
-    wide.settle()
-    assert urlsplit(page.url).query == "max_error_deg=0.1&min_fov_deg=120"
-
-
-def test_a_mission_shows_what_it_asks_in_the_blanks(wide: Visit) -> None:
-    page = wide.go()
-    page.locator('select[name="mission"]').select_option("leo-cubesat")
-    page.wait_for_url("**mission=leo-cubesat")
-    wide.settle()
-    expect(page.locator('[name="min_fov_deg"]')).to_have_attribute("placeholder", "100")
-    expect(page.locator(".asked")).to_contain_text("mass at most 50 g")
-
-
 def test_a_click_on_a_node_requires_its_value_and_another_takes_it_back(wide: Visit) -> None:
     page = wide.go()
     for then, value in (("**/?detector=CCD", "CCD"), ("**/", "")):
@@ -99,45 +76,6 @@ def test_a_click_on_a_node_requires_its_value_and_another_takes_it_back(wide: Vi
         page.wait_for_url(then)
         wide.settle()
         expect(page.locator('select[name="detector"]')).to_have_value(value)
-
-
-def test_fractional_counts_of_the_page_share_each_study_among_its_paths(wide: Visit) -> None:
-    """Once for each combination of its groups; the survey's charts count compared methods, too."""
-    page = wide.go()
-    drawn = page.evaluate(
-        """async () => {
-            const data = await import('/page/flow_data.js');
-            const { Vocabulary } = await import('/page/wording.js');
-            const ask = async (url) => (await fetch(url)).json();
-            const words = new Vocabulary((await ask('/v1/taxonomy')).attributes);
-            const answer = await ask('/v1/recommendations/flow');
-            const all = {
-                levels: ['task', 'detector', 'mask', 'model', 'extractor'],
-                counting: 'fractional', nodes: answer.nodes, links: answer.links,
-            };
-            return data.fractional(data.grouped(all, words), answer.paths, words);
-        }"""
-    )
-    group, combinations = facts().taxonomy.category, {}
-    for path in get_json(f"{wide.address}/v1/recommendations/flow")["paths"]:
-        values = (
-            *(f"{level}:{path[level]}" for level in ("task", "detector", "mask")),
-            f"model_category:{group('model', path['model'])}",
-            f"extractor_family:{group('extractor', path['extractor'])}",
-        )
-        for key in path["studies"]:
-            combinations.setdefault(key, set()).add(values)
-    nodes, links = Counter(), Counter()
-    for shares in combinations.values():
-        for values in shares:
-            nodes.update(dict.fromkeys(values, Fraction(1, len(shares))))
-            links.update(dict.fromkeys(pairwise(values), Fraction(1, len(shares))))
-    assert {n["id"]: n["amount"] for n in drawn["nodes"]} == pytest.approx(
-        {name: float(amount) for name, amount in nodes.items()}
-    )
-    assert {(k["source"], k["target"]): k["value"] for k in drawn["links"]} == pytest.approx(
-        {ends: float(amount) for ends, amount in links.items()}
-    )
 
 
 def test_a_refusal_is_shown_as_the_service_words_it(wide: Visit) -> None:
@@ -162,20 +100,6 @@ def test_the_keyboard_alone_asks_and_opens_calibrations(wide: Visit) -> None:
     expect(page.locator(".calibration").first).to_be_visible()
 
 
-def test_a_value_of_the_table_is_required_and_keeps_the_focus(wide: Visit) -> None:
-    page = wide.go()
-    page.locator('[name="view"][value="table"]').check()
-    wide.settle()
-    button = page.locator('.level-value[data-node="detector:CCD"]')
-    button.focus()
-    page.keyboard.press("Enter")
-    page.wait_for_url("**/?detector=CCD")
-    wide.settle()
-    focused = page.locator(":focus")
-    assert focused.get_attribute("data-node") == "detector:CCD"
-    assert focused.get_attribute("aria-pressed") == "true"
-
-
 def test_a_server_that_is_gone_is_said_and_asked_again(wide: Visit) -> None:
     page = wide.go()
     page.route("**/?mask=*", lambda route: route.abort())
@@ -187,18 +111,6 @@ def test_a_server_that_is_gone_is_said_and_asked_again(wide: Visit) -> None:
     wide.settle()
     answer = get_json(f"{wide.address}/v1/recommendations?mask=Slit")
     assert wide.architectures() == answer["count"]
-
-
-def test_a_refusal_of_a_change_is_shown_as_the_service_words_it(wide: Visit) -> None:
-    page = wide.go()
-    chosen = page.locator('select[name="detector"]')
-    chosen.evaluate("select => { select.options[1].value = 'CMOSS'; }")
-    chosen.select_option("CMOSS")
-    expect(page.get_by_role("alert")).to_contain_text("did you mean “CMOS”")
-    chosen.select_option("")
-    expect(page.get_by_role("alert")).to_have_count(0)
-    wide.settle()
-    assert len(wide.names()) == 10
 
 
 @pytest.mark.parametrize(
@@ -245,14 +157,3 @@ def test_the_scheme_follows_the_system_until_it_is_chosen(dark: Visit) -> None:
     assert page.evaluate(theme) == "light"
     dark.go()
     assert page.evaluate(theme) == "light", "the choice is remembered"
-
-
-def test_the_masthead_keeps_to_one_line_above_what_is_jumped_to(wide: Visit) -> None:
-    page = wide.go("/")
-    for width in (901, 980, 981, 1140, 1141, 1280, 1299, 1300, 1600):
-        page.set_viewport_size({"width": width, "height": 900})
-        bottom, jumped_to = page.evaluate(
-            "() => [document.querySelector('.masthead').getBoundingClientRect().height,"
-            " parseFloat(getComputedStyle(document.documentElement).scrollPaddingTop)]"
-        )
-        assert bottom < jumped_to, width

@@ -70,27 +70,6 @@ def test_four_actions_lead_from_home_to_a_verdict_and_code(
         subprocess.run(["./test"], cwd=tmp_path, check=True, capture_output=True)
 
 
-def test_columns_of_unknown_names_are_said_in_the_form(wide: Visit, tmp_path: Path) -> None:
-    page = wide.page
-    angles = grid(11, 40.0)
-    path = write(
-        tmp_path / "odd.csv", ["foo", "bar", "baz", "qux"], angles, spots(sun_of(angles), 1)
-    )
-    page.goto(wide.address + "/calibrate")
-    page.get_by_label("Files, each a run of one sensor").set_input_files(path)
-    roles = {"foo": "direction-1", "bar": "direction-2", "baz": "reading-1", "qux": "reading-2"}
-    for name, role in roles.items():
-        page.get_by_label(f"Role of {name}").select_option(role)
-    page.get_by_label("Readings are").select_option("spot")
-    page.get_by_label("Directions are").select_option("alpha-inner")
-    page.get_by_text("More settings").click()
-    page.get_by_label("Model, such as").fill("homography")
-    config = page.get_by_label("Settings, TOML").input_value()
-    assert 'columns = ["baz","qux"]' in config
-    page.get_by_role("button", name="Calibrate", exact=True).click()
-    expect(page.locator(".verdict")).to_contain_text("Verdict: good")
-
-
 def test_a_wrong_file_is_refused_beside_the_form_which_stays(narrow: Visit, tmp_path: Path) -> None:
     page = narrow.page
     wrong = tmp_path / "wrong.csv"

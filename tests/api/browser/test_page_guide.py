@@ -63,14 +63,3 @@ def test_a_phone_scrolls_tables_and_not_the_page(narrow: Visit, path: str) -> No
     assert narrow.page.locator("h1").first.is_visible()
     assert at_home(narrow)
     assert narrow.complaints == []
-
-
-def test_in_the_dark_pictures_stay_on_white(dark: Visit) -> None:
-    go(dark, "guide/found.html")
-    picture = dark.page.locator("article img").first
-    assert picture.evaluate("e => getComputedStyle(e).backgroundColor") == "rgb(255, 255, 255)"
-    assert picture.evaluate("e => e.naturalWidth") > 100
-    assert (
-        dark.page.evaluate("getComputedStyle(document.body).backgroundColor")
-        != "rgb(255, 255, 255)"
-    )

@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from api.pages.dataset import FIRST
-from tests.api.browser.visiting import NARROW, PATIENCE_MS, WIDE, Visit, follow, get_json
+from tests.api.browser.visiting import PATIENCE_MS, WIDE, Visit, follow, get_json
 
 pytestmark = pytest.mark.slow
 
@@ -72,21 +72,6 @@ def test_compare(wide: Visit) -> None:
     expect(page.locator("svg.plot")).to_be_visible()
 
 
-def test_read_a_claim(wide: Visit) -> None:
-    page = wide.page
-    page.goto(wide.address + "/claims")
-    follow(page.locator(".verdict.partly").first)
-    document = get_json(f"{wide.address}/v1/claims?verdict=partly")
-    rows = page.locator("tbody tr")
-    expect(rows).to_have_count(document["total"])
-    follow(rows.first.locator("a").first)
-    claim = get_json(f"{wide.address}/v1/claims/{document['items'][0]['id']}")
-    expect(page.locator("h1")).to_contain_text(claim["statement"])
-    assert page.locator("#rules ~ table tbody tr").count() == len(claim["rules"])
-    page.locator("summary", has_text="The numbers").click()
-    assert page.locator("figure table tbody tr").count() > 1
-
-
 def test_glossary(narrow: Visit) -> None:
     page = narrow.page
     page.goto(narrow.address + "/studies/Chang2008")
@@ -104,17 +89,6 @@ def test_glossary(narrow: Visit) -> None:
     tip.get_by_role("link").click()
     page.wait_for_url("**/glossary#term-bound")
     expect(page.locator(":target")).to_contain_text("Cramer-Rao", ignore_case=True)
-
-
-def test_on_a_phone_a_question_is_asked_and_the_answer_stands_below_it(narrow: Visit) -> None:
-    page = narrow.go("/")
-    page.locator('select[name="detector"]').select_option("CMOS")
-    page.wait_for_url("**/?detector=CMOS")
-    narrow.settle()
-    assert all(name.startswith("CMOS + ") for name in narrow.names())
-    top = page.locator("#architectures").bounding_box()
-    assert top is not None
-    assert top["y"] < NARROW[1]  # the list begins on the first screen
 
 
 @pytest.fixture

@@ -63,14 +63,3 @@ def test_the_first_answer_is_light_and_one_round_after_the_page(
     assert 3 * LATENCY_S + first / BYTES_PER_S < 1.0
     # Modules name modules, these ask the service: four rounds more.
     assert 7 * LATENCY_S + sum(traffic.bytes.values()) / BYTES_PER_S < 6.0
-
-
-def test_a_new_question_costs_less_than_the_first(wide: Visit, traffic: Traffic) -> None:
-    page = wide.go("/")
-    before = sum(traffic.bytes.values())
-    traffic.bytes.clear()
-    page.locator('select[name="mask"]').select_option("Slit")
-    page.wait_for_url("**/?mask=Slit")
-    wide.settle()
-    page.wait_for_load_state("networkidle")
-    assert 0 < sum(traffic.bytes.values()) < before / 2

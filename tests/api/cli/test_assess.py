@@ -6,17 +6,14 @@ import csv
 import io
 import json
 
-import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from algorithms.discovery import discover_extractors
 from api.cli.command_line import app
-from api.docs import assessment as pages
 from api.server.app import create_app
 from api.service.knowledge import Knowledge
 from api.service.measurements import Measurements
-from benchmark.assessment import assess as assessment
 from benchmark.assessment.definitions import DEFINITIONS
 from benchmark.experiments.sweeps import Sweeps
 from benchmark.plan.parts import Parts
@@ -71,27 +68,6 @@ def test_formats_and_http_say_the_same(atlas):
     ]
 
 
-def test_a_method_is_shown_with_its_values_and_a_wrong_one_is_named():
-    shown = json.loads(run("--method", "BCTM", "--format", "json").stdout)
-    assert [method["method"] for method in shown["methods"]] == ["BCTM"]
-    assert [v["property"] for v in shown["methods"][0]["properties"]] == list(PROPERTIES)
-    wrong = run("--method", "BCTMM")
-    assert wrong.exit_code == 2
-    assert "did you mean 'BCTM'" in wrong.stderr
-
-
-def test_answers_revalidate_and_refusals_name_the_nearest(swept):
-    first = swept.get("/v1/assessment")
-    assert (
-        swept.get("/v1/assessment", headers={"If-None-Match": first.headers["etag"]}).status_code
-        == 304
-    )
-    wrong = swept.get("/v1/assessment?method=BCTN")
-    assert wrong.status_code == 422
-    assert wrong.json()["errors"][0]["nearest"] == "BCTM"
-    assert swept.get("/v1/sweeps?sweep=nois").json()["errors"][0]["nearest"] == "noise"
-
-
 def test_sweeps_are_served_page_by_page_and_filtered(swept, published):
     stored = stored_rows(published)
     assert swept.walk("/v1/sweeps?limit=7") == stored
@@ -112,22 +88,3 @@ def test_what_is_measured_reaches_the_answer(swept):
     assert precise["value"] == pytest.approx(1.0, abs=0.1)
     assert found["Feature tracking"]["measured"] is None
     assert "tracking" in found["Feature tracking"]["reason"]
-
-
-@pytest.mark.slow
-def test_the_page_prints_the_definitions_and_outcomes(published, monkeypatch):
-    rows = stored_rows(published)
-    document = assessment.document(assessment.assess(published))
-    monkeypatch.setattr(pages, "_rows", lambda: rows)
-    monkeypatch.setattr(pages, "_document", lambda: document)
-    definitions = pages.definitions()
-    for definition in DEFINITIONS.values():
-        assert definition.name in definitions
-        assert definition.limits() in definitions
-    assert len(pages.outcomes().splitlines()) == 2 + 2 + 19
-    assert "### quadrants" in pages.accuracy()
-
-
-def test_numbers_are_finite_everywhere(swept):
-    for row in swept.walk("/v1/sweeps"):
-        assert all(np.isfinite(v) for v in row.values() if isinstance(v, float))

@@ -2,7 +2,6 @@
 
 import json
 
-import pytest
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
@@ -53,27 +52,3 @@ def test_verdicts_and_words_narrow(atlas):
     found = json.loads(run_claims("--search", "ALBEDO dnn", "--format", "json"))["items"]
     assert [item["id"] for item in found] == ["C28"]
     assert atlas.get("/v1/claims", params={"q": "albedo dnn"}).json()["items"] == found
-
-
-def test_as_csv_a_row_a_claim(atlas):
-    lines = run_claims("--format", "csv").splitlines()
-    assert len(lines) == 56
-    assert lines[0].startswith("id,section,section_name,study,statement,verdict")
-
-
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (["C99"], "did you mean"),
-        (["--verdict", "refute"], "did you mean 'refuted'"),
-        (["C04", "--verdict", "refuted"], "an ID stands alone"),
-    ],
-)
-def test_a_wrong_call_says_what_was_expected(arguments, said):
-    answer = CliRunner().invoke(app, ["claims", *arguments])
-    assert answer.exit_code == 2
-    assert said in answer.output
-
-
-def test_an_unknown_claim_is_not_found(atlas):
-    assert atlas.get("/v1/claims/C99").status_code in {400, 404}

@@ -10,7 +10,6 @@ from typer.testing import CliRunner
 
 import survey_data
 from api.cli.command_line import app
-from benchmark import datasets
 from registry.fidelity.grading import GRADES, tally_text
 
 OURS = Path(survey_data.__file__).parent
@@ -63,14 +62,6 @@ def test_filters_by_grade_divide_the_studies():
     assert "raised by:" in shown
 
 
-def test_reported_and_own_errors_are_printed_worst_first():
-    rows = answer("studies", "--published")
-    off = [max(row["times"], 1 / row["times"]) for row in rows]
-    assert off == sorted(off, reverse=True)
-    assert f"{len(rows)} studies report an accuracy" in sunatlas("studies", "--published").stdout
-    assert sunatlas("studies", "Soken2023", "--published").exit_code == 2
-
-
 @pytest.mark.parametrize("attribute", ["model", "extractor"])
 def test_a_filter_takes_what_tables_print_for_none(attribute):
     value = table("studies", "--model", "None", "--extractor", "BCTM")[0]["model"]
@@ -85,16 +76,6 @@ def test_filters_keep_what_has_one_of_the_values_of_every_attribute():
     assert found == studies_with("detector", "CMOS") | studies_with("detector", "CCD")
 
 
-def test_filters_by_state_and_year_divide_the_studies():
-    by_state = [len(answer("studies", "--state", s)) for s in ("complete", "partial", "none")]
-    assert sum(by_state) == 129
-    early = answer("studies", "--year-max", 2009)
-    late = answer("studies", "--year-min", 2010)
-    assert len(early) + len(late) == 129
-    assert max(s["year"] for s in early) <= 2009 < min(s["year"] for s in late)
-    assert [s["key"] for s in answer("studies", "--q", "chang2008")] == ["Chang2008"]
-
-
 def test_one_study_is_shown_with_basis_pipelines_and_gaps():
     study = answer("studies", "Chang2008")
     assert study["key"] == "Chang2008"
@@ -104,26 +85,3 @@ def test_one_study_is_shown_with_basis_pipelines_and_gaps():
     for gap in study["gaps"]:
         assert gap["reason"].split()[0] in shown
     assert len(table("studies", "Chang2008")) == len(study["attributes"])
-
-
-@pytest.mark.parametrize("state", ["complete", "partial", "none"])
-def test_a_state_is_what_pipelines_and_gaps_say(state):
-    for found in answer("studies", "--state", state)[:3]:
-        study = answer("studies", found["key"])
-        assert bool(study["pipelines"]) == (state != "none")
-        if state != "none":
-            assert bool(study["gaps"]) == (state == "partial")
-
-
-@pytest.mark.slow
-def test_data_sets_are_listed_and_described():
-    assert [row["name"] for row in table("dataset", "list")] == sorted(datasets.names())
-    for name in datasets.names():
-        card = answer("dataset", "describe", name)
-        preset = datasets.get(name)
-        assert (card["name"], card["version"]) == (name, preset.version)
-        assert set(card["setups"]) == set(preset.conditions)
-        shown = sunatlas("dataset", "describe", name).stdout
-        assert all(condition in shown for condition in preset.conditions)
-        rows = table("dataset", "describe", name)  # a row a condition and split
-        assert list(dict.fromkeys(row["condition"] for row in rows)) == list(preset.conditions)

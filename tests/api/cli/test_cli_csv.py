@@ -8,7 +8,6 @@ from typer.testing import CliRunner
 
 from api.cli.command_line import app
 from api.schema.advice import Advice, Statement
-from api.schema.algorithms import Algorithm
 from api.schema.assessment import Sweep, VerdictRow
 from api.schema.boards import BestOfArchitecture, PartOverview
 from api.schema.claims import CheckedRule, ClaimRow
@@ -17,41 +16,19 @@ from api.schema.datasets import BuiltSensorRow, Data, Dataset
 from api.schema.flows import Link
 from api.schema.recommendations import RecommendationRow
 from api.schema.scores import LeaderboardRow, Score
-from api.schema.search import Found
 from api.schema.studies import AttributeValue, StudyRow
 from api.schema.table import columns_of
 from api.schema.taxonomy import TaxonomyRow
 
 TWINS = (
     (("studies",), "/v1/studies?limit=500", columns_of(StudyRow)),
-    (
-        ("studies", "--detector", "Event"),
-        "/v1/studies?detector=Event&limit=500",
-        columns_of(StudyRow),
-    ),
-    (("studies", "--q", "no such words"), "/v1/studies?q=no+such+words", columns_of(StudyRow)),
     (("studies", "Chang2008"), "/v1/studies/Chang2008", columns_of(AttributeValue)),
     (("recommend",), "/v1/recommendations", columns_of(RecommendationRow)),
-    (
-        ("recommend", "--survive", "albedo", "--task", "Accuracy"),
-        "/v1/recommendations?survive=albedo&task=Accuracy",
-        columns_of(RecommendationRow),
-    ),
-    (
-        ("recommend", "--detector", "Event", "--mask", "Lens"),
-        "/v1/recommendations?detector=Event&mask=Lens",
-        columns_of(RecommendationRow),
-    ),
     (("leaderboard",), "/v1/leaderboard/architectures?limit=500", columns_of(BestOfArchitecture)),
     (("leaderboard", "--overview"), "/v1/leaderboard/overview", columns_of(PartOverview)),
     (
         ("leaderboard", "--dataset", "pd-slit"),
         "/v1/leaderboard/pd-slit?limit=500",
-        columns_of(LeaderboardRow),
-    ),
-    (
-        ("leaderboard", "--dataset", "pd-slit", "--condition", "hot"),
-        "/v1/leaderboard/pd-slit?condition=hot&limit=500",
         columns_of(LeaderboardRow),
     ),
     (
@@ -63,14 +40,11 @@ TWINS = (
     (("claims", "C04"), "/v1/claims/C04", columns_of(CheckedRule)),
     (("curves",), "/v1/curves?limit=500", columns_of(CurveRow)),
     (("assess",), "/v1/assessment", columns_of(VerdictRow)),
-    (("assess", "--method", "BCM"), "/v1/assessment?method=BCM", columns_of(VerdictRow)),
     (("dataset", "list"), "/v1/datasets?limit=500", columns_of(Dataset)),
     (("dataset", "describe", "pd-slit"), "/v1/datasets/pd-slit", columns_of(Data)),
     (("dataset", "realism"), "/v1/realism", columns_of(BuiltSensorRow)),
     (("get", "/v1/taxonomy"), "/v1/taxonomy", columns_of(TaxonomyRow)),
     (("get", "/v1/flows/error"), "/v1/flows/error", columns_of(Link)),
-    (("get", "/v1/algorithms?limit=500"), "/v1/algorithms?limit=500", columns_of(Algorithm)),
-    (("get", "/v1/search?q=centroid"), "/v1/search?q=centroid", columns_of(Found)),
     (("get", "/v1/advice"), "/v1/advice", columns_of(Advice)),
     (("get", "/v1/protocol"), "/v1/protocol", columns_of(Statement)),
     (("get", "v1/sweeps?extractor=bcm"), "/v1/sweeps?extractor=bcm", columns_of(Sweep)),

@@ -7,7 +7,6 @@ import json
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
-from api.docs import curves as page
 from benchmark.learning_curves import record
 
 
@@ -50,13 +49,3 @@ def test_they_are_narrowed_and_a_wrong_name_is_answered_with_the_nearest(atlas):
     refused = atlas.get("/v1/curves?model=periodicc")
     assert refused.status_code == 422
     assert refused.json()["errors"][0]["nearest"] == "periodic"
-
-
-def test_the_page_lists_the_first_of_each_board_and_who_does_not_reach_its_floor(monkeypatch):
-    rows = record.published_curves()
-    lines = page.poses_needed().splitlines()
-    assert len(lines) == 2 + len({row["dataset"] for row in rows})
-    short = [row for row in rows if row["reached"] < row["draws"]]
-    assert len(page.leaders_short_of_poses().splitlines()) == (2 + len(short) if short else 1)
-    monkeypatch.setattr(page, "_rows", lambda: [row for row in rows if row not in short])
-    assert page.leaders_short_of_poses().startswith("Every leader")

@@ -3,7 +3,6 @@
 import csv
 import io
 import json
-import re
 
 import numpy as np
 import pandas as pd
@@ -15,16 +14,12 @@ from api.cli.commands import dataset
 from api.service.knowledge import Knowledge
 from api.service.measurements import Measurements
 from benchmark import datasets
-from benchmark.contract import SPLITS, Cell
+from benchmark.contract import Cell
 from benchmark.datasets.coverage import coverage
-from benchmark.datasets.preview import preview_png
 from benchmark.datasets.preview_overlay import overlay_png
 from benchmark.plan.parts import installed_parts
 from benchmark.results.samples import Directions, SampleErrors
 from benchmark.results.store import Store
-from benchmark.running import pinning
-from benchmark.running.pinning import PinResult
-from benchmark.sweeps.albedo_influence import influence
 
 CUBE = "pd-maskless-cube"
 APERTURE = "cmos-single-aperture"
@@ -41,27 +36,6 @@ def made(tmp_path_factory):
     shown = sunatlas("export", CUBE, "--out", out, *arguments, "--format", "json")
     assert shown.exit_code == 0, shown.stderr
     return out, shown
-
-
-@pytest.mark.slow
-def test_export_writes_what_was_asked_for_and_lists_it(made):
-    out, shown = made
-    listed = json.loads(shown.stdout)
-    assert listed["directory"] == str(out)
-    expected = {"card.json", "checksums-sha256.txt"} | {
-        f"{condition}/{name}"
-        for condition in ("nominal", "albedo")
-        for name in (
-            "preview.png",
-            "references.npz",
-            *(f"{split}.{kind}" for split in SPLITS for kind in ("npz", "csv")),
-        )
-    }
-    assert {row["file"] for row in listed["files"]} == expected
-    assert {p.relative_to(out).as_posix() for p in out.rglob("*") if p.is_file()} == expected
-    for row in listed["files"]:
-        assert row["bytes"] == (out / row["file"]).stat().st_size
-    assert shown.stderr == f"wrote {out}\n"
 
 
 def test_exports_load_with_plain_numpy_and_pandas(made):
@@ -107,18 +81,11 @@ def test_verify_passes_then_names_what_was_changed(made, tmp_path):
         (("export", CUBE, "--out", "x", "--n", "0"), 2, "--n"),
         (("export", CUBE), 2, "--out"),
         (("verify", "nowhere"), 1, "not an export"),
-        (("pin", "pd-maskless-cub"), 1, "'pd-maskless-cube'"),
-        (("preview", "pd-maskless-cub", "--out", "x"), 1, "'pd-maskless-cube'"),
         (("preview", CUBE, "--out", "x", "--condition", "nominl"), 1, "'nominal'"),
         (("preview", "ccd-lens", "--out", "x", "--overlay", "hough-line"), 1, "'hough-lines'"),
-        (("preview", CUBE, "--out", "x", "--overlay", "hough-lines"), 1, "spots on frames"),
-        (("preview", CUBE), 2, "--out"),
-        (("albedo", "pd-maskless-cub"), 1, "'pd-maskless-cube'"),
         (("albedo", "pd-maskless-pyramid"), 1, "no cube"),
         (("albedo", "pd-orbit"), 1, "no condition 'albedo'"),
         (("albedo", "ccd-orbit"), 1, "random directions"),
-        (("albedo", "cmos-slit"), 1, "one aperture"),
-        (("albedo", "cmos-lens"), 1, "one aperture"),
         (("exprot", CUBE), 2, "'export'"),
     ],
 )
@@ -133,42 +100,12 @@ def test_wrong_calls_are_one_line_and_write_nothing(tmp_path, monkeypatch, argum
     assert not (tmp_path / "x").exists()
 
 
-@pytest.mark.slow
-def test_a_preview_is_the_picture_of_the_condition(tmp_path):
-    path = tmp_path / "new" / "cube.png"
-    shown = sunatlas("preview", CUBE, "--condition", "albedo", "--out", path)
-    assert (shown.exit_code, shown.stdout) == (0, "")
-    assert shown.stderr == f"wrote {path}\n"
-    assert path.read_bytes() == preview_png(datasets.get(CUBE), "albedo")
-    sunatlas("preview", CUBE, "--out", path)
-    assert path.read_bytes() == preview_png(datasets.get(CUBE), "nominal")
-
-
 def test_an_overlay_shows_what_an_extractor_finds(tmp_path):
     path = tmp_path / "lens.png"
     shown = sunatlas("preview", "ccd-lens", "--out", path, "--overlay", "hough-lines")
     assert shown.exit_code == 0
     preset, extractor = datasets.get("ccd-lens"), installed_parts().extractor("hough-lines")
     assert path.read_bytes() == overlay_png(preset, extractor, ["nominal"])
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("name", "count", "low", "high"),
-    # a window looks past its hole at some 30 deg of sky, where the Earth seldom stands
-    [(CUBE, 10, 1.0, 90.0), (APERTURE, 40, 0.0, 1e-3)],
-)
-def test_earth_s_light_moves_bare_diodes_and_not_what_a_mask_shades(name, count, low, high):
-    asked = "albedo", name, "--n", str(count)
-    (row,) = csv.DictReader(io.StringIO(sunatlas(*asked, "--format", "csv").stdout))
-    found = influence(name, count)
-    assert row["dataset"] == name
-    assert row["samples"] == str(count)
-    assert low <= float(row["rms_deg"]) < high
-    for quantity in ("rms_deg", "worst_deg", "rms_over_bound", "share_above_a_tenth"):
-        assert float(row[quantity]) == getattr(found, quantity)
-    as_json = json.loads(sunatlas(*asked, "--format", "json").stdout)
-    assert {key: str(value) for key, value in as_json.items()} == row
 
 
 def test_what_is_in_the_way_stays(made, tmp_path):
@@ -178,22 +115,6 @@ def test_what_is_in_the_way_stays(made, tmp_path):
     shown = sunatlas("export", CUBE, "--out", tmp_path, "--force")
     assert shown.exit_code == 1
     assert "holds mine" in shown.stderr
-
-
-@pytest.mark.slow
-def test_data_other_than_published_are_noted(tmp_path, monkeypatch):
-    real = Store.pins
-
-    def other(self):
-        from dataclasses import replace
-
-        return {place: replace(pin, data_hash="0" * 32) for place, pin in real(self).items()}
-
-    monkeypatch.setattr(Store, "pins", other)
-    arguments = ("--condition", "nominal", "--split", "test")
-    shown = sunatlas("export", CUBE, "--out", tmp_path / "x", *arguments)
-    assert shown.exit_code == 0
-    assert "nominal/test.npz" in shown.stderr
 
 
 def test_coverage_is_the_table_in_every_format():
@@ -208,15 +129,6 @@ def test_coverage_is_the_table_in_every_format():
     shown = sunatlas("coverage")
     assert "10 of 10 detectors and 10" in shown.stderr
     assert "pd-maskless-cube" in shown.stdout
-
-
-@pytest.mark.slow
-def test_list_says_what_is_covered():
-    shown = sunatlas("list")
-    counts = re.findall(r"\d+|detectors|masks", shown.stderr)[:6]
-    assert counts == ["10", "10", "detectors", "10", "10", "masks"]
-    rows = json.loads(sunatlas("list", "--format", "json").stdout)
-    assert len({row["detector"] for row in rows}) == len({row["mask"] for row in rows}) == 10
 
 
 @pytest.fixture
@@ -243,23 +155,6 @@ def test_pin_pins_what_is_named_and_check_tells_what_does_not_hold(published):
     assert shown.exit_code == 1
     where = " ".join(first.place)
     assert shown.stdout.startswith(f"{where}: data_hash {first.data_hash}, pinned 0000")
-
-
-def test_pin_takes_every_data_set_by_default(published, monkeypatch):
-    asked = []
-
-    def update(store, workers, progress, *, datasets):
-        asked.append((store.directory, workers, datasets))
-        return PinResult(store.directory, 3, 2, ("one that fails",), 1.5)
-
-    monkeypatch.setattr(pinning, "update", update)
-    shown = sunatlas("pin", "--workers", 2)
-    assert asked == [(published.directory, 2, None)]
-    warning, said = shown.stderr.splitlines()
-    assert warning == "warning: one that fails"
-    assert said.endswith(f" {published.directory}")
-    done = said.removesuffix(str(published.directory))
-    assert re.findall(r"[\d.]+", done) == ["2", "1.5", "3"]
 
 
 def test_realism_sets_datasets_beside_built_sensors_in_every_format():
@@ -310,8 +205,6 @@ def test_errors_are_shown_and_saved_as_csv_and_as_the_published_file(sampled, tm
     [
         ((APERTURE, "--unit", 4, "--out", "x.parquet"), "has all pipelines"),
         (("ccd-slit", "--out", "x.parquet"), "no errors of ccd-slit"),
-        ((f"{APERTURE}s",), APERTURE),
-        ((APERTURE, "--extractor", "bctn"), "bctm"),
     ],
 )
 def test_errors_refuse_what_they_cannot_give(sampled, arguments, said):

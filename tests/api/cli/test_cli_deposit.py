@@ -41,16 +41,6 @@ def test_what_is_built_is_verified_and_what_is_damaged_is_not(tmp_path, monkeypa
     assert wrong().keys() - left_out == {"README.md"}
 
 
-def test_somebody_else_s_directory_is_refused_in_one_line(tmp_path):
-    (tmp_path / "thesis.tex").write_text("irreplaceable")
-    shown = deposit("build", "--out", tmp_path)
-    assert shown.exit_code == 1
-    assert shown.stdout == ""
-    assert shown.stderr.count("\n") == 1
-    assert "thesis.tex" in shown.stderr
-    assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
-
-
 @pytest.mark.parametrize(
     ("arguments", "why"),
     [

@@ -85,15 +85,6 @@ def test_the_command_and_the_service_say_the_same(atlas, arguments, path, listed
         ], "whole numbers, not those of the screen"
 
 
-def test_an_overview_of_one_detector_counts_its_boards_alone(atlas):
-    every = atlas.get("/v1/leaderboard/overview").json()
-    cards = [card for card in atlas.walk("/v1/datasets") if card["detector"] == "Event"]
-    found = atlas.get("/v1/leaderboard/overview?detector=Event&role=extractor").json()
-    assert found["boards"] == len(cards) < every["boards"]
-    assert {part["role"] for part in found["parts"]} == {"extractor"}
-    assert max(part["boards"] for part in found["parts"]) == len(cards)
-
-
 def test_a_board_begins_with_the_best_of_each_extractor(atlas):
     address = "/v1/leaderboard/ccd-single-aperture?condition=nominal"
     board = atlas.walk(address)
@@ -129,16 +120,13 @@ def test_pipelines_are_marked_with_the_studies_that_resolve_to_them(atlas):
     ("arguments", "says"),
     [
         (["--overview", "--dataset", "ccd-lens"], "--overview counts over data sets"),
-        (["--overview", "--each"], "--overview counts over data sets"),
         (["--overview", "--check"], "--check takes all that is published: leave out --overview"),
         (["--check", "--dataset", "ccd-lens"], "leave out --dataset"),
-        (["--check", "--condition", "nominal", "--field", "10"], "leave out --condition, --field"),
         (["--workers", "2"], "--workers goes with --check"),
         (["--detector", "QPD", "--each"], "--detector and --mask narrow architectures"),
         (["--mask", "Slit", "--check"], "leave out --mask"),
         (["--detector", "QPDs"], "--detector: no 'QPDs'"),
         (["--detector", "QPD", "--mask", "Slit"], "nothing is published of such"),
-        (["--overview", "--detector", "QPD", "--mask", "Slit"], "nothing is published of such"),
     ],
 )
 def test_a_call_that_asks_for_two_things_is_refused_in_a_line(arguments, says):

@@ -1,13 +1,9 @@
 """`sunatlas run`, `benchmark` and `leaderboard`: measured once, read afterwards, checked."""
 
-import csv
-import importlib
-import io
 import json
 import re
 import shutil
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 from typer.testing import CliRunner
@@ -15,18 +11,14 @@ from typer.testing import CliRunner
 from api.cli import measuring, working
 from api.cli.command_line import app
 from api.cli.commands import leaderboard
-from benchmark.contract import ON_BENCH, Cell
-from benchmark.leaderboard.pages import FORMATS
+from benchmark.contract import Cell
 from benchmark.leaderboard.scope import published_scope
 from benchmark.plan.combinations import scorable_plan
 from benchmark.plan.parts import installed_parts
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running import runner
-from benchmark.running.runner import RunInterruptedError, stale
+from benchmark.running.runner import stale
 from registry.catalogue import catalogue
-from registry.fidelity.grading import Fidelity
-from registry.fidelity.runnable import Gap
-from registry.resolution import Resolution, resolve
+from registry.resolution import resolve
 
 CHEAP = ("--dataset", "pd-maskless-cube", "--condition", "nominal", "--model", "basic")
 
@@ -101,64 +93,10 @@ def test_what_is_published_is_read_there():
     assert found["sources"]["measured"] == 0
 
 
-@pytest.mark.slow
-def test_the_formats_say_the_same(unpublished):
-    store = ("--store", unpublished / "other")
-    shown = sunatlas("benchmark", *CHEAP, *store, "--format", "json")
-    found = json.loads(shown.stdout)["scores"]
-    rows = list(
-        csv.DictReader(io.StringIO(sunatlas("benchmark", *CHEAP, *store, "--format", "csv").stdout))
-    )
-    assert [float(row["rms_deg"]) for row in rows] == [row["rms_deg"] for row in found]
-    assert str(unpublished / "other") in shown.stderr
-    assert found[0]["extractor"] in sunatlas("benchmark", *CHEAP, *store).stdout
-
-
-@pytest.mark.slow
-def test_a_study_of_which_nothing_runs_says_why_and_fails(unpublished, monkeypatch):
-    """None of today's: the resolution is a stand-in."""
-    none = Fidelity("none", "Nothing of it runs.")
-    gaps = (Gap("model", "Basic", "not there"),)
-    nothing = Resolution("Allgeier2009", none, "none", (), gaps)
-    known = SimpleNamespace(of=lambda _: SimpleNamespace(resolutions={"Allgeier2009": nothing}))
-    module = importlib.import_module("api.cli.commands.run")
-    monkeypatch.setattr(module, "knowledge", lambda: known)
-    shown = sunatlas("run", "Allgeier2009", "--format", "json")
-    assert shown.exit_code == 1
-    found = json.loads(shown.stdout)
-    assert found["scores"] == []
-    assert found["gaps"]
-    assert "nothing of" in shown.stderr
-
-
-def test_something_of_every_study_runs():
-    assert json.loads(sunatlas("studies", "--state", "none", "--format", "json").stdout) == []
-
-
-@pytest.mark.slow
-def test_names_that_go_with_nothing_fail(unpublished):
-    shown = sunatlas("benchmark", "--dataset", "pd-maskless-cube", "--extractor", "bctm")
-    assert shown.exit_code == 1
-    assert "no compatible combination" in shown.stderr
-
-
 def test_an_unknown_condition_of_a_study_s_data_is_refused():
     shown = sunatlas("run", "Allgeier2009", "--condition", "nominale")
     assert shown.exit_code == 1
     assert "'nominal'" in shown.stderr
-
-
-@pytest.mark.slow
-def test_ctrl_c_says_what_is_kept(unpublished, monkeypatch):
-    reason = "interrupted with 1 of 2 cells measured"
-
-    def interrupted(*_arguments, **_options):
-        raise RunInterruptedError(reason)
-
-    monkeypatch.setattr(runner, "run", interrupted)
-    shown = sunatlas("benchmark", *CHEAP)
-    assert shown.exit_code == 130
-    assert shown.stderr == f"sunatlas: {reason}\n"
 
 
 @pytest.mark.parametrize(
@@ -213,18 +151,6 @@ def test_the_leaderboard_is_shown_and_nothing_is_measured(tmp_path, monkeypatch)
     assert not (tmp_path / "working").exists()
 
 
-def test_architectures_are_compared_at_an_equal_field():
-    within = listed("--field", "20")
-    errors = [row["field_rms_deg"] for row in within]
-    assert errors == sorted(errors)
-    assert {row["field_deg"] for row in within} == {20}
-    assert all((row["half_fov_deg"] or 180) >= 20 for row in within)
-    for row in within:
-        # two rings by their solid angle: between the errors of both
-        rings = sorted((row["rms_0_10_deg"], row["rms_10_20_deg"]))
-        assert rings[0] <= row["field_rms_deg"] <= rings[1]
-
-
 def test_a_field_of_view_can_be_read_off():
     wide = listed("--max-error", "0.01")
     fields = [row["widest_field_deg"] for row in wide]
@@ -249,13 +175,10 @@ def test_a_field_of_view_can_be_read_off():
     [
         (["--field", "25"], 2, "25; expected one of 10, 20"),
         (["--dataset", "ccd-orbt"], 1, "did you mean 'ccd-orbit'?"),
-        (["--condition", "nominl"], 1, "did you mean 'nominal'?"),
         (["--stored"], 2, "--stored goes with --check"),
         (["--kernels", "older"], 2, "--kernels goes with --check"),
         (["--field", "20", "--max-error", "1"], 2, "one at a time"),
         (["--dataset", "ccd-orbit", "update"], 2, "--dataset before `update`"),
-        (["--workers", "1", "render"], 2, "--workers before `render`"),
-        (["--kernels", "new"], 2, "'new'"),
     ],
 )
 def test_a_wrong_call_of_leaderboard_is_a_line(arguments, code, says):
@@ -302,21 +225,3 @@ def test_an_up_to_date_record_is_left_as_it_is(published):
     assert {path: after[path] for path in before} == before
     new = {path.name for path in after.keys() - before.keys()}
     assert new <= {"lock", "holder", "journal.jsonl"}
-
-
-@pytest.mark.slow
-def test_everything_else_is_derived(tmp_path):
-    shown = sunatlas("leaderboard", "render", "--out", tmp_path / "out")
-    assert shown.exit_code == 0, shown.stderr
-    written = {path.name: path for path in (tmp_path / "out").iterdir()}
-    assert set(written) == set(FORMATS)
-    board = json.loads(written["leaderboard.json"].read_text("utf-8"))
-    rows = [row for dataset in board["datasets"] for row in dataset["rows"]]
-    cells = Store(PUBLISHED).scores()
-    standard = [cell for cell in cells if cell.unit == 0 and cell.condition != ON_BENCH]
-    assert len(rows) == len(standard)
-    with written["leaderboard.csv"].open(encoding="utf-8", newline="") as file:
-        table = list(csv.DictReader(file))
-    assert [float(row["rms_deg"]) if row["rms_deg"] else None for row in table] == [
-        row["rms_deg"] for row in rows
-    ]

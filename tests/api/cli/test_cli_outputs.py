@@ -74,11 +74,7 @@ def test_somebody_else_s_directory_is_not_replaced(name, tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "size"),
-    [
-        *(("deposit", size) for size in (10_000, 1_000_000, 5_000_000)),
-        *(("guide", size) for size in (100, 60_000)),
-        *(("export", size) for size in (10_000,)),
-    ],
+    [*(("deposit", size) for size in (10_000, 1_000_000, 5_000_000))],
 )
 def test_a_full_disk_leaves_nothing_and_says_one_sentence(name, size, tmp_path):
     """At samples, tables and database; at the first file and at a page; at arrays."""

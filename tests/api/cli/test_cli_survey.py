@@ -82,10 +82,6 @@ def test_the_report_comes_as_table_and_csv_too():
     assert all(row["id"] in table.stdout for row in listed)
 
 
-def test_a_copy_is_as_good_as_the_original(copy):
-    assert survey("check", "--data", copy).stdout == survey("check").stdout
-
-
 def test_an_unknown_value_is_named_with_file_row_and_column(copy):
     rows = rows_of(copy / "attributes.csv")
     header = rows[0]
@@ -96,29 +92,6 @@ def test_an_unknown_value_is_named_with_file_row_and_column(copy):
     assert ("attributes.csv", number + 1, "value") in places
 
 
-@pytest.mark.slow
-def test_a_study_that_is_gone_is_missed_where_it_is_referred_to(copy):
-    rows = rows_of(copy / "studies.csv")
-    write(copy / "studies.csv", [row for row in rows if row[0] != "Chang2008"])
-    listed = rows_of(copy / "attributes.csv")
-    expected = {n for n, row in enumerate(listed, start=1) if row[0] == "Chang2008"}
-    found = {
-        p["row"] for p in refused(copy) if (p["file"], p["column"]) == ("attributes.csv", "study")
-    }
-    assert found == expected
-
-
-@pytest.mark.slow
-def test_a_row_that_stands_twice_is_named_in_every_table(copy):
-    expected = set()
-    for name in TABLES:
-        rows = rows_of(copy / name)
-        write(copy / name, [*rows, rows[1]])
-        expected.add((name, len(rows) + 1))
-    assert len(expected) == 30
-    assert expected <= {(p["file"], p["row"]) for p in refused(copy) if p["column"]}
-
-
 def test_a_row_with_a_cell_too_many_is_named_in_every_table(copy):
     expected = set()
     for name in TABLES:
@@ -127,18 +100,6 @@ def test_a_row_with_a_cell_too_many_is_named_in_every_table(copy):
         expected.add((name, text.count("\n")))
     assert len(expected) == 30
     assert expected <= {(p["file"], p["row"]) for p in refused(copy)}
-
-
-def test_a_quote_that_never_ends_is_named(copy):
-    lines = (copy / "claims.csv").read_text("utf-8").splitlines()
-    lines[2] = '"' + lines[2].replace('"', "")
-    (copy / "claims.csv").write_text("\n".join(lines) + "\n", "utf-8")
-    assert {("claims.csv", 3)} <= {(p["file"], p["row"]) for p in refused(copy)}
-
-
-def test_a_table_that_is_gone_is_named(copy):
-    (copy / "taxonomy.csv").unlink()
-    assert "taxonomy.csv" in {p["file"] for p in refused(copy)}
 
 
 # ---- import
@@ -159,12 +120,6 @@ def theirs(tmp_path):
     return path
 
 
-def detectors(directory, study):
-    return [
-        row[2:4] for row in rows_of(directory / "attributes.csv") if row[:2] == [study, "detector"]
-    ]
-
-
 def test_an_import_shows_the_mapping_and_the_cells_and_writes_nothing(copy, theirs):
     before = (copy / "attributes.csv").read_bytes()
     shown = survey(
@@ -182,17 +137,6 @@ def test_an_import_shows_the_mapping_and_the_cells_and_writes_nothing(copy, thei
     assert (copy / "attributes.csv").read_bytes() == before
     table = survey("import", theirs, "--map", "Sensor technology=detector", "--data", copy)
     assert "Nothing written; --apply writes 1 cells." in table.stdout
-
-
-@pytest.mark.slow
-def test_an_import_that_is_applied_leaves_valid_tables(copy, theirs):
-    shown = survey(
-        *("import", theirs, "--map", "Sensor technology=detector", "--data", copy, "--apply")
-    )
-    assert shown.exit_code == 0
-    assert "1 cells written." in shown.stdout
-    assert detectors(copy, "Chang2008") == [["CCD", "authors-table"]]
-    assert survey("check", "--data", copy).exit_code == 0
 
 
 def test_a_cell_that_cannot_be_read_is_named_and_nothing_is_written(copy, theirs):
@@ -224,16 +168,6 @@ def test_a_mapping_that_cannot_be_is_refused(copy, theirs, mapped, code, says):
     assert shown.stdout == ""
     assert shown.stderr.count("\n") == 1
     assert says in shown.stderr
-
-
-@pytest.mark.parametrize("content", [b"", b"\xff\xfe\x00bad", b"PK\x03\x04", b"a,b\n1,2\n"])
-def test_a_file_that_is_no_table_of_studies_is_refused(copy, tmp_path, content):
-    path = tmp_path / "bad.csv"
-    path.write_bytes(content)
-    shown = survey("import", path, "--data", copy, "--apply")
-    assert shown.exit_code == 1
-    assert shown.stderr.count("\n") == 1
-    assert detectors(copy, "Chang2008") == detectors(OURS, "Chang2008")
 
 
 def test_a_bibliography_is_shown_and_then_taken_over(copy, tmp_path):

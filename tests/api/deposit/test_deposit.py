@@ -6,12 +6,10 @@ import json
 import os
 import shutil
 import subprocess
-import sys
 import zipfile
 from functools import partial
 from pathlib import Path
 
-import pandas as pd
 import pytest
 import yaml
 from frictionless import Package
@@ -21,12 +19,10 @@ import survey_data
 from api.deposit import bundle as deposit
 from api.deposit.deposit_tables import NothingPublishedError
 from api.deposit.verification import verify
-from benchmark.claims.rules import claims
 from benchmark.results import samples
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.sweeps import record as sweeps
 from files import manifest
-from files.checksums import CHECKSUMS, write_checksums
+from files.checksums import CHECKSUMS
 from registry.taxonomy import taxonomy_row
 from survey_data.editions import editions
 from tests.api.deposit.conftest import FRAMES
@@ -57,31 +53,6 @@ def test_the_data_package_is_valid(built):
     assert len(described) - len(tables) == others
     assert len(tables) > 30
     assert verify(built.directory) == []
-
-
-@pytest.mark.slow
-def test_frictionless_on_the_command_line_agrees(built):
-    command = (sys.executable, "-m", "frictionless", "validate", "datapackage.json", "--json")
-    shown = subprocess.run(
-        command, cwd=built.directory, capture_output=True, text=True, check=False, timeout=600
-    )
-    assert shown.returncode == 0, shown.stdout
-    assert json.loads(shown.stdout)["valid"]
-
-
-@pytest.mark.slow
-def test_the_checksums_hold_by_another_s_count(built):
-    listed = {}
-    for line in (built.directory / CHECKSUMS).read_text("utf-8").splitlines():
-        digest, name = line.split("  ", 1)
-        assert name not in listed
-        listed[name] = digest
-    counted = {
-        name: hashlib.sha256(content).hexdigest()
-        for name, content in files(built.directory).items()
-        if name != CHECKSUMS
-    }
-    assert listed == counted
 
 
 @pytest.mark.skipif(shutil.which("sha256sum") is None, reason="no sha256sum on this machine")
@@ -133,27 +104,6 @@ def test_the_tables_hold_what_their_sources_hold(built):
             )
 
 
-@pytest.mark.slow
-def test_the_rules_of_claims_follow_from_their_trials(built):
-    """Means over the trials' own rows, by pandas, are the estimates of the rules' rows."""
-    rules, trials = (
-        pd.read_csv(built.directory / "benchmark" / f"claim_{name}.csv")
-        for name in ("rules", "trials")
-    )
-    by_rule = trials.groupby(["claim", "rule"])["statistic_value"]
-    decided = {(rule.name, claim.id): rule for claim in claims().values() for rule in claim.rules}
-    checked = 0
-    for (claim, rule), values in by_rule:
-        if decided[rule, claim].scale != "linear":
-            continue
-        row = rules[(rules["claim"] == claim) & (rules["rule"] == rule)].iloc[0]
-        assert row["trials_count"] == values.count()
-        if values.count() >= 5:
-            assert row["estimate"] == pytest.approx(values.mean(), rel=1e-4, abs=1e-9)
-            checked += 1
-    assert checked
-
-
 def test_every_column_is_described(built):
     described = json.loads((built.directory / "datapackage.json").read_text("utf-8"))
     assert described["$schema"].startswith("https://datapackage.org/profiles/2.")
@@ -190,66 +140,6 @@ def test_the_terms_go_with_the_files(built):
     assert named["value"] == f"sha256:{hashlib.sha256(content).hexdigest()}"
     assert theirs == {**ours, "type": "dataset"}
     assert "CC BY 4.0" in (built.directory / "survey" / "LICENSE").read_text("utf-8")
-
-
-@pytest.mark.slow
-def test_an_earlier_bundle_is_replaced_and_a_damaged_one_mended(built, tmp_path):
-    out = tmp_path / "bundle"
-    shutil.copytree(built.directory, out)
-    (out / "README.md").write_text("damaged")
-    build(out)
-    assert files(out) == files(built.directory)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["bundle", "bundle.zip"]
-
-
-def foreign_file(out):
-    out.mkdir()
-    (out / "thesis.tex").write_text("irreplaceable")
-
-
-def foreign_file_in_a_bundle(out):
-    build(out)
-    (out / "notes.txt").write_text("irreplaceable")
-
-
-def another_data_package(out):
-    out.mkdir()
-    (out / "datapackage.json").write_text('{"name": "other", "resources": []}')
-    write_checksums(out)
-
-
-def plain_file(out):
-    out.write_text("irreplaceable")
-
-
-def link_elsewhere(out):
-    out.symlink_to(out.parent)
-
-
-def foreign_zip(out):
-    with zipfile.ZipFile(out.with_name(f"{out.name}.zip"), "w") as archive:
-        archive.writestr("thesis.tex", "irreplaceable")
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "occupy",
-    [
-        foreign_file,
-        foreign_file_in_a_bundle,
-        another_data_package,
-        plain_file,
-        link_elsewhere,
-        foreign_zip,
-    ],
-)
-def test_what_is_not_ours_is_not_overwritten(occupy, tmp_path):
-    out = tmp_path / "bundle"
-    occupy(out)
-    before = files(tmp_path)
-    with pytest.raises(deposit.DepositError, match="nothing was written"):
-        build(out)
-    assert files(tmp_path) == before
 
 
 @pytest.mark.slow
@@ -302,12 +192,3 @@ def test_without_published_results_there_is_nothing_to_deposit(tmp_path):
     with pytest.raises(NothingPublishedError, match="sunatlas leaderboard"):
         build(tmp_path / "bundle", published=tmp_path)
     assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.slow
-def test_a_column_nobody_described_does_not_go_out(tmp_path, monkeypatch):
-    rows = [{**row, "mystery": 1} for row in sweeps.swept()]
-    monkeypatch.setattr(sweeps, "swept", lambda _directory: rows)
-    with pytest.raises(ValueError, match="column mystery"):
-        build(tmp_path / "bundle")
-    assert not (tmp_path / "bundle").exists()

@@ -1,7 +1,5 @@
 """The code in a bundle: the project's source distribution, its digest in every list."""
 
-import hashlib
-import json
 import shutil
 import tarfile
 
@@ -29,19 +27,6 @@ def test_the_archive_holds_the_code_its_lock_file_and_no_more_than_the_checkout(
     assert not [
         name for name in names if "__pycache__" in name or name.startswith((".venv", "out"))
     ]
-
-
-def test_its_digest_is_in_the_descriptor_the_crate_and_the_list_of_checksums(built):
-    path = archive(built.directory)
-    name, digest = f"code/{path.name}", hashlib.sha256(path.read_bytes()).hexdigest()
-    described = json.loads((built.directory / "datapackage.json").read_text("utf-8"))
-    (resource,) = (r for r in described["resources"] if r["path"] == name)
-    assert resource["hash"] == f"sha256:{digest}"
-    crate = json.loads((built.directory / "ro-crate-metadata.json").read_text("utf-8"))
-    (entity,) = (e for e in crate["@graph"] if e["@id"] == name)
-    assert (entity["sha256"], entity["encodingFormat"]) == (digest, "application/gzip")
-    listed = (built.directory / "checksums-sha256.txt").read_text("utf-8").splitlines()
-    assert f"{digest}  {name}" in listed
 
 
 def test_the_same_checkout_is_packed_to_the_same_bytes(built, tmp_path):

@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 import yaml
 
-from api.metadata.citation import persistent
 from api.metadata.codemeta import NAME, codemeta
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -64,33 +63,9 @@ def test_the_two_agree(citation: str) -> None:
     assert made["@context"] == "https://w3id.org/codemeta/3.0"
 
 
-def test_people_are_named_by_their_identifiers() -> None:
-    _, made = documents(PUBLISHED)
-    assert made["author"] == [
-        {
-            "@id": "https://orcid.org/0009-0000-0012-3455",
-            "@type": "Person",
-            "givenName": "Ada",
-            "familyName": "von Sommer",
-            "affiliation": {"@type": "Organization", "name": "Institute of Light"},
-        },
-        {"@type": "Organization", "name": "The others"},
-    ]
-    assert made["identifier"] == persistent(PUBLISHED) == "https://doi.org/10.5281/zenodo.1234"
-
-
 def test_the_file_of_the_repository_is_of_this_citation_and_version() -> None:
     file = json.loads((ROOT / NAME).read_text("utf-8"))
     assert file == codemeta((ROOT / "CITATION.cff").read_text("utf-8"))
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     assert file["version"] == project["version"]
     assert file["keywords"] == project["keywords"]
-
-
-def test_a_doi_is_found_wherever_the_format_allows_it() -> None:
-    listed = (
-        "identifiers:\n  - {type: url, value: https://x.example}\n  - {type: doi, value: 10.1/a}"
-    )
-    assert persistent(listed) == "https://doi.org/10.1/a"
-    assert persistent("doi: https://doi.org/10.1/b") == "https://doi.org/10.1/b"
-    assert persistent("title: None") is None

@@ -17,11 +17,8 @@ from api.deposit import against_record
 from api.deposit.against_record import differences
 from api.deposit.crate import CRATE
 from api.deposit.database import DATABASE
-from api.deposit.frames import FOLDER
 from api.deposit.package import DESCRIPTOR
 from api.metadata.identity import identity
-from benchmark.datasets.export import CARD, SCHEMA_VERSION
-from files.checksums import contents
 from tests.api.deposit import small_bundle
 from tests.api.deposit.test_deposit_forms import PARQUET
 
@@ -125,52 +122,6 @@ def test_each_file_that_differs_is_named_with_the_place(
     assert found.keys() == problems.keys()
     for name, text in problems.items():
         assert found[name].startswith(text), found[name]
-
-
-def test_files_of_digests_are_named_only_where_nothing_else_differs(
-    compare: Callable[[Callable[[Path], object]], Problems],
-) -> None:
-    def change(bundle: Path) -> None:
-        edited("README.md", lambda _: "# other\n")(bundle)
-        edited(CRATE, lambda _: "{}")(bundle)
-
-    assert compare(change).keys() == {"README.md"}
-
-
-def test_samples_of_other_data_sets_than_asked_for_are_named_before_anything_is_built(
-    small: Path,
-) -> None:
-    (small / FOLDER / "pd-orbit").mkdir(parents=True)
-    steps: list[tuple[int, int, str]] = []
-    found = differences(small, frames=("pd-slit",), progress=lambda *step: steps.append(step))
-    assert found == [
-        (f"{FOLDER}/pd-orbit", "no data set of this bundle"),
-        (f"{FOLDER}/pd-slit", "missing"),
-    ]
-    assert steps == [(1, 1, "")]
-
-
-def test_samples_that_are_no_export_are_named_without_the_path_of_the_bundle(small: Path) -> None:
-    (small / FOLDER / "pd-slit").mkdir(parents=True)
-    before = contents(small)
-    assert differences(small, frames=("pd-slit",)) == [
-        (f"{FOLDER}/pd-slit", f"not an export of a dataset, it has no {CARD}")
-    ]
-    assert contents(small) == before
-
-
-def test_samples_that_were_exported_otherwise_are_named_by_their_card(
-    small: Path,
-) -> None:
-    folder = small / FOLDER / "pd-slit"
-    folder.mkdir(parents=True)
-    card = {"schema": SCHEMA_VERSION, "files": [], "exported": {"splits": ["test"]}}
-    (folder / CARD).write_text(json.dumps(card))
-    (first, said), (second, why) = differences(small, frames=("pd-slit",), anew=False)
-    assert (first, second) == (f"{FOLDER}/pd-slit/{CARD}", f"{FOLDER}/pd-slit")
-    assert said.startswith("exported is {'splits': ['test']}, expected {'conditions': ['nominal']")
-    assert "'first_samples': None" in said
-    assert why.startswith("not an export of a dataset, it has no ")
 
 
 def test_a_bundle_of_another_version_is_left_to_that_version(small: Path) -> None:

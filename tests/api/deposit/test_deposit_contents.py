@@ -93,14 +93,6 @@ def test_sqlite_holds_what_csv_holds_under_plain_names(built):
             assert keys == {sql_name(f) for key in wanted for f in key["fields"]}
 
 
-def test_sqlite_says_what_its_columns_hold(built):
-    with closing(sqlite3.connect(built.directory / "sun-sensor-atlas.sqlite")) as base:
-        stored = base.execute("SELECT name, column_name FROM columns_of_the_atlas").fetchall()
-        for name, column in stored:
-            base.execute(f"SELECT {column} FROM {name} LIMIT 1")
-        assert len(stored) == sum(len(r["schema"]["fields"]) for r in tables(built.directory))
-
-
 @pytest.mark.parametrize("name", ["select", "two words", "1st", "a-b", "Group", "a;drop", ""])
 def test_a_name_that_needs_quotes_is_refused(name):
     with pytest.raises(NameNotPlainError, match="no plain name"):

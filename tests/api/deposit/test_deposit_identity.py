@@ -1,6 +1,5 @@
 """Who the project is, in a checkout and where only the package is installed."""
 
-import datetime as dt
 import email.message
 from pathlib import Path
 
@@ -8,7 +7,7 @@ import pytest
 import yaml
 
 from api.metadata import identity as deposit_identity
-from api.metadata.identity import MissingFileError, generated_citation
+from api.metadata.identity import MissingFileError
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -39,14 +38,6 @@ def elsewhere(tmp_path, monkeypatch):
     deposit_identity.identity.cache_clear()
 
 
-def test_a_checkout_speaks_by_its_own_files():
-    who = deposit_identity.identity()
-    cited = yaml.safe_load((ROOT / "CITATION.cff").read_text("utf-8"))
-    assert who.version == cited["version"]
-    assert who.released == dt.date.fromisoformat(cited["date-released"])
-    assert who.citation == (ROOT / "CITATION.cff").read_text("utf-8")
-
-
 def test_an_installation_speaks_by_its_metadata(elsewhere):
     installed = Installed({"licenses/LICENSE": "code terms"})
     elsewhere.setattr(deposit_identity, "_installed", lambda: installed)
@@ -65,15 +56,6 @@ def test_an_installation_speaks_by_its_metadata(elsewhere):
     assert cited["date-released"] == "1970-01-02"
 
 
-def test_an_installation_is_cited_as_its_checkout_is(elsewhere):
-    written = (ROOT / "CITATION.cff").read_text("utf-8")
-    texts = {"licenses/LICENSE": "code terms", "licenses/CITATION.cff": written}
-    elsewhere.setattr(deposit_identity, "_installed", lambda: Installed(texts))
-    who = deposit_identity.identity()
-    assert who.citation == written
-    assert who.released.isoformat() == yaml.safe_load(written)["date-released"]
-
-
 def test_without_its_licence_nothing_goes_out(elsewhere):
     elsewhere.setattr(deposit_identity, "_installed", lambda: Installed({}))
     with pytest.raises(MissingFileError, match="no LICENSE"):
@@ -84,11 +66,3 @@ def test_without_checkout_and_metadata_there_is_no_identity(elsewhere):
     elsewhere.setattr(deposit_identity, "_installed", lambda: None)
     with pytest.raises(MissingFileError, match="sun-sensor-atlas"):
         deposit_identity.version()
-
-
-def test_a_generated_citation_carries_any_name():
-    cited = yaml.safe_load(
-        generated_citation("1.0", "a: b\\", ('O"Neil', "#x"), dt.date(2026, 1, 2))
-    )
-    assert cited["abstract"] == "a: b\\"
-    assert [author["name"] for author in cited["authors"]] == ['O"Neil', "#x"]

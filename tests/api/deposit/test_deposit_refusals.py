@@ -7,28 +7,21 @@ import json
 import sqlite3
 import zipfile
 from collections.abc import Callable
-from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 from typing import Any
 
-import pyarrow as pa
 import pytest
 from frictionless import FrictionlessException, Resource, system
-from pyarrow import parquet
 
-from api.deposit import deposit_tables, forms, verification
+from api.deposit import verification
 from api.deposit.bundle import DepositError, build
 from api.deposit.crate import CRATE
 from api.deposit.database import DATABASE, write_database
-from api.deposit.deposit_tables import DescriptorError, read_descriptor
 from api.deposit.package import DESCRIPTOR
 from api.deposit.packing import PackingError, pack
-from api.deposit.typed_tables import CellError, TypedTable, typed_tables
-from api.deposit.verification import NoBundleError, verify
-from api.metadata import identity
-from files.checksums import CHECKSUMS, write_checksums
+from api.deposit.typed_tables import TypedTable
+from api.deposit.verification import verify
 from tests.api.deposit import small_bundle
-from tests.api.deposit.test_deposit_forms import TABLE, found
 from tests.api.deposit.test_deposit_verification import agree
 
 
@@ -44,42 +37,6 @@ def without(bundle: Path, name: str) -> None:
     crate["@graph"] = [entity for entity in crate["@graph"] if entity["@id"] != name]
     (bundle / CRATE).write_text(json.dumps(crate))
     agree(bundle)  # type: ignore[no-untyped-call]
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("{", "not JSON"),
-        ("[]", "expected an object with a list of resources"),
-        ('{"resources": {}}', "expected an object with a list of resources"),
-    ],
-)
-def test_a_descriptor_that_is_none_is_refused_by_its_file(
-    tmp_path: Path, text: str, message: str
-) -> None:
-    path = tmp_path / DESCRIPTOR
-    path.write_text(text)
-    with pytest.raises(DescriptorError, match=f"{DESCRIPTOR}: {message}"):
-        read_descriptor(path)
-
-
-def test_a_record_without_learning_curves_makes_no_table_of_them() -> None:
-    assert deposit_tables._curves([], {}) == []
-
-
-def test_columns_that_the_descriptor_does_not_say_are_refused(small: Path) -> None:
-    package = json.loads((small / DESCRIPTOR).read_text("utf-8"))
-    (small / TABLE).write_text("title\na\n")
-    with pytest.raises(CellError, match=r"one\.csv: columns are \['title'\], described are"):
-        typed_tables(small, package)
-
-
-def test_a_database_in_no_directory_is_an_error_of_sqlite_and_not_of_the_disk(
-    tmp_path: Path,
-) -> None:
-    with pytest.raises(sqlite3.OperationalError, match="unable to open") as raised:
-        write_database([], tmp_path / "none" / DATABASE)
-    assert raised.value.sqlite_errorname == "SQLITE_CANTOPEN"
 
 
 def test_a_full_disk_is_an_error_of_the_system_that_names_the_file(
@@ -102,57 +59,10 @@ def test_a_full_disk_is_an_error_of_the_system_that_names_the_file(
     assert raised.value.filename == str(tmp_path / DATABASE)
 
 
-def test_tables_of_which_no_database_can_be_made_are_said_to_be_so(small: Path) -> None:
-    """Two columns get the same name in SQL."""
-    package = json.loads((small / DESCRIPTOR).read_text("utf-8"))
-    schema = package["resources"][0]["schema"]
-    schema["fields"] = [
-        {"name": name, "type": "string"} for name in ("references", "survey_references")
-    ]
-    schema["primaryKey"] = ["references"]
-    (small / DESCRIPTOR).write_text(json.dumps(package))
-    (small / TABLE).write_text("references,survey_references\na,b\n")
-    problems = found(small)
-    assert problems.keys() == {DESCRIPTOR}
-    assert "no other form can be made of the tables (duplicate column" in problems[DESCRIPTOR]
-
-
-def test_a_parquet_file_whose_head_counts_other_rows_than_it_has_is_named(small: Path) -> None:
-    name = "benchmark/samples/one.parquet"
-    path = small / name
-    path.parent.mkdir()
-    parquet.write_table(pa.table({"a": [1, 2, 3]}), path)
-    data = path.read_bytes()
-    counted = b"\x16\x06\x19"  # a count of three as Thrift writes it, before the row groups
-    assert data.count(counted) == 1
-    path.write_bytes(data.replace(counted, b"\x16\x08\x19"))
-    package = {"resources": [{"path": name, "description": "Columns: a: a number."}]}
-    assert list(forms._of_measurements(small, package)) == [
-        (name, "has 3 rows, its own head says 4")
-    ]
-
-
 @pytest.mark.parametrize("name", ["LICENSE", "survey/LICENSE", "bibliography/LICENSE"])
 def test_a_bundle_without_its_terms_is_told_which_are_missing(small: Path, name: str) -> None:
     without(small, name)
     assert verify(small) == [(name, "missing; a bundle goes out with its terms")]
-
-
-def test_a_directory_without_a_descriptor_is_no_bundle(small: Path) -> None:
-    without(small, DESCRIPTOR)
-    with pytest.raises(NoBundleError, match=f"not a bundle, it has no {DESCRIPTOR}"):
-        verify(small)
-
-
-def test_a_crate_with_another_size_is_found(small: Path) -> None:
-    crate = json.loads((small / CRATE).read_text("utf-8"))
-    for entity in crate["@graph"]:
-        if entity["@id"] == "README.md":
-            entity["contentSize"] = "1"
-    (small / CRATE).write_text(json.dumps(crate))
-    (small / CHECKSUMS).unlink()
-    write_checksums(small)
-    assert verify(small) == [(CRATE, "README.md: contentSize is not its size")]
 
 
 def test_what_reads_tables_has_no_way_to_the_web_while_a_bundle_is_verified() -> None:
@@ -225,30 +135,3 @@ def test_a_bundle_too_large_for_a_zip_is_refused(
     monkeypatch.setattr(zipfile, "ZIP64_LIMIT", 100)
     with pytest.raises(PackingError, match="too large for a zip; expected less than 4 GiB"):
         pack(small, small.with_name("large.zip"), "top", dt.date(2026, 11, 21))
-
-
-@pytest.mark.parametrize("there", [True, False])
-def test_an_installation_is_asked_for_its_version_where_there_is_no_checkout(
-    there: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def distribution(name: str) -> Any:
-        if not there:
-            raise PackageNotFoundError(name)
-        return type("Found", (), {"metadata": {"Version": "9.8", "Summary": "", "Author": "A"}})
-
-    monkeypatch.setattr(identity, "ROOT", tmp_path)
-    monkeypatch.setattr(identity, "distribution", distribution)
-    if there:
-        assert identity.version() == "9.8"
-    else:
-        with pytest.raises(identity.MissingFileError, match="nor an installed sun-sensor-atlas"):
-            identity.version()
-
-
-def test_a_person_without_an_affiliation_has_none_in_the_crate(tmp_path: Path) -> None:
-    alone = small_bundle.PEOPLE.replace("    affiliation: Institute of Light\n", "")
-    for people, has in ((small_bundle.PEOPLE, True), (alone, False)):
-        crate = json.loads((small_bundle.make(tmp_path / "b", people) / CRATE).read_text("utf-8"))
-        (person,) = (entity for entity in crate["@graph"] if entity["@type"] == "Person")
-        assert ("affiliation" in person) is has
-        assert any(entity["@type"] == "Organization" for entity in crate["@graph"]) is has

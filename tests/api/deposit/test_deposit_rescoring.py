@@ -16,8 +16,6 @@ from api.deposit import rescore_script, rescoring
 from benchmark.contract import Cell
 from benchmark.datasets.export_arrays import read_archive, write_archive
 from benchmark.datasets.preset import Preset
-from benchmark.plan.parts import installed_parts
-from tests.api.deposit.conftest import FRAMES
 
 NAMED = [
     Cell("pd-slit", "nominal", "voltage-balance", "polynomial-1d"),
@@ -38,44 +36,6 @@ def nothing_is_simulated(monkeypatch):
 
 def scores(bundle):
     return rescoring.read_scores(bundle)
-
-
-def test_what_can_be_measured_is_what_lies_there(built):
-    stated = scores(built.directory)
-    found = rescoring.repeatable(built.directory, stated)
-    assert found == [
-        cell
-        for cell, row in stated.items()
-        if (cell.dataset in FRAMES, cell.condition, cell.unit) == (True, "nominal", 0)
-        and row["rms_deg"]
-    ]
-    assert len(found) > 100
-
-
-def test_bounds_over_a_flight_are_not_measured_again(tmp_path, monkeypatch):
-    parts = installed_parts()
-    monkeypatch.setattr(rescoring, "_whole", lambda _bundle: {"pd-orbit": "nominal"})
-    board = [
-        Cell("pd-orbit", "nominal", "direct", name)
-        for name, model in parts.models.items()
-        if model.about.context
-    ]
-    alone = Cell("pd-orbit", "nominal", "direct", "linear")
-    assert len(board) > 3
-    stated = {cell: {"status": "ok"} for cell in [*board, alone]}
-    assert rescoring.repeatable(tmp_path, stated) == [alone]
-
-
-def test_cells_are_drawn_by_their_names_and_the_seed_alone(built):
-    cells = rescoring.repeatable(built.directory, scores(built.directory))
-    drawn = rescoring.draw(cells, 20, 1)
-    assert drawn == rescoring.draw(cells[::-1], 20, 1) == sorted(set(drawn))
-    assert len(drawn) == 20
-    assert drawn != rescoring.draw(cells, 20, 2)
-    assert rescoring.draw(cells, len(cells), 3) == sorted(cells)
-    for wrong in (0, len(cells) + 1):
-        with pytest.raises(rescoring.RescoringError, match=f"{len(cells)} scores can be"):
-            rescoring.draw(cells, wrong, 1)
 
 
 @pytest.mark.usefixtures("nothing_is_simulated")

@@ -154,23 +154,15 @@ HOSTILE = {
     "200,000 arrays deep": answer(b"[" * 200_000 + b"]" * 200_000),
     "a bomb": answer(gzip.compress(bytes(50 << 20)), "Content-Encoding: gzip"),
     "a byte every moment": "drip",
-    "50 MB": answer(b" " * (50 << 20)),
     "a page": answer(b"<html>log in</html>", "Content-Type: text/html"),
-    "a list": answer(b"[]"),
     "no member": answer(b"{}"),
-    "nothing": answer(b""),
     "a path": answer(b'{"id": "../../users"}'),
     "escape codes": answer(b'{"id": "a", "pids": {"\\u001b[2J": {"identifier": ""}}}'),
-    "5,000 digits": answer(b'{"id": ' + b"9" * 5000 + b"}"),
-    "not UTF-8": answer(b'{"id": "\xe9"}'),
-    "a number of creators": answer(b'{"id": "a", "metadata": {"creators": 5}}'),
     "cut short": answer(b'{"id": "a"}')[:-3],
     "chunks that are none": b"HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n{}\r\n",
     "no HTTP": b"SSH-2.0-OpenSSH_9.6\r\n",
     "an endless header": b"HTTP/1.1 200 OK\r\nX: " + b"x" * 300_000,
-    "a refusal 200,000 deep": answer(b"[" * 200_000).replace(b"200 OK", b"400 \x1b[2J", 1),
     "Retry-After of 400 digits": b"HTTP/1.1 429 No\r\nRetry-After: " + b"9" * 400 + b"\r\n\r\n",
-    "Retry-After in superscript": "HTTP/1.1 429 No\r\nRetry-After: ²\r\n\r\n".encode("latin-1"),
 }
 
 
@@ -185,16 +177,6 @@ def test_any_answer_ends_in_one_sentence(journey, step, name):
     assert str(raised.value).isprintable()
     assert 10 < len(str(raised.value)) <= 600
     assert not journey.archive.records
-
-
-def test_an_answer_of_another_record_or_with_a_file_twice_is_not_believed(journey):
-    draft = journey.upload().draft.id
-    journey.archive.fault("draft", answer(b'{"id": "77"}'))
-    with pytest.raises(ArchiveError, match=f"answered of record 77, expected {draft}"):
-        journey.publish(draft)
-    journey.archive.fault("list", answer(b'{"entries": [{"key": "a"}, {"key": "a"}]}'))
-    with pytest.raises(ArchiveError, match="lists a file twice"):
-        journey.publish(draft)
 
 
 @pytest.mark.parametrize(
@@ -304,8 +286,8 @@ def test_each_server_has_a_token_of_its_own(monkeypatch):
 @pytest.mark.parametrize(
     "address",
     [
-        *("http://zenodo.org", "ftp://zenodo.org", "zenodo.org", "https://me:secret@zenodo.org"),
-        *("https://zenodo.org/api", "https://", "", "http://127.0.0.1.evil.example"),
+        *("http://zenodo.org", "zenodo.org", "https://me:secret@zenodo.org"),
+        *("https://zenodo.org/api", "http://127.0.0.1.evil.example"),
     ],
 )
 def test_an_address_to_which_no_token_may_go_is_refused(address):

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import math
-import shlex
 from collections import defaultdict
 from functools import cache
 from typing import Any
-from xml.etree import ElementTree as ET
 
 import pytest
 
 from api.figures.catalogue import evidence_map
 from api.service.knowledge import Knowledge
 from api.service.measurements import Measurements
-from benchmark.plan.combinations import cells
 from benchmark.results.store import PUBLISHED, Store
 from registry.catalogue import catalogue
 from registry.evidence import Evidence, PipelineRun
@@ -22,28 +19,6 @@ from registry.fitting import stages
 from registry.possibility import GIVES, TELLS
 from registry.studies import facts
 from tests.api.figures.conftest import Values, studies_with
-
-
-def test_a_model_is_impossible_with_another_category_than_its_own() -> None:
-    table = evidence_map(facts(), {}, "model", "model_category").rows
-    possible = {(row["row"], row["column"]) for row in table if row["state"] != "impossible"}
-    assert ("SPM", "Geometric") in possible
-    assert ("SPM", "LUT") not in possible
-    assert len(possible) == len(facts().taxonomy.values("model"))
-
-
-@pytest.mark.slow
-def test_states_are_drawn_as_cells_of_their_own(evidence: Evidence) -> None:
-    found = evidence_map(facts(), evidence=evidence)
-    assert sum(found.counts.values()) == len(found.rows) == 100
-    for drawing in found.drawings.values():
-        root = ET.fromstring(drawing.document("t", "d", ""))
-        marks = [set(e.get("class", "").split()) for e in root.iter()]
-        cells = [classes for classes in marks if "cell" in classes]
-        assert len(cells) == len(found.rows)
-        for state in ("impossible", "unknown", "unstudied"):
-            assert sum(state in classes for classes in cells) == found.counts[state] > 0
-        assert sum("dot" in classes for classes in marks) == found.counts["measured"]
 
 
 @pytest.fixture(scope="module")
@@ -172,43 +147,3 @@ def test_what_can_be_scored_and_was_not_tried_is_named_for_both_its_values() -> 
         assert untried.of(*pair, (), ()).possible_run == run
     elsewhere = untried.of(("detector", "CCD"), ("model", "SPM"), (), ())
     assert (elsewhere.possible_run, elsewhere.nearest_dataset) == (None, "cmos-single-aperture")
-
-
-@pytest.mark.slow
-def test_a_gap_leads_to_what_could_be_measured(evidence: Evidence) -> None:
-    for rows, columns in (("detector", "mask"), ("extractor", "model"), ("detector", "model")):
-        for row in evidence_map(facts(), {}, rows, columns, evidence=evidence).rows:
-            if row["state"] == "impossible":
-                assert row["command"] == row["leads_to"] == ""
-            if "--extractor" in row["command"]:
-                words = shlex.split(row["command"])
-                named = dict(zip(words[2::2], words[3::2], strict=True))
-                of = {"extractor": named["--extractor"], "model": named["--model"]}
-                found = cells(named["--dataset"], None, of["extractor"], of["model"])
-                assert found, row["command"]
-    sensor = next(
-        row
-        for row in evidence_map(facts(), evidence=evidence).rows
-        if (row["row"], row["column"]) == ("CCD", "Single-Ap.")
-    )
-    assert sensor["state"] == "measured"
-    assert sensor["leads_to"] == "/architectures/CCD/Single-Ap."
-
-
-def test_an_untried_pair_leads_to_what_has_both_values_or_one() -> None:
-    dataset = "cmos-single-aperture"
-    plan = {("CMOS", "Single-Ap."): {("bcm", "spm"): (dataset,)}}
-    untried = Evidence(catalogue(), (), plan)
-    found = {
-        (row["row"], row["column"]): row
-        for row in evidence_map(facts(), {}, "detector", "mask", evidence=untried).rows
-    }
-    both = found["CMOS", "Single-Ap."]
-    assert both["command"] == PipelineRun(dataset, "bcm", "spm").command
-    assert both["best_dataset"] is both["best_own_deg"] is None
-    for one in (found["CCD", "Single-Ap."], found["CMOS", "N-Slit"]):
-        assert one["command"] == f"sunatlas benchmark --dataset {dataset}"
-    for row in (both, found["CCD", "Single-Ap."]):
-        assert row["leads_to"] == f"/datasets/{dataset}"
-    neither = found["CCD", "N-Slit"]
-    assert neither["command"] == neither["leads_to"] == ""

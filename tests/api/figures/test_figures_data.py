@@ -36,19 +36,6 @@ def test_every_flow_has_the_studies_with_both_values(
     assert links == {pair: keys for pair, keys in expected.items() if keys}
 
 
-@pytest.mark.parametrize("name", FLOWS)
-def test_every_node_has_the_studies_with_its_value(name: str, values: Values) -> None:
-    rows = [row for row in figure(name, facts()).rows if not row["next_level"]]
-    found = {(row["level"], row["value"]): set(row["studies"]) for row in rows}
-    expected: dict[tuple[str, str], set[str]] = defaultdict(set)
-    for key, of in values.items():
-        for level in LEVELS[name]:
-            for value in of[level]:
-                expected[level, value].add(key)
-    assert found == expected
-    assert all(row["count"] == len(row["studies"]) for row in rows)
-
-
 def test_arcs_of_the_sunburst_hold_the_studies_of_their_models(values: Values) -> None:
     rows = figure("models", facts()).rows
     models = {row["model"]: set(row["studies"]) for row in rows if row["level"] == "model"}
@@ -70,16 +57,6 @@ def test_arcs_of_the_sunburst_hold_the_studies_of_their_models(values: Values) -
         assert set(row["studies"]) == set().union(*(models[r["model"]] for r in inside))
     categories = [row for row in rows if row["level"] == "model_category"]
     assert sum(row["memberships"] for row in categories) == sum(map(len, expected.values())) == 178
-
-
-def test_the_middle_ring_says_which_models_are_calibrated_in_operation() -> None:
-    rings = {row["model"]: row["calibration"] for row in read("model_families")}
-    online = {model for model, ring in rings.items() if ring == "online"}
-    rows = figure("models", facts()).rows
-    assert {r["model"] for r in rows if r["level"] == "model" and r["calibration"] == "online"} == (
-        online & {r["model"] for r in rows}
-    )
-    assert online
 
 
 def test_publications_are_those_of_the_table_of_studies() -> None:

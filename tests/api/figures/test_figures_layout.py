@@ -69,17 +69,6 @@ def test_nothing_overlaps_in_a_matrix(rows: str, columns: str, width: float) -> 
     assert outside(drawing) == []
 
 
-@pytest.mark.parametrize("name", TITLES)
-@pytest.mark.parametrize(
-    "where", [{"detector": "Event"}, {"mask": "V-Slit"}, {"detector": "OI"}, {"model": "ECM"}]
-)
-def test_nothing_overlaps_in_a_figure_of_few_studies(name: str, where: dict[str, str]) -> None:
-    found = figure(name, facts(), where)
-    for drawing in found.drawings.values():
-        assert overlaps(drawing) == []
-        assert outside(drawing) == []
-
-
 WORD = st.text("abcdefgimwABCMW/-.0189", min_size=1, max_size=12)
 NAME = st.lists(WORD, min_size=1, max_size=4).map(" ".join)
 
@@ -154,25 +143,6 @@ def test_ordering_keeps_the_nodes_and_never_crosses_more(marks: SankeyMarks) -> 
     found = order(marks.columns, marks.values)
     assert [sorted(column) for column in found] == [sorted(column) for column in marks.columns]
     assert crossings(found, marks.values) <= crossings(marks.columns, marks.values)
-
-
-@given(marks=flow())
-@settings(max_examples=30)
-def test_crossings_are_those_of_every_pair_of_links(marks: SankeyMarks) -> None:
-    place = {node: at for column in marks.columns for at, node in enumerate(column)}
-    expected = 0
-    for (one, first), (other, second) in itertools.combinations(marks.values.items(), 2):
-        if one[0].split(":")[0] == other[0].split(":")[0]:
-            ends = [place[one[end]] - place[other[end]] for end in (0, 1)]
-            expected += first * second * (ends[0] * ends[1] < 0)
-    assert crossings(marks.columns, marks.values) == expected
-
-
-def test_two_crossed_flows_are_uncrossed() -> None:
-    links = {("a", "y"): 5.0, ("b", "x"): 3.0}
-    assert crossings([["a", "b"], ["x", "y"]], links) == 15
-    assert order([["a", "b"], ["x", "y"]], links) == (("a", "b"), ("y", "x"))
-    assert order([["a", "b"], ["x", "y"]], links, pinned=[1]) == (("b", "a"), ("x", "y"))
 
 
 def sector(size: int, name: str, inside: tuple[Sector, ...] = ()) -> Sector:

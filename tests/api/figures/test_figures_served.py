@@ -34,14 +34,6 @@ def test_a_figure_has_a_page_a_drawing_and_a_table_in_two_formats(atlas: Client,
     assert root.find(f"{SVG}desc") is not None
 
 
-@pytest.mark.parametrize("path", [f"{path}?detector=OI" for path in PATHS])
-def test_columns_stand_where_no_study_is_left(atlas: Client, path: str) -> None:
-    address, query = path.split("?")
-    whole = atlas.get(f"{address}.csv").text.splitlines()[0]
-    assert atlas.get(f"{address}.csv?{query}").text.splitlines()[0] == whole
-    assert atlas.get(path, accept=HTML).status_code == 200
-
-
 def marks(page: str) -> list[tuple[str, str]]:
     """Title and address of every mark of the first drawing that leads somewhere."""
     first = page[page.index("<svg ") : page.index("</svg>")]
@@ -75,15 +67,6 @@ def test_every_mark_leads_to_as_many_studies_as_it_says(atlas: Client, path: str
             assert said is None or said[1] == "1"
 
 
-@pytest.mark.parametrize("path", PATHS)
-def test_every_mark_says_what_it_is(atlas: Client, path: str) -> None:
-    page = atlas.get(path, accept=HTML).text
-    first = page[page.index("<svg ") : page.index("</svg>")]
-    assert len(re.findall(r'<(?:a|g) class="mark"', first)) == first.count("<title>") > 8
-    assert "<title></title>" not in first
-    assert "aria-label=" in first[: first.index(">")]
-
-
 @pytest.mark.parametrize(
     ("path", "status", "parameter", "nearest"),
     [
@@ -102,11 +85,3 @@ def test_what_is_not_known_is_refused_with_what_is(
     assert error["parameter"] == parameter
     assert nearest is None or error["nearest"] == nearest
     assert status == 400 or all(word in error["expected"] for word in ("one of", nearest))
-
-
-def test_the_list_names_all_eight_and_the_matrix(atlas: Client) -> None:
-    items = atlas.get("/v1/figures").json()["items"]
-    assert [item["figure"] for item in items] == list(TITLES)
-    assert len(items) == 8
-    page = atlas.get("/figures", accept=HTML).text
-    assert all(f'href="{path}"' in page for path in PATHS)

@@ -52,24 +52,6 @@ def test_flows_into_a_node_are_those_of_the_table(name, drawn):
     assert len(trace["node"]["label"]) == len(nodes)
 
 
-def test_rings_of_the_sunburst_add_up_to_the_ring_within(drawn):
-    (trace,) = json.loads(specification(drawn("models")))["data"]
-    within = dict(zip(trace["ids"], trace["values"], strict=True))
-    outer = Counter()
-    for parent, value in zip(trace["parents"], trace["values"], strict=True):
-        outer[parent] += value
-    assert {name: outer[name] for name in outer if name} == {n: within[n] for n in outer if n}
-
-
-def test_bars_and_cells_hold_what_the_table_counts(drawn):
-    found = drawn("publications")
-    bars = json.loads(specification(found))["data"]
-    assert sum(sum(bar["y"]) for bar in bars) == sum(row["count"] for row in found.rows)
-    found = drawn(MATRIX)
-    (cells,) = json.loads(specification(found))["data"]
-    assert sum(n for line in cells["z"] for n in line if n) == sum(r["count"] for r in found.rows)
-
-
 @pytest.mark.parametrize("name", ["error", "models", MATRIX])
 def test_the_page_gives_it_under_its_own_name(atlas, name, drawn):
     answer = atlas.get(f"/figures/{name}.plotly.json")
@@ -80,9 +62,3 @@ def test_the_page_gives_it_under_its_own_name(atlas, name, drawn):
     assert f"/figures/{name}.plotly.json" in page.text
     fewer = atlas.get(f"/figures/{name}.plotly.json?detector=CCD").json()
     assert fewer != answer.json()
-
-
-def test_an_unknown_figure_is_answered_with_the_nearest(atlas):
-    answer = atlas.get("/figures/errors.plotly.json")
-    assert answer.status_code == 404
-    assert "error" in answer.text

@@ -59,16 +59,3 @@ def test_references_have_no_columns(atlas):
     refused = atlas.get("/v1/studies?fields=key&format=ris")
     assert refused.status_code == 400
     assert refused.json()["errors"][0]["parameter"] == "fields"
-
-
-def test_no_other_table_is_offered_as_references(atlas):
-    assert atlas.get("/v1/claims?format=bibtex").status_code == 422
-    assert atlas.get("/v1/claims", accept=FORMS["ris"]).status_code == 406
-
-
-def test_references_are_documented_as_what_they_are(atlas):
-    document = atlas.get("/openapi.json").json()
-    content = document["paths"]["/v1/studies/{key}"]["get"]["responses"]["200"]["content"]
-    types = {form: content[kind]["schema"]["type"] for form, kind in FORMS.items()}
-    assert types == {"bibtex": "string", "ris": "string", "csl": "array"}
-    assert isinstance(content[FORMS["csl"]]["example"], list)

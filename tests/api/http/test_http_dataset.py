@@ -90,16 +90,6 @@ def test_pins_of_the_version_there_is_give_hash_and_bound(pinned):
     assert [row["data_hash"] for row in table] == [row["data_hash"] or "" for row in card["data"]]
 
 
-@pytest.mark.parametrize("path", ["/v1/datasets/{}", "/v1/datasets/{}/preview.png"])
-def test_an_unknown_name_is_answered_with_the_nearest(atlas, path):
-    answer = atlas.get(path.format("cmos-single-apertures"))
-    assert answer.status_code == 404
-    assert answer.headers["content-type"] == "application/problem+json"
-    document = answer.json()
-    assert document["type"].endswith(":unknown-name")
-    assert document["errors"][0]["nearest"] == NAME
-
-
 @pytest.mark.slow
 def test_the_picture_is_kept_and_revalidated(client_of):
     client = client_of(create_app())
@@ -117,22 +107,6 @@ def test_the_picture_is_kept_and_revalidated(client_of):
     zipped = client.get(path, headers={"Accept-Encoding": "gzip"})
     assert "content-encoding" not in zipped.headers
     assert zipped.content == first.content
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("accept", "status"),
-    [("image/*", 200), ("image/avif,image/webp,*/*;q=0.5", 200), ("application/json", 406)],
-)
-def test_the_picture_is_given_to_who_takes_pictures(atlas, accept, status):
-    assert atlas.get(f"/v1/datasets/{NAME}/preview.png", accept=accept).status_code == status
-
-
-def test_the_picture_takes_no_parameters(atlas):
-    answer = atlas.get(f"/v1/datasets/{NAME}/preview.png?condition=hot")
-    assert answer.status_code == 400
-    assert answer.json()["errors"][0]["parameter"] == "condition"
-    assert atlas.post(f"/v1/datasets/{NAME}/preview.png").status_code == 405
 
 
 def test_realism_has_a_row_for_every_dataset_and_board_and_card_name_idealisations(atlas):

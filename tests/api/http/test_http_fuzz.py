@@ -8,48 +8,14 @@ import schemathesis
 from schemathesis import GenerationMode
 from schemathesis.config import SchemathesisConfig
 
+from api.server.app import ROUTES
+
+#: Every documented path, with the methods that it takes.
 OPERATIONS = [
-    ("GET", "/v1/taxonomy"),
-    ("GET", "/v1/studies"),
-    ("GET", "/v1/studies/{key}"),
-    ("GET", "/v1/flows/{chart}"),
-    ("GET", "/v1/figures"),
-    ("GET", "/v1/figures/matrix"),
-    ("GET", "/v1/figures/{figure}"),
-    ("GET", "/v1/recommendations"),
-    ("POST", "/v1/recommendations"),
-    ("GET", "/v1/recommendations/flow"),
-    ("GET", "/v1/recommendations/designs"),
-    ("POST", "/v1/calibrations"),
-    ("POST", "/v1/calibrations/preview"),
-    ("GET", "/v1/algorithms"),
-    ("GET", "/v1/datasets"),
-    ("GET", "/v1/datasets/{name}"),
-    ("GET", "/v1/datasets/{name}/preview.png"),
-    ("GET", "/v1/datasets/{name}/errors"),
-    ("GET", "/v1/datasets/{name}/errors.parquet"),
-    ("GET", "/v1/datasets/{name}/directions.parquet"),
-    ("GET", "/v1/realism"),
-    ("GET", "/v1/leaderboard"),
-    ("GET", "/v1/leaderboard/architectures"),
-    ("GET", "/v1/leaderboard/overview"),
-    ("GET", "/v1/leaderboard/{dataset}"),
-    ("GET", "/v1/results"),
-    ("GET", "/v1/sweeps"),
-    ("GET", "/v1/curves"),
-    ("GET", "/v1/assessment"),
-    ("GET", "/v1/claims"),
-    ("GET", "/v1/claims/{id}"),
-    ("GET", "/v1/compare"),
-    ("GET", "/v1/search"),
-    ("GET", "/v1/advice"),
-    ("GET", "/v1/protocol"),
-    ("GET", "/v1/editions"),
-    ("GET", "/v1/datasets/{name}/croissant.json"),
-    ("GET", "/v1/datasets/{name}/linkset.json"),
-    ("GET", "/v1/leaderboard/croissant.json"),
-    ("GET", "/v1/leaderboard/linkset.json"),
-    ("GET", "/healthz"),
+    (method, route.path)
+    for route in ROUTES
+    if route.include_in_schema
+    for method in sorted(route.methods - {"HEAD"})
 ]
 PLAIN = {"/healthz", "/v1/leaderboard/croissant.json", "/v1/leaderboard/linkset.json"}
 # Nothing but `format` can be asked for, and so little else be right.
@@ -118,9 +84,3 @@ def test_any_request_is_answered_as_documented_or_refused(api, method, path, mod
     fuzz()
     few = path in ONLY_FORMAT and mode is GenerationMode.POSITIVE
     assert len(asked) >= (1 if path in PLAIN else 3 if few else fewest)
-
-
-@pytest.mark.slow
-def test_every_operation_is_fuzzed(api):
-    found = {(o.ok().method.upper(), o.ok().path) for o in api.get_all_operations()}
-    assert found == set(OPERATIONS)

@@ -25,11 +25,3 @@ def test_nothing_heavy_is_loaded_before_it_is_needed(code):
         [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == "[]"
-
-
-def test_importing_the_package_loads_none_of_its_parts():
-    program = "import api, sys\nprint(sorted(n for n in sys.modules if n.startswith('api.')))"
-    done = subprocess.run(
-        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    assert done.stdout.strip() == "[]"

@@ -22,19 +22,15 @@ from signposting import find_signposting_http, find_signposting_http_link, find_
 
 from api.metadata.identity import identity
 from api.metadata.signposting import landing_of_study
-from api.schema.scores import LeaderboardRow
-from api.schema.table import columns_of
 from benchmark import datasets
 from tests.api.conftest import Client
 
 PAGES = {
     "/": {"DataCatalog", "SoftwareApplication"},
     "/studies/Chang2008": {"ScholarlyArticle"},
-    "/studies/Coutinho2022": {"ScholarlyArticle"},
     "/datasets/pd-slit": {"Dataset"},
     "/datasets/cmos-single-aperture?condition=albedo": {"Dataset"},
     "/algorithms/bctm": {"SoftwareSourceCode"},
-    "/algorithms/spm": {"SoftwareSourceCode"},
     "/leaderboard": {"Dataset"},
 }
 #: mlcroissant still uses what rdflib and pandas call deprecated.
@@ -110,33 +106,7 @@ def test_croissant_loads_errors_with_their_types(atlas, address, load) -> None:
         assert row["error_deg"] == (None if pd.isna(known["error_deg"]) else known["error_deg"])
 
 
-@pytest.mark.slow
-def test_croissant_loads_every_error(atlas, address, load) -> None:
-    rows = rows_of(load(f"{address}/v1/datasets/pd-slit/croissant.json"), "errors")
-    published = atlas.app.state.knowledge.measurements.sample_errors("pd-slit")
-    assert len(rows) == len(published)
-    for row, (_, known) in zip(rows[::997], published.iloc[::997].iterrows(), strict=True):
-        assert row["extractor"].decode() == known["extractor"]
-        assert (row["unit"], row["sample"]) == (known["unit"], known["sample"])
-        assert row["error_deg"] == (None if pd.isna(known["error_deg"]) else known["error_deg"])
-
-
-@pytest.mark.slow
-def test_croissant_loads_the_leaderboard(atlas, address, load) -> None:
-    rows = rows_of(load(f"{address}/v1/leaderboard/croissant.json"), "ranks")
-    table = atlas.table("/v1/leaderboard?whole=true")
-    assert len(rows) == len(table) > 1000
-    assert set(rows[0]) == set(columns_of(LeaderboardRow))
-    for row, text in zip(rows[::101], table[::101], strict=True):
-        assert row["dataset"].decode() == text["dataset"]
-        assert row["rank"] == (int(text["rank"]) if text["rank"] else None)
-        assert row["folded"] is (text["folded"] == "true")
-        # pandas reads the last digit of some numbers otherwise
-        expected = float(text["rms_deg"]) if text["rms_deg"] else None
-        assert row["rms_deg"] == (expected and pytest.approx(expected, rel=1e-14))
-
-
-@pytest.mark.parametrize("step", [5, pytest.param(1, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("step", [13, pytest.param(1, marks=pytest.mark.slow)])
 def test_data_sets_have_valid_croissant_with_digests_of_what_is_served(atlas, load, step) -> None:
     for name in datasets.names()[::step]:
         answer = atlas.get(f"/v1/datasets/{name}/croissant.json")
@@ -213,7 +183,7 @@ def test_text_of_a_page_s_entity_cannot_end_its_script() -> None:
     assert set(entity) == {"@context", "@type", "@id", "url", "alternateName", "name", "headline"}
 
 
-@pytest.mark.parametrize("step", [5, pytest.param(1, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("step", [13, pytest.param(1, marks=pytest.mark.slow)])
 def test_every_study_s_entity_says_what_is_known(atlas, step: int) -> None:
     for item in atlas.walk("/v1/studies?limit=50")[::step]:
         page = atlas.get(f"/studies/{item['key']}", accept="text/html")

@@ -112,12 +112,6 @@ def in_body(body: object) -> tuple[int, dict[str, Any]]:
     return request("POST", body=json.dumps(body).encode())
 
 
-def test_repeated_values_are_a_set():
-    assert read("task=FOV&task=Accuracy&task=FOV")["task"] == ["Accuracy", "FOV"]
-    assert read("")["task"] == []
-    assert read("")["limit"] == 200
-
-
 @pytest.mark.parametrize(
     "query",
     [f"max_error_deg={bad}" for bad in ("nan", "NaN", "inf", "-inf", "1e400", "-1", "0", "", "1_0")]
@@ -138,18 +132,6 @@ def test_a_parameter_has_a_hundred_values_at_most():
     assert many["errors"][0]["value"] == "101 values"
     assert in_body({"task": ["FOV"] * 100})[0] == 200
     assert in_body({"task": ["FOV"] * 101})[0] == 422
-
-
-def test_refusals_name_the_nearest():
-    def nearest_words(query):
-        return [error["nearest"] for error in refusal(query)["errors"]]
-
-    assert nearest_words("taks=FOV") == ["task"]
-    assert refusal("taks=FOV")["status"] == 400
-    assert nearest_words("task=accurcy") == ["Accuracy"]
-    assert nearest_words("task=fov") == ["FOV"]
-    assert nearest_words("limit=1&lmit=2&tsk=3") == ["limit", "task"]
-    assert nearest_words("grouped=tru") == ["true"]
 
 
 @pytest.mark.parametrize(
@@ -174,15 +156,10 @@ def test_query_and_body_are_refused_in_the_same_words(query, body, expected):
     ("body", "expected"),
     [
         ({"task": 5}, r"\blist\b.*Accuracy, Cost, FOV"),
-        ({"max_error_deg": "1"}, r"number.*\b0\b.*\b180\b"),
         ({"max_error_deg": True}, r"number.*\b0\b.*\b180\b"),
         ({"max_error_deg": None}, r"number.*\b0\b.*\b180\b"),
-        ({"limit": "1"}, r"integer.*\b1\b.*\b500\b"),
         ({"limit": 1.5}, r"integer.*\b1\b.*\b500\b"),
-        ({"grouped": "true"}, r"\btrue\b.*\bfalse\b"),
-        ({"q": None}, r"text.*\b1\b.*\b50\b"),
         ([], "a JSON object"),
-        (None, "a JSON object"),
     ],
 )
 def test_a_body_is_taken_to_the_letter(body, expected):
@@ -190,11 +167,6 @@ def test_a_body_is_taken_to_the_letter(body, expected):
     assert status == 422
     (said,) = (error["expected"] for error in document["errors"])
     assert re.search(expected, said)
-
-
-def test_json_knows_one_kind_of_number():
-    assert in_body({"limit": 3.0})[1]["limit"] == 3
-    assert in_body({"max_error_deg": 3})[1]["max_error_deg"] == 3.0
 
 
 def test_what_is_asked_in_this_process_is_refused_as_over_http():

@@ -104,12 +104,6 @@ def test_what_is_not_published_is_an_empty_list_and_no_file(client):
     assert answer.json()["type"].endswith(":not-published")
 
 
-def test_an_unknown_name_is_answered_with_the_nearest(client):
-    answer = client.get(f"/v1/datasets/{NAME}s/errors")
-    assert answer.status_code == 404
-    assert answer.json()["errors"][0]["nearest"] == NAME
-
-
 def test_the_page_of_the_data_set_links_the_files_where_there_are_some(client):
     assert (
         f"/v1/datasets/{NAME}/errors.parquet"

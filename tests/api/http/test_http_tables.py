@@ -144,19 +144,6 @@ def test_format_and_accept_agree_or_are_refused(atlas):
     assert atlas.get("/healthz?format=csv").status_code == 400
 
 
-def test_what_is_asked_by_post_has_a_format_too(atlas):
-    url, body = "/v1/recommendations", {"task": ["Accuracy"], "limit": 2}
-    table = atlas.post(f"{url}?format=csv", json=body)
-    assert table.text.partition("\n")[0].split(",") == list(
-        TABLES["/v1/recommendations?task=Accuracy"]
-    )
-    for query in ("format=xml", "format=csv&format=json"):
-        refused = atlas.post(f"{url}?{query}", json=body)
-        assert refused.status_code == 422
-        assert refused.json()["errors"][0]["parameter"] == "format"
-    assert atlas.post(f"{url}?formt=csv", json=body).status_code == 400
-
-
 def test_the_next_page_keeps_format_sort_and_fields(atlas):
     url = "/v1/studies?format=csv&sort=-year&fields=key&fields=year&limit=100"
     rows, following = [], url
@@ -174,11 +161,8 @@ def test_the_next_page_keeps_format_sort_and_fields(atlas):
     ("url", "column"),
     [
         ("/v1/leaderboard/qpd-single-aperture", "max_deg"),
-        ("/v1/leaderboard/architectures", "over_bound"),
         ("/v1/studies", "year"),
-        ("/v1/curves", "needed_poses"),
         ("/v1/claims", "statement"),
-        ("/v1/algorithms", "name"),
     ],
 )
 def test_sorted_rows_are_those_of_the_list_in_order(atlas, url, column):
@@ -235,13 +219,3 @@ def test_the_whole_leaderboard_comes_in_pages_or_in_one_answer(atlas):
     second = atlas.get(first.links["next"]["url"]).json()
     assert [row for board in second["datasets"] for row in board["rows"]] == rows[500:1000]
     assert atlas.table("/v1/leaderboard?limit=3") == atlas.table("/v1/leaderboard?whole=true")[:3]
-
-
-def test_no_answer_exceeds_a_megabyte_unasked(atlas):
-    for path, item in atlas.get("/openapi.json").json()["paths"].items():
-        if "get" not in item or "{" in path or path in {"/v1/compare", "/v1/search"}:
-            continue
-        for media_type in ("application/json", "text/csv"):
-            answer = atlas.get(path, accept=f"{media_type}, */*;q=0.1")
-            assert answer.status_code == 200, path
-            assert len(answer.content) <= 1_000_000, path

@@ -3,18 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-import json
-from pathlib import Path
-from typing import Any
 
 import pytest
 
-from api.metadata import schema_org
-from api.metadata.bundled import documents
 from api.metadata.citation import Author
 from api.metadata.croissant import DatasetDescription, File, Table, cite_as, croissant
 from api.metadata.identity import Identity, identity
-from benchmark.datasets.export import SCHEMA_VERSION
 
 WHAT = DatasetDescription("Atlas: pd-slit", "A data set.", None, "1.0.0", ("sun sensor",))
 ORCID = "0000-0002-1825-0097"
@@ -78,46 +72,3 @@ def test_croissant_tells_persons_from_organisations(who: Identity) -> None:
         {"@type": "sc:Organization", "name": "The Atlas Team"},
     ]
     assert "author = {Sun, Ada and Plato and {The Atlas Team}}" in cite_as(WHAT, who)
-
-
-def test_pages_tell_persons_from_organisations_and_where_they_work(who: Identity) -> None:
-    catalogue, software = schema_org.atlas(who, ["pd-slit"])["@graph"]
-    affiliation = {"@type": "Organization", "name": "A University"}
-    assert catalogue["creator"] == software["creator"]
-    assert catalogue["creator"] == [
-        {
-            "@type": "Person",
-            "@id": f"https://orcid.org/{ORCID}",
-            "name": "Ada Sun",
-            "givenName": "Ada",
-            "familyName": "Sun",
-            "affiliation": affiliation,
-        },
-        {"@type": "Person", "name": "Plato", "givenName": "", "familyName": "Plato"},
-        {"@type": "Organization", "name": "The Atlas Team"},
-    ]
-
-
-def test_a_bundle_describes_samples_of_a_data_set_that_has_no_errors(
-    tmp_path: Path, who: Identity
-) -> None:
-    """As one that is new: nothing was scored on it."""
-    folder = tmp_path / "frames" / "pd-slit"
-    (folder / "nominal").mkdir(parents=True)
-    arrays = {"observations": "Signals of the elements."}
-    card = {"schema": SCHEMA_VERSION, "files": [], "arrays": arrays}
-    (folder / "card.json").write_text(json.dumps(card))
-    (folder / "nominal" / "test.csv").write_text("signal_0,lit\n0.5,True\n0.25,False\n")
-    found: dict[str, Any] = documents(tmp_path, who, {"resources": []})
-    assert set(found) == {f"croissant/{name}.json" for name in ("record", "survey", "pd-slit")}
-    document = found["croissant/pd-slit.json"]
-    assert {one["contentUrl"] for one in document["distribution"]} == {
-        "../frames/pd-slit/card.json",
-        "../frames/pd-slit/nominal/test.csv",
-    }
-    (records,) = document["recordSet"]
-    assert records["name"] == "test"
-    assert [(one["name"], one["dataType"], one["description"]) for one in records["field"]] == [
-        ("signal_0", "sc:Float", "Signals of the elements."),
-        ("lit", "sc:Boolean", "lit"),
-    ]

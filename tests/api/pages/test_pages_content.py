@@ -5,11 +5,8 @@ from __future__ import annotations
 import re
 from html import unescape
 
-import pytest
-
 from api.pages.numbers import count_text, degrees, number, percent, times
-from api.pages.terms import display_text, explain_terms, glossary
-from registry.studies import facts
+from api.pages.terms import display_text, explain_terms
 from tests.api.conftest import Client
 
 TAGS = re.compile(r"<(script|style|template|noscript)\b.*?</\1>|<[^>]+>", re.DOTALL)
@@ -62,26 +59,6 @@ def test_the_leaderboard_is_that_of_the_service_in_the_order_asked_for(atlas: Cl
     assert table == atlas.table("/v1/leaderboard/architectures?limit=500")
 
 
-def test_the_leaderboard_counts_parts_as_the_service_does(atlas: Client) -> None:
-    document = atlas.get("/v1/leaderboard/overview").json()
-    html = atlas.get("/leaderboard", accept="text/html").text
-    for role in ("extractor", "compensation", "model"):
-        section = html[html.index(f'id="{role}s"') :]
-        section = section[: section.index("</section>")]
-        parts = [part for part in document["parts"] if part["role"] == role]
-        names = re.findall(r'<td class="first"><a href="[^"]+">([^<]+)<', section)
-        assert names == [part["part"] for part in parts]
-        assert f"{100 * parts[0]['share_10']:.0f} %" in section
-    refused = atlas.get("/leaderboard?order=taste", accept="application/json")
-    assert refused.status_code == 422
-
-
-def test_a_condition_of_another_data_set_is_refused_with_the_nearest(atlas: Client) -> None:
-    refused = atlas.get("/datasets/ccd-lens?condition=ghosts", accept="application/json")
-    assert refused.status_code == 422
-    assert "nominal" in refused.json()["errors"][0]["expected"]
-
-
 def test_the_answer_reads_without_a_script(atlas: Client) -> None:
     asked = "task=Accuracy&survive=albedo"
     document = atlas.get(f"/v1/recommendations?{asked}&include=calibrations").json()
@@ -106,17 +83,6 @@ def test_the_answers_twins_are_the_documents_of_the_service(atlas: Client) -> No
     assert atlas.get(f"/answer.json?{asked}").json() == document
     assert atlas.table(f"/answer.csv?{asked}") == atlas.table(f"/v1/recommendations?{asked}")
     assert atlas.get("/answer.json?detector=CMOSS").status_code == 422
-
-
-def test_what_leaves_nothing_and_what_would_help_are_said(atlas: Client) -> None:
-    document = atlas.get("/v1/recommendations?detector=Event&mask=Lens").json()["blocked"]
-    page = text_of(atlas.get("/?detector=Event&mask=Lens").text)
-    assert document["detail"][1:] in page
-    assert all(relaxation["words"][1:] in page for relaxation in document["relaxations"])
-
-
-def test_a_number_without_its_zero_is_read_as_a_browser_sends_it(atlas: Client) -> None:
-    assert "error at most 0.5°" in text_of(atlas.get("/?max_error_deg=.5&mask=").text)
 
 
 def test_the_scatter_has_a_point_for_every_own_error_and_no_other(atlas: Client) -> None:
@@ -149,38 +115,6 @@ def test_comparison_needs_two_and_takes_four(atlas: Client) -> None:
     assert [item["detector"] for item in document["items"]] == ["CMOS", "PD"]
 
 
-def test_comparison_names_what_is_far_finer_under_a_condition(atlas: Client) -> None:
-    asked = "architecture=CMOS:Multi-Ap.&architecture=CMOS:Single-Ap."
-    items = atlas.get(f"/v1/compare?{asked}").json()["items"]
-    page = text_of(atlas.get(f"/compare?{asked}", accept="text/html").text)
-    document = [t for item in items for t in item["conditions"].values()]
-    finer = [t["finer"] for t in document if t["finer"]]
-    for f in finer:
-        by = f"({f['extractor']} + {f['model']})"
-        if f["availability"] < 0.95:
-            by = f"at {percent(f['availability'])} {by}"
-        assert f"{degrees(f['charged_deg'])} {by}" in page
-    seldom = [t for t in document if t["availability"] < 0.95]
-    assert all(f"availability {percent(t['availability'])}" in page for t in seldom)
-
-
-def test_search_leads_to_the_page_of_what_it_finds(atlas: Client) -> None:
-    for word, page in (
-        ("Chang2008", "/studies/Chang2008"),
-        ("cmos-lens", "/datasets/cmos-lens"),
-        ("mt-acm", "/algorithms/mt-acm"),
-    ):
-        found = atlas.get(f"/search.json?q={word}").json()["items"]
-        assert page in [item["page"] for item in found[:3]]
-
-
-def test_every_abbreviation_of_the_taxonomy_is_told_in_the_glossary() -> None:
-    taxonomy = facts().taxonomy.to_dict()
-    short = {e["value"] for entries in taxonomy.values() for e in entries if e["value"].isupper()}
-    assert len(short) > 20
-    assert short <= set(glossary())
-
-
 def test_an_abbreviation_is_explained_at_its_first_place_and_no_part_of_a_name_is() -> None:
     text = str(explain_terms("RMS of RMS, not RMS-like nor <CCD>"))
     assert text.count('class="term"') == 2
@@ -193,16 +127,6 @@ def test_what_stands_between_backquotes_is_code_and_nothing_else_of_a_text_chang
     assert explain_terms("RMS of `RMS_deg`: ``a < b``, a `") == (
         f"{explain_terms('RMS')} of <code>RMS_deg</code>: <code>a &lt; b</code>, a `"
     )
-
-
-@pytest.mark.parametrize(
-    "path",
-    ["/algorithms/escm", "/datasets/cmos-encoded", "/datasets/qpd-maskless-pyramid"],
-)
-def test_no_page_shows_the_backquotes_of_its_sources(atlas: Client, path: str) -> None:
-    page = atlas.get(path, accept="text/html").text
-    assert "<code>" in page
-    assert "`" not in re.sub(r"<(script|style|pre)\b.*?</\1>", "", page, flags=re.DOTALL)
 
 
 def test_numbers_have_three_digits_no_exponent_and_a_dash_for_none() -> None:

@@ -149,23 +149,3 @@ def test_every_link_within_the_atlas_leads_somewhere(atlas: Client) -> None:
             anchors[path] = {value for _, value in pages[path].attributes("id")}
         if fragment:
             assert fragment in anchors[path], (start, link)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "kind", ["studies", "algorithms", "datasets", "claims", "masks", "detectors"]
-)
-def test_every_one_of_a_kind_has_its_page(atlas: Client, kind: str) -> None:
-    index = Page(atlas.get(f"/{kind}").text)
-    pages = {
-        v.partition("?")[0].partition("#")[0] for tag, v in index.attributes("href") if tag == "a"
-    }
-    own = {address for address in pages if address.startswith(f"/{kind}/")}
-    assert len(own) >= 10
-    for address in own:
-        response = atlas.get(address, accept="text/html")
-        assert response.status_code == 200, address
-        assert not re.search(r">\s*None\s*<", response.text), address
-        assert not re.search(r'(?i)\b(?:d|c?[xy]|transform)="[^"]*\bnan\b', response.text), address
-        page = Page(response.text)
-        assert page.unmatched == [], address

@@ -87,30 +87,6 @@ def test_own_errors_of_all_pages_are_the_records(knowledge: Knowledge, atlas: Cl
     assert require_the_record(knowledge, atlas, addresses(knowledge)) == known
 
 
-@pytest.mark.parametrize(
-    "kind", ["data sets", "data set", "leaderboard", "masks", "mask", "detectors", "detector",
-             "architecture", "compared", "study"],
-)  # fmt: skip
-def test_errors_of_pipelines_have_no_label_without_a_meaning(atlas: Client, kind: str) -> None:
-    page = text_of(atlas.get(KINDS[kind], accept="text/html").text)
-    assert "RMS error" not in page
-    assert "own error" in page.casefold()
-
-
-def test_other_conditions_are_labelled_as_of_unit_0(atlas: Client) -> None:
-    html = atlas.get("/datasets/ccd-lens?condition=hot", accept="text/html").text
-    board = html[html.index('id="board"') : html.index('id="heat"')]
-    assert not HOOK.search(board)
-    assert 'data-label="Unit 0 RMS"' in board
-    assert 'data-label="Own error"' not in board
-
-
-def test_an_own_method_is_not_called_one_without_feature_extraction(atlas: Client) -> None:
-    page = text_of(atlas.get("/architectures/CMOS/Single-Ap.", accept="text/html").text)
-    assert "own method, not in the survey" in page
-    assert "no feature extraction" not in page
-
-
 def test_a_study_is_a_ladder_on_one_data_set_and_condition(
     knowledge: Knowledge, atlas: Client
 ) -> None:
@@ -144,18 +120,6 @@ def test_a_study_is_a_ladder_on_one_data_set_and_condition(
     for rung in (ladder["own"], ladder["best"]):
         assert degrees(rung["own_deg"]) in read
         assert f"own error {digits(rung['own_deg'])} deg" in lines
-
-
-def test_rungs_that_are_unknown_say_so(knowledge: Knowledge, atlas: Client) -> None:
-    unknown = [
-        key
-        for key in knowledge.of("all").facts.studies
-        if atlas.get(f"/v1/studies/{key}").json()["ladder"] is None
-    ]
-    assert unknown
-    for key in unknown:
-        read = text_of(atlas.get(f"/studies/{key}", accept="text/html").text)
-        assert len(re.findall("not measured yet|its method is not implemented", read)) >= 3
 
 
 def test_documents_have_the_records_own_errors(knowledge: Knowledge) -> None:

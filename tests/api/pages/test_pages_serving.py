@@ -46,9 +46,3 @@ def test_a_refusal_is_a_page_for_a_person_and_a_problem_for_a_program(
     assert page.status_code == problem.status_code >= 400
     (error,) = problem.json()["errors"]
     assert f"did you mean “{error['nearest']}”" in page.text
-
-
-def test_an_unchanged_page_is_not_sent_again(atlas: Client) -> None:
-    first = atlas.get("/studies/Chang2008")
-    again = atlas.get("/studies/Chang2008", headers={"If-None-Match": first.headers["etag"]})
-    assert again.status_code == 304

@@ -48,17 +48,6 @@ def test_another_file_than_the_known_one_is_refused_and_nothing_written(tmp_path
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("name", SETS)
-def test_each_set_names_its_licence_its_author_and_a_fixed_version(name):
-    real = SETS[name]
-    assert real.name == name
-    assert real.address.startswith("https://")
-    assert real.licence
-    assert real.citation
-    assert all(len(source.sha256) == 64 for source in real.sources)
-    assert "LICENSE" in {source.written for source in real.sources}
-
-
 @pytest.mark.skipif(not SHARED.is_dir(), reason="no ../shared beside this checkout")
 def test_the_runs_of_the_box_are_those_that_lie_here():
     """Bytes made of the converted runs, laid where the originals have them, give them back."""

@@ -1,28 +1,13 @@
 """Comparisons say what the boards, curves and studies say; what does not fit is refused."""
 
-import csv
-import io
-
 import pytest
 
-from api.cells import cell
-from api.schema.comparison import ComparedRow
-from api.schema.table import columns_of, csv_of
-from api.service import comparing
 from api.service.comparing import compare_architectures, compare_pipelines
 from api.service.knowledge import Knowledge
 from api.service.measurements import Measurements
-from benchmark.leaderboard import architectures as module
 from registry.taxonomy import InvalidValueError
 
 DATASET = "cmos-single-aperture"
-FINER = {
-    "finer_dataset": "cmos-multi-aperture",
-    "finer_extractor": "spot-list",
-    "finer_model": "homography",
-    "finer_own_deg": 0.001,
-    "finer_availability": 0.75,
-}
 
 
 @pytest.fixture(scope="module")
@@ -97,20 +82,6 @@ def test_what_errs_far_less_under_a_condition_is_named_with_its_share(atlas, kno
     assert {i["finer"] for i in found["items"]} == {None}
 
 
-def test_what_is_far_finer_on_a_part_of_the_samples_stands_beside_the_best(known, monkeypatch):
-    def best_of_each(board):
-        rows = module.architectures(board)
-        return [{**row, **FINER} if row["mask"] == "Multi-Ap." else row for row in rows]
-
-    monkeypatch.setattr(comparing, "best_of_each", best_of_each)
-    one, other = compare_architectures(known, ["CMOS:Multi-Ap.", "CMOS:Single-Ap."])["items"]
-    assert one["finer"] == {name.removeprefix("finer_"): value for name, value in FINER.items()}
-    assert other["finer"] is None
-    scored, nothing = csv.DictReader(io.StringIO(csv_of(columns_of(ComparedRow), [one, other])))
-    assert {name: scored[name] for name in FINER} == {n: cell(v) for n, v in FINER.items()}
-    assert {nothing[name] for name in FINER} == {""}
-
-
 def test_architectures_that_only_studies_have_are_shown_without_numbers(tmp_path):
     unmeasured = Knowledge(Measurements(tmp_path))
     for item in compare_architectures(unmeasured, ["CMOS:Multi-Ap.", "QPD:Single-Ap."])["items"]:
@@ -134,12 +105,3 @@ def test_what_cannot_be_compared_is_refused(known, pipelines, condition, paramet
     with pytest.raises(InvalidValueError) as refused:
         compare_pipelines(known, DATASET, pipelines, condition)
     assert refused.value.parameter == parameter
-
-
-def test_a_refusal_names_the_nearest(known):
-    with pytest.raises(InvalidValueError) as refused:
-        compare_pipelines(known, DATASET, ["bctm:spm", "bctm:smp"])
-    assert refused.value.nearest == "bctm:spm"
-    with pytest.raises(InvalidValueError) as refused:
-        compare_architectures(known, ["CMOS:Multi-Ap.", "CMOS:Single-AP"])
-    assert refused.value.nearest == "CMOS:Single-Ap."

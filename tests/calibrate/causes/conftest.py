@@ -1,4 +1,4 @@
-"""Puts `faults` and `campaign` where these tests find them."""
+"""Puts `plain_sensors` where these tests find them."""
 
 from __future__ import annotations
 

@@ -10,7 +10,6 @@ from calibrate.conventions.finding import change_of
 from calibrate.conventions.findings import findings
 from calibrate.readings import readings_of
 from calibrate.roles import guess
-from calibrate.settings import Settings
 from calibrate.table import read_table
 
 ANGLES = grid()
@@ -70,11 +69,6 @@ def test_nothing_is_found_where_a_file_keeps_what_its_names_say(names, tmp_path)
     assert found == []
 
 
-def test_what_looks_the_same_is_said(tmp_path):
-    found, _, _ = found_in(write(tmp_path / "bench.csv", HEADER, 2 * CENTRE - SPOTS, ANGLES))
-    assert "two inverted outputs" in found[0].note
-
-
 def test_a_run_of_the_other_sign_is_named(tmp_path):
     flipped = SPOTS.copy()
     run = np.repeat([0, 1, 2], [200, 200, len(SPOTS) - 400])
@@ -103,13 +97,3 @@ def test_quadrants_in_another_order_and_falling_readings_are_found(tmp_path):
     assert any(one.about == "light" for one in falling)
     sound, _, _ = found_in(write(tmp_path / "c.csv", header, light, angles))
     assert [one for one in sound if one.certain] == []
-
-
-def test_settings_refuse_what_is_no_setting_by_its_place():
-    with pytest.raises(ValueError, match=r"columns"):
-        Settings.model_validate(
-            {
-                "readings": {"kind": "spot", "columns": ["a"]},
-                "direction": {"form": "vector", "columns": ["x", "y", "z"]},
-            }
-        )

@@ -14,11 +14,6 @@ from calibrate.roles import guess
 ANGLES = bench.grid(15, 40.0)
 SUN = bench.sun_of(ANGLES)
 SPOTS = bench.spots(SUN, 1)
-VECTOR = ("sun_x", "sun_y", "sun_z")
-
-
-def test_directions_as_vectors_need_no_form_of_angles() -> None:
-    assert found_in(table(("x_px", "y_px", *VECTOR), SPOTS, SUN)) == []
 
 
 def test_radians_named_as_degrees_are_found() -> None:
@@ -72,15 +67,3 @@ def test_a_map_over_tangents_is_the_cameras() -> None:
     assert found is not None
     assert found[0] == pytest.approx(bench.FOCAL * np.eye(2), abs=8.0)
     assert found[1] == pytest.approx([bench.CENTRE] * 2, abs=4.0)
-
-
-def test_a_run_of_nineteen_poses_is_not_judged_by_its_sign() -> None:
-    mirrored = (SPOTS - bench.CENTRE) * [-1, 1] + bench.CENTRE
-    order = np.stack([np.arange(0, 112, 11), 224 - np.arange(0, 112, 11)]).T.reshape(-1)
-    for few, named in ((19, set()), (20, {"runs"})):
-        run = np.zeros(len(SUN))
-        run[order[:few]] = 1.0
-        features = np.where((run == 1)[:, None], mirrored, SPOTS)
-        names = ("x_px", "y_px", *VECTOR, "run")
-        found = {one.about for one in found_in(table(names, features, SUN, run))}
-        assert found & {"runs"} == named

@@ -19,11 +19,6 @@ SIGNALS = bench.faces(SPHERE, 2)
 DARK = 3.0
 
 
-def test_runs_of_faces_have_no_sign_of_their_own() -> None:
-    run = (np.arange(len(SPHERE)) % 2).astype(np.float64)
-    assert found_in(table((*FACES, *VECTOR, "run"), SIGNALS, SPHERE, run)) == []
-
-
 def test_quadrants_that_fall_when_light_rises_are_found_with_their_level() -> None:
     light = bench.quadrants(bench.sun_of(ANGLES / 2.0), 2)
     names = ("q1", "q2", "q3", "q4", "theta_x_deg", "theta_y_deg")
@@ -63,11 +58,6 @@ def test_exchanged_channels_look_where_the_other_is_stated_to() -> None:
     assert all(one.certain and one.before_deg > 170.0 and one.after_deg < 5.0 for one in found)
 
 
-def test_readings_that_do_not_go_with_light_say_nothing_of_faces() -> None:
-    random = np.random.default_rng(1).uniform(0.0, 1.0, SIGNALS.shape)
-    assert found_in(table((*FACES, *VECTOR), random, SPHERE)) == []
-
-
 def test_a_channel_that_sees_no_light_looks_nowhere() -> None:
     signals = SIGNALS.copy()
     signals[:, 2] = 0.0
@@ -85,9 +75,3 @@ def test_quadrants_of_which_no_row_has_a_positive_sum_are_said_to_fall(dark: flo
     names = ("q1", "q2", "q3", "q4", "theta_x_deg", "theta_y_deg")
     with pytest.raises(TableError, match="fall when light rises: say inverted = true"):
         found_in(table(names, dark - light, ANGLES / 2.0))
-
-
-def test_quadrants_without_light_are_not_said_to_fall() -> None:
-    names = ("q1", "q2", "q3", "q4", "theta_x_deg", "theta_y_deg")
-    with pytest.raises(TableError, match=r"no row can be used \(.*\)$"):
-        found_in(table(names, np.zeros((len(ANGLES), 4)), ANGLES / 2.0))

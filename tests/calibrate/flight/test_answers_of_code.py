@@ -51,20 +51,6 @@ def test_readings_at_their_limits_are_saturated_by_the_column_of_the_settings(
     assert float(said[1]) == pytest.approx(clipped, rel=1e-5)
 
 
-def test_light_outside_its_limits_is_named(camera: Any) -> None:
-    sensor = SENSORS["six faces"]
-    found = sensor.calibrated(camera)
-    light = sensor.raw(3).sum(axis=1)
-    low, high = np.quantile(light, (0.2, 0.8))
-    none = ReadingLimits((-np.inf,) * 6, (np.inf,) * 6, float(low), float(high))
-    code = flight_code(replace(found, limits=none))
-    _, _, status = run(code.program.steps, sensor.raw(3))
-    assert np.array_equal(status == 2, light < low)
-    assert np.array_equal(status == 4, light > high)
-    assert set(code.flagged) == {"DARK", "TOO_BRIGHT"}
-    assert "of them refused" in code.sentence
-
-
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="no C compiler here")
 @pytest.mark.parametrize("axis", [(0.0, 0.0, 1.0), (0.6, 0.0, 0.8)])
 def test_one_sigma_is_bilinear_between_rings_and_sectors(
@@ -144,7 +130,12 @@ int main() {
 
 @pytest.mark.skipif(shutil.which("g++") is None, reason="no C++ compiler here")
 @pytest.mark.parametrize(
-    "kind", [*SENSORS, *(pytest.param(name, marks=pytest.mark.slow) for name in OTHERS)]
+    "kind",
+    [
+        "spots",
+        "four tilted cells",
+        *(pytest.param(name, marks=pytest.mark.slow) for name in (*OTHERS, "warm faces")),
+    ],
 )
 def test_the_header_bounds_the_operations_that_a_counting_number_counts(
     kind: str, camera: Any, tmp_path: Path
@@ -173,7 +164,7 @@ def test_the_header_bounds_the_operations_that_a_counting_number_counts(
     assert int(said[1]) == code.program.operations
 
 
-@pytest.mark.parametrize("name", ["if", "class", "double", "numpy", "json", "con", "2nd", "_", "é"])
+@pytest.mark.parametrize("name", ["if", "json", "2nd", "é"])
 def test_any_name_becomes_one_that_c_and_python_take(name: str) -> None:
     made = c_name(name)
     assert re.fullmatch(r"[a-z][a-z0-9_]*", made)
@@ -182,14 +173,7 @@ def test_any_name_becomes_one_that_c_and_python_take(name: str) -> None:
 
 @pytest.mark.parametrize(
     "path",
-    [
-        r"C:\Users\name\x.csv",
-        r"\N{nothing}\x",
-        'a"""b',
-        "a */ b /* c",
-        "a\r\n#error\u2028x",
-        "é\u202e",
-    ],
+    [r"\N{nothing}\x", 'a"""b', "a */ b /* c", "a\r\n#error\u2028x"],
 )
 def test_no_path_breaks_a_file(path: str, camera: Any, tmp_path: Path) -> None:
     code = flight_code(SENSORS["spots"].calibrated(camera))

@@ -73,10 +73,6 @@ def rippled(features: Array) -> Array:
     return cosines(features + 1e-2 * np.sin(400.0 * features))
 
 
-def nowhere(features: Array) -> Array:
-    return np.full((len(features), 3), np.nan)
-
-
 def disc(radius: float, count: int = 400) -> Array:
     """Features over a disc."""
     drawn = np.random.default_rng(1).uniform(-radius, radius, (count, 2))
@@ -124,11 +120,6 @@ def test_a_chain_that_nothing_follows_is_refused_with_what_it_would_add(camera: 
     vars(found)["model"] = model  # the rest of the calibration stays
     with pytest.raises(NoCodeError, match=r"would add .* deg to a model that errs .* deg"):
         flight_code(found)
-
-
-def test_a_chain_without_an_answer_is_refused() -> None:
-    with pytest.raises(NoCodeError, match="the chain answers nowhere inside its hull"):
-        plane_steps(Formula(nowhere), disc(0.7), {}, 0.1)
 
 
 @pytest.mark.parametrize(
@@ -187,12 +178,3 @@ def test_models_without_code_are_named(change: dict[str, Any], said: str, camera
     vars(found)["model"] = SimpleNamespace(about=about)
     with pytest.raises(NoCodeError, match=said):
         flight_code(found)
-
-
-def test_compensations_that_no_gain_follows_are_named(camera: Any) -> None:
-    found = SENSORS["six faces"].calibrated(camera)
-    stage = Warped(lambda signals, warmer: signals + 1e-3 * warmer * signals**2)
-    chain = ChainModel(found.model.about, (stage,), found.model)  # type: ignore[arg-type]
-    signals = found.readings.features
-    with pytest.raises(NoCodeError, match="not written for the compensation warped: no gain"):
-        faces_steps(chain, signals, {"temperature_K": kelvin_of(signals)})

@@ -10,7 +10,6 @@ from samples import table
 from calibrate.forms.almanac import sun_by_date
 from calibrate.readings import quadrant_balances, readings_of
 from calibrate.roles import guess, understood
-from calibrate.table import TableError
 
 ANGLES = bench.grid(9, 25.0)
 SUN = bench.sun_of(ANGLES)
@@ -141,10 +140,3 @@ def test_one_reading_or_two_photodiodes_of_one_angle(
     assert found.sun == pytest.approx(ONE, abs=1e-12)
     if kind in ("pair", "quadrants"):
         assert found.features[:, 0] == pytest.approx(ONE[:, 0], abs=1e-12)
-
-
-def test_a_table_without_readings_or_directions_says_what_to_state() -> None:
-    with pytest.raises(TableError, match=r"no columns of readings .* there is none to be named"):
-        guess(table(("spin", *VECTOR), ONE[:, 0], ONE))
-    with pytest.raises(TableError, match=r'direction = \{form = "alpha-inner", columns = \["c"'):
-        guess(table(("a1", "b", "c", "e"), ONE, LINE))

@@ -92,12 +92,6 @@ def test_four_tilted_cells_are_no_quadrants() -> None:
         assert guess(read_table(CASES / name)).readings.kind == "quadrants"
 
 
-def test_degrees_celsius_are_kelvin_by_the_columns_name() -> None:
-    celsius = columns_of("spot-temperature-C.csv")[:, 4]
-    found = samples_of("spot-temperature-C.csv")
-    assert found.context["temperature_K"] == pytest.approx(celsius + 273.15)
-
-
 def test_an_angle_off_the_axis_under_the_name_elevation_is_found() -> None:
     table = read_table(CASES / "boresight-row-elevation.csv")
     stated = guess(table)

@@ -11,10 +11,8 @@ from algorithms.contract import SensorGeometry, UnusableDataError
 from algorithms.discovery import discover_models
 from calibrate.uncertainty import (
     intervals,
-    noise_around,
     noise_deg,
     refits,
-    spread_deg,
 )
 
 SUN = bench.sun_of(np.random.default_rng(1).uniform(-40.0, 40.0, (400, 2)))
@@ -49,12 +47,6 @@ def test_noise_is_not_known_of_fewer_than_ten_samples() -> None:
     assert np.isnan(noise_deg(off, SUN[:20]))
 
 
-def test_noise_around_few_poses_is_that_of_all() -> None:
-    few = noise_around(offsets(63), SUN[:63])
-    assert few.tolist() == [noise_deg(offsets(63), SUN[:63])] * 63
-    assert np.ptp(noise_around(offsets(64), SUN[:64])) > 0.0
-
-
 def test_refits_that_all_fail_say_what_the_model_said() -> None:
     line = np.column_stack([np.linspace(400.0, 600.0, 30), np.full(30, 512.0)])
     used = samples(line, bench.sun_of(np.column_stack([np.linspace(-20, 20, 30), np.zeros(30)])))
@@ -64,17 +56,3 @@ def test_refits_that_all_fail_say_what_the_model_said() -> None:
         refits(discover_models()["homography"], used, camera, noise, used, count=2)
     with pytest.raises(UnusableDataError, match="no refit settles the model"):
         refits(discover_models()["homography"], used, camera, noise, used, count=0)
-
-
-def test_one_refit_tells_no_spread_and_two_tell_their_distance() -> None:
-    assert np.isnan(spread_deg(SUN[None, :5])).all()
-    turned = SUN[:5] @ bench.turn("z", 0.1).T
-    apart = np.linalg.norm(turned - SUN[:5], axis=1)
-    expected = np.degrees(apart / np.sqrt(2.0))
-    assert spread_deg(np.stack([SUN[:5], turned])) == pytest.approx(expected)
-
-
-def test_samples_that_all_stand_twice_alike_have_no_noise() -> None:
-    twice = np.repeat(offsets(100), 2, axis=0)
-    sun = np.repeat(SUN[:100], 2, axis=0)
-    assert np.all(noise_around(twice, sun) == 0.0)

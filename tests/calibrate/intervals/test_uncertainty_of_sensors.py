@@ -7,9 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import unseen
 from holding import Cell, cells, even
-from uneven import SENSORS, Uneven
+from uneven import SENSORS
 
 EVERY = {**SENSORS, **{f"even {name}": one for name, one in even().items()}}
 
@@ -47,13 +46,3 @@ def test_intervals_of_five_seeds_hold_by_band_and_axis(kind: str, tmp_path: Path
     assert len(found) >= 30
     assert hold(found), found
     assert code_agrees(found), found
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", unseen.SENSORS)
-def test_intervals_of_other_sensors_hold_by_band_and_axis(kind: str, tmp_path: Path) -> None:
-    sensor: Uneven = unseen.SENSORS[kind]
-    of_seeds = (cells(kind, sensor, seed, 1500, tmp_path) for seed in range(3))
-    found = [cell for one in of_seeds for cell in one]
-    assert len(found) >= 18
-    assert hold(found), found

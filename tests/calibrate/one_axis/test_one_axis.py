@@ -60,14 +60,6 @@ def test_wrong_poses_of_a_sweep_are_left_out_and_named(tmp_path: Path) -> None:
     assert found.verdict.word == "model misfit"  # more than 2 of 100 poses
 
 
-def test_readings_by_chance_are_refused_on_one_axis_too(tmp_path: Path) -> None:
-    for seed in range(5):
-        drawn = np.random.default_rng(seed).uniform(0.0, 1000.0, (len(LINE), 2))
-        path = write(tmp_path / f"{seed}.csv", HEADER, drawn, angles_of(swept(0.0)))
-        with pytest.raises(UnusableDataError, match="do not belong together"):
-            calibrate([path])
-
-
 def test_beyond_the_sweep_nothing_is_answered() -> None:
     model = AxisCurve().fit(spots(swept(0.0), 1), swept(0.0))
     beyond = [[CENTRE, CENTRE + 2000.0], [CENTRE, CENTRE], [np.nan, CENTRE]]

@@ -12,8 +12,6 @@ import pytest
 from algorithms.angles import separation_deg
 from calibrate.arrays import CalibratedSensor, calibrate_arrays, calibrate_frame
 from calibrate.calibration import calibrate
-from calibrate.settings import SettingsError
-from calibrate.table import TableError
 from tests.calibrate.bench import HEADER, grid, spots, sun_of, write
 
 MODEL = ["homography"]
@@ -93,17 +91,3 @@ def test_runs_times_and_dark_levels_reach_the_calibration() -> None:
 def test_arrays_that_do_not_fit_are_refused_by_name(call: Callable[[], object], said: str) -> None:
     with pytest.raises(ValueError, match=said):
         call()
-
-
-def test_a_cell_that_is_no_number_is_named_by_its_row() -> None:
-    frame = pd.DataFrame({"x_px": [1.0, 2.0], "y_px": ["3", "b"], "alpha": [1, 2], "beta": [3, 4]})
-    with pytest.raises(TableError, match="row 1, column y_px: expected a number; got 'b'"):
-        calibrate_frame(frame)
-    pictures = frame.rename(columns={"x_px": "image"}).drop(columns="y_px")
-    with pytest.raises(SettingsError, match="pictures are read by"):
-        calibrate_frame(pictures)
-
-
-def test_readings_of_another_width_are_refused(sensor: CalibratedSensor) -> None:
-    with pytest.raises(ValueError, match=r"expected an array \(N, 2\); got \(3, 4\)"):
-        sensor.predict(np.zeros((3, 4)))

@@ -65,17 +65,6 @@ def test_all_files_are_there_and_name_the_new_document(camera: Calibration, few:
     assert (judged.word, judged.found_deg) == ("met", pytest.approx(0.01))
 
 
-def test_a_document_without_a_program_gives_no_code_and_says_so(
-    camera: Calibration, few: Path
-) -> None:
-    told: list[str] = []
-    old = of_document(document(camera), "camera")
-    made, _ = corrected_products(old, moved(np.full(12, 0.01)), [few], "cam", tell=told.append)
-    ends = (".json", "_no_code.txt", "_report.html", ".sha256")
-    assert sorted(made) == sorted(f"cam{end}" for end in ends)
-    assert told[0].startswith("none: the old document holds no program")
-
-
 def test_the_report_says_errors_of_poses_and_how_it_was_made(poses: Readings) -> None:
     errors = np.linspace(0.001, 0.012, 12)
     errors[4] = np.nan

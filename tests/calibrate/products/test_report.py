@@ -26,7 +26,6 @@ from calibrate.report.errors import (
 from calibrate.report.factory import compared_with
 from calibrate.report.page import Asked, outcomes, report
 from calibrate.report.requirement import RequirementError, judged, requirement
-from calibrate.table import TableError, read_table
 from tests.calibrate.bench import HEADER, grid, spots, sun_of, write
 from tests.calibrate.samples import samples
 
@@ -227,11 +226,3 @@ def test_a_factory_calibration_is_compared_on_the_same_rows(
     own = compared_with(tmp_path / "own.json", camera, [])
     assert own.rms_deg[0] <= own.rms_deg[1] * 1.01
     assert own.unanswered == 0
-
-
-def test_a_factory_table_of_other_readings_is_refused(camera: Calibration, tmp_path: Path) -> None:
-    header = ["q1", "q2", "q3", "q4", "theta_x_deg", "theta_y_deg"]
-    angles = grid(5, 30.0)
-    table = write(tmp_path / "other.csv", header, np.ones((25, 4)), angles)
-    with pytest.raises(TableError, match="expected readings of kind SPOT"):
-        compared_with(table, camera, [read_table(table)])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from pathlib import Path
 
 import pytest
@@ -26,22 +25,6 @@ def out(camera: Calibration, tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = tmp_path_factory.mktemp("written") / "out"
     write_products(camera, directory, "cam", asked=Asked(certificate="cam_certificate.xml"))
     return directory
-
-
-def test_every_file_is_listed_with_its_digest(out: Path) -> None:
-    names = {path.name for path in out.iterdir()}
-    listed = digests(out, "cam")
-    assert names == {*listed, "cam.sha256"}
-    assert {
-        "cam.json",
-        "cam.c",
-        "cam.h",
-        "cam.py",
-        "cam_certificate.xml",
-        "cam_report.html",
-    } <= names
-    for name, digest in listed.items():
-        assert hashlib.sha256((out / name).read_bytes()).hexdigest() == digest
 
 
 def test_files_of_the_calibration_before_go_and_others_stay(tmp_path: Path) -> None:

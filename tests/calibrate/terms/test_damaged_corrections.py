@@ -44,13 +44,8 @@ def forged(held: dict[str, Any], path: Path, change: dict[str, Any]) -> Path:
         ({"offset": [1e29, 0.0]}, "correction.offset must be 2 finite numbers; got"),
         ({"offset": [True, 0.0]}, "correction.offset must be 2 finite numbers; got"),
         ({"offset": [1.0, 2.0, 3.0]}, "correction.offset must be 2 finite numbers; got"),
-        ({"offset": ["1", 2.0]}, "correction.offset must be 2 finite numbers; got"),
-        ({"offset": None}, "correction.offset must be one finite number; got None"),
         ({"gain": [1.0, 0.0]}, "correction.gain must be 2 finite numbers above 0; got"),
-        ({"gain": -1.0}, "correction.gain must be one finite number above 0; got -1"),
-        ({"rotation": [[1.0, 0.0], [0.0, 1.0]]}, "correction.rotation must be 3 by 3 finite"),
         ({"rotation": [[1.0, 0, 0], [0, 1, 0], [0, 0, -1]]}, "correction.rotation must be a rot"),
-        ({"rotation": [[2.0, 0, 0], [0, 1, 0], [0, 0, 1]]}, "correction.rotation must be a rot"),
         ([], "correction must be a table; got"),
     ],
 )
@@ -81,7 +76,7 @@ def test_numbers_of_the_fit_that_are_none_are_named(
 
 
 @pytest.mark.parametrize("part", ["fit", "settings", "model", "compensations"])
-@pytest.mark.parametrize("value", [None, 3, "a", [], {}, [3], {"name": "homography"}])
+@pytest.mark.parametrize("value", [None, [], {"name": "homography"}])
 def test_a_part_that_is_something_else_is_refused(
     held: dict[str, Any], tmp_path: Path, part: str, value: Any
 ) -> None:
@@ -104,7 +99,7 @@ def test_parameters_of_another_number_or_kind_are_refused(
         load(forged(held, tmp_path / "a.json", {"model": model}))
 
 
-@pytest.mark.parametrize("apply", [(), ("swap-xy",), ("rotate-90", "mirror-x")])
+@pytest.mark.parametrize("apply", [(), ("rotate-90", "mirror-x")])
 def test_flight_settings_do_what_the_correction_does(
     held: dict[str, Any], tmp_path: Path, apply: tuple[str, ...]
 ) -> None:

@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 
 from algorithms.calibration.saving import stage_document, stage_of
-from algorithms.contract import FeatureKind, Floats, UnusableDataError
-from calibrate.readings import Readings, readings_of
+from algorithms.contract import Floats, UnusableDataError
+from calibrate.readings import readings_of
 from calibrate.roles import guess
 from calibrate.selection import applicable, compare, geometry_of
 from calibrate.table import read_table
 from calibrate.terms.temperature import TERMS, TemperatureGains, TemperatureTerms
-from calibrate.verdict import patterns_in
 
 SHARED = Path(__file__).parents[4] / "shared"
 RNG = np.random.default_rng(41)
@@ -96,18 +95,6 @@ def test_a_stage_is_linear_in_temperature_and_survives_its_document(name: str) -
     assert np.array_equal(at[2], stage.transform(readings, {
         "temperature_K": np.full(len(sun), stage.reference_k_ + 30.0)
     }))  # fmt: skip
-
-
-def test_residuals_of_a_scale_with_temperature_are_named_so() -> None:
-    readings = Readings(
-        camera(CELSIUS), SUN, FeatureKind.SPOT, np.arange(300), np.zeros(300, dtype=np.int64),
-        ("a",), camera(CELSIUS), {"temperature_K": CELSIUS},
-    )  # fmt: skip
-    outward = SUN * [1.0, 1.0, 0.0] * (CELSIUS - 20.0)[:, None] * 1e-4
-    noise = np.random.default_rng(1).normal(0.0, 1e-4, (300, 3))
-    names = [one.name for one in patterns_in(outward + noise, readings)]
-    assert names[0] == "temperature and direction: a scale or turn"
-    assert not [n for n in (p.name for p in patterns_in(noise, readings)) if "temperature" in n]
 
 
 @pytest.mark.skipif(not SHARED.is_dir(), reason="needs ../shared")

@@ -20,7 +20,6 @@ from api.service.knowledge import Knowledge
 from benchmark.leaderboard import check, study_record
 from benchmark.leaderboard.check import Difference
 from benchmark.leaderboard.pages import FORMATS
-from benchmark.results.store import PUBLISHED
 
 DATASET = "qpd-maskless-pyramid"
 
@@ -53,26 +52,6 @@ def checked(monkeypatch: pytest.MonkeyPatch) -> Checked:
     monkeypatch.setattr(check, "check", found)
     monkeypatch.setattr(study_record, "check", lambda **_: [])
     return found
-
-
-@pytest.mark.parametrize(
-    ("options", "stored", "kernels", "how"),
-    [
-        ((), False, ("native", "older"), "measured again with native and older kernels"),
-        (("--kernels", "both"), False, ("native", "older"), "with native and older kernels"),
-        (("--kernels", "older"), False, ("older",), "measured again with older kernels"),
-        (("--kernels", "native"), False, ("native",), "measured again with native kernels"),
-        (("--stored",), True, ("native", "older"), "the files agree with each other and the code"),
-    ],
-)
-def test_a_check_that_holds_says_how_it_was_made(
-    checked: Checked, options: tuple[str, ...], stored: bool, kernels: tuple[str, ...], how: str
-) -> None:
-    shown = sunatlas("leaderboard", "--check", "--workers", 3, *options)
-    assert (shown.exit_code, shown.stdout) == (0, "")
-    assert shown.stderr.startswith("every published number holds: ")
-    assert shown.stderr.endswith(f"{how}\n")
-    assert checked.asked == [(PUBLISHED, 3, stored, kernels)]
 
 
 def test_a_check_that_finds_differences_fails_and_lists_them(checked: Checked) -> None:

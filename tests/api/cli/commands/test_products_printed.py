@@ -15,7 +15,6 @@ from typer.testing import CliRunner
 from api.cli.command_line import app
 from api.cli.commands import deposit as command
 from api.deposit import against_record
-from api.guide import site
 
 
 def sunatlas(*arguments: object) -> Any:
@@ -24,27 +23,6 @@ def sunatlas(*arguments: object) -> Any:
 
 
 # ---- guide
-
-
-@pytest.fixture
-def guide(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Warnings of the guide that is built; where, is added to them as the last."""
-    warnings: list[str] = []
-    monkeypatch.setattr(site, "keep", lambda _: list(warnings))
-    monkeypatch.setattr(site, "build", lambda out, _: [*warnings, f"into {out}"])
-    monkeypatch.setattr(site, "cached_site", lambda: Path("the-cache"))
-    return warnings
-
-
-@pytest.mark.parametrize(
-    ("strict", "warned", "code"),
-    [(False, False, 0), (False, True, 0), (True, False, 0), (True, True, 1)],
-)
-def test_a_warning_fails_only_where_strictness_is_asked_for(
-    guide: list[str], strict: bool, warned: bool, code: int
-) -> None:
-    guide.extend(["a warning"] if warned else [])
-    assert sunatlas("guide", "build", *(["--strict"] if strict else [])).exit_code == code
 
 
 # ---- deposit

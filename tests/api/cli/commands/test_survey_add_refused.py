@@ -23,10 +23,6 @@ type = "thesis"
 value = "CMSO"
 basis = "title"
 """
-TWO = """\
-@article{Doe2030, author={Jane Doe}, title={A first}, year={2030}, journal={Sensors}}
-@article{Roe2029, author={Rae Roe}, title={A second}, year={2029}}
-"""
 
 
 def add(*arguments: object) -> Any:
@@ -69,17 +65,6 @@ def test_a_template_without_a_file_is_printed(tmp_path: Path) -> None:
     path = tmp_path / "new.toml"
     assert f"{path} written: fill it in" in add("--init", "Doe2030", path).stdout
     assert path.read_text() == shown.stdout
-
-
-def test_a_template_of_a_publication_is_printed_with_its_columns(tmp_path: Path) -> None:
-    given = tmp_path / "refs.bib"
-    given.write_text(TWO)
-    shown = add("--init", "Doe2030b", given, "--key", "Doe2030")
-    assert shown.exit_code == 0, shown.stderr
-    stated = parse_toml(shown.stdout, "printed").values
-    assert stated["key"] == "Doe2030b"
-    assert (stated["title"], stated["venue"], stated["year"]) == ("A first", "Sensors", 2030)
-    assert given.read_text() == TWO
 
 
 def test_faults_are_named_on_stderr_and_in_json_alike(tmp_path: Path) -> None:
