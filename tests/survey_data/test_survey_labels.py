@@ -1,39 +1,18 @@
-"""The names of the survey's labels: its own headings, captions and numbers, counted again."""
+"""The names of the survey's labels: its own headings, captions and numbers."""
 
 from __future__ import annotations
 
 import csv
-import os
 import re
-from pathlib import Path
-
-import pytest
 
 from survey_data import labels
 from survey_data.descriptor import DATA_DIRECTORY
-from tests.survey_data.survey_labels import labels_of, skeleton
-
-_SKELETON = Path(__file__).with_name("survey_skeleton.tex")
-#: Names a file with the survey's whole LaTeX source, which is not ours to publish.
-_WHOLE = "SUNATLAS_SURVEY_TEXT"
 
 
 def _held() -> dict[str, tuple[str, str, str]]:
     with (DATA_DIRECTORY / "labels.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     return {row["label"]: (row["kind"], row["number"], row["title"]) for row in rows}
-
-
-def test_labels_have_the_numbers_and_titles_that_latex_gives_them() -> None:
-    counted = labels_of(_SKELETON.read_text("utf-8"))
-    assert len(counted) == 138
-    assert list(_held().items()) == list(counted.items())
-
-
-@pytest.mark.skipif(_WHOLE not in os.environ, reason=f"{_WHOLE} names no survey text")
-def test_the_skeleton_is_of_the_survey() -> None:
-    whole = Path(os.environ[_WHOLE]).read_text("utf-8").partition("\\begin{document}")
-    assert skeleton(whole[1] + whole[2]) == _SKELETON.read_text("utf-8")
 
 
 def test_numbers_counted_by_hand_in_the_print() -> None:

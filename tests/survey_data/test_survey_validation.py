@@ -108,55 +108,6 @@ def test_a_missing_file_is_named_and_nothing_else_is_blamed(copy: Any) -> None:
         survey_data.load(copy.directory)
 
 
-UNKNOWN = {
-    "studies": [("type", "leaflet"), ("identity", "sure"), ("year", "MMX"), ("year", "1066")],
-    "attributes": [("value", "Sundial"), ("basis", "hearsay"), ("attribute", "colour")],
-    "taxonomy": [("attribute", "colour"), ("min_deg", "wide")],
-    "attribute_definitions": [("kind", "vague"), ("multiple", "perhaps"), ("attribute", "colour")],
-    "bases": [("basis", "hearsay"), ("rank", "1"), ("rank", "high")],
-    "aliases": [("value", "Sundial"), ("origin", "nowhere")],
-    "study_tables": [("value", "Sundial"), ("source", "tab:none"), ("attribute", "task")],
-    "feature_assessment": [("extractor", "Sundial"), ("score", "3"), ("property", "Beauty")],
-    "approaches": [("general", "Astrology")],
-    "findings": [("id", "finding"), ("survey_section", "page 3")],
-    "finding_clauses": [
-        ("expects", "error: Sundial"), ("kind", "best"), ("given", "error=Sundial"),
-        ("finding", "F99"),
-    ],
-    "claims": [("section", "model:sundial"), ("study", "Nobody1999"), ("id", "claim")],
-    "references": [("role", "friend"), ("mapped_key", "Nobody1999"), ("doi", "doi:10.1/x")],
-    "counts": [("table", "sundials"), ("held", "many")],
-    "hardware": [
-        ("detector", "Sundial"), ("study", "Nobody1999"), ("accuracy_kind", "best"),
-        ("family", ""), ("family", "Bradford CSS"), ("supply", "battery"),
-    ],
-    "defaults": [("value", "Sundial"), ("attribute", "task"), ("given", "extractor=Sundial")],
-    "purposes": [("given", "model=Sundial"), ("unless", "mask"), ("purpose", "fun")],
-    "compensated_models": [("model", "Sundial"), ("relation", "behind"), ("study", "Nobody1999")],
-    "method_variants": [("model", "Sundial"), ("extractor", "Squint"), ("runs_as", "Sundial")],
-    "run_facts": [("fact", "colour"), ("value", "guessed"), ("study", "Nobody1999")],
-    "architectures": [("mask", "Sundial")], "venues": [("study", "Nobody1999")],
-    "roles": [("value", "Sundial"), ("role", "admired"), ("study", "Nobody1999")],
-    "advice": [("detector", "Sundial"), ("extractor", "Squint"), ("value", "Beauty")],
-    "protocol": [("kind", "rumour")],
-    "model_families": [("model", "Sundial"), ("calibration", "never")],
-    "statistics": [("kind", "median"), ("rms_divisor", "three"), ("rms_divisor", "0")],
-    "sources": [("kind", "rumour"), ("host", "No Host")],
-    "labels": [("kind", "chorus"), ("label", "sundial")],
-    "processors": [("name", "No Name"), ("coremark", "fast"), ("coremark", "0")],
-}  # fmt: skip
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("table", ALL)
-def test_unknown_values_are_located_in_every_table(table: str, copy: Any) -> None:
-    for row, (column, text) in enumerate(UNKNOWN[table], 3):
-        copy.set(table, row, column, text)
-    problems = copy.found(file_name(table))
-    for row, (column, _) in enumerate(UNKNOWN[table], 3):
-        assert located(problems, row, column), (row, column, problems)
-
-
 def test_a_count_that_does_not_hold_is_reported_at_the_end_of_the_table(copy: Any) -> None:
     copy.set("counts", 3, "held", "7")  # the studies of 2001
     problems = survey_data.validate(copy.directory)

@@ -28,16 +28,6 @@ def test_the_whole_ledger_by_command_and_by_http(atlas):
             assert rule["trials"] <= item["trials"]
 
 
-def test_one_claim_in_full(atlas):
-    document = json.loads(run_claims("c04", "--format", "json"))
-    assert document == atlas.get("/v1/claims/C04").json()
-    assert {len(values) for values in document["values"].values()} == {document["trials"]}
-    shown = run_claims("C04")
-    assert document["statement"] in shown
-    assert f"Verdict: {document['verdict']}" in shown
-    assert "Second method" in shown
-
-
 def test_verdicts_and_words_narrow(atlas):
     whole = json.loads(run_claims("--format", "json"))["items"]
     for item in whole:

@@ -52,16 +52,6 @@ def test_studies_lists_129_with_the_grade_of_each():
     assert sunatlas("studies").stdout.startswith(f"129 studies: {counted}")
 
 
-def test_filters_by_grade_divide_the_studies():
-    by_grade = {grade: answer("studies", "--grade", grade) for grade in GRADES}
-    assert sum(map(len, by_grade.values())) == 129
-    for grade, found in by_grade.items():
-        assert {study["grade"] for study in found} <= {grade}
-    shown = sunatlas("studies", "Soken2023").stdout
-    assert any(line.startswith("close: ") for line in shown.splitlines())
-    assert "raised by:" in shown
-
-
 @pytest.mark.parametrize("attribute", ["model", "extractor"])
 def test_a_filter_takes_what_tables_print_for_none(attribute):
     value = table("studies", "--model", "None", "--extractor", "BCTM")[0]["model"]

@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 from api.cli.command_line import app
 from api.deposit import bundle
 from benchmark import datasets
+from tests.api.deposit import small_bundle
 
 
 def deposit(*arguments):
@@ -39,6 +40,15 @@ def test_what_is_built_is_verified_and_what_is_damaged_is_not(tmp_path, monkeypa
     assert wrong() == dict.fromkeys(left_out, "missing")
     (out / "README.md").write_text("damaged")
     assert wrong().keys() - left_out == {"README.md"}
+
+
+def test_a_damaged_file_fails_with_its_name(tmp_path):
+    bundle = small_bundle.make(tmp_path / "bundle")
+    assert deposit("verify", "--alone", bundle).exit_code == 0
+    (bundle / "README.md").write_text("damaged")
+    shown = deposit("verify", "--alone", bundle, "--format", "json")
+    assert shown.exit_code == 1
+    assert [row["file"] for row in json.loads(shown.stdout)] == ["README.md"]
 
 
 @pytest.mark.parametrize(

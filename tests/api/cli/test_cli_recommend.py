@@ -2,13 +2,11 @@
 
 import json
 import re
-from typing import get_args
 
 import pytest
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
-from registry.ranking import SORTS, Sort
 
 ASKED = {
     "task": ["Accuracy", "FOV"],
@@ -83,27 +81,6 @@ def test_each_architecture_shows_its_evidence_in_lines_of_its_own(atlas):
             assert f"{one['requirement']}: reported {one['reported']}" in said
         for one in architecture["advised"]:
             assert f"{one['value']}: {one['how']} ({one['section_name']})" in said
-
-
-def test_notes_cards_and_what_was_never_built_are_said(atlas):
-    cards = atlas.get("/v1/recommendations").json()["cards"]
-    shown = words(text())
-    assert len(cards) == 3
-    assert all(f"{card['detector']} + {card['mask']} ({card['words']})" in shown for card in cards)
-    answer = atlas.get("/v1/recommendations?max_error_deg=0.02&bench_deg=0.05").json()
-    assert answer["notes"]
-    assert words(answer["notes"][-1]) in words(text("--max-error-deg", 0.02, "--bench-deg", 0.05))
-    shown = text("--min-fov-deg", 360, "--max-error-deg", 1)
-    assert (
-        shown.index("PVA + Maskless") < shown.index("Measured here, never") < shown.index("LTF + ")
-    )
-
-
-def test_the_order_is_said_in_one_sentence(atlas):
-    assert get_args(Sort) == SORTS
-    for sort in SORTS:
-        order = atlas.get(f"/v1/recommendations?detector=CMOS&sort={sort}").json()["order"]
-        assert words(order) in words(text("--detector", "CMOS", "--sort", sort, "--limit", 1))
 
 
 def test_what_cannot_be_met_names_the_requirement_and_what_would_help(atlas):

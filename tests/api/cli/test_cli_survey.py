@@ -72,26 +72,6 @@ def test_the_report_counts_129_studies_and_judges_51_findings():
     assert report["problems"] == []
 
 
-def test_the_report_comes_as_table_and_csv_too():
-    table = survey("check")
-    assert table.exit_code == 0
-    assert table.stdout.startswith("129 studies; the survey states 128.")
-    listed = list(csv.DictReader(io.StringIO(survey("check", "--format", "csv").stdout)))
-    assert list(dict.fromkeys(row["id"] for row in listed)) == [f"F{n:02}" for n in range(1, 52)]
-    assert [row["clause"] for row in listed if row["id"] == "F50"] == ["1", "2"]
-    assert all(row["id"] in table.stdout for row in listed)
-
-
-def test_an_unknown_value_is_named_with_file_row_and_column(copy):
-    rows = rows_of(copy / "attributes.csv")
-    header = rows[0]
-    number = next(n for n, row in enumerate(rows) if row[header.index("value")] == "CMOS")
-    rows[number][header.index("value")] = "CMSO"
-    write(copy / "attributes.csv", rows)
-    places = [(p["file"], p["row"], p["column"]) for p in refused(copy)]
-    assert ("attributes.csv", number + 1, "value") in places
-
-
 def test_a_row_with_a_cell_too_many_is_named_in_every_table(copy):
     expected = set()
     for name in TABLES:

@@ -38,8 +38,6 @@ print(json.dumps(ended))
 """
 ALONE = [
     ["recommend", "--detector", "CMOS", "--max-error-deg", "0.1"],
-    ["studies", "Chang2008"],
-    ["leaderboard", "--dataset", "qpd-single-aperture"],
     ["claims", "C29"],
     ["calibrate", "--help"],
     ["survey", "check"],

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
-from calibrate import calibration, documents, products, recalibration
+from calibrate import calibration, products
 from calibrate.report.page import Asked
 
 
@@ -81,42 +81,6 @@ def test_a_calibration_says_what_was_found_read_and_left_out(
     assert to.read_text() == "<dcc/>\n"
     calibrated.verdict.word = "doubtful"
     assert sunatlas("calibrate", "a.csv").exit_code == 3
-
-
-@pytest.mark.parametrize(
-    ("explained", "words", "code"), [(True, ["met"], 0), (True, ["not met"], 3), (False, [], 3)]
-)
-def test_a_corrected_calibration_is_written_with_its_code(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, explained: bool, words: list[str], code: int
-) -> None:
-    found = SimpleNamespace(sentence=lambda: "turned by 0.7 deg", explained=explained)
-    asked: list[object] = []
-
-    def corrected(*args: object, tell: Any) -> Any:
-        asked.append(args[:4])
-        tell("polynomials: adds 0 deg")
-        judged = [
-            SimpleNamespace(requirement=one, word=word, sentence="0.1 of 1 deg")
-            for one, word in zip(args[5], words, strict=True)
-        ]
-        return {"again.json": "{}\n", "again.c": "\n"}, judged
-
-    monkeypatch.setattr(documents, "load", lambda path: f"loaded {path}")
-    monkeypatch.setattr(recalibration, "recalibrate", lambda *_: found)
-    monkeypatch.setattr(products, "corrected_products", corrected)
-    old, out = tmp_path / "old.json", tmp_path / "new" / "out"
-    wanted = ["--require", "1deg@rms"] if words else []
-    call = ("calibrate", "few.csv", "--onto", old, "--out", out, "--name", "again", *wanted)
-    shown = sunatlas(*call)
-    assert shown.exit_code == code, shown.stderr
-    assert shown.stdout.splitlines() == [
-        "turned by 0.7 deg",
-        "code: polynomials: adds 0 deg",
-        f"wrote again.json, again.c in {out}",
-        *(f"requirement 1deg@rms: {word} - 0.1 of 1 deg" for word in words),
-    ]
-    assert asked == [(f"loaded {old}", found, [Path("few.csv")], "again")]
-    assert (out / "again.json").read_text() == "{}\n"
 
 
 @pytest.mark.parametrize(

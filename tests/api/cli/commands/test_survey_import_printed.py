@@ -47,14 +47,6 @@ def bibliography(folder: Path, text: str = BIB, name: str = "refs.bib") -> Path:
 # ---- a bibliography
 
 
-@pytest.mark.parametrize("name", ["refs.bib", "refs.bbl", "REFS.BIB"])
-def test_a_bibliography_is_known_by_its_suffix(tmp_path: Path, name: str) -> None:
-    given = bibliography(tmp_path, name=name)
-    shown = survey(given)
-    assert shown.exit_code == 0, shown.stderr
-    assert shown.stdout == survey("--bibliography", given).stdout
-
-
 def test_a_confirmed_study_said_otherwise_is_named_and_replaced_only_where_asked(
     tmp_path: Path,
 ) -> None:
