@@ -13,7 +13,6 @@ import pytest
 
 from algorithms.calibration.documents import DIGEST
 from algorithms.calibration.saving import UnreadableCalibrationError
-from algorithms.contract import UnusableDataError
 from calibrate import documents, products
 from calibrate.calibration import Calibration, calibrate
 from calibrate.certificate.certificate import certificate
@@ -70,34 +69,6 @@ def test_a_certificate_of_nine_poses_has_no_noise_no_rings_and_no_parameters(
     assert (left | {"Parameters of the model"}) & said == set()
     assert "RMS error of samples left out of the fit" in said
     assert left <= names_in(certificate(warm))
-
-
-def test_readings_too_noisy_for_a_refit_leave_the_fits_spread_unknown(tmp_path: Path) -> None:
-    angles = np.random.default_rng(3).uniform(-40.0, 40.0, (100, 2))
-    found = calibrate([spots(tmp_path / "noisy.csv", angles, noise=70.0)], models=("linear",))
-    assert found.noise_deg > 5.0
-    assert np.isnan(found.spread_deg).all()
-    assert np.isnan(found.verdict.split_ratio)
-
-
-def test_a_drawing_that_errs_more_than_the_field_is_wide_is_refused(tmp_path: Path) -> None:
-    angles = bench.grid(5, 0.5)
-    features = bench.spots(bench.sun_of(angles), 1)
-    shuffled = np.random.default_rng(1).permutation(features)
-    file = bench.write(tmp_path / "shuffled.csv", bench.HEADER, shuffled, angles)
-    said = r"errs [\d.]+ deg where directions spread over 0\.\d+ deg: readings and directions do"
-    with pytest.raises(UnusableDataError, match=said):
-        calibrate([file], models=("spm",))
-
-
-def test_azimuths_named_as_rotations_are_found_among_rows_that_seem_behind(tmp_path: Path) -> None:
-    sun = bench.sun_of(bench.grid(9, 50.0))
-    azimuth = np.degrees(np.column_stack([np.arctan2(sun[:, 1], sun[:, 0]), np.arcsin(sun[:, 2])]))
-    file = bench.write(tmp_path / "azimuth.csv", bench.HEADER, bench.spots(sun, 1), azimuth)
-    found = calibrate([file], models=("homography",), apply=True)
-    assert [one.change for one in found.applied] == [{"direction": {"form": "azimuth-elevation"}}]
-    assert len(found.readings) == 81
-    assert found.chosen.rms_deg < 0.02
 
 
 def test_no_code_says_why(warm: Calibration, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime as dt
 from xml.etree import ElementTree as ET
 
-import mistakes
+import bench
 import numpy as np
 import pytest
 from typer.main import get_command
@@ -97,13 +97,14 @@ def number(root, name):
 @pytest.fixture(scope="module")
 def camera(tmp_path_factory):
     path = tmp_path_factory.mktemp("certificate") / "bench.csv"
-    made = mistakes.untouched(path, "spots", 1)
+    angles = np.random.default_rng(1001).uniform(-50.0, 50.0, (441, 2))
+    bench.write(path, bench.HEADER, bench.spots(bench.sun_of(angles), 1), angles)
     settings = guess(read_table(path))
     stated = CertificateSettings(
         laboratory="Bench & <Sons>", country="FI", serial="7", end=dt.date(2026, 1, 2)
     )
     return calibration.calibrate(
-        [made], settings.model_copy(update={"certificate": stated}), models=("pinhole",)
+        [path], settings.model_copy(update={"certificate": stated}), models=("pinhole",)
     )
 
 

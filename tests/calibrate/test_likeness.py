@@ -9,7 +9,6 @@ import pytest
 import typer
 
 from api.cli.commands.benchmark import app
-from api.cli.wrong_call import WrongCallError
 from calibrate.likeness import alike
 
 MINE = {"a": 0.1, "b": 0.2, "c": 1.0, "d": 4.0, "e": 5.0}
@@ -35,14 +34,6 @@ def test_ratios_between_models_decide_and_not_their_size():
     assert [(one.dataset, one.extractor) for one in found] == [("near", "x"), ("flat", "x")]
     assert found[0].factor == pytest.approx(1.0)
     assert set(found[0].errors_deg) == set("abcde")
-
-
-@pytest.mark.parametrize(
-    "call", [["--config", "a.toml"], ["--data", "a.csv", "--dataset", "ccd-slit"]]
-)
-def test_options_that_would_count_for_nothing_are_refused(call):
-    with pytest.raises(WrongCallError, match="--data"):
-        typer.main.get_command(app).main(call, standalone_mode=False)
 
 
 def test_own_data_are_scored_beside_a_standard_set(tmp_path, capsys):

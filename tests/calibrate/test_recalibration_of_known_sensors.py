@@ -18,7 +18,6 @@ Array = NDArray[np.float64]
 RNG = np.random.default_rng(5)
 SUN = bench.sun_of(RNG.uniform(-40.0, 40.0, (12, 2)))
 SPOTS = bench.CENTRE + bench.FOCAL * SUN[:, :2] / SUN[:, 2:] + RNG.normal(0.0, 0.05, (12, 2))
-FACES = ["xp", "xm", "yp", "ym", "zp", "zm"]
 VECTOR = ["sun_x", "sun_y", "sun_z"]
 NOT_TURNED = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -38,17 +37,6 @@ class Pinhole:
         return sun
 
 
-class Box:
-    """Six faces whose signals are cosines."""
-
-    def __init__(self, path: Path) -> None:
-        self.settings = guess(read_table(path))
-
-    def predict(self, signals: Array, _: object = None) -> Array:
-        sun = signals[:, ::2] - signals[:, 1::2]
-        return np.asarray(sun / np.linalg.norm(sun, axis=1)[:, None])
-
-
 def spots(path: Path, features: Array, sun: Array = SUN) -> Path:
     return bench.write(path, ["x_px", "y_px", *VECTOR], features, sun)
 
@@ -65,20 +53,6 @@ def test_moved_readings_are_an_offset_that_a_wrong_pose_does_not_move(tmp_path: 
     assert found.after.median_deg < 0.03
     assert found.before.median_deg > 0.5
     assert found.after.largest_deg > 10.0  # the wrong pose is not hidden
-
-
-def test_turned_faces_are_a_turn(tmp_path: Path) -> None:
-    sun = bench.sphere(20, 1)
-    turn = bench.turn("x", 2.0)
-    axes = np.repeat(np.eye(3), 2, axis=0) * np.tile([1.0, -1.0], 3)[:, None]
-    signals = np.maximum(sun @ axes.T, 0.0) + np.random.default_rng(2).normal(0.0, 1e-4, (20, 6))
-    path = bench.write(tmp_path / "few.csv", [*FACES, *VECTOR], signals, sun @ turn.T)
-    found = recalibrate([path], Box(path))
-    assert found.kinds == ("boresight",)
-    assert found.offset == (0.0,) * 6
-    assert found.gain == (1.0,) * 6
-    assert np.asarray(found.rotation) == pytest.approx(turn, abs=1e-3)
-    assert found.changes[0].startswith("a turn by 2 +- ")
 
 
 def test_poses_at_the_edge_of_the_old_field_settle_no_offset(tmp_path: Path) -> None:

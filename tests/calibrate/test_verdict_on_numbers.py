@@ -59,21 +59,3 @@ def test_the_next_pose_lies_in_the_hole_of_the_field() -> None:
     found, gap = next_poses(poses)
     assert separation_deg(found[:1], hole)[0] < 3.0
     assert 12.0 / 4.0 <= gap <= 12.0 / 3.0  # poses are 3 to 4 deg apart
-
-
-@pytest.mark.parametrize(
-    "poses",
-    [
-        pytest.param(bench.sun_of(np.column_stack([ANGLES[:, 0], 0 * ANGLES[:, 0]])), id="plane"),
-        pytest.param(
-            bench.sun_of(
-                np.column_stack([np.repeat(np.linspace(-40, 40, 60), 2), np.tile([0, 1e-5], 60)])
-            ),
-            id="line of repeats",
-        ),
-    ],
-)
-def test_poses_along_a_line_have_no_field_to_fill(poses: np.ndarray) -> None:
-    found, gap = next_poses(poses)
-    assert found.shape == (0, 3)
-    assert gap == 0.0

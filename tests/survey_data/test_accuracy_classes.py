@@ -24,21 +24,6 @@ def place(copy: Any, study: str, attribute: str) -> int:
 
 
 @pytest.mark.parametrize(
-    ("filed", "number"),
-    [
-        ("FSS", "0.01"),
-        pytest.param("VFSS", "0.0167", marks=pytest.mark.slow),
-        pytest.param("CSS", "0.3", marks=pytest.mark.slow),
-    ],
-)
-def test_a_class_that_its_number_contradicts_is_refused(filed: str, number: str, copy: Any) -> None:
-    copy.set("attributes", place(copy, "Xie2012", "accuracy_deg"), "value", number)
-    row = place(copy, "Xie2012", "accuracy")
-    copy.set("attributes", row, "value", filed)
-    assert located(copy.found("attributes.csv"), row, "value")
-
-
-@pytest.mark.parametrize(
     ("basis", "attribute"),
     [
         ("survey-text", "accuracy"),

@@ -127,47 +127,6 @@ def test_26_findings_are_reproduced_4_partly_3_contradicted_and_18_undecidable(
 
 
 @pytest.mark.parametrize(
-    ("finding", "levels"),
-    [
-        ("F26", {"model_category", "extractor_family"}),
-        ("F34", {"model_category", "extractor"}),
-        ("F35", {"model_category", "extractor_family"}),
-        ("F38", {"model_category", "extractor_family"}),
-        ("F41", {"model_category", "extractor_family"}),
-        ("F43", {"model_category", "extractor_family"}),
-        ("F45", {"model_category", "extractor"}),
-        ("F50", {"detector", "mask"}),
-    ],
-)
-def test_a_sentence_of_two_halves_is_tested_in_both(finding: str, levels: set[str]) -> None:
-    ranked = {
-        row["expects"].partition(":")[0]
-        for row in rows_of("finding_clauses")
-        if row["finding"] == finding
-    }
-    assert ranked == levels
-
-
-def test_a_method_or_a_sensor_part_that_a_finding_names_is_in_a_clause_of_it() -> None:
-    """Words of the statements against what their clauses rank or filter by."""
-    named = {
-        "with centroiding": "Centroid detection", "voltage balance": "Voltage balance",
-        "geometric": "Geometric", "neural": "Neural network", "multiplexing": "Multiplex",
-        "photodiode": "PD", "solar": "PVA", "CMOS": "CMOS", "event-based": "Event",
-        "encoded": "Encoded", "maskless": "Maskless", "single": "Single-Ap.", "slit": "Slit",
-        "multi-aperture": "Multi-Ap.",
-    }  # fmt: skip
-    clauses = defaultdict(str)
-    for row in rows_of("finding_clauses"):
-        clauses[row["finding"]] += f" {row['given']} {row['expects']}"
-    for row in rows_of("findings"):
-        for word, value in named.items():
-            said = row["statement"].casefold().replace("photodiode processing", "")
-            if word.casefold() in said:
-                assert value in clauses[row["id"]], (row["id"], word)
-
-
-@pytest.mark.parametrize(
     ("clauses", "verdict"),
     [
         (["reproduced", "reproduced"], "reproduced"),

@@ -115,14 +115,6 @@ def test_accuracy_classes_split_at_half_a_degree_an_arcminute_and_ten_arcseconds
     assert accuracy_class(tables.taxonomy, accuracy_deg) == expected
 
 
-@pytest.mark.parametrize("accuracy_deg", [-1.0, float("nan")])
-def test_what_is_no_accuracy_has_no_class(
-    accuracy_deg: float, tables: survey_data.SurveyTables
-) -> None:
-    with pytest.raises(LookupError, match="no accuracy class"):
-        accuracy_class(tables.taxonomy, accuracy_deg)
-
-
 def test_no_two_values_of_an_attribute_share_a_name(tables: survey_data.SurveyTables) -> None:
     for _, group in tables.taxonomy.groupby("attribute"):
         for one, other in itertools.combinations(group["name"], 2):

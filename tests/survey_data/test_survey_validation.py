@@ -197,35 +197,6 @@ def test_doi_and_year_syntax_are_checked(copy: Any) -> None:
     assert located(copy.found("studies.csv"), 2, "year")
 
 
-GRAMMAR = [
-    ("given", "error"),
-    ("given", "colour=red"),
-    ("given", "error=Alignment&"),
-    ("expects", "error"),
-    ("expects", "colour: red"),
-    ("expects", "error: Alignment|Alignment|Optical"),
-    ("expects", "error: Alignment>Optical"),
-    ("expects", "detector+mask: CMOS"),
-    ("expects", "model_category: LSQ"),
-    ("expects", "year: twenty"),
-    ("kind", "order"),
-    ("kind", "top-centroid"),
-]
-
-
-def test_the_findings_grammar_is_checked(copy: Any) -> None:
-    rows = copy.rows("finding_clauses")
-    sound = rows[1]  # a top-set over errors
-    for row, (column, text) in enumerate(GRAMMAR, 2):
-        cells = [*rows[row - 1][:2], *sound[2:]]
-        cells[rows[0].index(column)] = text
-        rows[row - 1] = cells
-    copy.write("finding_clauses", rows)
-    found = [(p.row, p.column) for p in copy.found("finding_clauses.csv")]
-    blamed = [("expects" if column == "kind" else column) for column, _ in GRAMMAR]
-    assert found == list(enumerate(blamed, 2))
-
-
 def test_a_finding_is_tested_by_clauses_that_run_on(copy: Any) -> None:
     rows = copy.rows("finding_clauses")
     at = next(i for i, cells in enumerate(rows, 1) if cells[:2] == ["F50", "2"])

@@ -64,20 +64,6 @@ def test_each_architecture_says_which_evidence_meets_which_requirement(wide: Vis
         ]
 
 
-def test_the_answer_goes_on_by_links_without_a_gap(wide: Visit) -> None:
-    page = wide.go("/?max_error_deg=0.5")
-    found = answer(wide, "max_error_deg=0.5&limit=500")["architectures"]
-    pages = [wide.names()]
-    while (on := page.get_by_role("link", name="Next architectures")).count():
-        follow(on)
-        wide.settle()
-        pages.append(wide.names())
-    assert len(pages) > 2
-    assert [name for names in pages for name in names] == [
-        f"{a['detector']} + {a['mask']}" for a in found
-    ]
-
-
 @pytest.mark.parametrize(
     "asked", ["detector=Event&mask=Lens", "mission=leo-cubesat&max_error_deg=0.00001"]
 )

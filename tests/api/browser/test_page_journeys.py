@@ -48,30 +48,6 @@ def test_find_a_study_see_how_it_runs_and_its_board(wide: Visit) -> None:
     assert wide.complaints == []
 
 
-def test_compare(wide: Visit) -> None:
-    page = wide.page
-    page.goto(wide.address + "/compare")
-    picks = page.locator('select[name="architecture"]')
-    picks.nth(0).select_option("CMOS:Encoded")
-    picks.nth(1).select_option("QPD:Single-Ap.")
-    follow(page.get_by_role("button", name="Compare", exact=True).first)
-    heads = page.locator(".side thead th")
-    expect(heads).to_have_count(2)
-    assert [text.strip() for text in heads.all_inner_texts()] == [
-        "CMOS + Encoded",
-        "QPD + Single-Ap.",
-    ]
-    page.locator('select[name="dataset"]').select_option("ccd-lens")
-    choose = page.get_by_role("button", name="Choose pipelines")
-    follow(page.get_by_role("button", name="Compare", exact=True).last.or_(choose).last)
-    ways = page.locator('select[name="pipeline"]')
-    ways.nth(0).select_option(index=1)
-    ways.nth(1).select_option(index=2)
-    follow(page.get_by_role("button", name="Compare", exact=True).last)
-    expect(page.locator(".side thead th")).to_have_count(2)
-    expect(page.locator("svg.plot")).to_be_visible()
-
-
 def test_glossary(narrow: Visit) -> None:
     page = narrow.page
     page.goto(narrow.address + "/studies/Chang2008")

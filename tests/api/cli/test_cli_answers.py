@@ -59,13 +59,6 @@ def test_a_filter_takes_what_tables_print_for_none(attribute):
     assert found == studies_with(attribute, "None")
 
 
-def test_filters_keep_what_has_one_of_the_values_of_every_attribute():
-    found = {s["key"] for s in answer("studies", "--detector", "CMOS", "--mask", "Multi-Ap.")}
-    assert found == studies_with("detector", "CMOS") & studies_with("mask", "Multi-Ap.")
-    found = {s["key"] for s in answer("studies", "--detector", "CMOS", "--detector", "CCD")}
-    assert found == studies_with("detector", "CMOS") | studies_with("detector", "CCD")
-
-
 def test_one_study_is_shown_with_basis_pipelines_and_gaps():
     study = answer("studies", "Chang2008")
     assert study["key"] == "Chang2008"

@@ -16,8 +16,6 @@ from api.service.measurements import Measurements
 from benchmark import datasets
 from benchmark.contract import Cell
 from benchmark.datasets.coverage import coverage
-from benchmark.datasets.preview_overlay import overlay_png
-from benchmark.plan.parts import installed_parts
 from benchmark.results.samples import Directions, SampleErrors
 from benchmark.results.store import Store
 
@@ -100,23 +98,6 @@ def test_wrong_calls_are_one_line_and_write_nothing(tmp_path, monkeypatch, argum
     assert not (tmp_path / "x").exists()
 
 
-def test_an_overlay_shows_what_an_extractor_finds(tmp_path):
-    path = tmp_path / "lens.png"
-    shown = sunatlas("preview", "ccd-lens", "--out", path, "--overlay", "hough-lines")
-    assert shown.exit_code == 0
-    preset, extractor = datasets.get("ccd-lens"), installed_parts().extractor("hough-lines")
-    assert path.read_bytes() == overlay_png(preset, extractor, ["nominal"])
-
-
-def test_what_is_in_the_way_stays(made, tmp_path):
-    out, _ = made
-    assert "--force" in sunatlas("export", CUBE, "--out", out).stderr
-    (tmp_path / "mine").write_text("x")
-    shown = sunatlas("export", CUBE, "--out", tmp_path, "--force")
-    assert shown.exit_code == 1
-    assert "holds mine" in shown.stderr
-
-
 def test_coverage_is_the_table_in_every_format():
     found = coverage()
     document = json.loads(sunatlas("coverage", "--format", "json").stdout)
@@ -155,21 +136,6 @@ def test_pin_pins_what_is_named_and_check_tells_what_does_not_hold(published):
     assert shown.exit_code == 1
     where = " ".join(first.place)
     assert shown.stdout.startswith(f"{where}: data_hash {first.data_hash}, pinned 0000")
-
-
-def test_realism_sets_datasets_beside_built_sensors_in_every_format():
-    asked = ("realism", "--dataset", "ccd-n-slit", "--dataset", "cmos-l-slit")
-    document = json.loads(sunatlas(*asked, "--format", "json").stdout)
-    slits, ideal = document["datasets"]
-    assert [sensor["id"] for sensor in slits["sensors"]] == ["P05"]
-    assert (ideal["sensors"], ideal["rms_deg"] > 0) == ([], True)
-    rows = list(csv.DictReader(io.StringIO(sunatlas(*asked, "--format", "csv").stdout)))
-    assert [(row["dataset"], row["id"]) for row in rows] == [
-        ("ccd-n-slit", "P05"),
-        ("cmos-l-slit", ""),
-    ]
-    assert rows[1]["explanation"] == ideal["idealisation"]
-    assert "Tsinghua N-slit sensor" in sunatlas(*asked).stdout
 
 
 @pytest.fixture

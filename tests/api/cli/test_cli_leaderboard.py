@@ -85,37 +85,6 @@ def test_the_command_and_the_service_say_the_same(atlas, arguments, path, listed
         ], "whole numbers, not those of the screen"
 
 
-def test_a_board_begins_with_the_best_of_each_extractor(atlas):
-    address = "/v1/leaderboard/ccd-single-aperture?condition=nominal"
-    board = atlas.walk(address)
-    best = atlas.walk(f"{address}&best_of_extractor=true")
-    assert board[: len(best)] == best
-    ranked = {row["extractor"] for row in board if row["rank"] is not None}
-    assert sorted(row["extractor"] for row in best) == sorted(ranked)
-    assert [row["rank"] for row in best] == sorted(row["rank"] for row in best)
-
-
-def test_pipelines_are_marked_with_the_studies_that_resolve_to_them(atlas):
-    """By what the service says of each study itself."""
-    by = {}
-    for study in atlas.walk("/v1/studies?limit=500"):
-        for pipeline in atlas.get(f"/v1/studies/{study['key']}").json()["pipelines"]:
-            if (pipeline["detector"], pipeline["mask"]) == ("CMOS", "Single-Ap."):
-                place = pipeline["extractor"], pipeline["model"]
-                by.setdefault(place, set()).add(study["key"])
-    assert len(set().union(*by.values())) > 5
-    address = "/v1/leaderboard/cmos-single-aperture?condition=nominal"
-    board = atlas.walk(address)
-    expected = {
-        place: sorted(by[place])
-        for row in board
-        if (place := (row["extractor"], row["model"])) in by
-    }
-    used = atlas.walk(f"{address}&studied=true")
-    assert {(row["extractor"], row["model"]): row["studies"] for row in used} == expected
-    assert 0 < len(used) == sum(bool(row["studies"]) for row in board) < len(board)
-
-
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [

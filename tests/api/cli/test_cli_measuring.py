@@ -12,11 +12,9 @@ from api.cli import measuring, working
 from api.cli.command_line import app
 from api.cli.commands import leaderboard
 from benchmark.contract import Cell
-from benchmark.leaderboard.scope import published_scope
 from benchmark.plan.combinations import scorable_plan
 from benchmark.plan.parts import installed_parts
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running.runner import stale
 from registry.catalogue import catalogue
 from registry.resolution import resolve
 
@@ -151,25 +149,6 @@ def test_the_leaderboard_is_shown_and_nothing_is_measured(tmp_path, monkeypatch)
     assert not (tmp_path / "working").exists()
 
 
-def test_a_field_of_view_can_be_read_off():
-    wide = listed("--max-error", "0.01")
-    fields = [row["widest_field_deg"] for row in wide]
-    assert fields == sorted(fields, reverse=True)
-    for row in wide:
-        assert row["widest_field_deg"] <= (row["half_fov_deg"] or 180)
-        rings = [
-            value
-            for name, value in row.items()
-            if (edges := re.fullmatch(r"rms_(\d+)_(\d+)_deg", name))
-            and int(edges[2]) <= row["widest_field_deg"]
-        ]
-        assert rings
-        assert max(rings) <= 0.01
-    every = listed("--dataset", wide[0]["dataset"], "--condition", "nominal", "--max-error", "0.01")
-    assert every[0]["widest_field_deg"] == fields[0]
-    assert {row["rank"] for row in every if row["widest_field_deg"] is None} <= {None}
-
-
 @pytest.mark.parametrize(
     ("arguments", "code", "says"),
     [
@@ -209,19 +188,3 @@ def test_what_is_not_of_the_code_is_named(published):
     assert set(found) == {"components.json", "leaderboard.md"}
     assert found["components.json"]["cell"] == f"models/{name}"
     assert "the first: " in shown.stderr
-
-
-@pytest.mark.slow
-def test_an_up_to_date_record_is_left_as_it_is(published):
-    held = Store(published).scores()
-    assert stale(published_scope(held, installed_parts()), Store(published)) == [], (
-        "run `make leaderboard`"
-    )
-    before = {path: path.read_bytes() for path in published.rglob("*") if path.is_file()}
-    shown = sunatlas("leaderboard", "update", "--workers", 1)
-    assert shown.exit_code == 0, shown.stderr
-    assert " 0 measured" in shown.stderr
-    after = {path: path.read_bytes() for path in published.rglob("*") if path.is_file()}
-    assert {path: after[path] for path in before} == before
-    new = {path.name for path in after.keys() - before.keys()}
-    assert new <= {"lock", "holder", "journal.jsonl"}

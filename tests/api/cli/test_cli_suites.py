@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 from typing import Any
 
@@ -87,21 +86,6 @@ def test_a_suite_is_planned_run_and_then_there(small: Path) -> None:
     assert "0 of" in sunatlas("plan").stderr
 
 
-@pytest.mark.slow
-def test_a_plan_says_what_failed_and_how_long_its_like_took(small: Path) -> None:
-    wanted = first(planning.every_part())
-    store = Store(small)
-    run(wanted, store, progress=lambda *_told: None)
-    text = (store.scores_directory / "pd-maskless-cube.csv").read_text()
-    changed = text.replace(",ok,", ",failed,", 1)
-    (store.scores_directory / "pd-maskless-cube.csv").write_text(changed)
-    planned = sunatlas("plan", "--suite", "quick", "--format", "csv")
-    header, *rows = planned.stdout.splitlines()
-    assert header == "dataset,condition,extractor,model,unit,why"
-    assert rows == ["pd-maskless-cube,nominal,direct,basic,0,failed before"]
-    assert "1 of 2" in planned.stderr
-
-
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -143,15 +127,6 @@ def test_a_record_that_holds_is_verified_and_nothing_is_written(
     assert drawn["seed"] == 7
     assert {path: path.read_bytes() for path in published.directory.rglob("*.csv")} == before
     assert not small.exists()
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("published")
-def test_a_record_is_verified_by_a_seed_that_is_told_and_prints_nothing_else() -> None:
-    verified = sunatlas("verify", "--workers", "1")
-    assert verified.exit_code == 0, verified.stderr
-    assert re.search(r"2 cells, drawn by --seed \d+", verified.stderr)
-    assert verified.stdout == ""
 
 
 @pytest.mark.slow

@@ -95,27 +95,6 @@ def test_the_years_that_the_survey_names_are_those_drawn() -> None:
     assert count[2001] == 4, "the criterion of inclusion begins with 2002; four keys are of 2001"
 
 
-def test_every_sensor_is_a_line_with_the_numbers_that_its_study_states(
-    sensors: dict[str, set[tuple[str, str]]], values: Values
-) -> None:
-    rows = figure("coordinates", facts()).rows
-    assert {row["study"] for row in rows} == set(values)
-    for key, of in values.items():
-        found = {(row["detector"], row["mask"]) for row in rows if row["study"] == key}
-        every = itertools.product(of["detector"] or {None}, of["mask"] or {None})
-        assert found == (sensors.get(key) or set(every))
-    for row in rows:
-        of = values[row["study"]]
-        accuracies = [float(value) for value in of["accuracy_deg"]]
-        assert row["accuracy_deg"] == (min(accuracies) if accuracies else None)
-        kind = next(iter(of["accuracy_kind"]), None)
-        divisor = {"3sigma": 3.0, "max": 3.0, "p95": 1.96, "mean": 0.7979}.get(kind or "", 1.0)
-        rms = None if not accuracies else min(accuracies) / divisor
-        assert (row["accuracy_rms_deg"], row["accuracy_kind"]) == (rms, kind)
-        fields = [float(value) for value in of["fov_deg"]]
-        assert row["fov_deg"] == (max(fields) if fields else None)
-
-
 @pytest.mark.parametrize(
     ("rows", "columns"),
     [("detector", "mask"), ("task", "error"), ("accuracy", "model_category"), ("model", "model")],

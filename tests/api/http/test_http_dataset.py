@@ -59,20 +59,6 @@ def test_the_card_is_the_preset_s_with_bounds_hashes_and_the_picture(atlas):
         assert row["data_hash"] == pins[NAME, row["condition"], row["split"]].data_hash
 
 
-def test_the_list_has_the_same_without_parameters(atlas):
-    listed = {card["name"]: card for card in atlas.walk("/v1/datasets?limit=500")}
-    assert set(listed) == set(datasets.names())
-    card = atlas.get(f"/v1/datasets/{NAME}").json()
-    short = listed[NAME]
-    assert "parameters" not in short["setups"]["nominal"]
-    for condition, setup in short["setups"].items():
-        assert setup == {"description": card["setups"][condition]["description"]}
-    assert {name: card[name] for name in short if name != "setups"} == {
-        name: member for name, member in short.items() if name != "setups"
-    }
-    assert len(atlas.get("/v1/datasets?limit=500").content) < 200_000
-
-
 def test_pins_of_the_version_there_is_give_hash_and_bound(pinned):
     card = pinned.get(f"/v1/datasets/{NAME}").json()
     assert card["bounds"] == {"nominal": 0.25}

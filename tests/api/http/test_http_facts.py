@@ -65,22 +65,6 @@ def test_every_value_filters_to_the_studies_that_have_it(atlas, values, attribut
         assert [item["key"] for item in answer.json()["items"]] == expected, value
 
 
-def test_years_and_words_narrow(atlas):
-    studies = read("studies")
-    years = {row["key"]: int(row["year"]) for row in studies if row["year"]}
-    found = atlas.walk("/v1/studies?year_min=2005&year_max=2008&limit=10")
-    assert {s["key"] for s in found} == {k for k, year in years.items() if 2005 <= year <= 2008}
-    found = atlas.walk("/v1/studies?q=LIEBE%202001")
-    texts = {
-        r["key"]: " ".join(r[n] for n in ("key", "title", "authors", "venue")) for r in studies
-    }
-    expected = [k for k, text in texts.items() if "liebe" in text.lower() and "2001" in text]
-    assert [item["key"] for item in found] == expected
-    assert "Liebe2001" in expected
-    assert atlas.walk("/v1/studies?year_min=2008&year_max=2005") == []
-    assert atlas.walk("/v1/studies?q=nothing-has-this-word") == []
-
-
 def row_role(row):
     return "unknown" if row["attribute"] in {"model", "extractor"} else ""
 

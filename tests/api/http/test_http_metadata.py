@@ -14,13 +14,11 @@ from typing import Any
 
 import mlcroissant
 import msgspec_schemaorg.models as schema_org
-import pandas as pd
 import pytest
 import rdflib
 import uvicorn
-from signposting import find_signposting_http, find_signposting_http_link, find_signposting_linkset
+from signposting import find_signposting_http, find_signposting_http_link
 
-from api.metadata.identity import identity
 from api.metadata.signposting import landing_of_study
 from benchmark import datasets
 from tests.api.conftest import Client
@@ -92,18 +90,6 @@ def test_croissant_loads_what_is_served_of_a_data_set(atlas, address, load, name
     texts = ("condition", "split", "data_hash")
     rows = [{k: v.encode() if k in texts and v else v for k, v in row.items()} for row in rows]
     assert splits == rows
-
-
-def test_croissant_loads_errors_with_their_types(atlas, address, load) -> None:
-    records = load(f"{address}/v1/datasets/pd-slit/croissant.json").records("errors")
-    published = atlas.app.state.knowledge.measurements.sample_errors("pd-slit")
-    assert len(published) > 2000
-    first = zip(range(2000), records, published.itertuples(index=False), strict=False)
-    for _, named, rows in list(first)[::97]:
-        row, known = {k.removeprefix("errors/"): v for k, v in named.items()}, rows._asdict()
-        assert row["extractor"].decode() == known["extractor"]
-        assert (row["unit"], row["sample"]) == (known["unit"], known["sample"])
-        assert row["error_deg"] == (None if pd.isna(known["error_deg"]) else known["error_deg"])
 
 
 @pytest.mark.parametrize("step", [13, pytest.param(1, marks=pytest.mark.slow)])
@@ -215,24 +201,3 @@ def test_signposts_lead_from_the_page_to_its_parts_and_back(address) -> None:
         assert [str(s.target) for s in back] == [f"{address}/datasets/pd-slit"]
         profiles |= {str(p) for p in about.profiles}
     assert "http://mlcommons.org/croissant/1.0" in profiles
-
-
-def test_the_link_set_has_every_link_of_the_headers(address) -> None:
-    for path in ("/datasets/pd-slit", "/leaderboard"):
-        page = find_signposting_http(f"{address}{path}")
-        found = find_signposting_linkset(str(page.linksets.copy().pop().target))
-        for context in [f"{address}{path}", *(str(i.target) for i in page.items)]:
-            rows = {
-                (s.rel.value, str(s.target)) for s in found.signposts if str(s.context) == context
-            }
-            own = find_signposting_http(context)
-            there = {(s.rel.value, str(s.target)) for s in own.signposts}
-            there -= {pair for pair in there if pair[0] == "alternate"}
-            assert rows == there, context
-
-
-def test_codemeta_is_served(atlas) -> None:
-    document = atlas.get("/codemeta.json").json()
-    assert document["version"] == identity().version
-    assert "application/ld+json" in atlas.get("/codemeta.json").headers["content-type"]
-    assert "/codemeta.json" in Client.get(atlas, "/", accept="text/html").headers["link"]

@@ -199,18 +199,6 @@ def test_the_document_is_valid_openapi_without_foreign_addresses(document):
         assert operation["summary"], (path, method)
 
 
-def test_what_a_body_may_say_fits_its_schema(atlas, document):
-    schema = validator(document, {"$ref": "#/components/schemas/RequirementsBody"})
-    for detector, fits in (("CMOS", True), (["CMOS"], True), ("CMS", False), (["CMS"], False)):
-        answer = atlas.post("/v1/recommendations", json={"detector": detector})
-        assert (answer.status_code == 200) == schema.is_valid({"detector": detector}) == fits
-    alone, listed = (
-        atlas.post("/v1/recommendations", json={"detector": detector, "mask": mask}).content
-        for detector, mask in (("CMOS", "Slit"), (["CMOS"], ["Slit"]))
-    )
-    assert alone == listed
-
-
 def test_operations_are_grouped_and_the_licence_is_said(document):
     groups = {tag["name"] for tag in document["tags"] if tag["description"]}
     used = [operation["tags"] for _, _, operation in operations(document)]

@@ -62,27 +62,6 @@ def test_rows_are_those_of_the_file_with_their_directions(client):
     assert [row["error_deg"] for row in table[:3]] == ["0.25", "", ""]
 
 
-@pytest.mark.parametrize(
-    ("query", "places"),
-    [
-        ("unit=3", [3, 4, 5]),
-        ("extractor=weighted-spots", [6, 7, 8]),
-        ("model=pinhole&unit=0", [0, 1, 2, 6, 7, 8]),
-        ("unit=9", []),
-    ],
-)
-def test_filters_choose_rows(client, query, places):
-    rows = client.get(f"/v1/datasets/{NAME}/errors").json()["items"]
-    found = client.get(f"/v1/datasets/{NAME}/errors?{query}").json()
-    assert found["items"] == [rows[place] for place in places]
-    assert found["total"] == len(places)
-
-
-def test_pages_put_together_are_the_list(client):
-    whole = client.get(f"/v1/datasets/{NAME}/errors").json()["items"]
-    assert list(client.walk(f"/v1/datasets/{NAME}/errors?limit=2")) == whole
-
-
 @pytest.mark.parametrize("kind", ["errors", "directions"])
 def test_the_file_is_the_published_one_and_pandas_reads_it(client, published, kind):
     name = NAME if kind == "errors" else f"{NAME}.directions"

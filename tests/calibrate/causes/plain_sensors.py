@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import bench
 import numpy as np
 
-ANGLES = ["theta_x_deg", "theta_y_deg"]
 CELLS = bench.sun_of(np.array([[24.0, 26.0], [24.0, -26.0], [-24.0, 26.0], [-24.0, -26.0]]))
 CELL_NOISE = 0.002
 

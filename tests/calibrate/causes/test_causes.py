@@ -10,7 +10,7 @@ from samples import found_in, samples, table
 
 from calibrate.ambiguity import folded
 from calibrate.calibration import calibrate
-from calibrate.causes.bad_cells import DUPLICATE, without_bad_cells
+from calibrate.causes.bad_cells import without_bad_cells
 from calibrate.causes.kinks import largest_unnoticed
 from calibrate.causes.lag import fraction_late
 from calibrate.causes.light import level_of_products, level_of_sum, without_stray
@@ -62,14 +62,6 @@ def test_a_converter_that_clips_is_named_with_its_level():
     assert {one.high for one in bad.levels.values()} == {limit}
 
 
-def test_angles_beyond_a_circle_and_rows_twice_are_left_out():
-    angles = ANGLES.copy()
-    angles[7, 0] = 725.0
-    twice = np.vstack([np.column_stack([SPOTS, angles]), np.column_stack([SPOTS, angles])[[50]]])
-    reasons = {one.row: one.reason for one in bad_in(table(SPOT_NAMES, twice)).excluded}
-    assert reasons == {9: "angle beyond a circle in theta_x_deg", len(ANGLES) + 2: DUPLICATE}
-
-
 @pytest.mark.parametrize(
     ("names", "readings", "angles"),
     [
@@ -119,17 +111,6 @@ def test_a_level_found_may_be_stray_light_and_the_report_says_from_which_amount_
     rms_deg = np.degrees(np.sqrt(np.mean((moved**2).sum(axis=1))))
     assert rms_deg == pytest.approx(0.5 * noise, rel=0.25)
     assert not any("stray" in one for one in untested_in(readings, stated))
-
-
-def test_a_level_below_zero_is_named_and_not_taken_over():
-    names = ("x_plus", "x_minus", "y_plus", "y_minus", *QUADRANTS[4:])
-    currents = bench.electrodes(bench.sun_of(NARROW), 3)
-    # a table of angles that are too small asks for a level that no light goes below
-    (found,) = found_in(table(names, currents, 0.9 * NARROW))
-    assert "below zero" in found.found
-    assert found.certain
-    assert not found.change
-    assert found_in(table(names, currents, NARROW)) == []
 
 
 @pytest.mark.parametrize("late", [0.0, 0.3, 0.7])

@@ -41,13 +41,6 @@ def test_faces_that_fall_are_found_with_their_level_without_light() -> None:
     assert change["dark"] == pytest.approx([DARK] * 6, abs=0.01)
 
 
-def test_falling_faces_are_found_without_a_level_where_few_poses_are_dark() -> None:
-    up = np.flatnonzero(SPHERE[:, 2] > 0.2)
-    used = np.concatenate([up, np.flatnonzero(SPHERE[:, 2] < -0.5)[:3]])  # zp is lit but in three
-    found = found_in(table((*FACES[:5], *VECTOR), DARK - SIGNALS[used, :5], SPHERE[used]))
-    assert [(one.about, one.change) for one in found] == [("light", {})]
-
-
 def test_exchanged_channels_look_where_the_other_is_stated_to() -> None:
     exchanged = SIGNALS[:, [1, 0, 2, 3, 4, 5]]
     found = found_in(table((*FACES, *VECTOR), exchanged, SPHERE))

@@ -163,18 +163,3 @@ def test_gains_and_offsets_of_channels_follow_the_temperature(camera: Any) -> No
     fresh, warm = sensor.raw(3), kelvin_of(sensor.raw(3), 6)
     _, sun, _ = run(tuple(steps), fresh, warm)
     assert np.nanmax(apart_deg(sun, chain.predict(fresh, {"temperature_K": warm}))) < 1e-9
-
-
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        ({"name": "dnn"}, "flight code is not written for the model dnn; choose another"),
-        ({"context": ("nadir",)}, "code for flight knows no nadir"),
-    ],
-)
-def test_models_without_code_are_named(change: dict[str, Any], said: str, camera: Any) -> None:
-    found = SENSORS["six faces"].calibrated(camera)
-    about = SimpleNamespace(**{"name": "trig", "context": (), **change})
-    vars(found)["model"] = SimpleNamespace(about=about)
-    with pytest.raises(NoCodeError, match=said):
-        flight_code(found)

@@ -168,17 +168,6 @@ def test_dark_rows_are_refused_whichever_way_readings_go(written):
 
 
 @needs_gcc
-def test_ten_percent_less_light_changes_no_direction_of_balances(written):
-    _, _, directory = written("quadrants")
-    volts = SENSORS["quadrants"].raw(6)
-    full = c_answers(directory, volts)
-    dimmed = c_answers(directory, DARK + 0.9 * (volts - DARK))
-    both = (full[:, 0] == 0) & (dimmed[:, 0] == 0)
-    assert both.mean() > 0.95
-    assert np.max(apart_deg(full[both, 1:4], dimmed[both, 1:4])) < 1e-9
-
-
-@needs_gcc
 def test_temperatures_that_were_not_calibrated_are_refused(written):
     sensor, (_, _, directory) = SENSORS["warm faces"], written("warm faces")
     rows = sensor.telemetry(3)

@@ -11,7 +11,6 @@ from algorithms.contract import SensorGeometry
 from algorithms.discovery import discover_models
 from calibrate.intervals.left_out import errors_left_out
 from calibrate.selection import compare, fitted
-from calibrate.verdict import GROWING, patterns_in
 
 SUN = bench.sun_of(bench.grid(13, 40.0))
 CAMERA = SensorGeometry(focal_length_mm=3.5, pixel_pitch_mm=0.01, centre_px=(512.0, 512.0))
@@ -47,14 +46,3 @@ def test_a_sample_that_the_model_removed_counts_with_its_error() -> None:
     offsets, sun = left_out(wrong_deg=2.0)
     assert len(offsets) == len(sun) == len(SUN)
     assert np.degrees(np.linalg.norm(offsets[-1])) > 1.0
-
-
-def test_errors_that_grow_outwards_are_a_pattern_and_even_ones_are_none() -> None:
-    angles = np.random.default_rng(1).uniform(-50.0, 50.0, (600, 2))
-    sun = bench.sun_of(angles)
-    drawn = np.random.default_rng(2).normal(0.0, 1e-3, sun.shape)
-    outwards = np.linalg.norm(angles, axis=1)[:, None] / 50.0
-    assert [one.name for one in patterns_in(drawn * (0.2 + outwards), samples(sun, sun))] == [
-        GROWING
-    ]
-    assert patterns_in(drawn, samples(sun, sun)) == ()

@@ -61,23 +61,6 @@ def test_changes_of_the_axes_are_part_of_what_is_predicted() -> None:
     assert np.sqrt(np.nanmean(errors**2)) < 0.02
 
 
-def test_runs_times_and_dark_levels_reach_the_calibration() -> None:
-    count = len(SUN)
-    made = calibrate_arrays(
-        spots(SUN, 5) + 12.0,
-        SUN,
-        run=np.repeat(["a", "b"], [100, count - 100]),
-        time_s=np.arange(count),
-        settings={"readings": {"dark": 12.0}, "bench": {"floor_deg": 0.5}},
-        models=MODEL,
-    )
-    assert made.found.readings.run_names == ("a", "b")
-    assert made.found.readings.context["time_s"][-1] == count - 1
-    assert made.found.settings.bench.floor_deg == 0.5
-    at = np.array([[512.0 + 12.0, 512.0 + 12.0]])
-    assert separation_deg(made.predict(at), np.array([[0.0, 0.0, 1.0]]))[0] < 1.0
-
-
 @pytest.mark.parametrize(
     ("call", "said"),
     [

@@ -17,8 +17,6 @@ from calibrate.report.errors import (
     Errors,
     by_axis,
     by_band,
-    by_run,
-    by_temperature,
     fewest_for,
     field_of,
     level,
@@ -74,16 +72,6 @@ def test_bands_hold_every_pose_once_and_say_what_intervals_cover() -> None:
     assert rows[0].name == "0 to 10 deg"
 
 
-def test_runs_and_temperatures_are_told_apart() -> None:
-    warm = np.linspace(250.0, 300.0, len(SUN))
-    offsets = np.radians(np.where(warm > 290.0, 1.0, 0.1))[:, None] * towards(0)
-    rows = by_temperature(known(offsets, temperature_K=warm))
-    assert [row.samples for row in rows] == pytest.approx([88] * 5, abs=2)
-    assert rows[-1].rms_deg == pytest.approx(1.0, abs=0.01)
-    assert rows[0].rms_deg == pytest.approx(0.1)
-    assert by_temperature(known(offsets)) == by_run(known(offsets)) == []
-
-
 def test_the_share_of_the_next_errors_below_a_level_is_what_it_says() -> None:
     generator = np.random.default_rng(5)
     below = []
@@ -109,16 +97,6 @@ def test_the_field_of_a_square_reaches_farther_in_its_corners() -> None:
     assert reach[45.0] == field.most_deg == pytest.approx(corner, abs=0.26)
     aside = SUN[SUN[:, 0] > 0.2]
     assert field_of(aside) is None
-
-
-def test_the_field_of_one_axis_is_its_two_ends() -> None:
-    angle = np.radians(np.linspace(-30.0, 50.0, 81))
-    sweep = np.column_stack([np.zeros(81), np.sin(angle), np.cos(angle)])
-    field = field_of(sweep)
-    assert field is not None
-    assert (field.least_deg, field.most_deg) == pytest.approx((30.0, 50.0))
-    assert dict(field.reach) == pytest.approx({90.0: 50.0, 270.0: 30.0})
-    assert field_of(sweep[angle > 0.1]) is None
 
 
 @pytest.mark.parametrize(
