@@ -20,10 +20,9 @@ from api.deposit import bundle as deposit
 from api.deposit.deposit_tables import NothingPublishedError
 from api.deposit.verification import verify
 from benchmark.results import samples
-from benchmark.results.store import PUBLISHED, Store
+from benchmark.results.store import PUBLISHED
 from files import manifest
 from files.checksums import CHECKSUMS
-from registry.taxonomy import taxonomy_row
 from survey_data.editions import editions
 from tests.api.deposit.conftest import FRAMES
 
@@ -84,24 +83,6 @@ def test_the_zip_holds_what_the_directory_holds(built):
     assert len(top) == 1
     assert {name.partition("/")[2]: c for name, c in packed.items()} == files(built.directory)
     assert len(moments) == 1
-
-
-@pytest.mark.slow
-def test_the_tables_hold_what_their_sources_hold(built):
-    package = Package(str(built.directory / "datapackage.json"))
-    assert len(package.get_resource("studies").read_rows()) == 129
-    for name in ("studies", "attributes", "findings"):
-        ours = Path(survey_data.__file__).parent / f"{name}.csv"
-        assert (built.directory / "survey" / f"{name}.csv").read_bytes() == ours.read_bytes()
-    measured = [dict(row) for row in package.get_resource("scores").read_rows()]
-    for row, stored in zip(measured, Store(PUBLISHED).rows(unit=None), strict=True):
-        assert set(row) == set(stored)
-        for column, value in taxonomy_row(stored).items():
-            found = row[column]
-            # An empty cell is text that is empty, or nothing at all.
-            assert (found if found is None or isinstance(found, str) else type(value)(found)) in (
-                [value] if value not in (None, "") else [None, ""]
-            )
 
 
 def test_every_column_is_described(built):

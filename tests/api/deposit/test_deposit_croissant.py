@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import mlcroissant
@@ -11,7 +10,6 @@ import pytest
 from api.deposit.bundle import Bundle
 from api.metadata.codemeta import NAME, codemeta_text
 from api.metadata.identity import identity
-from files.checksums import sha256
 
 #: The library warns of packages that it reads other formats with.
 pytestmark = pytest.mark.filterwarnings("ignore::Warning:mlcroissant", "ignore::Warning:rdflib")
@@ -28,21 +26,6 @@ def read(path: Path) -> mlcroissant.Dataset:
 def records(dataset: mlcroissant.Dataset, table: str) -> list[dict[str, object]]:
     found = list(dataset.records(record_set=table))
     return [{k.removeprefix(f"{table}/"): v for k, v in row.items()} for row in found]
-
-
-@pytest.mark.slow
-def test_every_document_is_valid_and_names_files_as_they_are(built: Bundle) -> None:
-    folder = built.directory / "croissant"
-    paths = sorted(folder.iterdir())
-    assert {path.stem for path in paths} > {"record", "survey", "pd-slit"}
-    for path in paths:
-        document = json.loads(path.read_text("utf-8"))
-        read(path)
-        assert document["distribution"], path.name
-        for file in document["distribution"]:
-            there = folder / file["contentUrl"]
-            assert file["sha256"] == sha256(there), file["contentUrl"]
-            assert file["contentSize"] == f"{there.stat().st_size} B"
 
 
 def test_the_survey_s_none_is_a_value_and_unknown_is_none(built: Bundle) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import bench
 import numpy as np
 import pytest
-from plain_sensors import cells
 from samples import found_in, samples, table
 
 from calibrate.ambiguity import folded
@@ -161,6 +160,13 @@ def test_wrong_poses_are_no_kink(share):
     stated[at] = stated[generator.permutation(at)]
     found = found_in(table(SPOT_NAMES, SPOTS, stated))
     assert "kink" not in [one.about for one in found]
+
+
+def cells(sun, seed):
+    """Four plain cells tilted by 35 deg."""
+    tilts = np.array([[24.0, 26.0], [24.0, -26.0], [-24.0, 26.0], [-24.0, -26.0]])
+    light = np.maximum(sun @ bench.sun_of(tilts).T, 0.0)
+    return light + np.random.default_rng(seed).normal(0.0, 0.002, light.shape)
 
 
 def test_four_tilted_cells_stated_as_quadrants_are_found_as_cells():

@@ -14,7 +14,6 @@ from raw_sensors import SENSORS, apart_deg
 from algorithms.calibration.hull import Hull
 from algorithms.chain import ChainModel
 from calibrate.flight.code import flight_code
-from calibrate.flight.faces import faces_steps
 from calibrate.flight.plane import AIM, plane_steps
 from calibrate.flight.program import NoCodeError, run
 
@@ -146,20 +145,3 @@ def test_two_features_follow_the_temperature(model: Any) -> None:
     assert np.max(apart_deg(sun, exact)) <= 2.0 * AIM * 0.05
     # a stage that is left out would be seen
     assert np.max(apart_deg(model.predict(fresh, {"temperature_K": warm + 20.0}), exact)) > 0.05
-
-
-def test_gains_and_offsets_of_channels_follow_the_temperature(camera: Any) -> None:
-    sensor = SENSORS["six faces"]
-    found = sensor.calibrated(camera)
-    slopes, shifts = np.linspace(-2e-3, 1e-3, 6), np.linspace(1e-5, 2e-4, 6)
-    stage = Warped(lambda signals, warmer: signals + warmer * (slopes * signals + shifts))
-    about = SimpleNamespace(context=("temperature_K",))
-    chain = ChainModel(about, (stage,), found.model)  # type: ignore[arg-type]
-    signals = found.readings.features
-    context = {"temperature_K": kelvin_of(signals)}
-    steps, _ = faces_steps(chain, signals, context)
-    assert steps[0].name == "drift"
-    assert steps[0].constants["degree"] == 1
-    fresh, warm = sensor.raw(3), kelvin_of(sensor.raw(3), 6)
-    _, sun, _ = run(tuple(steps), fresh, warm)
-    assert np.nanmax(apart_deg(sun, chain.predict(fresh, {"temperature_K": warm}))) < 1e-9

@@ -1,4 +1,4 @@
-"""Puts the sensors that these tests read, and those of flight code and of causes, at hand."""
+"""Puts the sensors that these tests read, and those of flight code, at hand."""
 
 from __future__ import annotations
 
@@ -6,4 +6,4 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
-sys.path[:0] = [str(HERE), str(HERE.parent / "flight"), str(HERE.parent / "causes")]
+sys.path[:0] = [str(HERE), str(HERE.parent / "flight")]
