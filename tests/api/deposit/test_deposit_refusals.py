@@ -21,6 +21,7 @@ from api.deposit.package import DESCRIPTOR
 from api.deposit.packing import PackingError, pack
 from api.deposit.typed_tables import TypedTable
 from api.deposit.verification import verify
+from files.checksums import CHECKSUMS, write_checksums
 from tests.api.deposit import small_bundle
 from tests.api.deposit.test_deposit_verification import agree
 
@@ -63,6 +64,17 @@ def test_a_full_disk_is_an_error_of_the_system_that_names_the_file(
 def test_a_bundle_without_its_terms_is_told_which_are_missing(small: Path, name: str) -> None:
     without(small, name)
     assert verify(small) == [(name, "missing; a bundle goes out with its terms")]
+
+
+def test_a_crate_with_another_size_is_found(small: Path) -> None:
+    crate = json.loads((small / CRATE).read_text("utf-8"))
+    for entity in crate["@graph"]:
+        if entity["@id"] == "README.md":
+            entity["contentSize"] = "1"
+    (small / CRATE).write_text(json.dumps(crate))
+    (small / CHECKSUMS).unlink()
+    write_checksums(small)
+    assert verify(small) == [(CRATE, "README.md: contentSize is not its size")]
 
 
 def test_what_reads_tables_has_no_way_to_the_web_while_a_bundle_is_verified() -> None:
