@@ -11,7 +11,7 @@ import pytest
 from typer.main import get_command
 
 from api.cli.commands.calibrate import app
-from calibrate import calibration
+from calibrate import calibration, products
 from calibrate.certificate.certificate import certificate
 from calibrate.roles import guess
 from calibrate.settings import CertificateSettings
@@ -97,7 +97,7 @@ def number(root, name):
 @pytest.fixture(scope="module")
 def camera(tmp_path_factory):
     path = tmp_path_factory.mktemp("certificate") / "bench.csv"
-    angles = np.random.default_rng(1001).uniform(-50.0, 50.0, (441, 2))
+    angles = np.random.default_rng(1001).uniform(-50.0, 50.0, (225, 2))
     bench.write(path, bench.HEADER, bench.spots(bench.sun_of(angles), 1), angles)
     settings = guess(read_table(path))
     stated = CertificateSettings(
@@ -145,6 +145,7 @@ def test_who_and_what_are_stated_and_the_rest_is_said_to_be_unknown(camera):
 
 def test_the_command_writes_it_beside_the_rest(camera, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(calibration, "calibrate", lambda *_, **__: camera)
+    monkeypatch.setattr(products, "report", lambda *_, **__: "")
     written = tmp_path / "certificate.xml"
     told = ["bench.csv", "--out", str(tmp_path / "out")]
     command = get_command(app)

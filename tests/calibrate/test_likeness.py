@@ -36,6 +36,7 @@ def test_ratios_between_models_decide_and_not_their_size():
     assert set(found[0].errors_deg) == set("abcde")
 
 
+@pytest.mark.slow
 def test_own_data_are_scored_beside_a_standard_set(tmp_path, capsys):
     angles = bench.grid(9)
     path = bench.write(

@@ -15,7 +15,7 @@ from calibrate.calibration import calibrate
 from tests.calibrate.bench import HEADER, grid, spots, sun_of, write
 
 MODEL = ["homography"]
-ANGLES = grid(15, 40.0)
+ANGLES = grid(11, 40.0)
 SUN = sun_of(ANGLES)
 
 

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from api.cli.commands.calibrate import app
 from api.cli.wrong_call import WrongCallError
-from calibrate import calibration
+from calibrate import calibration, products
 from calibrate.calibration import Calibration
 from calibrate.products import write_products, write_set
 from calibrate.report.page import Asked
@@ -72,6 +72,7 @@ def test_the_exit_code_says_whether_requirements_are_met(
     camera: Calibration, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(calibration, "calibrate", lambda *_, **__: camera)
+    monkeypatch.setattr(products, "report", lambda *_, **__: "")  # a second each
     told = ["a.csv", "--out", str(tmp_path / "out"), "--require", "1deg@95%"]
     shown = CliRunner().invoke(app, told, standalone_mode=False)
     assert (shown.return_value, camera.verdict.word) == (0, "good")
