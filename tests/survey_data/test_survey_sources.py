@@ -41,6 +41,7 @@ def test_a_raw_address_or_a_mirror_is_no_source_and_no_link(address: str) -> Non
     [
         ("https://a.example/x", "sources.csv"),
         ("https://doi.org/10.1/x; FOV: the survey text", "stands alone"),
+        ("https://www.mdpi.com:8080/x", "by its name alone"),
         ("https://user@www.mdpi.com/x", "by its name alone"),
         ("https://localhost/x", "raw address"),
         ("data sheet at pdfslide.net/x", "pdfslide.net stands in a source"),
