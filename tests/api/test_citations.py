@@ -83,22 +83,6 @@ def test_ris_is_read_back() -> None:
     assert (reference["year"], reference["doi"]) == ("2020", STUDY["doi"])
 
 
-def test_csl_has_what_its_schema_asks_for() -> None:
-    # https://resource.citationstyles.org/schema/v1.0/input/json/csl-data.json requires id and
-    # type; a date is of numbers, a name of a family or a literal.
-    (item,) = json.loads(csl_json([{**STUDY, "year": 2020}]))
-    assert (item["id"], item["type"]) == ("A2020", "article-journal")
-    assert item["issued"] == {"date-parts": [[2020]]}
-    assert item["author"] == [
-        {"family": "van der Heiden", "given": "N."},
-        {"family": "Liang", "given": "He"},
-        {"family": "Pérez", "given": "José"},
-        {"literal": "et al."},
-    ]
-    assert item["DOI"] == STUDY["doi"]
-    assert "URL" not in item
-
-
 def test_an_arxiv_number_is_named_as_one() -> None:
     study = {**STUDY, "type": "preprint", "doi": "10.48550/arXiv.2508.00918"}
     (entry,) = read_bibtex(bibtex([study]))

@@ -55,21 +55,3 @@ def test_an_algorithm_is_shown_on_the_board_of_a_data_set(
     assert {row["extractor"] for row in rows if row["new"]} == {NAME}
     assert {row["dataset"] for row in rows} == {DATASET}
     assert NAME in page.read_text()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("result", [ContractResult(5, ("it is slow: 9 s",)), None])
-def test_what_fails_a_check_is_named_and_not_measured(
-    result: ContractResult | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("api.cli.commands.rank.check_contract", lambda _: result)
-    asked = ["rank", NAME, "--dataset", DATASET, "--store", str(tmp_path / "store")]
-    answer = CliRunner().invoke(app, [*asked, "--out", str(tmp_path / "board.html")])
-    if result is None:
-        assert answer.exit_code == 0
-        assert "not checked" in answer.stderr
-    else:
-        assert answer.exit_code == 1
-        assert "it is slow: 9 s" in answer.stderr
-        assert "fails 1 of 5 checks" in answer.stderr
-        assert not (tmp_path / "board.html").exists()

@@ -11,14 +11,11 @@ from typer.testing import CliRunner
 
 from api.cli import measuring
 from api.cli.command_line import app
-from benchmark.contract import Cell
 from benchmark.leaderboard.scope import UNITS, first
-from benchmark.plan.combinations import cells
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running.runner import run
 from benchmark.suites import planning
-from files import manifest
 
 
 def sunatlas(*arguments: object) -> Any:
@@ -45,23 +42,6 @@ def small(working: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(planning, "every_part", lambda: few)
     monkeypatch.setattr(measuring, "PUBLISHED", working.parent / "published")
     return working
-
-
-@pytest.mark.slow
-def test_nothing_of_the_published_code_is_planned_and_run_reads_it(working: Path) -> None:
-    for suite in ("quick", "standard"):
-        planned = sunatlas("plan", "--suite", suite, "--format", "json")
-        found = json.loads(planned.stdout)
-        assert (found["suite"], found["missing"]) == (suite, [])
-        assert f"0 of {found['planned']} cells to be measured" in planned.stderr
-    shown = json.loads(sunatlas("run", "--suite", "quick", "--format", "json").stdout)
-    published = Store(PUBLISHED).scores()
-    assert shown["sources"]["measured"] == shown["sources"]["kept"] == 0
-    assert shown["scores"]
-    for row in shown["scores"]:
-        cell = Cell(row["dataset"], row["condition"], row["extractor"], row["model"])
-        assert row["rms_deg"] == published[cell]["rms_deg"]
-    assert not working.exists()
 
 
 @pytest.mark.slow
@@ -129,47 +109,5 @@ def test_a_record_that_holds_is_verified_and_nothing_is_written(
     assert not small.exists()
 
 
-@pytest.mark.slow
-def test_a_number_that_does_not_hold_fails_with_its_cell(published: Store) -> None:
-    path = published.scores_directory / "qpd-single-aperture.csv"
-    (cell,) = (cell for cell in published.scores() if cell.dataset == path.stem)
-    right = published.scores()[cell]["rms_deg"]
-    path.write_text(path.read_text().replace(f",{right!r},", f",{2 * right!r},", 1))
-    verified = sunatlas("verify", "--suite", "quick", "--workers", "1", "--format", "json")
-    assert verified.exit_code == 1
-    (difference,) = json.loads(verified.stdout)["differences"]
-    assert difference["cell"] == f"{cell}/rms_deg"
-    assert (float(difference["committed"]), float(difference["measured"])) == (2 * right, right)
-    assert "sunatlas: 1 differences, the first: scores/qpd-single-aperture.csv" in verified.stderr
-
-
 def test_nothing_published_is_nothing_to_verify(small: Path) -> None:
     assert "nothing is published in" in CliRunner().invoke(app, ["verify"]).stderr
-
-
-def bytes_without_manifest(folder: Path) -> int:
-    """The manifest is written anew with what it tells of."""
-    files = (path for path in folder.rglob("*") if path.is_file())
-    return sum(path.stat().st_size for path in files if path.name != manifest.FILE)
-
-
-@pytest.mark.slow
-def test_gc_tells_and_with_yes_does(working: Path) -> None:
-    store = Store(working)
-    wanted = cells("pd-maskless-cube", "nominal", models="basic")
-    run(wanted, store, progress=lambda *_told: None)
-    line = '"direct": {"version": 1'
-    text = store.components_path.read_text()
-    (digest,) = (row for row in text.splitlines() if row.startswith(line))
-    other = f'{digest[: digest.rindex(": ")]}: "0123456789abcdef"}}'
-    store.components_path.write_text(text.replace(digest.rstrip(","), other))
-    (working / manifest.FILE).unlink()  # else a change by hand, which is refused
-    document = json.loads(sunatlas("gc", "--format", "json").stdout)
-    assert (document["done"], document["scores"], document["kept"]) == (False, 1, 0)
-    assert document["freed"] > 0
-    assert len(store.scores()) == 1
-    size = bytes_without_manifest(working)
-    done = sunatlas("gc", "--yes")
-    assert f"{document['freed']:,} bytes freed" in done.stderr
-    assert store.scores() == {}
-    assert size - bytes_without_manifest(working) == document["freed"]

@@ -83,18 +83,6 @@ def test_publications_are_those_of_the_table_of_studies() -> None:
     assert venues == expected
 
 
-def test_the_years_that_the_survey_names_are_those_drawn() -> None:
-    # "steady growth since 2001", "peaked in 2017 and again in 2022, with a slight decline in 2023"
-    count: Counter[int] = Counter()
-    for row in figure("publications", facts()).rows:
-        if row["part"] == "year":
-            count[int(row["value"])] += row["count"]
-    assert min(count) == 2001
-    assert [year for year, _ in count.most_common(2)] == [2017, 2022]
-    assert count[2023] < count[2022]
-    assert count[2001] == 4, "the criterion of inclusion begins with 2002; four keys are of 2001"
-
-
 @pytest.mark.parametrize(
     ("rows", "columns"),
     [("detector", "mask"), ("task", "error"), ("accuracy", "model_category"), ("model", "model")],

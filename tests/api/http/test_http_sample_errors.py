@@ -81,11 +81,3 @@ def test_what_is_not_published_is_an_empty_list_and_no_file(client):
     answer = client.get("/v1/datasets/ccd-slit/errors.parquet", accept="*/*")
     assert answer.status_code == 404
     assert answer.json()["type"].endswith(":not-published")
-
-
-def test_the_page_of_the_data_set_links_the_files_where_there_are_some(client):
-    assert (
-        f"/v1/datasets/{NAME}/errors.parquet"
-        in client.get(f"/datasets/{NAME}", accept="text/html").text
-    )
-    assert "errors.parquet" not in client.get("/datasets/ccd-slit", accept="text/html").text
