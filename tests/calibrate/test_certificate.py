@@ -97,7 +97,7 @@ def number(root, name):
 @pytest.fixture(scope="module")
 def camera(tmp_path_factory):
     path = tmp_path_factory.mktemp("certificate") / "bench.csv"
-    angles = np.random.default_rng(1001).uniform(-50.0, 50.0, (225, 2))
+    angles = np.random.default_rng(1001).uniform(-50.0, 50.0, (441, 2))
     bench.write(path, bench.HEADER, bench.spots(bench.sun_of(angles), 1), angles)
     settings = guess(read_table(path))
     stated = CertificateSettings(
