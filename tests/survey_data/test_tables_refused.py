@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
-import pandas as pd
 import pytest
 
 import survey_data
 from survey_data.descriptor import column_types, file_name
-from survey_data.reported import statistics
 from survey_data.tables import MAY_BE_EMPTY
 
 
@@ -80,18 +77,3 @@ def test_the_edition_of_the_survey_has_its_own_studies_alone(
     assert survey.attributes is tables.attributes
     later = every.studies["key"].tolist()[len(tables.studies) :]
     assert later == tables.extension_studies["key"].tolist()
-
-
-def test_kinds_of_figures_from_a_broken_table_are_refused(copy: Any) -> None:
-    copy.edit("statistics", lambda rows: rows[2].pop())
-    with pytest.raises(survey_data.SurveyDataError, match=r"statistics\.csv, row 3.*3 cells"):
-        statistics(copy.directory)
-
-
-def test_a_comparison_needs_the_number_of_studies_that_the_survey_states(
-    tables: survey_data.SurveyTables,
-) -> None:
-    counts = tables.counts.copy()
-    counts.loc[counts["id"] == "studies", "stated"] = pd.NA
-    with pytest.raises(LookupError, match=r"counts\.csv states no number of studies"):
-        survey_data.fidelity(replace(tables, counts=counts))
