@@ -245,6 +245,7 @@ def test_pages_walk_the_whole_list_once(n, limit):
         assert (found.next is None) == (found.link is None)
         seen += found.items
         cursor = found.next
+        assert (cursor is None) == (len(seen) == n)
         if cursor is None:
             break
     assert seen == rows
