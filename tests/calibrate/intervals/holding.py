@@ -1,0 +1,186 @@
+"""Measures 95 % intervals on fresh poses, by band of 10 deg and axis, of models and their C code.
+
+``python tests/calibrate/intervals/holding.py uneven 1500 0 5`` calibrates each sensor of a
+set (uneven, even, unseen) by five files of 1500 poses.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+if __name__ == "__main__":
+    HERE = Path(__file__).parent
+    sys.path[:0] = [str(HERE), *(str(HERE.parent / at) for at in ("", "causes", "flight"))]
+
+import unseen
+from uneven import SENSORS, VECTOR, Uneven, ball, square
+
+from calibrate.calibration import Calibration, calibrate
+from calibrate.flight.code import flight_code
+from calibrate.readings import readings_of
+from calibrate.uncertainty import NORMAL_95, tangent_offsets
+
+#: Poses of the calibration in a band of 10 deg for it to count, and poses judged afterwards.
+FEWEST, FRESH = 100, 30_000
+LEAST, MOST = 0.93, 0.97
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A band and axis: poses of the calibration there, and shares of fresh ones inside."""
+
+    sensor: str
+    seed: int
+    band_deg: int
+    axis: int
+    poses: int
+    model: float
+    code: float
+
+    @property
+    def outside(self) -> bool:
+        """Whether the model's intervals hold less than 93 % or more than 97 %."""
+        return not LEAST <= self.model <= MOST
+
+
+def even() -> dict[str, Uneven]:
+    """Five sensors with the same noise everywhere, which models follow."""
+    from faults import SENSORS as PLAIN
+
+    return {
+        kind: Uneven(
+            tuple(one.names), ball if kind == "faces" else square(one.half_deg),
+            lambda sun, drawn, read=one.read: read(sun, int(drawn.integers(1 << 30))), one.models,
+        )
+        for kind, one in PLAIN.items()
+    }  # fmt: skip
+
+
+def off_of(sun: np.ndarray) -> np.ndarray:
+    return np.asarray(np.degrees(np.arccos(np.clip(sun[:, 2], -1.0, 1.0))) // 10.0).astype(int)
+
+
+def cells(
+    name: str, sensor: Uneven, seed: int, count: int, directory: Path, *, code: bool = False
+) -> list[Cell]:
+    """Calibrate by a file of so many poses, and judge the intervals on fresh ones."""
+    drawn = np.random.default_rng([seed, count])
+    table = sensor.table(count, drawn)
+    columns = [table.columns[one] for one in (*sensor.names, *VECTOR)]
+    path = directory / f"{name.replace(' ', '_')}.csv"
+    header = ",".join((*sensor.names, *VECTOR))
+    np.savetxt(path, np.column_stack(columns), delimiter=",", comments="", header=header)
+    found = calibrate([path], sensor.settings, models=sensor.models)
+    made = sensor.table(FRESH, drawn)
+    fresh = readings_of(made, found.settings)
+    predicted = found.model.predict(fresh.features, fresh.context)
+    inside = held(predicted, found.deviations_deg(fresh.features), fresh.sun)
+    by_code = np.full(inside.shape, np.nan)
+    if code:
+        raw = np.column_stack([made.columns[one] for one in sensor.names])
+        by_code = held(*c_answers(found, raw, directory), fresh.sun)
+    assert np.isfinite(inside).all(axis=1).mean() > 0.9
+    poses = np.bincount(off_of(np.column_stack(columns[-3:])), minlength=18)
+    band = off_of(fresh.sun)
+    return [
+        Cell(
+            name, seed, 10 * int(at), axis, int(poses[at]),
+            *(_mean(one[band == at, axis]) for one in (inside, by_code)),
+        )
+        for at in np.flatnonzero(poses >= FEWEST)
+        for axis in (0, 1)
+    ]  # fmt: skip
+
+
+def held(answers: np.ndarray, sigma_deg: np.ndarray, sun: np.ndarray) -> np.ndarray:
+    """1 of errors (N, 2) within their 95 % interval, 0 of others; NaN where not answered."""
+    size = np.abs(tangent_offsets(answers - sun, sun))
+    return np.where(np.isfinite(size), size <= NORMAL_95 * sigma_deg, np.nan)
+
+
+def c_answers(
+    found: Calibration, raw: np.ndarray, directory: Path
+) -> tuple[np.ndarray, np.ndarray]:
+    """Directions and 1-sigma by compiled C code; NaN where it refuses."""
+    from raw_sensors import compiled
+
+    for name, text in flight_code(found).files("ss", {}, "0" * 32).items():
+        (directory / name).write_text(text)
+    files = ("ss.c", "ss_example.c", "-o", "example", "-lm")
+    compiled(directory, "gcc", "-std=c99", "-O2", *files)
+    lines = "\n".join(" ".join(f"{value:.17g}" for value in row) for row in raw)
+    said = compiled(directory, "./example", input=lines).splitlines()
+    answers = np.array([line.split() for line in said], dtype=float)
+    answers[answers[:, 0] != 0] = np.nan
+    return answers[:, 1:4], answers[:, 6:8]
+
+
+def own_limit(poses: np.ndarray) -> float:
+    """Share of cells outside 93 to 97 % if each had a limit from its own poses alone.
+
+    The largest of the poses' errors but every twentieth: what it covers of new ones has a beta
+    distribution (split conformal prediction).
+    """
+    from scipy.stats import beta
+
+    place = np.ceil(0.95 * (poses + 1))
+    low, high = (beta.cdf(share, place, poses + 1 - place) for share in (LEAST, MOST))
+    return float(np.mean(1.0 - (high - low)))
+
+
+def _mean(inside: np.ndarray) -> float:
+    known = inside[np.isfinite(inside)]
+    return float(known.mean()) if len(known) else float("nan")
+
+
+def main(of: str, count: int, first: int, seeds: int, wanted: list[str]) -> None:
+    """Print coverage by band, and how far it is scatter between files or bias of all of them."""
+    say = sys.stdout.write
+    sensors = {"uneven": SENSORS, "even": even(), "unseen": unseen.SENSORS}[of]
+    every: list[Cell] = []
+    with tempfile.TemporaryDirectory() as directory:
+        for name, sensor in sensors.items():
+            if wanted and name not in wanted:
+                continue
+            found = [
+                cell
+                for seed in range(first, first + seeds)
+                for cell in cells(
+                    name, sensor, seed, count, Path(directory), code=shutil.which("gcc") is not None
+                )
+            ]
+            every += found
+            say(f"{name}: {sum(one.outside for one in found)} of {len(found)} cells outside\n")
+            for axis in (0, 1):
+                said = []
+                for band in sorted({one.band_deg for one in found}):
+                    here = [o.model for o in found if (o.band_deg, o.axis) == (band, axis)]
+                    said.append(
+                        f"{band}: {100 * np.mean(here):.1f} +- {100 * np.std(here):.1f}"
+                    ) if here else None
+                say(f"    axis {axis}  {'  '.join(said)}\n")
+            sys.stdout.flush()
+    shares, poses = np.array([one.model for one in every]), np.array([o.poses for o in every])
+    by_code = np.array([one.code for one in every])
+    say(
+        f"{count} poses, {len(every)} cells, {sum(one.outside for one in every)} outside 93 to 97 "
+        f"% (limits from each band alone: {own_limit(poses) * len(every):.0f}); mean "
+        f"{100 * shares.mean():.2f} %, standard deviation {100 * shares.std():.2f} %\n"
+        f"C code: {np.sum((by_code < LEAST) | (by_code > MOST))} outside, from the model's by at "
+        f"most {100 * np.nanmax(np.abs(by_code - shares)):.2f} %\n"
+    )
+    for one in (one for one in every if one.outside):
+        say(
+            f"    {one.sensor} seed {one.seed}, {one.band_deg} deg, axis {one.axis}: "
+            f"{100 * one.model:.1f} %, {one.poses} poses\n"
+        )
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], *(int(one) for one in sys.argv[2:5]), sys.argv[5:])
