@@ -26,9 +26,8 @@ from importlib.metadata import version
 from pathlib import Path
 
 from benchmark.processes import call_to_end, for_coordinator
-from files.atomic import replace_file
+from files.atomic import replace_file, temporary_directory
 from files.locks import wait_for_lock
-from files.temporary import temporary_directory
 
 #: Pictures that come with the code, ``<data set>.<digest of what it shows>.png``.
 PUBLISHED = Path(__file__).resolve().parents[1] / "benchmark" / "datasets" / "previews"

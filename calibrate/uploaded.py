@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from files.temporary import temporary_directory
+from files.atomic import temporary_directory
 
 #: Bytes of all files together and of a config, seconds, and bytes of memory of a calibration.
 LARGEST, LARGEST_CONFIG, LONGEST_S, MOST_MEMORY = 10_000_000, 20_000, 60.0, 3 * 2**30

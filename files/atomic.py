@@ -1,7 +1,8 @@
 """Writing files and directories whole or not at all.
 
-Everything is made beside its place and renamed into it: who reads meanwhile sees the earlier
-content or the new one, and a process that is killed leaves no half of either.
+Everything is made beside its place, under a hidden name that ends in `SUFFIX`, and renamed into it:
+who reads meanwhile sees the earlier content or the new one, and a process that is killed leaves no
+half of either. What it leaves is removed by who writes there a day later.
 """
 
 from __future__ import annotations
@@ -10,13 +11,15 @@ import ctypes
 import os
 import shutil
 import sys
+import tempfile
+import time
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from files.locks import wait_for_lock
-from files.temporary import temporary_directory_beside, temporary_file_beside
 
+SUFFIX = ".sunatlas"
 #: Entries, of all depths, that a directory may hold whose files are replaced at once.
 MOST_OTHERS = 10_000
 
@@ -26,126 +29,85 @@ class UnreplaceableError(ValueError):
 
 
 def replace_file(path: Path, content: str | bytes) -> bool:
-    """Write a file whole or not at all; on return it survives a power cut.
+    """Write a file, text as UTF-8; on return it survives a power cut. Returns whether it changed.
 
-    Directories above it are made. An earlier file keeps its permissions, a new one has those that
-    the umask leaves.
-
-    Parameters
-    ----------
-    path
-        Of the file.
-    content
-        Text is written as UTF-8, its line ends as they are.
-
-    Returns
-    -------
-    bool
-        Whether the content changed; a file that holds it already is not written.
-
-    Raises
-    ------
-    OSError
-        Where it cannot be written; names the file.
+    Directories above it are made. An earlier file keeps its permissions. An OSError names the file.
     """
     wanted = content.encode() if isinstance(content, str) else content
-    known = path.is_file()
-    if known and path.read_bytes() == wanted:
+    if path.is_file() and path.read_bytes() == wanted:
         return False
     path.parent.mkdir(parents=True, exist_ok=True)
-    with name_file_in_errors(path), temporary_file_beside(path) as scratch:
-        _write(scratch, wanted, like=path)
-        scratch.replace(path)
+    with temporary_directory_beside(path) as scratch:
+        _write(scratch / path.name, wanted, like=path)
+        (scratch / path.name).replace(path)
     return True
 
 
 @contextmanager
-def name_file_in_errors(path: Path) -> Iterator[None]:
-    """Let errors of the file system that name no file, as of a full disk, name this one."""
-    try:
-        yield
-    except OSError as error:
-        if error.errno is None or error.filename is not None:
+def temporary_directory() -> Iterator[Path]:
+    """Make a directory among the system's temporary files; it is gone at the end."""
+    with tempfile.TemporaryDirectory(SUFFIX, "sunatlas-") as path:
+        yield Path(path)
+
+
+@contextmanager
+def temporary_directory_beside(target: Path) -> Iterator[Path]:
+    """Make a directory beside a target, for this user alone; it is gone at the end.
+
+    An OSError in it names what was to be there: the target, or the place of a file within.
+    """
+    for left in target.parent.glob(f".{target.name}.*{SUFFIX}"):
+        with suppress(OSError):
+            if left.lstat().st_mtime < time.time() - 86_400:
+                shutil.rmtree(left)
+    with tempfile.TemporaryDirectory(SUFFIX, f".{target.name}.", target.parent) as made:
+        try:
+            yield Path(made)
+        except OSError as error:
+            if error.errno is not None:
+                said = str(error.filename or target)
+                error.filename = said.replace(made, str(target.parent))
             raise
-        raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 @contextmanager
 def replace_all(*targets: Path) -> Iterator[tuple[Path, ...]]:
-    """Make files and directories elsewhere; they take their places when the block ends.
+    """Yield paths to make files and directories at, which then take their places.
 
     A directory changes places with the earlier one, on Linux at once. Elsewhere the earlier one is
     moved aside for that (`.<name>.before`): a kill in this moment leaves it there, and the next
-    call puts it back first. An error in the block leaves the targets as
-    they are. Another process that replaces the first target waits (`files.locks`).
-
-    Parameters
-    ----------
-    targets
-        Paths in one directory, which is made where it is not there; what each holds is replaced.
-
-    Yields
-    ------
-    tuple of Path
-        For each target the path to make it at.
-
-    Raises
-    ------
-    UnreplaceableError
-        Where a target is the root of a file system.
-    OSError
-        Where it cannot be written; one that names no file, as of a full disk, names the first
-        target, and one of a file being made its place.
+    call puts it back first. An error in the block leaves the targets, all in one directory, as they
+    are; UnreplaceableError as `require_replaceable`. Another process waits (`files.locks`).
     """
     for target in targets:
         require_replaceable(target)
     first = targets[0]
     first.parent.mkdir(parents=True, exist_ok=True)
-    with (
-        name_file_in_errors(first),
-        wait_for_lock(first),
-        temporary_directory_beside(first) as scratch,
-    ):
+    with wait_for_lock(first), temporary_directory_beside(first) as scratch:
         for target in targets:
             restore(target)
-        new = tuple(scratch / target.name for target in targets)
-        try:
-            yield new
-        except OSError as error:
-            if isinstance(error.filename, str) and Path(error.filename).is_relative_to(scratch):
-                error.filename = str(first.parent / Path(error.filename).relative_to(scratch))
-            raise
-        for path, target in zip(new, targets, strict=True):
-            _put(path, target)
-
-
-def _before(target: Path) -> Path:
-    return target.with_name(f".{target.name}.before")
+        yield tuple(scratch / target.name for target in targets)
+        for target in targets:
+            _put(scratch / target.name, target)
 
 
 def restore(target: Path) -> None:
     """Put back what a killed process had moved aside; remove it if something is there again."""
-    before = _before(target)
+    before = target.with_name(f".{target.name}.before")
     if os.path.lexists(before) and not os.path.lexists(target):
         before.rename(target)
     shutil.rmtree(before, ignore_errors=True)
 
 
 def _put(path: Path, target: Path) -> None:
-    """Put what was made into its place."""
     if not target.is_dir() or target.is_symlink():
         path.replace(target)
-        return
-    if _exchange(path, target):  # the earlier one goes with what it was made in
-        return
-    before = _before(target)
-    target.rename(before)
-    try:
-        path.rename(target)
-    except OSError:
-        before.rename(target)
-        raise
-    shutil.rmtree(before, ignore_errors=True)
+    elif not _exchange(path, target):  # else the earlier one goes with what it was made in
+        target.rename(target.with_name(f".{target.name}.before"))
+        try:
+            path.rename(target)
+        finally:
+            restore(target)
 
 
 def _exchange(one: Path, other: Path) -> bool:
@@ -159,12 +121,9 @@ def _exchange(one: Path, other: Path) -> bool:
 
 
 def require_replaceable(path: Path) -> None:
-    """Refuse a path that cannot be replaced, before anything is made for it.
+    """Raise UnreplaceableError for the root of a file system, where another cannot take its place.
 
-    Raises
-    ------
-    UnreplaceableError
-        Where it is the root of a file system: `/`, a drive, or where one is mounted.
+    That is `/`, a drive, or where one is mounted.
     """
     if not path.name or (path.is_mount() and not path.is_symlink()):
         raise UnreplaceableError(
@@ -174,53 +133,35 @@ def require_replaceable(path: Path) -> None:
 
 
 def require_replaceable_directory(directory: Path) -> None:
-    """Refuse a directory whose files cannot be replaced at once, before anything is made for it.
+    """Raise UnreplaceableError for a directory whose files cannot be replaced at once.
 
-    Raises
-    ------
-    UnreplaceableError
-        If it is a file, the root of a file system, the current directory or one above it, or
-        holds too many other files.
+    That is a file, a root, the current directory or one above it, or one with too many other files.
     """
     try:
         place = directory.resolve()
         require_replaceable(place)
     except (OSError, RuntimeError) as error:  # a loop of symbolic links
         raise UnreplaceableError(f"{directory}: expected a directory ({error})") from None
-    if os.path.lexists(place) and not place.is_dir():
+    expected = "expected a directory that can be replaced as a whole"
+    if place.exists() and not place.is_dir():
         raise UnreplaceableError(f"{directory}: expected a directory; this is a file")
     if Path.cwd().is_relative_to(place):
-        held = "the current directory" if place == Path.cwd() else "above the current one"
         raise UnreplaceableError(
-            f"{directory}: expected a directory that can be replaced as a whole; this is {held}. "
+            f"{directory}: {expected}; this is the current directory or above it. "
             f"Name one in it, such as {directory / 'calibration'}"
         )
     if sum(len(inner) + len(files) for _, inner, files in os.walk(place)) > MOST_OTHERS:
         raise UnreplaceableError(
-            f"{directory}: expected a directory of at most {MOST_OTHERS} files; name a new one"
+            f"{directory}: {expected}, of at most {MOST_OTHERS} files; name a new one"
         )
 
 
 def replace_in_directory(
     directory: Path, files: Mapping[str, bytes], gone: Collection[str] = ()
 ) -> None:
-    """Put files into a directory, all of them or none; other files there stay.
+    """Put files, by name, into a directory, all of them or none; others stay, but those `gone`.
 
-    Parameters
-    ----------
-    directory
-        That is made where it is not there, with those above it.
-    files
-        Content by name.
-    gone
-        Names that are not there afterwards.
-
-    Raises
-    ------
-    UnreplaceableError
-        As `require_replaceable_directory`.
-    OSError
-        Where it cannot be written; the directory is as it was.
+    It is made where it is not there. Raises as `require_replaceable_directory` and `replace_file`.
     """
     require_replaceable_directory(directory)
     place = directory.resolve()
@@ -241,10 +182,9 @@ def replace_in_directory(
 
 
 def _link(source: str, target: str) -> None:
-    """Link a file, or copy it where it may not be linked."""
     try:
         os.link(source, target, follow_symlinks=False)
-    except OSError:
+    except OSError:  # where it may not be linked
         shutil.copy2(source, target, follow_symlinks=False)
 
 

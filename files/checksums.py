@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path, PurePosixPath
 
-from files.reading import FileRefusedError
+from files.reading import FileRefusedError, read_text
 
 CHECKSUMS = "checksums-sha256.txt"
 _LINE = re.compile(r"([0-9a-f]{64}) [ *](.+)")
-
-
-class ChecksumFileError(FileRefusedError):
-    """The list of checksums cannot be read; the message names file and line."""
 
 
 def sha256(path: Path) -> str:
@@ -51,41 +47,58 @@ def read_checksums(directory: Path, name: str = CHECKSUMS) -> dict[str, str]:
     ------
     FileNotFoundError
         Where there is no list.
-    ChecksumFileError
+    FileRefusedError
         On a line that is no checksum with a path inside the directory, or names a file twice.
     """
     path = directory / name
     listed: dict[str, str] = {}
-    for number, line in enumerate(path.read_text("utf-8", "replace").splitlines(), start=1):
+    for number, line in enumerate(read_text(path).splitlines(), start=1):
         found = _LINE.fullmatch(line)
-        file = found[2] if found else ""
-        pure = PurePosixPath(file)
-        if found is None or pure.is_absolute() or ".." in pure.parts:
-            raise ChecksumFileError(
+        file = PurePosixPath(found[2] if found else "/")
+        if found is None or file.is_absolute() or ".." in file.parts:
+            raise FileRefusedError(
                 path,
                 "expected 64 hexadecimal digits, two spaces and a path inside the directory; got "
                 f"{line[:120]!r}",
                 number,
             )
-        if file in listed:
-            raise ChecksumFileError(path, f"{file} is listed twice", number)
-        listed[file] = found[1]
+        if found[2] in listed:
+            raise FileRefusedError(path, f"{found[2]} is listed twice", number)
+        listed[found[2]] = found[1]
     return listed
 
 
-def differences(directory: Path) -> list[tuple[str, str]]:
+def differences(
+    directory: Path,
+    names: Iterable[str] | None = None,
+    coming: Mapping[str, str] | None = None,
+) -> list[tuple[str, str]]:
     """Find what does not hold: (file, what is wrong with it), sorted; empty where all holds.
 
-    Raises as `read_checksums`.
+    Parameters
+    ----------
+    directory : with a list; raises as `read_checksums`
+    names : files that should be listed, by default all there are
+    coming : another list, by which a file may be as well
     """
     listed = read_checksums(directory)
-    present = set(contents(directory)) - {CHECKSUMS}
-    wrong = [(name, "listed but missing") for name in listed.keys() - present]
-    wrong += [(name, "not listed") for name in present - listed.keys()]
-    for name in listed.keys() & present:
-        path = directory / name
-        if path.is_symlink() or not path.is_file():
+    present = set(contents(directory) if names is None else names) - {CHECKSUMS}
+    wrong = []
+    for name in sorted(present | listed.keys()):
+        path, found = directory / name, None
+        if path.is_symlink() or (path.exists() and not path.is_file()):
             wrong.append((name, "not a regular file"))
-        elif (found := sha256(path)) != listed[name]:
+            continue
+        if path.is_file():
+            found = sha256(path)
+        if (found or name not in present) and (
+            found == listed.get(name) or (coming is not None and found == coming.get(name))
+        ):
+            continue
+        if found is None:
+            wrong.append((name, "missing"))
+        elif name not in listed:
+            wrong.append((name, "not listed"))
+        else:
             wrong.append((name, f"SHA-256 is {found}, listed {listed[name]}"))
-    return sorted(wrong)
+    return wrong

@@ -1,8 +1,4 @@
-"""Writing CSV: a header and rows, one record a line, quoted only where it must be.
-
-`escape_formulas` makes of any such text one that a spreadsheet can open: programs such as Excel and
-LibreOffice run a cell that starts like a formula, whoever wrote it.
-"""
+"""Writing CSV, one record a line, quoted only where it must be, and without formulas if asked."""
 
 from __future__ import annotations
 
@@ -21,18 +17,14 @@ _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 
 class _Lines(list[str]):
-    """Takes the records that the csv module writes."""
+    """Takes records of the csv module, which quotes a carriage return only where lines end so."""
 
     def write(self, record: str) -> None:
-        # The csv module quotes a carriage return only where lines end in one.
         self.append(record[:-2] + "\n")
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Return the text of a CSV file; lines end in a line feed.
-
-    Numbers have all the digits that they need to be read back the same.
-    """
+    """Return the text of a CSV file; lines end in a line feed, numbers have all their digits."""
     lines = _Lines()
     writer = csv.writer(lines, lineterminator="\r\n")
     writer.writerow(header)
@@ -41,16 +33,12 @@ def csv_text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 
 def escape_formulas(text: str) -> str:
-    """Return a CSV text whose cells no spreadsheet runs as formulas.
+    """Return a CSV text, with a header, whose cells no spreadsheet runs as formulas.
 
     A cell whose first character, white space aside, is ``=``, ``+``, ``-`` or ``@`` (or their
     full-width forms), or that starts with a tab or a line break, gets an apostrophe before it; so
     does what follows a semicolon within a cell, where many spreadsheets cut. Numbers stay as they
     are, and so does everything else.
-
-    Parameters
-    ----------
-    text : CSV with a header; commas separate cells
     """
     rows = ([_escape(cell) for cell in row] for row in csv.reader(io.StringIO(text, newline="")))
     header = next(rows, None)

@@ -1,9 +1,8 @@
 """Locks for writing: of two processes one writes, the other waits or is refused.
 
-Where writing takes seconds (tables of the survey, an export, a bundle) the second waits, and says
-for whom. Where it may take hours (results, curves, outcomes of claims) it is refused at once. The
-locks are filelock's: the system releases one when its process ends, however it ends. Beyond that
-the lock's file names the process, and is removed at the end.
+Where writing takes seconds (tables of the survey, an export) the second waits, and says for whom;
+where it may take hours (results) it is refused. The locks are filelock's: the system releases one
+when its process ends, however it ends. The lock's file names the process, and is removed.
 """
 
 from __future__ import annotations
@@ -19,28 +18,15 @@ class LockedError(RuntimeError):
 
     def __init__(self, holder: str, place: Path, message: str = "") -> None:
         self.holder = holder
-        super().__init__(
-            message
-            or f"another {holder} is writing to {place}; call again when it has ended, what it "
-            "writes is kept"
-        )
+        said = f"another {holder} is writing to {place}; call again when it has ended, what it "
+        super().__init__(message or said + "writes is kept")
 
 
 @contextmanager
 def wait_for_lock(place: Path, *, wait: bool = True) -> Iterator[None]:
-    """Lock a path; wait, with a line in the log, while another process has locked it.
+    """Lock a path by a hidden file beside it; wait, with a line in the log, while another has it.
 
-    Parameters
-    ----------
-    place
-        What is written. The lock is a hidden file beside it, in a directory that exists.
-    wait
-        Else LockedError is raised at once.
-
-    Raises
-    ------
-    OSError
-        Where no such file can be made.
+    Without `wait` LockedError is raised at once. OSError where no such file can be made.
     """
     import logging  # noqa: PLC0415 - with the next, as slow to load as a command's help
 
@@ -48,7 +34,7 @@ def wait_for_lock(place: Path, *, wait: bool = True) -> Iterator[None]:
 
     file = lock_path(place)
     # filelock would make the directory, and try for ever where no file can be made
-    os.close(os.open(file, os.O_RDWR | os.O_CREAT, 0o644))
+    file.open("a").close()
     lock = FileLock(file)
     try:
         lock.acquire(blocking=False)

@@ -1,52 +1,32 @@
-"""Reading a file's bytes: regular files only, and only so many.
+"""Strict reading of text, JSON and numbers: what cannot be taken is refused with its place.
 
-A named pipe would keep its reader waiting for ever, a device would never end, and a directory, or
-a link to nothing, is not the same as no file. What cannot be read is refused with its reason.
+Pydantic would keep the last of two equal keys in silence, and its errors of JSON know no file; so
+the standard library reads, with hooks that refuse.
 """
 
 from __future__ import annotations
 
-import errno
+import json
+import math
 import os
-import stat
+import re
 from pathlib import Path
+from typing import Any
 
-#: More than any table or document of the project holds, and less than hurts.
+#: Bytes: more than any table or document of the project holds, and less than hurts.
 LARGEST = 50_000_000
-
-_KINDS = (
-    (stat.S_ISDIR, "a directory"),
-    (stat.S_ISFIFO, "a named pipe"),
-    (stat.S_ISSOCK, "a socket"),
-    (stat.S_ISCHR, "a device"),
-    (stat.S_ISBLK, "a device"),
-)
+#: Marks that no text of ours holds; the last one stands where an earlier program lost a letter.
+_MARKS = {"\ufeff": "a byte-order mark", "\x00": "a null character", "\ufffd": "a lost letter"}
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_WHOLE = re.compile(r"[+-]?[0-9]{1,40}")
 
 
 class FileRefusedError(ValueError):
-    """A file cannot be taken; `reason` says why, the message names the file before it.
-
-    Parameters
-    ----------
-    path
-        Of the file.
-    reason
-        What was expected and what came.
-    line
-        Where in the file, counted from 1; None where no line is at fault.
-    """
+    """A file cannot be taken: `reason` is what was expected and what came, `line` counts from 1."""
 
     def __init__(self, path: Path, reason: str, line: int | None = None) -> None:
-        self.path = path
-        self.reason = reason
-        self.line = line
-        place = f"{path}" if line is None else f"{path}, line {line}"
-        super().__init__(f"{place}: {reason}")
-
-
-def path_exists(path: Path) -> bool:
-    """Say whether anything has this name, be it a directory or a link to nothing."""
-    return os.path.lexists(path)
+        self.path, self.reason, self.line = path, reason, line
+        super().__init__(f"{path}{'' if line is None else f', line {line}'}: {reason}")
 
 
 def read_bytes(path: Path, largest: int = LARGEST) -> bytes:
@@ -57,60 +37,106 @@ def read_bytes(path: Path, largest: int = LARGEST) -> bytes:
     FileNotFoundError
         Nothing has this name.
     FileRefusedError
-        It is no regular file, cannot be opened, or is larger than `largest` bytes.
+        It is no regular file, which may never end, cannot be read, or is larger than `largest`.
     """
-    if not path_exists(path):
-        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(path))
     try:
-        # Never waits: a pipe that nobody writes to would else be waited for.
-        handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | _binary())
+        if os.path.lexists(path) and not path.is_file():
+            kind = "a directory" if path.is_dir() else "a named pipe, a device or a broken link"
+            raise FileRefusedError(path, f"expected a file, got {kind}")
+        with path.open("rb") as file:
+            data = file.read(largest + 1)
+    except FileNotFoundError:
+        raise
     except OSError as error:
         raise FileRefusedError(path, f"cannot be read: {error.strerror or error}") from error
-    found = os.fstat(handle)
-    if not stat.S_ISREG(found.st_mode):
-        os.close(handle)
-        kind = next((name for test, name in _KINDS if test(found.st_mode)), "something else")
-        raise FileRefusedError(path, f"expected a file, got {kind}")
-    with os.fdopen(handle, "rb") as file:
-        if found.st_size > largest:
-            raise FileRefusedError(
-                path, f"expected at most {largest} bytes, got {found.st_size} bytes"
-            )
-        try:
-            data = file.read(largest + 1)
-        except OSError as error:
-            raise FileRefusedError(path, f"cannot be read: {error.strerror or error}") from error
     if len(data) > largest:
         raise FileRefusedError(path, f"expected at most {largest} bytes, got more")
     return data
 
 
 def read_text(path: Path, largest: int = LARGEST) -> str:
-    """Return what a text file holds, line ends as they are; UTF-8 without a byte-order mark.
-
-    Raises as `read_bytes`, and FileRefusedError naming the line for what is no such text: other
-    encodings, null characters, and U+FFFD, which stands where an earlier program lost a letter.
-    """
+    """Return what a file of plain UTF-8 holds, line ends as they are; else as `read_bytes`."""
     data = read_bytes(path, largest)
     try:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        reason = f"not UTF-8 text: byte 0x{data[error.start]:02x}"
-        raise FileRefusedError(path, reason, line) from error
+        said = f"not UTF-8 text: byte 0x{data[error.start]:02x}"
+        raise FileRefusedError(path, said, line) from error
     for mark, name in _MARKS.items():
-        at = text.find(mark)
-        if at >= 0:
-            raise FileRefusedError(path, f"holds {name}", text.count("\n", 0, at) + 1)
+        if mark in text:
+            said = f"expected plain UTF-8, got {name} (U+{ord(mark):04X})"
+            raise FileRefusedError(path, said, text[: text.index(mark)].count("\n") + 1)
     return text
 
 
-_MARKS = {
-    "\ufeff": "a byte-order mark; expected plain UTF-8",
-    "\x00": "a null character",
-    "\ufffd": "U+FFFD, which stands for a letter that was lost",
-}
+def read_json(path: Path, largest: int = LARGEST) -> Any:
+    """Return the value of a JSON file; raises as `read_text` and `parse_json`."""
+    return parse_json(read_text(path, largest), path)
 
 
-def _binary() -> int:
-    return getattr(os, "O_BINARY", 0)  # Windows would else translate line ends
+def parse_json(text: str, path: Path) -> Any:
+    """Return the value of a JSON text; `path` is named where it is refused.
+
+    Raises
+    ------
+    FileRefusedError
+        For broken or too deeply nested JSON, a key that stands twice in an object, and a number
+        that is not finite (NaN, Infinity, 1e999).
+    """
+    try:
+        return json.loads(
+            text, object_pairs_hook=_unique, parse_constant=_finite, parse_float=_finite
+        )
+    except json.JSONDecodeError as error:
+        raise FileRefusedError(path, f"not JSON: {error.msg}", error.lineno) from error
+    except RecursionError as error:
+        raise FileRefusedError(path, "not JSON: nested too deeply") from error
+    except ValueError as error:
+        raise FileRefusedError(path, f"not JSON: {error}") from error
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for name, value in pairs:
+        if name in found:
+            raise ValueError(f"the key {name[:40]!r} stands twice in an object")
+        found[name] = value
+    return found
+
+
+def _finite(text: str) -> float:
+    number = float(text)
+    if not math.isfinite(number):
+        raise ValueError(f"expected a finite number, got {text[:40]}")
+    return number
+
+
+def require_type(value: Any, kind: Any, path: Path) -> None:
+    """Raise FileRefusedError, naming the first flaw, unless Pydantic takes a value for a type.
+
+    Strictly: text, truth values and numbers are not taken for each other.
+    """
+    from pydantic import TypeAdapter, ValidationError  # noqa: PLC0415 - slow to load
+
+    try:
+        TypeAdapter(kind).validate_python(value, strict=True)
+    except ValidationError as error:
+        flaw = error.errors(include_url=False)[0]
+        got = "" if flaw["type"] == "missing" else f", got {flaw['input']!r:.80}"
+        place = "/".join(map(str, flaw["loc"]))
+        raise FileRefusedError(path, f"{place}{place and ': '}{flaw['msg']}{got}") from error
+
+
+def parse_decimal(text: str) -> float:
+    """Read a finite number; ValueError for others, and what only Python takes: 1_29, nan."""
+    if not _NUMBER.fullmatch(text):
+        raise ValueError(f"expected a number, got {text[:40]!r}")
+    return _finite(text)
+
+
+def parse_integer(text: str) -> int:
+    """Read a whole number of up to 40 digits; ValueError for anything else."""
+    if not _WHOLE.fullmatch(text):
+        raise ValueError(f"expected a whole number, got {text[:40]!r}")
+    return int(text)

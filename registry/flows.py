@@ -15,10 +15,10 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import Any, Literal
 
-from files.json_data import JsonData
 from registry import studies as registered
 from registry.studies import Facts, Study
 from registry.taxonomy import InvalidValueError, Taxonomy, attribute_of, unknown_name
+from survey_data.json_data import JsonData
 
 Counting = Literal["studies", "fractional"]
 COUNTINGS: tuple[Counting, ...] = ("studies", "fractional")
@@ -94,7 +94,8 @@ class Flows(JsonData):
 
     def to_dict(self) -> dict[str, object]:
         """Return it as JSON data, with the number of studies."""
-        return {**super().to_dict(), "studies": len(self.studies)}
+        left_out = [left.to_dict() for left in self.left_out]
+        return {**super().to_dict(), "studies": len(self.studies), "left_out": left_out}
 
 
 def chart(

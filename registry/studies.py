@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from types import MappingProxyType
 
-from files.numerals import parse_decimal
+from files.reading import parse_decimal
 from registry.fidelity.particulars import (
     CompensatedModel,
     MethodVariant,

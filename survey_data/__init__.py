@@ -10,7 +10,6 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from files.problems import Problem
     from survey_data.findings.checks import FindingVerdict
     from survey_data.findings.report import FidelityReport, fidelity
     from survey_data.importing.columns import ColumnMapping, match_columns
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
     from survey_data.importing.plan import Difference, ImportPlan, plan_import
     from survey_data.importing.table_import import import_table
     from survey_data.importing.table_reader import read_table
-    from survey_data.problems import SurveyDataError, SurveyImportError
+    from survey_data.problems import Problem, SurveyDataError, SurveyImportError
     from survey_data.tables import SurveyTables, load
     from survey_data.validation.validate import validate
 

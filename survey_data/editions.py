@@ -14,13 +14,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from files.json_data import JsonData
 from survey_data.descriptor import (
     DATA_DIRECTORY,
     descriptor,
     file_name,
     table_names,
 )
+from survey_data.json_data import JsonData
 
 Choice = Literal["survey", "all"]
 CHOICES: tuple[Choice, ...] = ("survey", "all")

@@ -10,9 +10,8 @@ import sys
 from pathlib import Path
 
 from files import manifest
-from files.problems import Problem
 from survey_data.descriptor import DATA_DIRECTORY, DESCRIPTOR_FILE, file_name, table_names
-from survey_data.problems import SurveyDataError
+from survey_data.problems import Problem, SurveyDataError
 
 COMMAND = "python -m survey_data.facts_manifest"
 
@@ -23,12 +22,13 @@ def names() -> tuple[str, ...]:
 
 
 def changes(directory: Path | str = DATA_DIRECTORY) -> list[Problem]:
-    """Say what no command wrote so, by file, row and column; an empty list where all holds.
+    """Say what no command wrote so, by file; an empty list where all holds.
 
     Our own tables must have a manifest; others without one have nothing to be held against.
     """
     folder = Path(directory)
-    return manifest.differences(folder, names(), required=folder == DATA_DIRECTORY)
+    found = manifest.differences(folder, names(), required=folder == DATA_DIRECTORY)
+    return [Problem(file, None, None, said) for file, said in found]
 
 
 def require_unchanged(directory: Path | str = DATA_DIRECTORY) -> None:

@@ -8,9 +8,9 @@ from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 
-from files.strict_csv import read_records
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.problems import SurveyDataError
+from survey_data.table_records import read_records
 
 _TABLE = "hardware"
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
 
-from files.strict_csv import read_records
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.nearest import nearest_name
 from survey_data.problems import SurveyDataError
+from survey_data.table_records import read_records
 
 _TABLE = "processors"
 #: The machine of the published running times.

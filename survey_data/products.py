@@ -12,10 +12,10 @@ from pathlib import Path
 from statistics import median
 from types import MappingProxyType
 
-from files.strict_csv import read_records
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.hardware import Hardware, hardware
 from survey_data.reported import reported_accuracies
+from survey_data.table_records import read_records
 
 _TABLE = "hardware"
 SELF_POWERED = "self-powered"

@@ -13,10 +13,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Literal
 
-from files.numerals import parse_decimal
-from files.whole_csv import read_whole_records
+from files.reading import parse_decimal
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.problems import SurveyDataError
+from survey_data.table_records import read_records
 
 _TABLE = "statistics"
 UNSPECIFIED = "unspecified"
@@ -85,7 +85,7 @@ def statistics(directory: Path | None = None) -> Mapping[str, Statistic]:
         The table is missing or broken.
     """
     columns = list(column_types(_TABLE))
-    records = read_whole_records((directory or DATA_DIRECTORY) / file_name(_TABLE), columns)
+    records = read_records((directory or DATA_DIRECTORY) / file_name(_TABLE), columns)
     if records.problems:
         raise SurveyDataError(tuple(records.problems))
     return MappingProxyType(

@@ -8,9 +8,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from files.numerals import parse_decimal, parse_integer
-from files.problems import Problem
-from files.strict_csv import Records
+from files.reading import parse_decimal, parse_integer
 from survey_data.descriptor import (
     DATA_DIRECTORY,
     column_types,
@@ -19,8 +17,8 @@ from survey_data.descriptor import (
     table_names,
 )
 from survey_data.editions import BY_STUDY, EXTENSION, EXTENSION_TABLES, SURVEY, Choice
-from survey_data.problems import SurveyDataError
-from survey_data.table_records import read_table_records
+from survey_data.problems import Problem, SurveyDataError
+from survey_data.table_records import Records, read_table_records
 
 FIRST_ROW = 2  # the header is row 1, and the tables keep one record a line
 

@@ -6,9 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import SimpleNamespace
 
-from files.problems import Problem
 from survey_data.descriptor import DATA_DIRECTORY, column_types
-from survey_data.problems import SurveyDataError
+from survey_data.problems import Problem, SurveyDataError
 from survey_data.table_records import read_table_records
 
 Rows = Sequence[Mapping[str, str]]

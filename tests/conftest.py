@@ -92,7 +92,7 @@ def _same_cells_are_read_and_checked_once() -> Iterator[None]:
         for table, schema in schemas.items()
     }
     read, typed, check = (
-        table_records.read_whole_records,
+        table_records.read_records,
         tables.typed_frame,
         validation._check_schema,
     )
@@ -130,7 +130,7 @@ def _same_cells_are_read_and_checked_once() -> Iterator[None]:
         return problems
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(table_records, "read_whole_records", kept_records)
+        patch.setattr(table_records, "read_records", kept_records)
         patch.setattr(tables, "typed_frame", kept_frame)
         patch.setattr(validation, "typed_frame", kept_frame)
         patch.setattr(validation, "_check_schema", kept_problems)

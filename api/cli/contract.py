@@ -17,7 +17,7 @@ from algorithms import discovery
 from algorithms.discovery import discover_compensations, discover_extractors, discover_models
 from api.cli.wrong_call import WrongCallError
 from benchmark.contract import UnknownNameError
-from files.temporary import temporary_directory
+from files.atomic import temporary_directory
 
 ROOT = Path(algorithms.__file__).parents[1]
 #: Where the checks are, in a checkout.

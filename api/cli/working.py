@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from files.user_cache import user_cache
+from api.user_cache import user_cache
 
 
 def working_directory(given: Path | None = None) -> Path:

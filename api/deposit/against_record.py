@@ -31,8 +31,8 @@ from benchmark.datasets.export_verification import verify as verify_export
 from benchmark.datasets.pins import Pin, Place
 from benchmark.progress import ProgressCallback, silent
 from benchmark.results.store import PUBLISHED, Store
-from files.checksums import ChecksumFileError, contents
-from files.temporary import temporary_directory
+from files.atomic import temporary_directory
+from files.checksums import FileRefusedError, contents
 
 
 def differences(
@@ -106,7 +106,7 @@ def _of_frames(
                 yield f"{FOLDER}/{name}/card.json", f"exported is {asked}, expected {should}"
             for file, text in verify_export(folder / name, pins=pins, anew=anew):
                 yield f"{FOLDER}/{name}/{file}", text
-        except (ExportError, ChecksumFileError) as error:
+        except (ExportError, FileRefusedError) as error:
             yield f"{FOLDER}/{name}", str(error).removeprefix(f"{folder / name}: ")
     progress(len(names), len(names), "")
 

@@ -39,7 +39,7 @@ from benchmark.results.store import PUBLISHED, Store
 from files.atomic import replace_all, require_replaceable
 from files.checksums import (
     CHECKSUMS,
-    ChecksumFileError,
+    FileRefusedError,
     contents,
     read_checksums,
     sha256,
@@ -233,7 +233,7 @@ def _require_ours(out: Path) -> None:
         listed = {*read_checksums(out), CHECKSUMS}
         foreign = [name for name in contents(out) if name not in listed]
         ours = read_descriptor(out / DESCRIPTOR).get("name") == NAME
-    except (FileNotFoundError, ChecksumFileError, ValueError):
+    except (FileNotFoundError, FileRefusedError, ValueError):
         foreign, ours = contents(out), False
     if foreign or not ours:
         held = f"{foreign[0]}" if foreign else "another data package"

@@ -19,7 +19,7 @@ from api.deposit.parquet import write_parquet
 from api.deposit.terms import FACTS, terms
 from api.deposit.typed_tables import typed_tables
 from api.metadata.identity import identity
-from files.temporary import temporary_directory
+from files.atomic import temporary_directory
 
 Problem = tuple[str, str]
 FOLDER = "parquet"

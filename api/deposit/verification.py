@@ -133,7 +133,7 @@ def verify(directory: Path) -> list[Problem]:
     ------
     NoBundleError
         Where the directory is no bundle.
-    ChecksumFileError
+    FileRefusedError
         Where the list of checksums cannot be read.
     """
     if not (directory / CHECKSUMS).is_file():

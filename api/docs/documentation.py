@@ -45,9 +45,8 @@ from api.metadata.identity import identity
 from benchmark.processes import call_to_end
 from benchmark.progress import console_progress
 from benchmark.running.experiment import recorded_experiments
-from files.atomic import replace_file
+from files.atomic import replace_file, temporary_directory
 from files.locks import wait_for_lock
-from files.temporary import temporary_directory
 
 DIRECTORY = Path(__file__).resolve().parents[2] / "docs"
 

@@ -8,7 +8,7 @@ import sys
 from typer.testing import CliRunner
 
 from api.cli.command_line import app
-from files.temporary import temporary_directory
+from files.atomic import temporary_directory
 
 EXPORTS = (
     "dataset export pd-maskless-cube --out cube --condition nominal --split test",

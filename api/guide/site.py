@@ -19,10 +19,9 @@ from typing import Any
 
 from api.guide.atlas import atlas_links
 from api.guide.chapters import ROOT
+from api.user_cache import user_cache
 from benchmark.progress import ProgressCallback, silent
-from files.atomic import replace_all, require_replaceable
-from files.temporary import temporary_directory
-from files.user_cache import user_cache
+from files.atomic import replace_all, require_replaceable, temporary_directory
 
 BUILDERS = ("sphinx", "myst-parser", "furo")
 INSTALL = "pip install 'sun-sensor-atlas[guide]'"

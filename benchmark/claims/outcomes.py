@@ -10,9 +10,10 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
+from pydantic import BaseModel, model_validator
 
 from benchmark.canonical import digest
 from benchmark.claims.experiment import Trial
@@ -20,7 +21,6 @@ from benchmark.claims.rules import FIRST_TRIAL, Claim
 from benchmark.metrics.separation import store
 from benchmark.results.row_file import Row, RowFile
 from benchmark.results.store import PUBLISHED
-from files.strict_json import refuse_unless, require_members, require_type
 
 Values = Mapping[str, Sequence[float]]
 
@@ -141,38 +141,32 @@ def read_outcomes(directory: Path | str = PUBLISHED) -> dict[str, Outcome]:
     return {name: outcome_of_row(row) for name, row in RECORD.read(directory).items()}
 
 
-_MEMBERS = {
-    **dict.fromkeys(("claim", "key"), str),
-    **dict.fromkeys(("values", "second", "lines"), dict),
-}
-_PARTS = ("across", "median", "low", "high")
+class _Line(BaseModel, extra="forbid"):
+    across: list[str | float]
+    median: list[float | None]
+    low: list[float | None]
+    high: list[float | None]
+
+    @model_validator(mode="after")
+    def _is_of_one_length(self) -> Self:
+        if not len(self.across) == len(self.median) == len(self.low) == len(self.high):
+            raise ValueError("its lists are of different lengths")
+        return self
 
 
-def _require_row(path: Path, row: object) -> None:
-    held: Row = require_members(row, path, _MEMBERS)
-    for member in ("values", "second"):
-        for name, values in held[member].items():
-            _require_numbers(path, name, values)
-    for name, line in held["lines"].items():
-        require_members(line, path, dict.fromkeys(_PARTS, list))
-        for place in line["across"]:
-            require_type(place, (str, int, float), path, f"{name}, across")
-        for part in _PARTS[1:]:
-            _require_numbers(path, f"{name}, {part}", line[part])
-        lengths = {len(line[part]) for part in _PARTS}
-        refuse_unless(len(lengths) == 1, path, f"{name}: its lists are of different lengths")
-
-
-def _require_numbers(path: Path, where: str, values: object) -> None:
-    for value in require_type(values, list, path, where):
-        require_type(value, (int, float, type(None)), path, where)
+class _Row(BaseModel, extra="forbid"):
+    claim: str
+    values: dict[str, list[float | None]]
+    second: dict[str, list[float | None]]
+    lines: dict[str, _Line]
+    key: str
 
 
 def _claim(row: Row) -> str:
     return str(row["claim"])
 
 
-RECORD = RowFile("claims.json", "claims", 1, _claim, _require_row)
+RECORD = RowFile("claims.json", "claims", 1, _claim, _Row)
 
 
 def _curves(claim: Claim, trials: Sequence[Trial]) -> dict[str, Curve]:

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Literal, TypeVar, cast, get_args
 
 import survey_data
-from files.numerals import parse_decimal, parse_integer
-from files.strict_csv import read_records
+from files.reading import parse_decimal, parse_integer
+from survey_data.table_records import read_records
 
 DIRECTORY = Path(__file__).resolve().parent
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from benchmark import datasets
-from files.json_data import JsonData
 from registry.studies import Facts, facts
+from survey_data.json_data import JsonData
 
 Pair = tuple[str, str]  # (detector, mask)
 

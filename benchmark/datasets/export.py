@@ -34,14 +34,12 @@ from benchmark.progress import ProgressCallback, silent
 from files.atomic import replace_all, require_replaceable
 from files.checksums import (
     CHECKSUMS,
-    ChecksumFileError,
     contents,
     read_checksums,
     sha256,
     write_checksums,
 )
-from files.reading import FileRefusedError
-from files.strict_json import read_json
+from files.reading import FileRefusedError, read_json
 
 CARD = "card.json"
 #: Layout of an export; raised when a file or a field changes its meaning.
@@ -312,7 +310,7 @@ def _require_free(out: Path, *, force: bool) -> None:
         listed = {*read_checksums(out), CHECKSUMS}
         foreign = [name for name in contents(out) if name not in listed]
         read_card(out)
-    except (FileNotFoundError, ChecksumFileError, ExportError):
+    except (FileNotFoundError, FileRefusedError, ExportError):
         foreign = contents(out) or ["directories"]
     if foreign:
         raise ExportError(

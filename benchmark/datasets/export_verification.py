@@ -26,8 +26,8 @@ from benchmark.datasets.pins import BOUND_TOLERANCE, Pin, Place, bounds_agree
 from benchmark.datasets.samples import HEAD, head_hash, samples_hash
 from benchmark.metrics.separation import store
 from benchmark.progress import ProgressCallback, silent
+from files.atomic import temporary_directory
 from files.checksums import CHECKSUMS, differences, read_checksums, sha256
-from files.temporary import temporary_directory
 
 Problem = tuple[str, str]
 
@@ -67,7 +67,7 @@ def verify(
     ------
     ExportError
         Where the directory is no export, or its card cannot be read.
-    ChecksumFileError
+    FileRefusedError
         Where the list of checksums cannot be read.
     """
     directory = Path(directory)

@@ -14,8 +14,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from files.strict_csv import read_records
 from survey_data.hardware import Hardware, hardware
+from survey_data.table_records import read_records
 
 FILE = Path(__file__).parent / "realism.csv"
 COLUMNS = ("dataset", "hardware", "idealisation", "sentence")

@@ -37,7 +37,7 @@ from benchmark.running.runner import RunInterruptedError
 from benchmark.sweeps.differences import differences
 from benchmark.sweeps.record import RECORD as SWEEPS
 from benchmark.sweeps.record import swept
-from files.temporary import temporary_directory
+from files.atomic import temporary_directory
 from survey_data import facts_manifest
 
 #: On the pinned environment scores are identical. Elsewhere another order of a sum changes last

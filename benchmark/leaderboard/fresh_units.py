@@ -24,7 +24,7 @@ from benchmark.processes import call_to_end
 from benchmark.results.csv_tables import Row
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running.runner import RunInterruptedError, run
-from files.temporary import temporary_directory
+from files.atomic import temporary_directory
 
 #: Units that no board is made of.
 FRESH = range(scope.UNITS, scope.UNITS + 5)

@@ -14,11 +14,11 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from files.strict_csv import read_records
 from registry.fidelity.runnable import RunnablePipeline
 from registry.resolution import Resolution
 from registry.studies import Study
 from survey_data.reported import QUANTITIES, Quantity, ReportedAccuracy
+from survey_data.table_records import read_records
 
 FILE = Path(__file__).parent / "headlines.csv"
 COLUMNS = ("study", "quantity", "difference")

@@ -24,7 +24,7 @@ from benchmark.plan.shown import data_sets
 from benchmark.progress import ProgressCallback
 from benchmark.results.store import PUBLISHED_STUDIES, Store
 from benchmark.running.runner import Summary
-from files.temporary import temporary_directory
+from files.atomic import temporary_directory
 from registry.resolution import resolve
 from registry.studies import facts
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import Any
+from collections.abc import Sequence
+from typing import Annotated, Any, Self
+
+from pydantic import BaseModel, Field, NonNegativeFloat, NonNegativeInt, model_validator
 
 from benchmark.metrics.separation import store
-from files.strict_json import refuse_unless, require_members, require_type
 
 #: A row of the record: plain JSON values.
 Row = dict[str, Any]
@@ -16,53 +16,41 @@ Row = dict[str, Any]
 #: What a point of a curve says.
 POINT = ("poses", "middle_deg", "least_deg", "largest_deg", "availability", "refused")
 
-_ANGLE = (int, float, type(None))
-#: What a row holds, and of which type.
-_MEMBERS: Mapping[str, type | tuple[type, ...]] = {
-    **dict.fromkeys(("dataset", "condition", "extractor", "model"), str),
-    **dict.fromkeys(("floor", "refusal", "key"), str),
-    **dict.fromkeys(("place", "poses"), int),
-    "in_order": bool,
-    **dict.fromkeys(("floor_error_deg", "floor_low_deg", "floor_high_deg"), _ANGLE),
-    **dict.fromkeys(("exponent", "misfit", "bound_deg", "bench_deg"), _ANGLE),
-    **dict.fromkeys(("all_deg", "needed", "error_from", "answers_from", "points"), list),
-}
+_Size = NonNegativeFloat | None
+_Poses = Annotated[list[NonNegativeInt | None], Field(min_length=1)]
 
 
-def require_row(path: Path, row: object) -> None:
-    """Raise FileRefusedError, naming the curve, for what is no row of the record."""
-    held: Row = require_members(row, path, _MEMBERS)
-    named = f"{held['dataset']}, place {held['place']}"
-    for name, value in held.items():
-        kind = (int, type(None)) if name in _FROM else _ANGLE
-        if name == "points":
-            for point in value:
-                where = f"{named}, points"
-                require_type(point, list, path, where)
-                refuse_unless(
-                    len(point) == len(POINT), path, f"{where}: expected {len(POINT)} each"
-                )
-                _require_sizes(path, where, point, _ANGLE)
-        elif isinstance(value, list):
-            _require_sizes(path, f"{named}, {name}", value, kind)
-        elif isinstance(value, int | float):
-            _require_sizes(path, f"{named}, {name}", [value], (*_ANGLE, bool))
-    lengths = {len(held[name]) for name in _FROM}
-    one_length = len(lengths) == 1 and 0 not in lengths
-    refuse_unless(one_length, path, f"{named}: {', '.join(_FROM)} are empty or of other lengths")
+class CurveRow(BaseModel, extra="forbid"):
+    """A row of the record; `needed`, `error_from`, `answers_from`: numbers of poses by draw."""
 
+    dataset: str
+    condition: str
+    extractor: str
+    model: str
+    floor: str
+    refusal: str
+    key: str
+    place: NonNegativeInt
+    poses: NonNegativeInt
+    in_order: bool
+    floor_error_deg: _Size
+    floor_low_deg: _Size
+    floor_high_deg: _Size
+    exponent: _Size
+    misfit: _Size
+    bound_deg: _Size
+    bench_deg: _Size
+    all_deg: list[_Size]
+    needed: _Poses
+    error_from: _Poses
+    answers_from: _Poses
+    points: list[Annotated[list[_Size], Field(min_length=len(POINT), max_length=len(POINT))]]
 
-#: Lists of numbers of poses, by draw.
-_FROM = ("needed", "error_from", "answers_from")
-
-
-def _require_sizes(
-    path: Path, where: str, values: Sequence[object], kind: tuple[type, ...]
-) -> None:
-    for value in values:
-        require_type(value, kind, path, where)
-        least = f"{where}: expected a number of at least 0, got {value}"
-        refuse_unless(not (isinstance(value, int | float) and value < 0), path, least)
+    @model_validator(mode="after")
+    def _has_one_number_of_draws(self) -> Self:
+        if not len(self.needed) == len(self.error_from) == len(self.answers_from):
+            raise ValueError("needed, error_from and answers_from are of different lengths")
+        return self
 
 
 def summary(row: Row) -> Row:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.learning_curves.leaders import Leader
-from benchmark.learning_curves.reading import Row, require_row, summary
+from benchmark.learning_curves.reading import CurveRow, Row, summary
 from benchmark.results.row_file import RowFile
 from benchmark.results.store import PUBLISHED
 
@@ -17,7 +17,7 @@ def leader_of(row: Row) -> Leader:
     return Leader(**{name: row[name] for name in names})
 
 
-RECORD = RowFile("curves.json", "curves", 2, leader_of, require_row)
+RECORD = RowFile("curves.json", "curves", 2, leader_of, CurveRow)
 
 
 def published_curves(directory: Path | str = PUBLISHED) -> list[dict[str, Any]]:

@@ -8,10 +8,12 @@ numbers are out of date.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+
+from pydantic import BaseModel, Field
 
 from benchmark.contract import ON_BENCH, Cell, Preset
 from benchmark.metrics.score import METRIC_VERSION
@@ -25,8 +27,7 @@ from benchmark.results.digests import (
     stage_digests,
 )
 from benchmark.results.modules import STAGES, reached
-from files.reading import FileRefusedError
-from files.strict_json import read_json, require_members, require_type
+from files.reading import FileRefusedError, read_json, require_type
 
 #: Layout of the stored files; raised when a field changes its meaning.
 SCHEMA_VERSION = 3
@@ -225,20 +226,11 @@ class Components:
                 "the directory and run `sunatlas leaderboard update`"
             )
         try:
-            held.setdefault("modules", {})  # of stores written before 0.2.0
-            layout = dict.fromkeys(("stages", *_KINDS, "modules"), dict)
-            require_members(held, path, {"schema": int, "metric": int, **layout})
-            kinds: dict[str, Any] = {kind: held[kind] for kind in _KINDS}
-            for kind, facts in kinds.items():
-                for name, one in facts.items():
-                    _require_facts(path, kind, name, one)
-            plain = [(kind, held[kind]) for kind in ("stages", "modules")]
-            for kind, digests in [*plain, *_conditions(held["datasets"])]:
-                for name, digest in digests.items():
-                    require_type(digest, str, path, f"{kind}/{name}")
+            require_type(held, _File, path)
         except FileRefusedError as error:
             raise ComponentsError(str(error)) from error
-        return cls(held["stages"], **kinds, modules=held["modules"], metric=metric)
+        kinds = {kind: held[kind] for kind in _KINDS}
+        return cls(held["stages"], **kinds, modules=held.get("modules", {}), metric=metric)
 
 
 def current(parts: Parts) -> Components:
@@ -262,30 +254,28 @@ def current(parts: Parts) -> Components:
     )
 
 
-#: What the file says of a component of each kind.
-_MEMBERS: Mapping[str, Mapping[str, type | tuple[type, ...]]] = {
-    "datasets": {
-        "version": int,
-        "detector": str,
-        "mask": str,
-        "half_fov_deg": (int, float, type(None)),
-        "conditions": dict,
-    },
-    "extractors": {"version": int, "taxonomy": str, "digest": str},
-    "models": {"version": int, "taxonomy": str, "digest": str},
-}
+class _DataSet(BaseModel, extra="forbid"):
+    version: int
+    detector: str
+    mask: str
+    half_fov_deg: float | None
+    conditions: dict[str, str]
 
 
-def _require_facts(path: Path, kind: str, name: str, facts: Any) -> None:
-    """Raise FileRefusedError, naming the component, for facts that are not of its kind."""
-    require_type(facts, dict, path, f"{kind}/{name}")
-    expected = _MEMBERS[kind]
-    for member, types in expected.items():
-        if member not in facts:
-            raise FileRefusedError(path, f"{kind}/{name}: the member {member!r} is missing")
-        require_type(facts[member], types, path, f"{kind}/{name}/{member}")
-    if unknown := sorted(facts.keys() - expected.keys()):
-        raise FileRefusedError(path, f"{kind}/{name}: unknown member {unknown[0]!r}")
+class _Method(BaseModel, extra="forbid"):
+    version: int
+    taxonomy: str
+    digest: str
+
+
+class _File(BaseModel, extra="forbid"):
+    layout: int = Field(alias="schema")
+    metric: int
+    stages: dict[str, str]
+    datasets: dict[str, _DataSet]
+    extractors: dict[str, _Method]
+    models: dict[str, _Method]
+    modules: dict[str, str] = {}  # stores written before 0.2.0 have none
 
 
 def _of_dataset(preset: Preset) -> Facts:
@@ -316,11 +306,6 @@ def _in_order(known: Mapping[str, Any]) -> list[str]:
     return sorted(
         known, key=lambda name: (list(STAGES).index(name) if name in STAGES else -1, name)
     )
-
-
-def _conditions(datasets: Mapping[str, Facts]) -> Iterator[tuple[str, Mapping[str, str]]]:
-    for name, facts in datasets.items():
-        yield f"datasets/{name}", facts["conditions"]
 
 
 def _format_value(value: Facts | str) -> str:

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from files.csv_writing import csv_text
-from files.numerals import parse_decimal, parse_integer
-from files.reading import FileRefusedError, read_text
+from files.reading import FileRefusedError, parse_decimal, parse_integer, read_text
 
 Row = dict[str, Any]
 Reader = Callable[[str], Any]

@@ -16,9 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.results.csv_tables import StoreError
-from files.atomic import name_file_in_errors
-from files.reading import FileRefusedError, read_bytes
-from files.strict_json import parse_json
+from files.reading import FileRefusedError, parse_json, read_bytes
 
 _LARGEST = 2_000_000_000
 _CHAIN = re.compile(rb'(.*), "chain": "([0-9a-f]{16})"\}', re.DOTALL)
@@ -58,10 +56,13 @@ class Journal:
             line, last = chain_rows(json.dumps(record, allow_nan=False), last)
             text += f"{line}\n"
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        with name_file_in_errors(self.path), self.path.open("ab") as file:
-            file.write(text.encode())
-            file.flush()
-            os.fsync(file.fileno())
+        try:
+            with self.path.open("ab") as file:
+                file.write(text.encode())
+                file.flush()
+                os.fsync(file.fileno())
+        except OSError as error:  # of a full disk names no file
+            raise OSError(error.errno, error.strerror, str(self.path)) from error
         self._last = last
 
     def cut_torn(self) -> None:

@@ -24,7 +24,6 @@ from benchmark.results.journal import Journal
 from benchmark.results.samples import CellErrors, Directions, SampleErrors
 from benchmark.results.store import Store
 from files.locks import LockedError, lock_or_refuse
-from files.temporary import remove_stale_files
 
 _What = TypeVar("_What")
 
@@ -232,7 +231,7 @@ class Record:
 def open_record(store: Store) -> Iterator[Record]:
     """Hold a store for writing; released by the system when the process ends, however it ends.
 
-    What killed runners left half written is removed, or finished where only its end is missing.
+    A write that a killed runner left is finished where only its end is missing.
 
     Raises
     ------
@@ -248,8 +247,6 @@ def open_record(store: Store) -> Iterator[Record]:
             stack.enter_context(lock_or_refuse(directory / "store"))
         except LockedError as error:
             raise StoreLockedError(error.holder, store.directory) from error
-        for place in (store.directory, store.scores_directory, store.samples_directory, directory):
-            remove_stale_files(place)
         record_manifest.finish(store.directory)
         record_manifest.require_unchanged(store.directory)
         record = Record(store)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -9,8 +10,7 @@ from pathlib import Path
 from benchmark.results.csv_tables import StoreError
 from benchmark.results.times import MACHINE, TIMES
 from files import manifest
-from files.problems import Problem
-from files.reading import FileRefusedError, path_exists
+from files.reading import FileRefusedError
 
 #: Takes over what was changed by hand, in the record and in the facts.
 COMMAND = "python -m benchmark.suites.manifest_renewal"
@@ -37,8 +37,8 @@ def names(folder: Path) -> tuple[str, ...]:
     )
 
 
-def changes(folder: Path, *, required: bool = False) -> list[Problem]:
-    """Say what of a record no command wrote so, by file, row and column; nothing where all holds.
+def changes(folder: Path, *, required: bool = False) -> list[tuple[str, str]]:
+    """Return each file of a record that no command wrote so, and why; nothing where all holds.
 
     Parameters
     ----------
@@ -56,9 +56,8 @@ def require_unchanged(folder: Path, *, required: bool = False) -> None:
     """Raise StoreError, naming the first place, where a record is not as commands wrote it."""
     if problems := changes(folder, required=required):
         more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-        raise StoreError(
-            f"{folder}: {problems[0]}{more}; restore it, or take it over with `{COMMAND}`"
-        )
+        said = f"{folder}: {': '.join(problems[0])}{more}"
+        raise StoreError(f"{said}; restore it, or take it over with `{COMMAND}`")
 
 
 def finish(folder: Path) -> None:
@@ -72,7 +71,7 @@ def finish(folder: Path) -> None:
 
 def is_unfinished(folder: Path) -> bool:
     """Say whether a killed command left some files of a record new and others old."""
-    return path_exists(folder / manifest.NEXT)
+    return manifest.is_unfinished(folder)
 
 
 def write(folder: Path, contents: Mapping[str, str | bytes | None], *, start: bool = False) -> bool:
@@ -84,7 +83,7 @@ def write(folder: Path, contents: Mapping[str, str | bytes | None], *, start: bo
         Where the manifest cannot be read; nothing has been written.
     """
     try:
-        if start and not path_exists(folder / manifest.FILE) and (there := names(folder)):
+        if start and not os.path.lexists(folder / manifest.FILE) and (there := names(folder)):
             manifest.rewrite_manifest(folder, there)  # a record that is older than manifests
         return manifest.write_recorded(folder, contents, start=start)
     except FileRefusedError as error:

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
+from pydantic import BaseModel
+
 from benchmark.results import record_manifest
 from benchmark.results.csv_tables import Reader, StoreError, read_csv, text_of
 from benchmark.results.store import PUBLISHED
-from files.reading import FileRefusedError
-from files.strict_json import read_json, require_members, require_type
+from files.reading import FileRefusedError, read_json, require_type
 
 #: Plain JSON values.
 Row = dict[str, Any]
@@ -34,15 +35,15 @@ class RowFile(Generic[C]):
         Layout of a row; raised when a member changes its meaning.
     cell_of
         Returns the cell that a row is of.
-    require_row
-        Raises FileRefusedError for what is no row; is given the path and the row.
+    row
+        What a row is, as a type that Pydantic checks.
     """
 
     name: str
     listed: str
     schema: int
     cell_of: Callable[[Row], C]
-    require_row: Callable[[Path, object], None]
+    row: Any
 
     def read(self, directory: Path | str = PUBLISHED) -> dict[C, Row]:
         """Return rows by cell, sorted; none where there is no file.
@@ -54,16 +55,14 @@ class RowFile(Generic[C]):
         """
         path = Path(directory) / self.name
         try:
-            held = require_members(read_json(path), path, {"schema": int, self.listed: list})
-            if held["schema"] != self.schema:
-                raise StoreError(f"{path}: expected schema {self.schema}, got {held['schema']!r}")
+            held = read_json(path)
+            schema = held.pop("schema", None) if isinstance(held, dict) else None
+            if schema != self.schema or held.keys() != {self.listed}:
+                said = f"expected schema {self.schema} and {self.listed}, got {schema!r}"
+                raise StoreError(f"{path}: {said}")
+            require_type(held, dict[str, list[self.row]], path)  # type: ignore[name-defined]
             found: dict[C, Row] = {}
             for number, row in enumerate(held[self.listed], start=1):
-                try:
-                    self.require_row(path, row)
-                except FileRefusedError as error:
-                    said = f"{self.listed}, row {number}: {error.reason}"
-                    raise FileRefusedError(path, said) from error
                 cell = self.cell_of(row)
                 if cell in found:
                     raise StoreError(f"{path}, row {number}: {cell} is there twice")
@@ -98,7 +97,7 @@ class TableFile(Generic[C]):
     columns
         How a cell of each column is read.
     shared
-        Members that stand once a group, ``key`` among them, with their types.
+        What stands once a group, ``key`` among it.
     cell_of
         Returns the cell that a row is of.
     group_of
@@ -109,7 +108,7 @@ class TableFile(Generic[C]):
 
     name: str
     columns: Mapping[str, Reader]
-    shared: Mapping[str, type]
+    shared: type[BaseModel]
     cell_of: Callable[[Row], C]
     group_of: Callable[[Row], str]
     place_of: Callable[[Row], Any]
@@ -135,7 +134,8 @@ class TableFile(Generic[C]):
     def write(self, rows: Mapping[C, Row], directory: Path | str = PUBLISHED) -> bool:
         """As `RowFile.write`; a row of another key than the last one of its group is left out."""
         groups = {
-            self.group_of(row): {name: row[name] for name in self.shared} for row in rows.values()
+            self.group_of(row): {name: row[name] for name in self.shared.model_fields}
+            for row in rows.values()
         }
         kept: list[Row] = [
             row for row in rows.values() if row["key"] == groups[self.group_of(row)]["key"]
@@ -156,11 +156,10 @@ class TableFile(Generic[C]):
     def _groups(self, directory: Path) -> dict[str, Row]:
         path = directory / self.shared_name
         try:
-            held = require_type(read_json(path), dict, path, "groups")
-            return {
-                group: require_members(facts, path, self.shared) for group, facts in held.items()
-            }
+            held: dict[str, Row] = read_json(path)
+            require_type(held, dict[str, self.shared], path)  # type: ignore[name-defined]
         except FileNotFoundError:
             return {}
         except FileRefusedError as error:
             raise StoreError(str(error)) from error
+        return held

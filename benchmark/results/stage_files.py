@@ -1,10 +1,10 @@
 """Results of stages in files that may be lost: compact, whole or not at all, the dearest kept.
 
-Each result is one file, named by its key and what it cost to make. They are pickles, as those of
-joblib.Memory (which lets go of what was used longest ago, whatever it cost, and keys by arguments),
-behind a digest, so that a damaged one is as one that is not there. Arrays come back with their
-type, order and last bit; one that is neither in C nor in Fortran order is not kept, since it would
-come back in another order than it had, and sums depend on that.
+Each result is one file, named by its key, what it cost to make and its digest, by which a damaged
+one is as one that is not there. They are pickles, as those of joblib.Memory (which lets go of what
+was used longest ago, whatever it cost, and keys by arguments). Arrays come back with their type,
+order and last bit; one that is neither in C nor in Fortran order is not kept, since it would come
+back in another order than it had, and sums depend on that.
 """
 
 from __future__ import annotations
@@ -23,7 +23,8 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from files.checked import CheckedFile, reading_checked, writing_checked
+from files.atomic import temporary_directory_beside
+from files.checksums import sha256
 from files.locks import LockedError, lock_or_refuse
 
 #: Bytes that the stages of a store may take; another number of gigabytes by this variable.
@@ -77,15 +78,13 @@ class StageFiles:
     def get(self, key: str) -> Any:
         """Return a result; None where it is not kept, or damaged."""
         path = self._find(key)
-        if path is None:
-            return None
-        with reading_checked(path) as file:
-            if file is None:
+        try:
+            if path is None or sha256(path) != path.suffix[1:]:
                 return None
-            try:
+            with path.open("rb") as file:
                 found = _unpack(file)
-            except Exception:  # noqa: BLE001 - of a class that is another by now: as if not there
-                return None
+        except Exception:  # noqa: BLE001 - of a class that is another by now: as if not there
+            return None
         with suppress(OSError):
             os.utime(path)
         return found
@@ -100,8 +99,12 @@ class StageFiles:
             return
         path = self._folder(key) / f"{key[_FOLDER:]}.{round(1000 * seconds)}"
         try:
-            with writing_checked(path) as file:
-                _pack(value, file)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with temporary_directory_beside(path) as scratch:
+                made = scratch / path.name
+                with made.open("wb") as file:
+                    _pack(value, file)
+                path = made.replace(path.with_name(f"{path.name}.{sha256(made)}"))
             size = path.stat().st_size
         except (OSError, pickle.PicklingError, AttributeError, TypeError):
             return
@@ -156,7 +159,7 @@ class StageFiles:
         folder, start = self._folder(key), f"{key[_FOLDER:]}."
         with suppress(OSError):
             for name in os.listdir(folder):  # noqa: PTH208 - names are wanted
-                if name.startswith(start):
+                if name.startswith(start) and name.count(".") == 2:
                     return folder / name
         return None
 
@@ -168,7 +171,7 @@ class StageFiles:
                         if not entry.name.startswith("."):
                             with suppress(OSError, ValueError):
                                 status = entry.stat()
-                                cost = int(entry.name.partition(".")[2])
+                                cost = int(entry.name.split(".")[1])
                                 yield _Entry(
                                     Path(entry.path), status.st_size, cost, status.st_mtime
                                 )
@@ -198,7 +201,7 @@ class _Pickler(pickle.Pickler):
         return NotImplemented
 
 
-def _pack(value: Any, file: CheckedFile) -> None:
+def _pack(value: Any, file: BinaryIO) -> None:
     """Write a value's pickle, compressed on the way: data may be half of what memory there is."""
     from pyarrow import CompressedOutputStream  # noqa: PLC0415 - slow to load
 

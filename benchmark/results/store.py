@@ -16,6 +16,7 @@ All depend on code and data only, never on time or machine. A running runner kee
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Iterable, Mapping
 from functools import cached_property
 from itertools import groupby
@@ -41,7 +42,6 @@ from benchmark.results.csv_tables import (
     word,
 )
 from benchmark.results.pins import pins_text, read_pins
-from files.reading import path_exists
 from survey_data.nearest import nearest_name
 
 if TYPE_CHECKING:
@@ -125,7 +125,7 @@ class Store:
             For a line that is no row of scores, or one that is there twice.
         """
         folder = self.scores_directory
-        if path_exists(folder) and not folder.is_dir():
+        if os.path.lexists(folder) and not folder.is_dir():
             raise StoreError(f"{folder}: expected a directory of tables")
         found: dict[Cell, Row] = {}
         for path in sorted(self.scores_directory.glob("*.csv")):

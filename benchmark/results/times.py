@@ -11,9 +11,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
+from pydantic import BaseModel, PositiveFloat
+
 from benchmark.results.csv_tables import StoreError, above_zero, read_csv, word
-from files.reading import FileRefusedError
-from files.strict_json import read_json, require_members
+from files.reading import FileRefusedError, read_json, require_type
 
 #: Names of the files.
 TIMES, MACHINE = "times.csv", "times_machine.json"
@@ -80,16 +81,15 @@ class Machine:
     also_on: tuple[str, ...] = ()
 
 
-_MEMBERS: Mapping[str, type | tuple[type, ...]] = {
-    "processor": str,
-    "cores": int,
-    "python": str,
-    "numpy": str,
-    "date": str,
-    "loop": str,
-    "loop_us": (int, float),
-    "also_on": list,
-}
+class _MachineFile(BaseModel, extra="forbid"):
+    processor: str
+    cores: int
+    python: str
+    numpy: str
+    date: str
+    loop: str
+    loop_us: PositiveFloat
+    also_on: list[str]
 
 
 @dataclass(frozen=True)
@@ -134,9 +134,8 @@ def read_times(directory: Path) -> Times:
 
 def _machine(path: Path) -> Machine:
     try:
-        held = require_members(read_json(path), path, _MEMBERS)
+        held = read_json(path)
+        require_type(held, _MachineFile, path)
     except (FileNotFoundError, FileRefusedError) as error:
         raise StoreError(str(error)) from error
-    if held["loop_us"] <= 0:
-        raise StoreError(f"{path}: expected a loop_us above 0, got {held['loop_us']}")
     return Machine(**{**held, "also_on": tuple(held["also_on"])})

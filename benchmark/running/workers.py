@@ -21,7 +21,7 @@ from joblib.externals.loky import process_executor
 
 from benchmark.processes import end_if_requested, work_for
 from benchmark.simulator.light.memory import memory
-from files.temporary import temporary_directory
+from files.atomic import temporary_directory
 
 A = TypeVar("A")
 B = TypeVar("B")

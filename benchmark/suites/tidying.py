@@ -15,7 +15,7 @@ from benchmark.results.record import open_record
 from benchmark.results.store import Store
 from benchmark.running import pinning
 from benchmark.running.fitting import data_condition
-from files.temporary import temporary_directory
+from files.atomic import temporary_directory
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from benchmark.plan.parts import Parts
 from benchmark.progress import ProgressCallback
 from benchmark.results.store import Store
 from benchmark.running.runner import RunInterruptedError, run
-from files.temporary import temporary_directory
+from files.atomic import temporary_directory
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from pydantic import BaseModel
+
 from benchmark.results.csv_tables import Reader, count, number, one_of, share, size, word
 from benchmark.results.row_file import Row, TableFile
 from benchmark.results.store import PUBLISHED, STATUSES
@@ -31,7 +33,14 @@ _COLUMNS: Mapping[str, Reader] = {
     "bias": number,
     "reason": str,
 }
-_SHARED: Mapping[str, type] = {"extractor_taxonomy": str, "extractor_version": int, "key": str}
+
+
+class SharedFacts(BaseModel, extra="forbid"):
+    """What the rows of a series and an extractor share."""
+
+    extractor_taxonomy: str
+    extractor_version: int
+    key: str
 
 
 def point_of(row: Mapping[str, Any]) -> Point:
@@ -57,7 +66,7 @@ def _place_of(row: Row) -> tuple[Any, ...]:
     )
 
 
-RECORD = TableFile("sweeps.csv", _COLUMNS, _SHARED, point_of, _group_of, _place_of)
+RECORD = TableFile("sweeps.csv", _COLUMNS, SharedFacts, point_of, _group_of, _place_of)
 
 
 def swept(directory: Path | str = PUBLISHED) -> list[Row]:

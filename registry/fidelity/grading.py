@@ -26,7 +26,6 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from files.json_data import JsonData
 from registry.fidelity.particulars import DIMENSIONS, Purpose
 from registry.fidelity.purposes import PURPOSES
 from registry.fidelity.runnable import Departure, Part, RunnablePipeline, strongest
@@ -35,6 +34,7 @@ from registry.sensors import BASES, SENSOR
 from registry.studies import METHODS, Facts, Study
 from registry.taxonomy import NO_IMPLEMENTATION_STATED
 from survey_data.editions import SURVEY
+from survey_data.json_data import JsonData
 
 Grade = Literal["faithful", "assumed", "close", "stand-in", "none"]
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from files.json_data import JsonData
 from registry.fidelity.particulars import Conditions, Purpose
 from registry.studies import Facts, Study
+from survey_data.json_data import JsonData
 
 PURPOSES: Mapping[Purpose, str] = {
     "albedo": "under light from the Earth",

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from files.json_data import JsonData
 from registry.fidelity.purposes import DatasetCondition
 from registry.sensors import BASES, SENSOR, Basis
+from survey_data.json_data import JsonData
 
 ESSENTIAL = (*SENSOR, "extractor", "model")
 """Parts of a pipeline, each of which rests on something."""

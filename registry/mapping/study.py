@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from files.json_data import JsonData
 from registry.taxonomy import NUMERIC_ATTRIBUTES, unknown_name
 from survey_data.editions import SURVEY
+from survey_data.json_data import JsonData
 from survey_data.reported import KIND_OF, Quantity, ReportedAccuracy, reported_accuracies
 from survey_data.sources import source_named
 

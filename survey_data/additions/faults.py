@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from files.json_data import JsonData
+from survey_data.json_data import JsonData
 from survey_data.problems import SurveyImportError
 
 

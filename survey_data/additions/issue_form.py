@@ -18,8 +18,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from files.atomic import replace_file
-from files.reading import FileRefusedError
-from files.strict_json import read_json
+from files.reading import FileRefusedError, read_json
 from survey_data.additions.faults import Fault, FaultsError
 from survey_data.additions.template import empty_template
 from survey_data.problems import SurveyImportError

@@ -21,13 +21,12 @@ from pydantic import (
     field_validator,
 )
 
-from files.strict_csv import Records
 from survey_data.additions.faults import Fault, FaultsError
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name
 from survey_data.importing.bibliography import TURNING
 from survey_data.importing.writing import offered_text
 from survey_data.nearest import one_of
-from survey_data.table_records import read_table_records
+from survey_data.table_records import Records, read_table_records
 from survey_data.validation.extension import SHARED
 from survey_data.validation.validate import check_records
 

@@ -9,7 +9,6 @@ from typing import Any, Literal
 
 import pandas as pd
 
-from files.json_data import JsonData
 from survey_data import labels
 from survey_data.findings.completions import fewest_to_hold
 from survey_data.findings.evidence import NO_MAJORITY, OCCURRING, Tally, settled_by
@@ -24,6 +23,7 @@ from survey_data.findings.grammar import (
     passes,
 )
 from survey_data.findings.unknown_cells import possibilities
+from survey_data.json_data import JsonData
 
 Verdict = Literal["reproduced", "partly", "tied", "contradicted", "undecidable"]
 VERDICTS: tuple[Verdict, ...] = ("reproduced", "partly", "tied", "contradicted", "undecidable")

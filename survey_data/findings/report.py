@@ -12,7 +12,6 @@ from typing import Any
 
 import pandas as pd
 
-from files.problems import Problem
 from survey_data.accuracy_classes import ClassDisagreement, class_disagreements
 from survey_data.findings.checks import (
     VERDICTS,
@@ -23,6 +22,7 @@ from survey_data.findings.checks import (
     study_values,
 )
 from survey_data.findings.grammar import Vocabulary
+from survey_data.problems import Problem
 from survey_data.tables import SurveyTables
 from survey_data.validation.rules import count_rows
 

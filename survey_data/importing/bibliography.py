@@ -29,8 +29,7 @@ from bibtexparser.splitter import Splitter
 from pylatexenc.latex2text import LatexNodes2Text
 from rispy.config import TAG_KEY_MAPPING
 
-from files.reading import FileRefusedError
-from files.strict_json import parse_json
+from files.reading import FileRefusedError, parse_json
 from survey_data.importing.writing import offered_text
 from survey_data.problems import SurveyImportError
 

@@ -11,7 +11,6 @@ from typing import Any, Literal
 import pandas as pd
 from pydantic import BaseModel, ConfigDict
 
-from files.problems import Problem
 from survey_data.importing.columns import ColumnMapping
 from survey_data.importing.studies import StudyFinder, StudyNotFoundError, cell_text
 from survey_data.importing.values import (
@@ -20,7 +19,7 @@ from survey_data.importing.values import (
     ValueReader,
     column_unit,
 )
-from survey_data.problems import SurveyImportError
+from survey_data.problems import Problem, SurveyImportError
 from survey_data.reported import KIND_OF, UNSPECIFIED
 from survey_data.tables import RESTING, SurveyTables
 

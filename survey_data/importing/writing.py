@@ -7,15 +7,14 @@ from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-from files.atomic import restore
+from files.atomic import UnreplaceableError, restore, temporary_directory
 from files.locks import wait_for_lock
 from files.manifest import write_recorded
 from files.reading import FileRefusedError, read_bytes
-from files.strict_csv import read_records
-from files.temporary import temporary_directory
 from survey_data.descriptor import DESCRIPTOR_FILE, column_types, file_name, table_names
 from survey_data.editions import FOLDER
 from survey_data.problems import SurveyImportError
+from survey_data.table_records import read_records
 from survey_data.validation.validate import validate
 
 
@@ -83,7 +82,7 @@ def write_valid(folder: Path, texts: Mapping[str, str], *, together: str | None 
         require_valid(folder, texts)
         contents = {file_name(table): text for table, text in texts.items()}
         write_recorded(folder, contents, together=together)
-    except FileRefusedError as error:
+    except (FileRefusedError, UnreplaceableError) as error:
         raise SurveyImportError(str(error)) from error
     except OSError as error:
         raise _unwritable(folder, error) from error

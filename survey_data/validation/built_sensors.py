@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from files.problems import Problem
+from survey_data.problems import Problem
 from survey_data.tables import FIRST_ROW
 from survey_data.validation.cells import Frames, Rule, problem, texts
 

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator, Mapping
 
 import pandas as pd
 
-from files.problems import Problem
 from survey_data.descriptor import file_name
+from survey_data.problems import Problem
 from survey_data.tables import FIRST_ROW
 
 Frames = Mapping[str, pd.DataFrame]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from files.problems import Problem
 from survey_data.labels import LABEL
+from survey_data.problems import Problem
 from survey_data.sources import Host, fault
 from survey_data.validation.cells import Frames, Rule, problem, texts
 

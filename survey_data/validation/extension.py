@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from datetime import date
 
-from files.problems import Problem
 from survey_data.descriptor import file_name
 from survey_data.editions import BY_STUDY
+from survey_data.problems import Problem
 from survey_data.validation.cells import Frames, Rule, known_values, problem, texts
 
 #: Tables that a rule of studies may look at beside those of the edition.

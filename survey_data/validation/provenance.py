@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from files.problems import Problem
 from survey_data.findings.grammar import Vocabulary
+from survey_data.problems import Problem
 from survey_data.tables import RESTING
 from survey_data.validation.cells import Frames, Rule, known_values, problem, texts
 

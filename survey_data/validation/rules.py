@@ -12,12 +12,12 @@ from collections.abc import Iterator
 
 import pandas as pd
 
-from files.problems import Problem
 from survey_data.accuracy_classes import class_disagreements
 from survey_data.descriptor import primary_key
 from survey_data.findings.grammar import FindingSyntaxError, Vocabulary, parse_clause
 from survey_data.importing.values import states_nothing
 from survey_data.nearest import one_of
+from survey_data.problems import Problem
 from survey_data.reported import KIND_OF
 from survey_data.tables import FIRST_ROW
 from survey_data.validation import built_sensors, citations, provenance

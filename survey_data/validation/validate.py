@@ -13,10 +13,7 @@ from typing import Any
 
 import frictionless
 
-from files.problems import Problem
-from files.reading import FileRefusedError
-from files.strict_csv import Records
-from files.strict_json import read_json
+from files.reading import FileRefusedError, read_json
 from survey_data.descriptor import (
     DATA_DIRECTORY,
     DESCRIPTOR_FILE,
@@ -27,7 +24,8 @@ from survey_data.descriptor import (
     table_names,
 )
 from survey_data.nearest import one_of
-from survey_data.table_records import read_table_records
+from survey_data.problems import Problem
+from survey_data.table_records import Records, read_table_records
 from survey_data.tables import MAY_BE_EMPTY, typed_frame
 from survey_data.validation.rules import check_rules
 

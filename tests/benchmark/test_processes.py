@@ -18,7 +18,7 @@ PROGRAM = """
 import sys, time
 from pathlib import Path
 from benchmark.processes import call_to_end
-from files.temporary import temporary_directory_beside
+from files.atomic import temporary_directory_beside
 
 def main():
     with temporary_directory_beside(Path(sys.argv[1]) / "out"):

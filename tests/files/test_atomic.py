@@ -6,6 +6,7 @@ import errno
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,7 @@ from files.atomic import (
     replace_file,
     replace_in_directory,
     require_replaceable_directory,
+    temporary_directory_beside,
 )
 
 ROOT = Path(survey_data.__file__).parent.parent
@@ -234,8 +236,8 @@ def test_what_cannot_be_replaced_as_a_whole_is_refused(
     monkeypatch.chdir(tmp_path / "work")
     wrong = {
         tmp_path / "file": "this is a file",
-        Path(): "this is the current directory",
-        Path(".."): "this is above the current one",
+        Path(): "this is the current directory or above it",
+        Path(".."): "this is the current directory or above it",
         Path("/"): "the root of a file system",
     }
     for place, said in wrong.items():
@@ -252,3 +254,18 @@ def test_what_cannot_be_replaced_as_a_whole_is_refused(
     with pytest.raises(UnreplaceableError, match="at most 1 files"):
         replace_in_directory(tmp_path / "held", FILES)
     assert names(tmp_path / "held") == ["a", "b"]
+
+
+def test_what_a_kill_left_a_day_ago_is_removed_and_nothing_else(tmp_path: Path) -> None:
+    (tmp_path / "kept").mkdir()
+    (tmp_path / ".out.link.sunatlas").symlink_to("kept")
+    old = time.time() - 90_000
+    for name in (".out.abc.sunatlas", ".table.csv.abc.sunatlas", ".out.before", "out.sunatlas"):
+        (tmp_path / name).mkdir()
+        os.utime(tmp_path / name, (old, old))
+    (tmp_path / ".out.new.sunatlas").mkdir()
+    expected = set(names(tmp_path)) - {".out.abc.sunatlas"}
+    with temporary_directory_beside(tmp_path / "out") as made:
+        assert made.stat().st_mode & 0o777 == 0o700
+        assert set(names(tmp_path)) == {*expected, made.name}
+    assert set(names(tmp_path)) == expected

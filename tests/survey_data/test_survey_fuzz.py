@@ -65,7 +65,7 @@ def test_random_cells_give_problems_or_stay_valid(copy: Any, data: st.DataObject
 @given(st.binary(max_size=300))
 @settings(max_examples=150, **SETTINGS)
 def test_any_bytes_are_read_or_reported(copy: Any, content: bytes) -> None:
-    from files.strict_csv import read_records
+    from survey_data.table_records import read_records
 
     path = copy.path("claims")
     path.write_bytes(content)

@@ -12,9 +12,9 @@ import pytest
 
 import survey_data
 from files.csv_writing import csv_text
-from files.strict_csv import read_records
 from survey_data.accuracy_classes import accuracy_class
 from survey_data.descriptor import DATA_DIRECTORY, column_types, file_name, table_names
+from survey_data.table_records import read_records
 
 
 def test_the_package_passes_frictionless_from_its_files() -> None:

@@ -87,7 +87,7 @@ FORM = {
 
 @pytest.mark.parametrize("kind", FORM)
 def test_broken_form_is_located_in_every_table(kind: str, copy: Any) -> None:
-    from files.strict_csv import read_records
+    from survey_data.table_records import read_records
 
     corrupt, row = FORM[kind]
     for table in ALL:

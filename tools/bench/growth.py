@@ -22,7 +22,7 @@ from benchmark.plan.parts import Parts
 from benchmark.progress import silent
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import runner
-from files.temporary import temporary_directory
+from files.atomic import temporary_directory
 from registry.answer import Answer
 from registry.design_table import DesignTable
 from registry.judging import Question

@@ -25,9 +25,8 @@ from api.deposit.archives.server import ArchiveError
 from api.deposit.package import NAME
 from api.deposit.packing import pack
 from api.deposit.verification import verify
-from files.atomic import replace_file
+from files.atomic import replace_file, temporary_directory_beside
 from files.checksums import contents
-from files.temporary import temporary_directory_beside
 
 #: Files that are also sent by themselves, to be read or searched without the zip.
 APART = (

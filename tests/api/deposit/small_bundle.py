@@ -16,8 +16,8 @@ from api.deposit.packing import pack
 from api.deposit.terms import terms
 from api.metadata.citation import authors
 from api.metadata.identity import Identity, identity
+from files.atomic import temporary_directory
 from files.checksums import contents, sha256, write_checksums
-from files.temporary import temporary_directory
 
 ZIP = "bundle.zip"
 PEOPLE = """\

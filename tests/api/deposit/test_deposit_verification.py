@@ -11,7 +11,7 @@ from api.deposit.package import DESCRIPTOR
 from api.deposit.verification import verify
 from files.checksums import (
     CHECKSUMS,
-    ChecksumFileError,
+    FileRefusedError,
     read_checksums,
     sha256,
     write_checksums,
@@ -213,5 +213,5 @@ def test_a_wrong_table_is_found_though_its_checksum_holds(bundle):
 @pytest.mark.parametrize("line", ["abc  README.md", f"{'0' * 64}  ../secret"])
 def test_a_list_of_checksums_that_is_none_is_refused(bundle, line):
     (bundle / CHECKSUMS).write_text(f"{line}\n")
-    with pytest.raises(ChecksumFileError, match="line 1"):
+    with pytest.raises(FileRefusedError, match="line 1"):
         read_checksums(bundle)

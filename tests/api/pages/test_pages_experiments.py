@@ -21,16 +21,19 @@ MODULE = '''
 """Powers of small numbers."""
 
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
+
+from pydantic import BaseModel
 
 from benchmark.plot_style import svg
 from benchmark.results.row_file import Row, RowFile
 from benchmark.running.experiment import RecordedExperiment
-from files.strict_json import require_members
 
 
-def _require_row(path: Path, row: object) -> None:
-    require_members(row, path, {"cell": str, "cube": int, "parts": list, "key": str})
+class CubeRow(BaseModel, extra="forbid"):
+    cell: str
+    cube: int
+    parts: list[int]
+    key: str
 
 
 class Cubes(RecordedExperiment[str]):
@@ -38,7 +41,7 @@ class Cubes(RecordedExperiment[str]):
 
     name = "cubes"
     title = "Cubes of numbers"
-    record = RowFile("cubes.json", "cubes", 1, lambda row: row["cell"], _require_row)
+    record = RowFile("cubes.json", "cubes", 1, lambda row: row["cell"], CubeRow)
 
     def keys(self) -> Mapping[str, str]:
         return dict.fromkeys("234", "made up")

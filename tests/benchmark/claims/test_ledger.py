@@ -152,7 +152,7 @@ def test_a_plan_is_of_rules_and_trials_and_of_no_words():
 
 def test_a_broken_file_is_named(tmp_path):
     (tmp_path / RECORD.name).write_text('{"schema":1,"claims":[{"claim": "C04"}]}')
-    with pytest.raises(StoreError, match=r"claims\.json: claims, row 1: the member"):
+    with pytest.raises(StoreError, match=r"claims\.json: claims/0/values: Field"):
         read_outcomes(tmp_path)
 
 

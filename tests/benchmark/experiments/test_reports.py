@@ -30,7 +30,7 @@ class Squares(RecordedExperiment[str]):
     """Squares of whole numbers; what they come to is no matter of the cell alone."""
 
     name = "squares"
-    record = RowFile("squares.json", "squares", 1, lambda row: str(row["cell"]), lambda *_: None)
+    record = RowFile("squares.json", "squares", 1, lambda row: str(row["cell"]), dict)
     off = 0.0
 
     def keys(self) -> dict[str, str]:

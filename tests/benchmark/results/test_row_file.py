@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from fake_results import pin
 from pyarrow import parquet
+from pydantic import BaseModel
 
 from benchmark.results import record_manifest
 from benchmark.results.csv_tables import StoreError, number, word
@@ -17,10 +18,15 @@ from benchmark.results.parquet_tables import parquet_bytes
 from benchmark.results.pins import pins_text, read_pins
 from benchmark.results.row_file import Row, TableFile
 
+
+class KeyOfGroup(BaseModel, extra="forbid"):
+    key: str
+
+
 TABLE: TableFile[str] = TableFile(
     "squares.csv",
     {"cell": word, "group": word, "square": number},
-    {"key": str},
+    KeyOfGroup,
     lambda row: str(row["cell"]),
     lambda row: str(row["group"]),
     lambda row: str(row["cell"]),
@@ -56,9 +62,9 @@ def test_a_cell_that_is_there_twice_is_refused_by_its_line(tmp_path: Path) -> No
     ("text", "said"),
     [
         ("{", "not JSON"),
-        ("[]", "groups: expected an object, got an array"),
-        ('{"odd":{"clef":"x"}}', "the member 'key' is missing"),
-        ('{"odd":{"key":5}}', "expected text, got a whole"),
+        ("[]", "Input should be a valid dictionary"),
+        ('{"odd":{"clef":"x"}}', "odd/key: Field required"),
+        ('{"odd":{"key":5}}', "odd/key: Input should be a valid string, got 5"),
     ],
 )
 def test_what_groups_share_is_refused_where_it_cannot_be_read(

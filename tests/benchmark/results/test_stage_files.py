@@ -132,7 +132,7 @@ def test_what_else_is_in_the_folder_is_neither_counted_nor_removed(files):
     for path in others:
         path.write_bytes(b"0" * 100)
     assert files.costs() == {key(1): 2.0}
-    (path,) = (path for path in files.directory.glob("01/*.2000"))
+    (path,) = (path for path in files.directory.glob("01/*.2000.*"))
     assert files.size() == path.stat().st_size
     StageFiles(files.directory, 1).make_room()
     assert files.keys() == set()

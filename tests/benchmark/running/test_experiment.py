@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from pydantic import BaseModel
 
 from benchmark.contract import UnknownNameError
 from benchmark.experiments import __main__ as command
@@ -24,16 +25,17 @@ from benchmark.running.experiment import (
     repeat_at_random,
     update,
 )
-from files.strict_json import require_members
 
 
-def _require(path: Path, row: object) -> None:
-    require_members(row, path, {"cell": str, "square": float, "key": str})
+class SquareRow(BaseModel, extra="forbid"):
+    cell: str
+    square: float
+    key: str
 
 
 class Squares(RecordedExperiment[str]):
     name = "squares"
-    record = RowFile("squares.json", "squares", 1, lambda row: str(row["cell"]), _require)
+    record = RowFile("squares.json", "squares", 1, lambda row: str(row["cell"]), SquareRow)
     wanted: tuple[str, ...] = ("1", "2", "3")
     code = "first"
 
@@ -100,9 +102,9 @@ def test_cells_are_asked_for_by_name(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("edit", "said"),
     [
-        (lambda held: held["squares"][1].pop("square"), "row 2.*'square'"),
+        (lambda held: held["squares"][1].pop("square"), "squares/1/square: Field required"),
         (lambda held: held["squares"].append(held["squares"][0]), "row 4: 1 is there twice"),
-        (lambda held: held.update(schema=2), "expected schema 1, got 2"),
+        (lambda held: held.update(schema=2), "expected schema 1 and squares, got 2"),
     ],
 )
 def test_a_row_that_is_none_is_named(tmp_path: Path, edit: Any, said: str) -> None:

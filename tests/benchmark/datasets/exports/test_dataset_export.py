@@ -23,7 +23,7 @@ from benchmark.datasets.export_verification import verify
 from benchmark.datasets.samples import samples_hash
 from benchmark.metrics.separation import SIGNIFICANT_DIGITS
 from benchmark.results.store import PUBLISHED, Store
-from files.checksums import CHECKSUMS, ChecksumFileError, write_checksums
+from files.checksums import CHECKSUMS, FileRefusedError, write_checksums
 
 FEW = 5
 PINS = Store(PUBLISHED).pins()
@@ -275,7 +275,7 @@ def test_a_directory_that_is_no_export_is_refused(tmp_path, card, says):
     with pytest.raises(ExportError, match=says):
         verify(tmp_path)
     (tmp_path / CHECKSUMS).write_text("00  x\n")
-    with pytest.raises(ChecksumFileError):
+    with pytest.raises(FileRefusedError):
         verify(tmp_path)
 
 

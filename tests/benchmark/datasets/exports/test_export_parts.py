@@ -16,7 +16,7 @@ from benchmark.datasets.export_arrays import columns_of, read_archive, write_arc
 from benchmark.datasets.export_verification import verify
 from files.checksums import (
     CHECKSUMS,
-    ChecksumFileError,
+    FileRefusedError,
     contents,
     differences,
     read_checksums,
@@ -122,7 +122,7 @@ def test_a_line_that_is_no_checksum_is_named_by_its_number(
 ) -> None:
     with (directory / CHECKSUMS).open("a") as file:
         file.write(line + "\n")
-    with pytest.raises(ChecksumFileError, match=rf", line {number}: "):
+    with pytest.raises(FileRefusedError, match=rf", line {number}: "):
         read_checksums(directory)
 
 
