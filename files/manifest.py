@@ -79,7 +79,8 @@ def write_recorded(
             digests[name] = hashlib.sha256(data).hexdigest()
         if _digest(folder / name) != digests.get(name):
             changed[name] = data
-    if listed is not None or start:
+    recorded = listed is not None or start
+    if recorded and digests != _listed(folder):
         replace_file(folder / NEXT, checksum_text(digests))
     if together is not None and changed:
         inner = {PurePosixPath(name).name: data for name, data in changed.items()}
@@ -91,7 +92,7 @@ def write_recorded(
                 (folder / name).unlink()
             else:
                 replace_file(folder / name, data)
-    if listed is not None or start:
+    if recorded:
         finish_interrupted_write(folder)
     return bool(changed)
 

@@ -169,7 +169,7 @@ class StageFiles:
                 if folder.is_dir() and len(folder.name) == _FOLDER:
                     for entry in os.scandir(folder.path):
                         if not entry.name.startswith("."):
-                            with suppress(OSError, ValueError):
+                            with suppress(OSError, ValueError, IndexError):
                                 status = entry.stat()
                                 cost = int(entry.name.split(".")[1])
                                 yield _Entry(
