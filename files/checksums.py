@@ -96,7 +96,7 @@ def differences(
         ):
             continue
         if found is None:
-            wrong.append((name, "missing"))
+            wrong.append((name, "listed but missing" if name in listed else "missing"))
         elif name not in listed:
             wrong.append((name, "not listed"))
         else:

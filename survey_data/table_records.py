@@ -73,7 +73,7 @@ def read_records(path: Path, columns: Sequence[str]) -> Records:
         except csv.Error as error:
             flaws.append((number, 0, f"broken CSV: {error}"))
             continue
-        found = _flaws(cells, columns) if number > 1 else _header_flaws(cells, columns)
+        found = _flaws(cells, columns, line) if number > 1 else _header_flaws(cells, columns)
         flaws += [(number, index, message) for index, message in found]
         if number == 1:
             records.header = cells
@@ -94,7 +94,7 @@ def _header_flaws(header: list[str], columns: Sequence[str]) -> list[tuple[int, 
     return [(len(columns), f"unknown column {header[-1]}")] if len(header) > len(columns) else []
 
 
-def _flaws(cells: list[str], columns: Sequence[str]) -> list[tuple[int, str]]:
+def _flaws(cells: list[str], columns: Sequence[str], line: str) -> list[tuple[int, str]]:
     if not any(cells):
         return [(0, "the row is blank")]
     if len(cells) != len(columns):
@@ -105,6 +105,8 @@ def _flaws(cells: list[str], columns: Sequence[str]) -> list[tuple[int, str]]:
             flaws.append((index, f"space around the value {cell!r}"))
         elif len(cell) > _LONGEST_CELL:
             flaws.append((index, f"longer than {_LONGEST_CELL} characters"))
+        elif '"' in cell and cell.replace('"', '""') not in line:
+            flaws.append((index, f"broken CSV: a stray quote in {cell[:80]!r}"))
         elif not cell.isprintable():
             flaws.append((index, f"a control character in {cell[:80]!r}"))
     return flaws

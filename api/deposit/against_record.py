@@ -32,7 +32,8 @@ from benchmark.datasets.pins import Pin, Place
 from benchmark.progress import ProgressCallback, silent
 from benchmark.results.store import PUBLISHED, Store
 from files.atomic import temporary_directory
-from files.checksums import FileRefusedError, contents
+from files.checksums import contents
+from files.reading import FileRefusedError
 
 
 def differences(

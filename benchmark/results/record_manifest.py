@@ -11,6 +11,7 @@ from benchmark.results.csv_tables import StoreError
 from benchmark.results.times import MACHINE, TIMES
 from files import manifest
 from files.reading import FileRefusedError
+from survey_data.problems import Problem
 
 #: Takes over what was changed by hand, in the record and in the facts.
 COMMAND = "python -m benchmark.suites.manifest_renewal"
@@ -37,8 +38,8 @@ def names(folder: Path) -> tuple[str, ...]:
     )
 
 
-def changes(folder: Path, *, required: bool = False) -> list[tuple[str, str]]:
-    """Return each file of a record that no command wrote so, and why; nothing where all holds.
+def changes(folder: Path, *, required: bool = False) -> list[Problem]:
+    """Say what of a record no command wrote so, by file; an empty list where all holds.
 
     Parameters
     ----------
@@ -49,14 +50,15 @@ def changes(folder: Path, *, required: bool = False) -> list[tuple[str, str]]:
     """
     if not (required or (folder / manifest.FILE).is_file()):
         return []
-    return manifest.differences(folder, names(folder), required=required)
+    found = manifest.differences(folder, names(folder), required=required)
+    return [Problem(file, None, None, said) for file, said in found]
 
 
 def require_unchanged(folder: Path, *, required: bool = False) -> None:
     """Raise StoreError, naming the first place, where a record is not as commands wrote it."""
     if problems := changes(folder, required=required):
         more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-        said = f"{folder}: {': '.join(problems[0])}{more}"
+        said = f"{folder}: {problems[0]}{more}"
         raise StoreError(f"{said}; restore it, or take it over with `{COMMAND}`")
 
 

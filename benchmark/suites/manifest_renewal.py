@@ -28,10 +28,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     records = (options.directory,) if options.directory else (PUBLISHED, PUBLISHED_STUDIES)
     if options.check:
-        found = [str(problem) for problem in facts_manifest.changes()]
+        found = facts_manifest.changes()
         for record in records:
             required = record in (PUBLISHED, PUBLISHED_STUDIES)
-            found += map(": ".join, record_manifest.changes(record, required=required))
+            found += record_manifest.changes(record, required=required)
         for problem in found:
             sys.stderr.write(f"{problem}\n")
         return 1 if found else 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -42,7 +43,7 @@ def test_a_change_by_hand_is_named_and_stays_one_when_a_command_writes_others(fo
     (folder / "table.csv").mkdir()
     (folder / "new.csv").write_text("a\n")
     assert differences(folder, (*NAMES, "new.csv")) == [
-        ("inner/said.json", "missing"),
+        ("inner/said.json", "listed but missing"),
         ("new.csv", "not listed"),
         ("table.csv", "not a regular file"),
     ]
@@ -72,7 +73,7 @@ def test_what_a_kill_leaves_is_no_change_by_hand_and_the_next_run_ends_it(
     for owner, name in acts:
         real = getattr(owner, name)
 
-        def step(*given, real=real, **named):
+        def step(*given: Any, real: Any = real, **named: Any) -> Any:
             if next(left, None) is None:
                 raise KilledError
             return real(*given, **named)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 import threading
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -29,7 +30,7 @@ def place(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def holder(place: Path):
+def holder(place: Path) -> Iterator[subprocess.Popen[str]]:
     """A process that holds the place until its standard input ends."""
     command = [sys.executable, "-c", LOCK_AND_WAIT, str(place)]
     with subprocess.Popen(

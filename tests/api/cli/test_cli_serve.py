@@ -189,4 +189,4 @@ def test_damaged_facts_are_refused_in_one_line_before_anything_is_served(monkeyp
         assert shown.exit_code == 1
         assert shown.stdout == ""
         assert shown.stderr.count("\n") == 1
-        assert "attributes.csv: the file is not as its command wrote it" in shown.stderr
+        assert "attributes.csv: SHA-256 is " in shown.stderr

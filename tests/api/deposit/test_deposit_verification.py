@@ -11,11 +11,11 @@ from api.deposit.package import DESCRIPTOR
 from api.deposit.verification import verify
 from files.checksums import (
     CHECKSUMS,
-    FileRefusedError,
     read_checksums,
     sha256,
     write_checksums,
 )
+from files.reading import FileRefusedError
 from tests.api.deposit import small_bundle
 from tests.api.deposit.test_deposit import files
 

@@ -69,7 +69,7 @@ def test_a_number_changed_by_hand_is_named_by_its_file(made, tmp_path):
     path.write_text(path.read_text().replace("0.", "1.", 1))
     [difference] = check(directory, stored_only=True)
     assert (difference.file, difference.cell) == (SCORES, "file")
-    with pytest.raises(StoreError, match=r"not as its command wrote it.*take.*`python"):
+    with pytest.raises(StoreError, match=r"SHA-256 is .*take.*`python"):
         update(directory, progress=silent, parts=PARTS)
 
 

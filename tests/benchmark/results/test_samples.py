@@ -96,7 +96,7 @@ def test_the_manifest_names_a_changed_file(record: Path) -> None:
     assert not record_manifest.changes(record, required=True)
     path = record / "samples" / "lamp.parquet"
     path.write_bytes(path.read_bytes() + b"\n")
-    assert [file for file, _ in record_manifest.changes(record)] == ["samples/lamp.parquet"]
+    assert [problem.file for problem in record_manifest.changes(record)] == ["samples/lamp.parquet"]
 
 
 def test_cells_not_measured_now_stay_and_unwanted_ones_go(record: Path) -> None:

@@ -23,7 +23,8 @@ from benchmark.datasets.export_verification import verify
 from benchmark.datasets.samples import samples_hash
 from benchmark.metrics.separation import SIGNIFICANT_DIGITS
 from benchmark.results.store import PUBLISHED, Store
-from files.checksums import CHECKSUMS, FileRefusedError, write_checksums
+from files.checksums import CHECKSUMS, write_checksums
+from files.reading import FileRefusedError
 
 FEW = 5
 PINS = Store(PUBLISHED).pins()

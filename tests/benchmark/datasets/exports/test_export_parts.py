@@ -16,12 +16,12 @@ from benchmark.datasets.export_arrays import columns_of, read_archive, write_arc
 from benchmark.datasets.export_verification import verify
 from files.checksums import (
     CHECKSUMS,
-    FileRefusedError,
     contents,
     differences,
     read_checksums,
     write_checksums,
 )
+from files.reading import FileRefusedError
 
 ARRAYS = {
     "observations": np.arange(8.0).reshape(2, 4) / 3,
