@@ -43,8 +43,14 @@ _MEMBERS = frozenset(
         *("extractor", "compensations", "model", DIGEST),
     }
 )
-#: Kinds of NumPy's types that a calibration's arrays may have: numbers, truth values, text.
-_KINDS = "biufU"
+#: Entries of arrays by kind of NumPy's types: truth values, numbers, text.
+_ENTRIES: Mapping[str, set[type]] = {
+    "b": {bool},
+    "i": {int},
+    "u": {int},
+    "f": {int, float},
+    "U": {str},
+}
 
 CONVENTIONS = {
     "sun": "unit vector from the sensor to the Sun, sensor frame, +z the boresight",
@@ -52,6 +58,9 @@ CONVENTIONS = {
     "pixels": "centres at integers, order (x, y), x along columns",
     "units": "in the names: _deg, _mm, _px, _s, _K, _nT",
 }
+
+#: Beyond any finite number of a calibration.
+_LARGEST = 1e20
 
 #: What a document leads to that fits no class here.
 _MISFITS = (
@@ -318,16 +327,31 @@ def stage_of(stored: Mapping[str, Any], known: Mapping[str, type[Any]]) -> Stage
             f"the calibration is of version {version} of {name}; here is version "
             f"{stage_class.about.version}: calibrate anew"
         )
-    made = stage_class(**{key: _value(value) for key, value in stored["parameters"].items()})
+    made = stage_class(**_members(stage_class, stored["parameters"]))
     fitted = {field.name for field in dataclasses.fields(made) if not field.init}
     if fitted != set(stored["fitted"]):
         raise UnreadableCalibrationError(
             f"{name} is fitted with {', '.join(sorted(fitted))}; got "
             f"{', '.join(sorted(stored['fitted']))}"
         )
-    for key, value in stored["fitted"].items():
-        object.__setattr__(made, key, _value(value))
+    for key, value in _members(stage_class, stored["fitted"]).items():
+        object.__setattr__(made, key, value)
     return cast("Stage", made)
+
+
+def _members(stage_class: Any, stored: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values by name; one that is no value of its member is refused with the name."""
+    kinds = {field.name: field.type for field in dataclasses.fields(stage_class)}
+    found = {}
+    for key, value in stored.items():
+        try:
+            found[key] = _value(value)
+            if isinstance(value, bool) and kinds.get(key) in {"float", "int", float, int}:
+                raise TypeError(f"expected a number, got {value}")
+        except _MISFITS as error:
+            said = f"the calibration is damaged: {error} ({stage_class.about.name}, {key})"
+            raise UnreadableCalibrationError(said) from error
+    return found
 
 
 def _plain(value: Any) -> Any:
@@ -371,12 +395,11 @@ def _value(stored: Any) -> Any:
     if isinstance(stored, list):
         raise TypeError("a bare list")
     if not isinstance(stored, dict):
+        if isinstance(stored, int | float) and abs(stored) > _LARGEST:
+            raise ValueError(f"expected a number of at most {_LARGEST:g}, got {stored!r:.40}")
         return stored
     if "array" in stored:
-        kind = np.dtype(stored["dtype"])
-        if kind.kind not in _KINDS:
-            raise TypeError(f"an array of {stored['dtype']!r}")
-        return np.array([_value(v) for v in stored["array"]], dtype=kind).reshape(stored["shape"])
+        return _array(stored)
     if "float" in stored:
         return float(stored["float"])
     if "tuple" in stored:
@@ -390,6 +413,16 @@ def _value(stored: Any) -> Any:
     if not (isinstance(kind, type) and dataclasses.is_dataclass(kind)):
         raise UnreadableCalibrationError(f"a calibration holds no {stored['object']}")
     return kind(**{key: _value(v) for key, v in stored["fields"].items()})
+
+
+def _array(stored: Mapping[str, Any]) -> Any:
+    kind = np.dtype(stored["dtype"])
+    if kind.kind not in _ENTRIES:
+        raise TypeError(f"an array of {stored['dtype']!r}")
+    values = [_value(v) for v in stored["array"]]
+    if wrong := [v for v in values if type(v) not in _ENTRIES[kind.kind]]:
+        raise TypeError(f"expected an array of {kind}, got {wrong[0]!r} in it")
+    return np.array(values, dtype=kind).reshape(stored["shape"])
 
 
 def _without_none(values: Mapping[str, Any]) -> dict[str, Any]:

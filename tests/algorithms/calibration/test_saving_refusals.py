@@ -91,3 +91,34 @@ def test_a_file_may_be_as_large_as_the_limit_and_no_larger(
     monkeypatch.setattr(documents, "LARGEST_BYTES", 5)
     with pytest.raises(DocumentError, match="at most 5 bytes, got more"):
         read_document(path)
+
+
+@pytest.mark.parametrize(
+    ("forged", "said"),
+    [
+        (
+            {"focal_length_mm": 1e29},
+            "expected a number of at most 1e.20, got 1e.29 .spm, focal_length_mm",
+        ),
+        ({"focal_length_mm": True}, "expected a number, got True .spm, focal_length_mm"),
+    ],
+)
+def test_a_forged_number_is_refused_by_name(
+    pipeline: Pipeline, forged: dict[str, Any], said: str
+) -> None:
+    """With a digest that fits: who forges a document can compute it."""
+    stored = json.loads(json.dumps(document(pipeline)))
+    stored["model"]["parameters"].update(forged)
+    stored["digest"] = digest_of(stored)
+    with pytest.raises(UnreadableCalibrationError, match=said):
+        pipeline_of(stored)
+
+
+@pytest.mark.parametrize("entry", [True, "1", 1e29, None])
+def test_a_forged_entry_of_an_array_is_refused_by_name(pipeline: Pipeline, entry: object) -> None:
+    stored = json.loads(json.dumps(document(pipeline)))
+    array = {"array": [0.5, entry], "shape": [2], "dtype": "f8"}
+    stored["model"]["parameters"]["focal_length_mm"] = array
+    stored["digest"] = digest_of(stored)
+    with pytest.raises(UnreadableCalibrationError, match="expected .* .spm, focal_length_mm"):
+        pipeline_of(stored)
