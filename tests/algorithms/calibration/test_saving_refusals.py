@@ -120,5 +120,5 @@ def test_a_forged_entry_of_an_array_is_refused_by_name(pipeline: Pipeline, entry
     array = {"array": [0.5, entry], "shape": [2], "dtype": "f8"}
     stored["model"]["parameters"]["focal_length_mm"] = array
     stored["digest"] = digest_of(stored)
-    with pytest.raises(UnreadableCalibrationError, match="expected .* .spm, focal_length_mm"):
+    with pytest.raises(UnreadableCalibrationError, match=r"expected .* .spm, focal_length_mm"):
         pipeline_of(stored)
