@@ -228,7 +228,7 @@ def test_a_circle_of_unknown_radius_is_found(x, y, radius):
 
 
 def test_opencv_and_the_printed_accumulator_find_the_same_circle():
-    """Brute force over all centres, radii and edge pixels; both at whole cells."""
+    """alg:CHT by brute force over all centres, radii and edge pixels; both at whole cells."""
     for n, place in enumerate(np.random.default_rng(6).uniform(24, 36, (4, 2))):
         frame = discs([place], 8.0, seed=n)
         found = HoughCircle().circles(frame)[0]

@@ -255,23 +255,6 @@ def test_tracking_keeps_a_code_that_one_frame_no_longer_tells(which):
 # Making them
 
 
-def test_parameters_come_from_the_mask():
-    design = SensorGeometry(
-        focal_length_mm=1.0,
-        pixel_pitch_mm=0.01,
-        aperture_width_mm=0.16,
-        aperture_shape="round",
-        apertures=((-0.4, 0.0, 0.16), (0.4, 0.1, 0.16)),
-    )
-    expected = ((-40.0, 0.0, 16.0), (40.0, 10.0, 16.0))
-    for method in (MultipleCentroids, MeanShift, ImageCorrelation):
-        made = method.for_sensor(design)
-        assert made.apertures_px == expected
-        assert made.blur_px == pytest.approx(0.93)
-    assert MeanShift.for_sensor(design).bandwidth_px == pytest.approx(16.93)
-    assert ImageCorrelation.for_sensor(design).correlations == 16
-
-
 @pytest.mark.parametrize("method", [MultipleCentroids, MeanShift, ImageCorrelation])
 @pytest.mark.parametrize(
     ("wrong", "reason"),

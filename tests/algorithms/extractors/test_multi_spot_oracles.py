@@ -1,6 +1,5 @@
 """Multi-spot methods beside SciPy and the survey's pseudocode, written out pixel by pixel."""
 
-import itertools
 import math
 
 import numpy as np
@@ -10,14 +9,12 @@ from hypothesis import strategies as st
 from scipy import ndimage, signal
 from scipy.special import ndtr
 
-from algorithms.extractors.frames.multi_spot.aperture_pattern import nearest_distance
 from algorithms.extractors.frames.multi_spot.image_correlation import (
     ImageCorrelation,
     drawn_templates,
 )
 from algorithms.extractors.frames.multi_spot.mean_shift import MeanShift
 from algorithms.extractors.frames.multi_spot.multiple_centroids import MultipleCentroids
-from algorithms.extractors.frames.multi_spot.own_threshold_kernel import own_threshold
 from algorithms.extractors.frames.multi_spot.records import Seen
 from algorithms.extractors.frames.multi_spot.spots_kernel import segment
 
@@ -72,37 +69,7 @@ def test_spots_are_scipys_labels_of_touching_pixels(seed, density, height, width
     )
 
 
-def test_more_spots_than_there_is_room_for_are_said_so():
-    frame = np.zeros((1, 40, 40), dtype=np.uint16)
-    frame[:, 1:-1:2, 1:-1:2] = 9
-    frame.setflags(write=False)
-    spots, cuts = np.empty((1, 5, 4)), np.empty((1, 5, 3))
-    counts, cut_counts = np.zeros((2, 1), dtype=np.int64)
-    maxima, level = frame.max(axis=2), np.array([1.0])
-    segment(frame, maxima, level, 1.0, 4.0, Seen(spots, counts, cuts, cut_counts))
-    assert counts[0] == -1
-
-
-@settings(deadline=None, derandomize=True, max_examples=60)
-@given(st.lists(st.tuples(st.integers(0, 30), st.integers(0, 30)), min_size=1, max_size=12))
-def test_the_nearest_distance_is_that_of_all_pairs(points):
-    table = np.array([(x, y, 1.0) for x, y in points])
-    pairs = [math.dist(a, b) for a, b in itertools.combinations(points, 2)]
-    assert nearest_distance(table) == min(pairs, default=math.inf)
-
-
 # BCTM
-
-
-def test_the_brightest_quarter_of_a_few_pixels_is_the_brightest_of_them():
-    """Own level 0.3 of 10 where 10, 8 and 6 are lit: 7, 5 and 3 rise above it."""
-    frames = np.zeros((1, 9, 9), dtype=np.uint16)
-    frames[0, 4, 3:6] = 10, 8, 6
-    frames.setflags(write=False)  # as extractors pass them: compiled already
-    counts, spots = np.ones(1, dtype=np.int64), np.array([[[4.0, 4.0, 24.0]]])
-    own_threshold(frames, np.zeros(1), np.ones(1), 0.3, 2.0, 20.0, counts, spots)
-    assert counts[0] == 1
-    np.testing.assert_allclose(spots[0, 0], ((7 * 3 + 5 * 4 + 3 * 5) / 15, 4.0, 15.0))
 
 
 # MCAM

@@ -84,25 +84,3 @@ def test_another_array_at_the_same_address_is_another():
             found.append(found_once(array, "settings", lambda value=number: value))
             del array
     assert found == list(range(50))
-
-
-def test_settings_and_parts_of_an_array_are_told_apart():
-    array = np.random.default_rng(0).random((3, 4))
-    array.flags.writeable = False
-    with shared_patterns():
-        assert found_once(array, 1, lambda: "a") == "a"
-        assert found_once(array, 2, lambda: "b") == "b"
-        assert found_once(array[1:], 1, lambda: "c") == "c"
-        assert found_once(array[:, ::2], 1, lambda: "d") == "d"
-        assert found_once(array, 1, lambda: "e") == "a"
-
-
-def test_patterns_are_shared_until_the_outermost_sharing_ends() -> None:
-    array = np.zeros((3, 4))
-    array.setflags(write=False)
-    with shared_patterns():
-        with shared_patterns():
-            assert found_once(array, 1, lambda: "a") == "a"
-        assert found_once(array, 1, lambda: "b") == "a"
-    with shared_patterns():
-        assert found_once(array, 1, lambda: "c") == "c"

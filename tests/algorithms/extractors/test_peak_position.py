@@ -72,16 +72,6 @@ def noisy(lines, seed):
 
 
 @pytest.mark.parametrize("kind", IMAGES)
-@pytest.mark.parametrize("u", [-6.0, -1.2, -0.3, 0.0, 1e-5, 0.7, 1.0, 2.5, 7.9])
-def test_the_slope_of_an_image_is_its_difference(kind, u):
-    number, c, step = peak_fit_kernel.number_items(kind), np.array(SLIT_IMAGE), 1e-6
-    value, slope = peak_fit_kernel.image_of(u, number, c)
-    assert value == pytest.approx(image(u, kind), abs=1e-9)
-    expected = (image(u + step, kind) - image(u - step, kind)) / (2 * step)
-    assert slope == pytest.approx(expected, abs=1e-8)
-
-
-@pytest.mark.parametrize("kind", IMAGES)
 def test_the_normal_equations_are_those_of_differenced_residuals(kind):
     """Q by central differences of the printed model, for image type 3 (A and D share)."""
     truth = np.array([900.0, 700.0, 1100.0, 20.0, -10.0])  # a_1 = b_2, a_2, b_1, m_x, m_y

@@ -108,6 +108,7 @@ def test_dbcm_ignores_a_second_weaker_spot_outside_its_window():
 
 
 def mt_acm_as_printed(image, accuracy, lowest, highest):
+    """alg:MTACM1 and MTACM2 along both axes."""
     found = []
     for profile in (image.sum(axis=0).astype(float), image.sum(axis=1).astype(float)):
         floor, peak = np.median(profile), profile.max()
@@ -211,23 +212,6 @@ def test_tm_walks_from_stray_light_to_the_spot_whichever_way_it_lies(turns):
     frame = np.ascontiguousarray(np.rot90(frame, turns))
     found = TemplateMatch(width_px=13.0).extract(frame[None])
     np.testing.assert_allclose(found, [[30.0, 30.0]], rtol=0, atol=0.1)
-
-
-def test_tm_takes_its_template_from_the_sensors_aperture():
-    geometry = SensorGeometry(
-        aperture_width_mm=0.2, pixel_pitch_mm=0.01, aperture_shape="round", focal_length_mm=1.0
-    )
-    assert TemplateMatch.for_sensor(geometry) == TemplateMatch(width_px=20.0, shape="round")
-
-
-def test_the_projection_of_a_thin_aperture_has_its_size_at_every_incidence():
-    """Points of the rim carried along the Sun's direction to the plane at F: p_t of alg:TM."""
-    rim = np.column_stack([np.cos(t := np.linspace(0, 6, 50)), np.sin(t), np.zeros(50)])
-    for sun in ([0.0, 0.0, 1.0], [0.6, -0.3, 0.7]):
-        p_0, p_1 = rim + sun, rim  # a point towards the Sun, and its hole in the mask at z = 0
-        p_t = (-2.0 - p_0[:, 2:]) / (p_1[:, 2:] - p_0[:, 2:]) * (p_1 - p_0) + p_0
-        moved = p_t[:, :2] - rim[:, :2]
-        np.testing.assert_allclose(moved - moved[0], 0.0, atol=1e-12)
 
 
 def test_tm_of_another_shape_or_two_spots_is_not_found_where_that_is_asked_for():

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from algorithms.extractors.frames import template_kernel
 from algorithms.extractors.frames.template import TemplateMatch
 from benchmark.synthetic_features.frames import REFERENCE_SETS
 
@@ -17,21 +16,6 @@ GREY = TemplateMatch(width_px=16.0, binarise=False)
 
 def rms(found, centres):
     return float(np.sqrt(np.mean((found - centres) ** 2)))
-
-
-@pytest.mark.parametrize("square", [True, False])
-@pytest.mark.parametrize("centre", [(9.0, 8.0), (9.37, 8.61), (10.5, 7.5)])
-def test_the_light_inside_an_outline_is_that_of_its_samples(square, centre):
-    frame = np.random.default_rng(3).uniform(0.0, 100.0, (18, 21))
-    before = np.hstack([np.zeros((18, 1)), np.cumsum(frame, axis=1)])
-    fine = 60
-    y, x = ((np.indices((18 * fine, 21 * fine)) + 0.5) / fine - 0.5).reshape(2, -1)
-    pixels = np.repeat(np.repeat(frame, fine, axis=0), fine, axis=1).ravel()
-    off = np.abs(x - centre[0]), np.abs(y - centre[1])
-    inside = np.maximum(*off) <= 5.2 if square else np.hypot(*off) <= 5.2
-    expected = pixels[inside].sum() / fine**2
-    found = template_kernel._light_inside(before, *centre, 5.2, square)
-    assert found == pytest.approx(expected, rel=2e-3)
 
 
 @pytest.mark.compiles
@@ -66,17 +50,3 @@ def test_a_square_is_found_where_it_is():
     )
     found = TemplateMatch(width_px=12.0, shape="square", binarise=False).extract(frames)
     assert rms(found, centres) < 5e-3
-
-
-@pytest.mark.compiles
-def test_what_two_levels_do_not_find_grey_does_not_either():
-    frames, _ = DISC.frames(4)
-    frames = frames.copy()
-    frames[0] = 0
-    frames[1, 5:20, 5:20] = 2000
-    cut = frames[2][:, 30:]
-    assert np.isnan(GREY.extract(frames)[0]).all()
-    np.testing.assert_array_equal(
-        np.isnan(GREY.extract(frames)), np.isnan(TemplateMatch(width_px=16.0).extract(frames))
-    )
-    assert GREY.extract(cut[None]).shape == (1, 2)

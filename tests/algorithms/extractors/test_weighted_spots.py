@@ -133,32 +133,6 @@ def combined(away, variances, misfits=None):
     return found[0, 0], sure[0, 0], used[0]
 
 
-@pytest.mark.compiles
-def test_weights_are_one_over_the_variance_where_noise_explains_the_scatter():
-    away, variances = np.array([0.1, -0.1, 0.0]), np.array([1.0, 4.0, 2.0])
-    found, sure, used = combined(away, variances)
-    assert used.all()
-    assert found == pytest.approx(np.average(away, weights=1 / variances))
-    assert sure == pytest.approx(1 / np.sum(1 / variances))
-
-
-def test_weights_are_equal_where_the_apertures_scatter():
-    rng = np.random.default_rng(307)
-    away, variances = rng.normal(0, 1.0, 40), rng.uniform(1e-6, 1e-4, 40)
-    found, sure, used = combined(away, variances)
-    assert used.all()
-    assert found == pytest.approx(away.mean(), abs=1e-3)
-    assert sure == pytest.approx(away.var(ddof=1) / 40, rel=0.02)
-
-
-def test_a_spot_away_from_the_others_or_unlike_them_is_left_out():
-    away, variances = np.array([0.0, 0.01, -0.01, 0.02, 0.9]), np.full(5, 1e-4)
-    misfits = np.array([1.0, 1.1, 0.9, 5.0, 1.0])
-    _, _, used = combined(away, variances, misfits)
-    assert used.tolist() == [True, True, True, False, False]
-    assert np.isnan(combined(away, np.full(5, np.nan))[0])
-
-
 def test_designs_without_images_of_apertures_are_refused():
     design = SensorGeometry(
         focal_length_mm=7.0,
@@ -233,24 +207,3 @@ def test_other_light_around_a_spot_is_told_as_the_written_steps_tell_it(each):
     assert noises[0] == pytest.approx(noises[1], rel=1e-12)
     np.testing.assert_allclose(compiled[2], written[2], rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(lights[0], lights[1], rtol=1e-9)
-
-
-def test_the_slope_of_the_background_is_that_of_all_pixels_within_four_deviations():
-    """Least squares over the ring, one of whose pixels stands out by more than three."""
-    rng = np.random.default_rng(12)
-    rows, columns = np.mgrid[:17, :19].reshape(2, -1).astype(np.float64)
-    far = np.hypot(columns - 9.0, rows - 8.0)
-    light = 40.0 + 0.1 * columns - 0.06 * rows + rng.uniform(-1.0, 1.0, far.size)
-    light[far < 4.0] += 300.0
-    ring = far > 6.0
-    light[0] = light[ring].mean() + 3.7 * light[ring].std()
-    away = abs(light[0] - light[ring].mean()) / light[ring].std()
-    assert 3.2 < away < 3.9
-    pixels = np.zeros((6, far.size))
-    pixels[:4] = columns, rows, light, far
-    spot_pixels_kernel._flatten(pixels, np.array([far.size]), 6.0, np.empty(1))
-    design = np.column_stack([columns, rows, np.ones(far.size)])
-    slope = np.linalg.lstsq(design[ring], light[ring], rcond=None)[0][:2]
-    middle = np.column_stack([columns, rows]) - (9.0, 8.0)
-    expected = light - light[ring].mean() - middle @ slope
-    np.testing.assert_allclose(pixels[2], expected, rtol=0, atol=1e-9)

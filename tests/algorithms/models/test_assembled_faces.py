@@ -14,7 +14,7 @@ from algorithms.angles import separation_deg
 from algorithms.contract import UnusableDataError
 from algorithms.models.physics_informed.assembled_faces import AssembledFaces
 from algorithms.models.physics_informed.faces_fit import FacesFit
-from algorithms.models.physics_informed.faces_kernel import bend_and_slope, invert
+from algorithms.models.physics_informed.faces_kernel import bend_and_slope
 
 CUBE = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
 KELLY = np.array([-0.015, 0.750, 0.637, -0.369]) / 1.003
@@ -192,18 +192,6 @@ def test_faces_that_are_not_lit_are_named():
 def test_parameters_out_of_range_are_named(wrong, named):
     with pytest.raises(ValueError, match=named):
         AssembledFaces(CUBE, **wrong)
-
-
-def test_a_response_is_inverted_within_its_range():
-    cosines = np.linspace(0.03, 1.0, 50)
-    bent = np.vectorize(lambda cosine, width: bend_and_slope(cosine, KELLY, width))
-    np.testing.assert_allclose(invert(bent(cosines, 1e-4)[0], KELLY), cosines, atol=1e-9)
-    step = 1e-6
-    for wide in (cosines, np.linspace(-1.0, 1.0, 50)):
-        ends = [bent(wide + way * step, 1e-2)[0] for way in (1.0, -1.0)]
-        slope = (ends[0] - ends[1]) / (2 * step)
-        np.testing.assert_allclose(bent(wide, 1e-2)[1], slope, atol=1e-5)
-    assert bend_and_slope(-0.2, KELLY, 1e-4)[0] == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.slow

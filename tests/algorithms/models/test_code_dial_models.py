@@ -257,36 +257,7 @@ def test_parameters_out_of_range_are_named(model, wrong, named):
         fitted(model, **wrong)
 
 
-def test_number_of_harmonics_has_a_range():
-    for harmonics in (0, 17):
-        with pytest.raises(ValueError, match="harmonics"):
-            fitted(FourierPhase, harmonics=harmonics)
-
-
 # The extractor
-
-
-def test_tracks_are_handed_on_in_their_order():
-    readings = np.random.default_rng(4).uniform(0, 5, (20, 18))
-    extractor = DialTracks.for_sensor(DESIGN)
-    np.testing.assert_array_equal(extractor.extract(readings), readings)
-    assert extractor.features[:6] == (
-        "x_bit_1",
-        "x_bit_2",
-        "x_bit_3",
-        "x_bit_4",
-        "x_bit_5",
-        "x_fine_1",
-    )
-    assert extractor.features[-1] == "y_fine_4"
-    calibrated = DialTracks(dark=0.5, gain=tuple(range(1, 19)), saturation=100.0)
-    light = (readings - 0.5) / np.arange(1, 19)
-    np.testing.assert_allclose(calibrated.extract(readings), light, atol=1e-15)
-    readings[3, 5] = 100.0
-    assert (
-        np.isnan(calibrated.extract(readings)).all(axis=1).tolist()
-        == [False] * 3 + [True] + [False] * 16
-    )
 
 
 @pytest.mark.parametrize(

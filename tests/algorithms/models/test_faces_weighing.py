@@ -108,20 +108,6 @@ def test_weighed_residuals_are_independent_ones():
     np.testing.assert_allclose(weighing.weigh(stacked)[..., 1], 2.0 * found, rtol=1e-12)
 
 
-@pytest.mark.parametrize(("flicker", "low", "high"), [(0.01, 0.009, 0.0115), (0.0, 0.0, 2e-4)])
-def test_the_lights_spread_and_the_noise_are_told_apart(flicker, low, high):
-    sun = spread(600)
-    c = sun @ PYRAMID.T
-    modelled = np.maximum(c, 0.0)
-    rng = np.random.default_rng(8)
-    strength = flicker * rng.standard_normal((600, 1))
-    noise = 1e-3 * np.arange(1, 7)
-    off = strength * modelled + noise * rng.standard_normal(c.shape)
-    weighing = ResidualWeights.of(modelled, off, c > 0.05, 1)
-    assert low <= weighing.spread <= high
-    np.testing.assert_allclose(weighing.noise, noise, rtol=0.1)
-
-
 @pytest.mark.slow
 def test_flickering_light_costs_a_calibration_nothing_to_speak_of():
     """Its strength is common to the faces of a sample: normals come out as in steady light."""

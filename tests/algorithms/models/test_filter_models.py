@@ -11,7 +11,6 @@ import pytest
 from algorithms.angles import separation_deg
 from algorithms.contract import FeatureKind, UnsuitableDesignError
 from algorithms.discovery import discover_models
-from algorithms.filtering import shared_results
 from algorithms.filtering.reading_noise import correlated_steps
 from algorithms.filtering.readings import FaceReadings, SpotReadings, earth_columns
 from algorithms.models.filters import (
@@ -167,22 +166,6 @@ def test_gains_that_changed_since_the_calibration_are_found_face_by_face(geometr
     track = model.track((1.0 + changes) * flight["features"], flight["context"])
     found = track.drift[-1, 1:7]  # behind the light's strength
     np.testing.assert_allclose(found - found.mean(), changes, atol=2e-3)
-
-
-def test_a_sensor_is_learnt_once_by_filters_of_one_space_and_anew_by_others(
-    geometry, monkeypatch
-) -> None:
-    flight = flights.flight(FeatureKind.SPOT, geometry)
-    alone = UnscentedKalmanFilter().fit(**flight).noise_
-    monkeypatch.setattr(shared_results, "_results", {})
-    learnt = shared_results._results
-    noise = {}
-    for model in (ExtendedKalmanFilter(), UnscentedKalmanFilter(), RobustKalmanFilter()):
-        noise[type(model)] = model.fit(**flight).noise_
-    assert len(learnt) == 2  # how the sensor reads a Sun, and with what noise
-    assert all(one.tobytes() == alone.tobytes() for one in noise.values())
-    ExtendedKalmanFilter(bias_deg_h=3.0).fit(**flight)
-    assert len(learnt) == 3
 
 
 def test_a_row_alone_is_followed_where_a_track_is_asked_for_and_not_begun_for_an_answer(

@@ -48,12 +48,6 @@ def test_linear_fit_of_tangents_inverts_a_pinhole_exactly(geometry, field):
     assert separation_deg(model.predict(spot), field).max() < 1e-10
 
 
-@pytest.mark.parametrize(("target", "unit"), [("angle", "deg"), ("tangent", "")])
-def test_linear_parameters_are_degrees_of_angles_and_plain_numbers_of_tangents(target, unit):
-    model = LinearFit(target=target).fit(grid(), sun_from_angles(grid()[:, ::-1]))
-    assert {parameter.unit for parameter in model.fitted_parameters()} == {unit}
-
-
 @pytest.mark.parametrize("degree", [1, 3, 6, 11])
 def test_axis_polynomial_is_numpys_own_fit(degree):
     features = scattered() * 10 + 1000
@@ -200,21 +194,6 @@ def test_a_table_reaches_as_far_along_each_axis_as_the_samples_do(long):
     features = np.tan(np.radians(nominal[:, ::-1]))
     table = ErrorTable(focal_length_mm=1.0, unit_mm=1.0, smoothing=1e-9).fit(features, sun)
     assert separation_deg(table.predict(features), sun).max() < 1e-5
-
-
-def test_error_table_is_bilinear_between_its_nodes():
-    nominal = grid(5.0, 11)
-    errors = np.random.default_rng(4).normal(0, 0.1, nominal.shape)
-    table = ErrorTable(focal_length_mm=1.0, unit_mm=1.0)
-    table.fit(np.tan(np.radians(nominal[:, ::-1])), sun_from_angles(nominal + errors))
-    i, j, u, v = 2, 6, 0.25, 0.7
-    alpha = table.alpha_axis_.start + i + u
-    beta = table.beta_axis_.start + j + v
-    corners = table.table_deg_[i : i + 2, j : j + 2]
-    weights = np.outer([1 - u, u], [1 - v, v])
-    expected = np.array([alpha, beta]) + np.einsum("ab,abk->k", weights, corners)
-    found = angles_from_sun(table.predict([np.tan(np.radians([beta, alpha]))]))[0]
-    np.testing.assert_allclose(found, expected, atol=1e-12)
 
 
 def test_blended_polynomials_are_the_weighted_sum_of_two_neighbours():

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from known_truths import rotation_about
 
 from algorithms.angles import separation_deg, sun_from_angles, sun_from_rotations
-from algorithms.contract import FeatureKind, SensorGeometry, UnusableDataError
+from algorithms.contract import FeatureKind, UnusableDataError
 from algorithms.models.geometric.least_squares import LeastSquaresGeometry, rotation_angles
 from algorithms.models.geometric.multisensor_fusion import SixFaces
 from algorithms.models.geometric.pinhole import BuiltPinhole
@@ -52,17 +52,6 @@ def test_spm_reads_balances_of_a_square_aperture_exactly(geometry, field):
     balances = np.column_stack([2 * x / d, 2 * y / d])
     model = StandardProjection.for_sensor(geometry, FeatureKind.BALANCE).fit(balances, field)
     assert separation_deg(model.predict(balances), field).max() < 1e-11
-
-
-@pytest.mark.parametrize(
-    ("kind", "field_name"),
-    [(FeatureKind.SPOT, "pixel_pitch_mm"), (FeatureKind.BALANCE, "aperture_width_mm")],
-)
-def test_each_kind_of_feature_names_the_unit_it_lacks(kind, field_name):
-    bare = SensorGeometry(focal_length_mm=2.0)
-    for model in (StandardProjection, LeastSquaresGeometry):
-        with pytest.raises(ValueError, match=field_name):
-            model.for_sensor(bare, kind)
 
 
 def test_lsq_gives_zero_angles_at_its_zero_point():

@@ -14,14 +14,12 @@ from scipy.optimize import least_squares as scipy_least_squares
 
 from algorithms.angles import separation_deg, sun_from_angles
 from algorithms.contract import UnsuitableDesignError, UnusableDataError
-from algorithms.models.neural_network import training as settings
 from algorithms.models.neural_network.axis_networks import AxisNetworks
 from algorithms.models.neural_network.cholesky_kernel import solve
 from algorithms.models.neural_network.deep_signals import DeepSignals
 from algorithms.models.neural_network.deep_surface import DeepSurface
 from algorithms.models.neural_network.direction_errors import (
     Correction,
-    across_from_boresight,
     errors_of,
     least_squares,
 )
@@ -231,15 +229,6 @@ def test_the_errors_of_a_direction_undo_it(frontal):
     np.testing.assert_allclose(found, sun, atol=1e-14)
 
 
-def test_axes_across_a_direction_are_a_right_handed_frame():
-    rng = np.random.default_rng(11)
-    directions = rng.standard_normal((30, 3))
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    first, second = across_from_boresight(directions)
-    np.testing.assert_allclose(np.cross(first, second), directions, atol=1e-13)
-    assert np.isnan(errors_of(-directions, directions, frontal=True)).all()
-
-
 def turntable(reach=60, step=6):
     angles = np.arange(-reach, reach + 1, step)
     return sun_from_angles(np.stack(np.meshgrid(angles, angles), -1).reshape(-1, 2))
@@ -387,11 +376,3 @@ def _beyond_baseline():
     from numpy._core._multiarray_umath import __cpu_dispatch__, __cpu_features__
 
     return " ".join(name for name in __cpu_dispatch__ if __cpu_features__.get(name))
-
-
-def test_a_start_depends_on_its_number_and_seed_alone():
-    plan = Training((2, 4, 1), (LOG_SIGMOID, LINEAR), restarts=2, seed=3)
-    assert len(plan.start(0)) == plan.count == 17
-    np.testing.assert_array_equal(plan.start(1), plan.start(1))
-    assert not np.array_equal(plan.start(0), plan.start(1))
-    assert settings.TRIAL_STEPS < settings.STEPS

@@ -10,7 +10,6 @@ from algorithms.angles import (
     angles_from_sun,
     separation_deg,
     sun_from_angles,
-    sun_from_tangents,
 )
 from algorithms.calibration.hull import Hull
 from algorithms.contract import (
@@ -19,7 +18,6 @@ from algorithms.contract import (
 from algorithms.models.non_physical.fourier_balance import FourierBalance
 from algorithms.models.non_physical.linear import LinearFit
 from algorithms.models.non_physical.polynomial import AxisPolynomial
-from algorithms.models.non_physical.regression_axes import sun_from_target
 from algorithms.models.non_physical.sigmoid import SigmoidBalance
 
 
@@ -29,15 +27,6 @@ def grid(limit=50.0, steps=21):
 
 
 # What all share -----------------------------------------------------------------------------------
-
-
-def test_targets_become_the_vectors_that_angles_give_to_the_last_bit():
-    values = np.random.default_rng(0).uniform(-100, 100, (1001, 2))
-    values[3], values[4, 0], values[5], values[6] = np.nan, np.inf, 90.0, (1e200, 1.0)
-    with np.errstate(all="ignore"):
-        found = sun_from_target(values, "angle"), sun_from_target(values, "tangent")
-        expected = sun_from_angles(values), sun_from_tangents(values)
-    np.testing.assert_array_equal(found, expected)
 
 
 def test_a_hull_seen_at_a_glance_is_the_one_measured():

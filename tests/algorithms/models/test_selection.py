@@ -159,16 +159,6 @@ def test_folds_of_the_whole_sphere_and_of_few_poses_leave_all_out_once():
     assert (folds(sun_from_angles(grid(20.0, 4))) >= 0).all()  # four poses within: too few
 
 
-def test_folds_gather_neighbours_of_many_poses():
-    """More poses than blocks: what is left out together lies together."""
-    poses = grid(20.0, 41)
-    fold = folds(sun_from_angles(poses))
-    inner = (np.abs(poses).max(axis=1) < 18.0).reshape(41, 41)[:, :-1]
-    across = fold.reshape(41, 41)
-    alike = (across[:, 1:] == across[:, :-1])[inner].mean()
-    assert alike > 2 * 0.2  # a fifth of neighbours would be alike by chance
-
-
 def test_orders_that_swing_between_the_poses_are_raised_by_as_much():
     """Twelve places, and polynomials of them: variances by NumPy's own least squares."""
     at = np.linspace(-1.0, 1.0, 12)
@@ -194,13 +184,3 @@ def test_orders_that_swing_between_the_poses_are_raised_by_as_much():
         raised = max((1.0 + swing) / (1.0 + np.sum(left) / 10.0), 1.0)
         expected.append(np.sum(off) / 10.0 * raised)
     np.testing.assert_allclose(found, expected, rtol=1e-9)
-
-
-def test_places_between_poses_lie_halfway_to_the_nearest_ones():
-    poses = np.repeat(grid(20.0, 5), 2, axis=0)  # each taken twice
-    features = poses + np.tile([[0.5, 0.0], [-0.5, 0.0]], (25, 1))  # repeats apart, averaged
-    found = between_poses(sun_from_angles(poses), features)
-    assert len(found) == 25 * 8
-    cells = np.round(found / 5.0)
-    np.testing.assert_allclose(found, 5.0 * cells, atol=1e-9)
-    assert np.abs(found).max() <= 20.0

@@ -7,7 +7,7 @@ import pytest
 from known_truths import rotation_about
 
 from algorithms.angles import angles_from_sun, separation_deg, sun_from_angles
-from algorithms.calibration.forward import inward, outward, tangents_cast
+from algorithms.calibration.forward import inward, tangents_cast
 from algorithms.contract import FeatureKind, SensorGeometry, UnusableDataError
 from algorithms.models.geometric.multi_slit import MultiSlit
 from algorithms.models.geometric.n_slit import NSlit
@@ -334,12 +334,3 @@ def test_a_fold_has_no_direction():
     beyond = tangents_cast(bent, wanted, np.array([[1.6, 0.0], [1.2, 0.2]]))
     assert np.isnan(beyond[0]).all()
     assert np.isnan(tangents_cast(bent, np.array([[0.7, 0.0]]), np.zeros((1, 2)))).all()
-
-
-def test_outward_is_the_inverse_of_inward():
-    sun, turns = field(60.0, 5), (3.0, -2.0, 5.0)
-    np.testing.assert_allclose(outward(inward(sun, turns), turns), sun, atol=1e-15)
-    matrix = rotation_about(0, -2.0) @ rotation_about(1, 5.0) @ rotation_about(2, 3.0)
-    head = sun @ matrix  # its transpose, row by row
-    np.testing.assert_allclose(inward(sun, turns), head[:, :2] / head[:, 2:], atol=1e-14)
-    assert np.isnan(inward(-sun, turns)).all()

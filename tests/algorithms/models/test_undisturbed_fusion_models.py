@@ -48,8 +48,8 @@ def lattice(count):
     )
 
 
-@pytest.mark.parametrize("count", [3, 4, 6, 9])
-@pytest.mark.parametrize("constant", [0.0, 0.05, 0.2, 1.0])
+@pytest.mark.parametrize("count", [3, 9])
+@pytest.mark.parametrize("constant", [0.0, 0.2, 1.0])
 def test_a_constant_on_all_faces_changes_nothing(count, constant):
     normals, sun = pyramid(count, 30.0, 7.0), rings(5, 20, 40, 55)
     model = SteadyPyramid(as_design(normals)).fit(1.7 * lit(sun, normals) + 0.1, sun)

@@ -77,10 +77,6 @@ def scenes(kind, count, rng):
     return frames, centres
 
 
-def test_all_methods_of_ours_for_frames_claim_it():
-    assert {"energy-filter", "gaussian-fit", "mirror", "weighted-spots"} <= set(METHODS)
-
-
 @pytest.mark.parametrize("kind", ["two", "ghost", "cut", "hot", "none", "one hot"])
 @pytest.mark.parametrize("name", METHODS)
 def test_no_answer_is_a_pixel_off(name, kind):
@@ -121,18 +117,6 @@ def test_designs_without_a_hole_take_any_light_but_no_hot_pixel():
     frames = frozen(np.concatenate([read(line[None], rng), scenes("one hot", 1, rng)[0]]))
     assert np.isfinite(slit.extract(frames))[:, 0].tolist() == [True, False]
     assert np.isnan(GaussianFit().extract(frames)).all()
-
-
-@pytest.mark.parametrize(("side", "answered"), [(4, False), (5, True)])
-def test_frames_narrower_than_five_pixels_hold_no_light(side, answered):
-    """Two lit pixels and a border on either side leave nothing else to tell them from."""
-    frames = np.random.default_rng(775).uniform(19.0, 21.0, (1, side, 30))
-    frames[0, 1:3, 10:16] += np.array([40.0, 300.0, 600.0, 600.0, 300.0, 40.0])
-    frames = frozen(np.rint(frames).astype(np.uint16))
-    for light in (frames, frames.swapaxes(1, 2)):
-        found = GaussianFit(light="any").measure(light)
-        assert np.isfinite(found.features).all() == answered
-        assert found.flags[0] == (0 if answered else int(QualityFlag.NO_SPOT))
 
 
 def test_parameters_that_are_none_are_refused():

@@ -1,4 +1,4 @@
-"""Each of the survey's printed extractors is transcribed, in this package or beside its method."""
+"""Each of the survey's printed extractors is transcribed among the tests of its method."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from algorithms.discovery import discover_extractors
 HERE = Path(__file__).parent
 #: Where the pseudocode of each of the survey's 19 assessed methods is written out.
 TRANSCRIBED = {
-    "Voltage balance": "test_printed_photodiodes.py",
-    "PD": "test_printed_peaks.py",
-    "PPE": "test_printed_peaks.py",
-    "BCM": "test_printed_centroids.py",
-    "BCTM": "test_printed_centroids.py",
-    "MCAM": "../test_multi_spot_oracles.py",
-    "DBCM": "test_printed_centroids.py",
-    "MT-ACM": "test_printed_centroids.py",
-    "PM": "test_printed_centroids.py",
-    "ESCM": "test_printed_events.py",
-    "BSCM": "test_printed_black_sun.py",
-    "BHT": "test_printed_shapes.py",
-    "CHT": "test_printed_shapes.py",
-    "FMMS": "../test_multi_spot_oracles.py",
-    "IFM": "test_printed_centroids.py",
-    "TM": "test_printed_shapes.py",
-    "FEIC": "../test_multi_spot_oracles.py",
+    "Voltage balance": "test_photodiode.py",
+    "PD": "test_profile_lines.py",
+    "PPE": "test_peak_position.py",
+    "BCM": "test_centroids.py",
+    "BCTM": "test_centroids.py",
+    "MCAM": "test_multi_spot_oracles.py",
+    "DBCM": "test_single_spots.py",
+    "MT-ACM": "test_single_spots.py",
+    "PM": "test_centroids.py",
+    "ESCM": "test_event_centroid.py",
+    "BSCM": "test_camera_black_sun.py",
+    "BHT": "test_camera_hough.py",
+    "CHT": "test_camera_hough.py",
+    "FMMS": "test_multi_spot_oracles.py",
+    "IFM": "test_centroids.py",
+    "TM": "test_single_spots.py",
+    "FEIC": "test_multi_spot_oracles.py",
     "Linear-phase": "test_printed_spectra.py",
     "Eigen-analysis": "test_printed_spectra.py",
 }
