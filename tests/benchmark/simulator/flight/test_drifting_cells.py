@@ -70,9 +70,3 @@ def test_what_is_not_known_of_the_unit_is_drawn_over_units() -> None:
     stated = sensor.unit_variance(mean, scene, References(flats=0, darks=0))
     lit = mean > 0.05 * mean.max()
     np.testing.assert_allclose(drawn.var(axis=0)[lit], stated[lit], rtol=0.15)
-
-
-def test_a_scene_without_time_is_refused() -> None:
-    sensor = flown()
-    with pytest.raises(TypeError, match=r"DriftingSolarCellSensor needs .* got Scene"):
-        sensor.expected(Scene(SUN, np.ones(3), np.zeros(3)), sensor.fixed_pattern("unit"))

@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 
 from benchmark import datasets
-from benchmark.simulator.flight.drift import AssemblyDrift, PhotodiodeDrift
+from benchmark.simulator.flight.drift import AssemblyDrift
 from benchmark.simulator.flight.drifting_lines import DriftingLineSensor
 from benchmark.simulator.flight.drifting_quadrants import DriftingQuadrantSensor
 from benchmark.simulator.flight.time_series import TimedScene
 from benchmark.simulator.light.sun_disc import from_angles
 from benchmark.simulator.optics.ghosts import Ghost
-from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.line_sensor import LineSensor
 from benchmark.simulator.sensors.quadrants import QuadrantSensor
@@ -105,30 +104,6 @@ def test_gains_and_dark_currents_follow_temperature_and_age():
     assert np.ptp(pattern["gain_per_k"]) > 0 < np.ptp(pattern["loss_per_year"])
 
 
-def test_what_is_unknown_of_drifts_grows_away_from_where_references_were_taken():
-    sensor, still = parts_of("qpd-orbit")
-    scene, pattern, none = scene_at(REFERENCE_K, 0.0), sensor.fixed_pattern("here"), References()
-    expected = sensor.expected(scene, pattern)
-    new = sensor.unit_variance(expected, scene, none)
-    np.testing.assert_allclose(new, still.unit_variance(expected, scene, none))
-    aged = scene_at(REFERENCE_K, 1.0)
-    light = expected - sensor.readout.dark.at_25_c
-    more = (sensor.photodiodes.loss_per_year_spread * light) ** 2
-    np.testing.assert_allclose(sensor.unit_variance(expected, aged, none), new + more)
-
-
-def test_dark_signal_of_pixels_follows_temperature():
-    sensor, _ = parts_of("ccd-multi-slit-orbit")
-    sensor = replace(sensor, drift=AssemblyDrift())
-    pattern = sensor.fixed_pattern("here")
-    cold, warm = (sensor.expected(scene_at(t, 0.0), pattern) for t in (REFERENCE_K, 318.15))
-    dark = sensor.detector.dark
-    more = (2.0 ** (20.0 / dark.doubling_k) - 1.0) * pattern["dark_e"].mean()
-    bent = 1.0 - sensor.detector.errors.nonlinearity  # at the full well, at most
-    found = float((warm - cold).mean()) * sensor.detector.gain_e_per_dn
-    assert bent * more * 0.98 < found <= more * 1.001
-
-
 @pytest.mark.parametrize("name", FLIGHTS)
 def test_a_scene_without_time_and_a_ghost_are_refused(name):
     sensor, _ = parts_of(name)
@@ -138,11 +113,3 @@ def test_a_scene_without_time_and_a_ghost_are_refused(name):
         sensor.lit(untimed)
     with pytest.raises(ValueError, match="ghost"):
         replace(sensor, ghost=Ghost())
-
-
-def test_stable_flights_drift_nowhere():
-    quadrants = datasets.get("qpd-orbit").condition("stable").sensor
-    assert (quadrants.assembly, quadrants.photodiodes) == (AssemblyDrift(), PhotodiodeDrift())
-    assert datasets.get("ccd-multi-slit-orbit").condition("stable").sensor.drift == AssemblyDrift()
-    drawn = datasets.get("ccd-multi-slit-orbit").geometry
-    assert drawn.cover_glass == ((0.5, 1.52),)

@@ -12,8 +12,6 @@ from bare_pixels import bare
 from benchmark import datasets
 from benchmark.simulator.flight.drift import (
     REFERENCE_K,
-    AssemblyDrift,
-    PhotodiodeDrift,
     ThermalCycle,
     dark_levels,
 )
@@ -26,7 +24,6 @@ from benchmark.simulator.flight.time_series import (
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.plates import CoverGlass
-from benchmark.simulator.scene import Scene
 from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
 
 ORBIT, SUN = CircularOrbit(node_deg=337.5, phase_deg=77.0), sun_direction(0.0)
@@ -81,35 +78,12 @@ def test_temperature_solves_its_differential_equation() -> None:
     assert np.ptp(closed) > 20
 
 
-def test_temperature_is_continuous_and_periodic() -> None:
-    cycle = ThermalCycle()
-    time_s = np.arange(0.0, 2 * ORBIT.period_s, 1.0)
-    closed = cycle.temperature(ORBIT, SUN, time_s)
-    steepest = (cycle.sunlit_k - cycle.eclipse_k) / cycle.time_constant_s
-    assert np.abs(np.diff(closed)).max() < steepest
-    again = cycle.temperature(ORBIT, SUN, time_s + ORBIT.period_s)
-    assert again == pytest.approx(closed, abs=1e-8)
-    assert cycle.eclipse_k < closed.min() < closed.max() < cycle.sunlit_k
-
-
 def test_without_eclipse_the_temperature_stays() -> None:
     dawn = CircularOrbit(node_deg=90.0)
     found = ThermalCycle().temperature(dawn, SUN, np.linspace(0, 6000, 20))
     assert (found == 308.15).all()
     with pytest.raises(ValueError, match="must be positive"):
         ThermalCycle(time_constant_s=0.0)
-
-
-def test_drift_is_zero_at_the_reference_when_new() -> None:
-    at, new = np.array([REFERENCE_K]), np.zeros(1)
-    sensor, ccd = pd_sensor(), ccd_sensor()
-    pattern = sensor.fixed_pattern("test")
-    factors = sensor.drift.factors(at, new, pattern["gain_per_k"], pattern["loss_per_year"])
-    assert (factors == 1.0).all()
-    assert (ccd.drift.moved(at, new) == 0.0).all()
-    assert dark_levels(sensor.readout.dark, at)[0] == sensor.readout.dark.at_25_c
-    assert (ccd.drift.moved(at + 10, new) != 0.0).all()
-    assert (ccd.drift.moved(at, new + 1) != 0.0).all()
 
 
 @pytest.mark.slow
@@ -279,16 +253,3 @@ def test_dark_pixels_follow_the_temperature() -> None:
     assert dark[1] == pytest.approx(4.0 * dark[0], rel=1e-9)
     mean = sensor.detector.dark.at_25_c * sensor.detector.exposure_s
     assert dark[0].mean() * sensor.detector.gain_e_per_dn == pytest.approx(mean, rel=0.02)
-
-
-def test_a_scene_without_time_is_refused() -> None:
-    plain = Scene(np.array([[0.0, 0.6, 0.8]]), np.ones(1), np.zeros(1))
-    sensor = pd_sensor()
-    with pytest.raises(TypeError, match=r"DriftingFaceSensor needs .* got Scene"):
-        sensor.expected(plain, sensor.fixed_pattern("test"))
-
-
-def test_no_drift_means_no_drift() -> None:
-    at, age = np.array([250.0, 340.0]), np.array([1.0, 2.0])
-    assert (AssemblyDrift().moved(at, age) == 0).all()
-    assert (PhotodiodeDrift().factors(at, age, np.zeros(6), np.zeros(6)) == 1).all()

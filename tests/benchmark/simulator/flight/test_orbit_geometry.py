@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from benchmark.simulator.flight.attitude import Tumble, rotate
+from benchmark.simulator.flight.attitude import Tumble
 from benchmark.simulator.flight.magnetic_field import TiltedDipole
 from benchmark.simulator.flight.orbit import CircularOrbit, sun_direction, sunlight
 
@@ -151,14 +151,6 @@ def test_a_body_needs_possible_moments_of_inertia() -> None:
         Tumble(70.0, 40.0, 0.5, 2.0)
     with pytest.raises(ValueError, match=r"momentum_sun_deg.*\(0.*180\).*0"):
         Tumble(0.0, 40.0, 0.5, 1.0)
-
-
-def test_rotations_keep_lengths() -> None:
-    time_s = np.linspace(0, 500, 20)
-    turn = TUMBLE.matrices(CircularOrbit(), sun_direction(3.0), time_s)
-    vectors = np.random.default_rng(1).normal(size=(20, 3))
-    assert unit(rotate(turn, vectors)) == pytest.approx(unit(vectors))
-    assert rotate(turn, vectors) == pytest.approx(np.einsum("nij,nj->ni", turn, vectors))
 
 
 def test_dipole_is_that_of_igrf_13_for_2020() -> None:

@@ -58,23 +58,6 @@ def test_nothing_is_kept_unasked_or_for_another_owner_or_beyond_the_limit():
     assert calls[-1] == 1
 
 
-def test_runs_are_kept_alike():
-    kept = LightMemory(limit_bytes=100)
-    calls = []
-
-    def runs(key, count):
-        found = np.array([[0, count]], dtype=np.int32), np.ones(count)
-        return kept.runs(key, lambda: calls.append(key) or found)
-
-    kept.cache_for("dataset")
-    runs("small", 5), runs("large", 9), runs("small", 5), runs("large", 9)
-    assert calls == ["small", "large", "large"]
-    assert kept.kept_bytes == 48
-    kept.forget()
-    runs("small", 5)
-    assert calls[-1] == "small"
-
-
 def test_the_latest_runs_are_kept_beyond_the_limit():
     """Passes over the same poses come at once."""
     kept = LightMemory(limit_bytes=1000)

@@ -135,15 +135,6 @@ def test_layers_pass_what_each_surface_passes(theta: float, n1: float, n2: float
     assert found == pytest.approx(sum(passed) / 2.0, abs=1e-9)
 
 
-@given(indices, indices)
-@settings(deadline=None, derandomize=True)
-def test_two_layers_at_normal_incidence(n1: float, n2: float) -> None:
-    """``4 n m / (n + m)^2`` a surface."""
-    passed = [4.0 * a * b / (a + b) ** 2 for a, b in ((1.0, n1), (n1, n2), (n2, 1.0))]
-    glass = CoverGlass((Plate(0.2, n1), Plate(0.4, n2)))
-    assert glass.transmission(ray(0.0))[0] == pytest.approx(math.prod(passed), rel=1e-12)
-
-
 @given(st.floats(1.05, 2.2))
 @settings(deadline=None, derandomize=True)
 def test_one_polarisation_passes_whole_at_brewsters_angle(index: float) -> None:

@@ -11,7 +11,7 @@ import pytest
 from bare_pixels import bare
 
 from benchmark import datasets
-from benchmark.simulator.light.stray_slope import UnevenScene, slope
+from benchmark.simulator.light.stray_slope import UnevenScene
 from benchmark.simulator.scene import Scene
 
 SLOPE = (0.003, -0.002)
@@ -71,17 +71,3 @@ def test_profiles_rise_along_each_array_by_its_own_slope() -> None:
     place = (np.arange(columns) - (columns - 1) / 2.0) / (columns / 2.0)
     expected = np.concatenate([SLOPE[0] * place, SLOPE[1] * place])
     assert light == pytest.approx(np.tile(expected, (2, 1)), abs=1e-9)
-
-
-def test_an_even_scene_has_its_stray_light_everywhere() -> None:
-    even, _ = scenes()
-    assert slope(even, np.ones((3, 2))).tolist() == [[0.01] * 3, [0.02] * 3]
-
-
-def test_the_quadrant_sensor_has_a_condition_of_it() -> None:
-    preset = datasets.get("qpd-single-aperture")
-    scene = preset.scene("stray-gradient", "test")
-    assert isinstance(scene, UnevenScene)
-    assert scene.slope is not None
-    assert scene.slope.std(axis=0) == pytest.approx(0.005, rel=0.1)
-    assert type(preset.scene("nominal", "test")) is Scene

@@ -8,14 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numba import njit
-from shadows import shadows
 
-from benchmark import datasets
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.masks.errors import MaskErrors
 from benchmark.simulator.masks.layouts import grid, slit
-from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.optics.plates import CoverGlass, Plate
 from benchmark.simulator.optics.projection import Camera
 from benchmark.simulator.readout.detectors import DarkCurrent, PixelArray
@@ -244,23 +241,6 @@ def test_grid_and_slit_are_inverted_exactly(alpha: float, beta: float) -> None:
     [aperture] = sensor.camera.mask.apertures
     found = angles_from_box(light(sensor, sun)[0], aperture.x_mm, aperture.y_mm)
     assert found == pytest.approx((alpha, beta), abs=1e-6)
-
-
-@pytest.mark.parametrize(("alpha", "beta"), [(0.3, -0.1), (-44.0, 31.0), (52.0, 57.0)])
-def test_the_slit_of_cmos_slit_is_inverted_exactly(alpha: float, beta: float) -> None:
-    """The dataset's own slit and window, straight and thin; a turned one is the next test's."""
-    sensor = datasets.get("cmos-slit").setups["nominal"].sensor
-    [drawn] = sensor.camera.mask.apertures
-    straight = Mask((replace(drawn, rotation_deg=0.0),))
-    camera = replace(sensor.camera, mask=straight, sun=SolarDisc(0.0), assembly=Assembly())
-    sensor = shadows(sensor, camera=camera)
-    sun = from_angles(np.array([alpha]), np.array([beta]))
-    corner = np.rint(sensor.spot_px(sun)).astype(np.int64) - np.array(sensor.window_px) // 2
-    [frame] = sensor.lit(replace(one_scene(sun), origin_px=corner))
-    middle = [sum(sides(frame.sum(axis=axis))) / 2 for axis in (0, 1)]
-    away = (middle + corner[0] - sensor.detector.centre_px) * sensor.detector.pitch_mm
-    found = np.degrees(np.arctan(away / camera.focal_length_mm))
-    assert found == pytest.approx((beta, alpha), abs=1e-6)
 
 
 def test_turned_slit_is_inverted_exactly_by_its_corners_and_sides() -> None:

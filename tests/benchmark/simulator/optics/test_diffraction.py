@@ -11,11 +11,9 @@ from scipy import integrate, special
 from scipy.special import j1
 
 from benchmark.simulator.kernels import slit_integrals
-from benchmark.simulator.masks.apertures import Aperture, Mask
 from benchmark.simulator.optics.diffraction import (
     SUNLIT_SILICON,
     Spectrum,
-    propagation,
     round_intensity,
 )
 from benchmark.simulator.optics.diffraction_tables import fresnel_table, landing_points, layers
@@ -134,15 +132,6 @@ def test_landing_point_moves_by_its_derivatives() -> None:
     empty = landing_points(sine, layers(3.0, CoverGlass()))
     assert empty[:, 1] == pytest.approx(3.0 / cosine**3)
     assert empty[:, 2] == pytest.approx(3.0 / cosine)
-
-
-def test_no_fresnel_number_leaves_diffraction_out() -> None:
-    mask = Mask((Aperture("round", 0.2, 0.2), Aperture("rectangle", 0.1, 3.0, x_mm=1.0)))
-    for height in (0.01, 0.6, 20.0):
-        regime = propagation(mask, height, SUNLIT_SILICON)
-        assert regime["propagation"] == "diffraction"
-        assert regime["fresnel_number"] == pytest.approx(0.05**2 / (550e-6 * height), rel=5e-3)
-        assert regime["weights"] == list(SUNLIT_SILICON.weights)
 
 
 @pytest.mark.parametrize(

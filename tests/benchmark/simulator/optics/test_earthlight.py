@@ -58,17 +58,6 @@ def somewhere(count: int, earth: Earth, *names: str) -> tuple[np.ndarray, np.nda
     return sun, earth.draw_nadir(sun, stream)
 
 
-def radiance(earth: Earth, sight: np.ndarray, nadir: np.ndarray, sun: np.ndarray) -> np.ndarray:
-    """Where each ray meets a sphere, in kilometres, and how the Sun stands there."""
-    centre = (earth.radius_km + earth.altitude_km) * nadir
-    along = sight @ centre
-    rest = along**2 - centre @ centre + earth.radius_km**2
-    hits = (rest > 0) & (along > 0)
-    near = along - np.sqrt(np.maximum(rest, 0.0))
-    up = (near[:, None] * sight - centre) / earth.radius_km
-    return np.where(hits, earth.reflectance / math.pi * np.maximum(up @ sun, 0.0), 0.0)
-
-
 def test_a_small_hole_shows_an_even_wall_with_the_fourth_power_of_the_cosine() -> None:
     hole = Mask((Aperture("round", 0.01, 0.01),))
     points = Points(np.array([[-2.0, -2.0]]), (0.5, 0.5), 9, 9)
@@ -118,26 +107,6 @@ def test_quadrants_see_what_patches_of_the_earth_throw_on_them() -> None:
     assert seen(sensor, earth, nadir, sun) == pytest.approx(expected, abs=0.005 * full)
 
 
-@pytest.mark.slow
-def test_quadrants_count_the_rays_that_meet_them() -> None:
-    """Rays drawn evenly over the opening and by the cosine over the sky: mean of pi L."""
-    earth, sensor, count = Earth(), quadrants(1.8, 0.05), 400_000
-    sun, nadir = somewhere(6, earth, "rays")
-    found = seen(sensor, earth, nadir, sun)
-    rng = np.random.default_rng(5)
-    for n in range(6):
-        start = rng.uniform(-1.0, 1.0, (count, 2))
-        square, turn = rng.random(count), math.tau * rng.random(count)
-        sine = np.sqrt(square)
-        sight = np.column_stack([sine * np.cos(turn), sine * np.sin(turn), np.sqrt(1 - square)])
-        light = math.pi * radiance(earth, sight, nadir[n], sun[n])
-        x, y = (start + sight[:, :2] / sight[:, 2:]).T
-        for k, (left, right, low, high) in enumerate(sensor.detector.boxes()):
-            share = light * ((left < x) & (x < right) & (low < y) & (y < high))
-            error = share.std() / math.sqrt(count)
-            assert abs(found[n, k] - share.mean()) < 4.0 * error + 0.003 * found.max()
-
-
 def wide_frame() -> FrameSensor:
     sensor = datasets.get("cmos-single-aperture").setups["nominal"].sensor
     assert isinstance(sensor, FrameSensor)
@@ -166,28 +135,6 @@ def test_frames_see_what_patches_of_the_earth_throw_on_them() -> None:
     assert expected.max() > 5e-4
     difference = (found - expected) / expected.max()
     assert math.sqrt(np.mean(difference**2)) < 0.01
-
-
-@pytest.mark.slow
-def test_pixels_count_the_rays_that_meet_them() -> None:
-    """Traced from the pixel's centre to points of the hole: radiance cos^4 / h^2 dA."""
-    sensor, earth, count = wide_frame(), Earth(), 200_000
-    nadir, sun, at = limb_in_the_window()
-    found = frame_of(sensor, earth, nadir, sun, at)
-    height = sensor.camera.height_mm
-    rng = np.random.default_rng(7)
-    radius, turn = 0.1 * np.sqrt(rng.random(count)), math.tau * rng.random(count)
-    hole = np.column_stack([radius * np.cos(turn), radius * np.sin(turn)])
-    for column, row in [(5, 32), (20, 10), (40, 50), (60, 32)]:
-        place = np.array([at[0] + column - 255.5, at[1] + row - 255.5]) * sensor.detector.pitch_mm
-        sight = np.column_stack([place - hole, np.full(count, height)])
-        distance2 = np.sum(sight**2, axis=1)
-        sight /= np.sqrt(distance2)[:, None]
-        each = radiance(earth, sight, nadir, sun) * sight[:, 2] ** 2 / distance2
-        each *= math.pi * 0.1**2
-        error = each.std() / math.sqrt(count)
-        # between points and over 64 rays: a few per cent of the brightest where the limb is
-        assert abs(found[row, column] - each.mean()) < 4.0 * error + 0.05 * found.max()
 
 
 def test_arrays_along_both_axes_see_the_earth_from_their_own_side() -> None:
