@@ -10,7 +10,6 @@ from benchmark.datasets.corrected import (
     correct,
     correction,
     reference_condition,
-    references_used,
 )
 from benchmark.metrics.separation import separation_deg
 
@@ -41,18 +40,6 @@ def test_alignment_leaves_what_is_no_rotation(slit):
     assert aligned_bench_deg(aboard, "nominal", sun) == pytest.approx(0.0, abs=1e-9)
 
 
-def test_of_few_directions_none_is_left_out_of_an_alignment(slit):
-    sun = slit.generate("nominal", "test", 2).sun
-    alone = aligned_bench_deg(slit, "nominal", sun[:1])
-    assert aligned_bench_deg(slit, "nominal", sun) != pytest.approx(alone, rel=1e-3)
-
-
-def test_a_board_states_no_rounding_as_what_alignment_leaves():
-    aboard = datasets.get("pd-orbit")
-    samples, bound = aboard.generate("nominal", "test", 60), aboard.bound("nominal", "test", 60)
-    assert board_facts(aboard, "nominal", samples.sun, bound)["bench_aligned_deg"] == 0.0
-
-
 def test_a_perfect_calibration_has_no_bench():
     cube = datasets.get("pd-maskless-cube")
     sun = cube.generate("ideal-calibration", "test", 30).sun
@@ -78,10 +65,6 @@ def test_a_condition_that_changes_light_alone_shares_the_nominal_references(slit
         "nominal",
         "hot",
     ]
-
-
-def test_a_camera_without_references_is_given_none():
-    assert references_used(datasets.get("cmos-lens")).startswith("nothing")
 
 
 def test_correction_takes_away_the_pattern_that_units_differ_by(slit):

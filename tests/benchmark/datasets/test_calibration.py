@@ -10,11 +10,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from benchmark import datasets
-from benchmark.datasets.calibration import IDEAL, SHOWN_IDEAL, STANDARD_BENCH, Bench
+from benchmark.datasets.calibration import Bench
 from benchmark.datasets.fields import AngleField, SphereField
-from benchmark.datasets.samples import Samples, samples_hash
+from benchmark.datasets.samples import samples_hash
 from benchmark.seeds import generator
-from benchmark.simulator.light.sun_disc import SolarDisc
 
 PERFECT = Bench(**dict.fromkeys((f.name for f in fields(Bench)), 0.0))
 GRID = AngleField(60.0, steps=9).sun("calibration", generator("unused"))
@@ -120,15 +119,6 @@ def test_an_uneven_beam_changes_light_with_the_pose_and_flicker_at_random() -> N
     assert flicker.std() == pytest.approx(0.002, rel=4 / math.sqrt(2 * 4000))
 
 
-def test_the_lamp_has_its_own_size_and_the_suns_by_default() -> None:
-    sensor = datasets.get("cmos-single-aperture").condition("nominal").sensor
-    assert STANDARD_BENCH.lamp_diameter_deg == SolarDisc().diameter_deg
-    assert STANDARD_BENCH.seen_by(sensor) is sensor
-    wide = replace(STANDARD_BENCH, lamp_diameter_deg=1.0).seen_by(sensor)
-    assert wide.camera.sun == replace(sensor.camera.sun, diameter_deg=1.0)
-    assert replace(wide, camera=sensor.camera) == sensor
-
-
 @pytest.mark.parametrize("wrong", [-0.1, math.nan, math.inf])
 def test_sizes_are_finite_and_not_negative(wrong: float) -> None:
     with pytest.raises(ValueError, match="mounting_deg"):
@@ -167,27 +157,3 @@ def test_conditions_share_a_bench_and_units_do_not() -> None:
     other = preset.for_unit(2)
     assert not np.array_equal(other.generate("nominal", "calibration", 9).sun, nominal.sun[:9])
     assert not np.array_equal(other.scene("nominal", "calibration").irradiance, lamps[0])
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", SHOWN_IDEAL)
-def test_the_effect_can_be_seen_beside_a_perfect_calibration(name: str) -> None:
-    preset = datasets.get(name)
-    assert preset.condition(IDEAL) == replace(
-        preset.condition("nominal"), bench=None, description=preset.condition(IDEAL).description
-    )
-    assert preset.reference_error_deg(IDEAL) == 0.0
-    assert preset.generate(IDEAL, "calibration", 3).true_sun is None
-    card = preset.card()
-    assert card["conditions"]["nominal"]["reference_error_deg"] > 0.01
-    assert card["parameters"]["bench"]["type"] in ("Bench", "Instruments")
-    assert datasets.parameters_of(card, IDEAL) == preset.parameters(IDEAL)
-
-
-def test_hashes_cover_the_truth_where_readings_stand_beside_it() -> None:
-    plain = Samples(np.arange(2.0), np.ones((2, 3)), None)
-    changed = replace(plain, true_sun=np.ones((2, 3)))
-    moved = replace(plain, true_sun=np.zeros((2, 3)))
-    assert len({samples_hash(samples) for samples in (plain, changed, moved)}) == 3
-    assert plain.truth is plain.sun
-    assert list(changed.arrays()) == ["observations", "sun", "origin_px", "true_sun"]

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import csv
-import re
-from itertools import product
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
@@ -99,44 +96,3 @@ def test_a_data_set_follows_studies_of_its_own_architecture():
             pairs = {(p.detector, p.mask) for p in resolved[key].pipelines}
             pairs.update(facts().studies[key].architectures)
             assert (preset.detector, preset.mask) in pairs, (preset.name, key)
-
-
-def test_coverage_is_counted_of_what_studies_use_and_data_sets_have():
-    """Two studies and three data sets, one of them of a pair that nobody uses."""
-    cells = {
-        "S0": {"detector": ["CMOS", "PD"], "mask": ["Slit"]},
-        "S1": {"detector": ["CMOS"], "mask": ["Lens", "Slit"]},
-    }
-    studies = {
-        key: SimpleNamespace(architectures=tuple(product(row["detector"], row["mask"])))
-        for key, row in cells.items()
-    }
-    known = SimpleNamespace(studies=studies, taxonomy=facts().taxonomy)
-    simulated = {"b": ("CMOS", "Slit"), "a": ("CMOS", "Slit"), "c": ("Event", "Slit")}
-    reasons = {("PD", "Slit"): "too dim", ("CMOS", "Lens"): "too bright"}
-    found = coverage(simulated, known=known, reasons=reasons)
-    pairs = {(p.detector, p.mask): (p.studies, p.datasets, p.reason) for p in found.pairs}
-    assert pairs == {
-        ("CMOS", "Slit"): (("S0", "S1"), ("a", "b"), ""),
-        ("PD", "Slit"): (("S0",), (), "too dim"),
-        ("CMOS", "Lens"): (("S1",), (), "too bright"),
-        ("Event", "Slit"): ((), ("c",), ""),
-    }
-    place = {value: at for at, value in enumerate(values_of("detector"))}
-    order = [place[pair.detector] for pair in found.pairs]
-    assert order == sorted(order)
-    assert {value: names for value, names in found.detectors.items() if names} == {
-        "CMOS": ("a", "b"),
-        "Event": ("c",),
-    }
-    assert {value: names for value, names in found.masks.items() if names} == {
-        "Slit": ("a", "b", "c")
-    }
-    assert re.findall(r"\d+|detectors|masks|pairs", found.sentence()) == [
-        *("2", "10", "detectors"),
-        *("1", "10", "masks"),
-        *("1", "3", "pairs"),
-        *("1", "pairs"),
-    ]
-    with pytest.raises(CoverageError, match="CMOS Lens"):
-        coverage(simulated, known=known, reasons={("PD", "Slit"): "too dim"})

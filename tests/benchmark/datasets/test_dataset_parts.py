@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from algorithms.contract import Observation, SensorGeometry
-from benchmark.datasets import Condition, Preset, preset, units
-from benchmark.datasets.calibration import STANDARD_BENCH
-from benchmark.datasets.card import parameters_of
+from benchmark.datasets import Condition, Preset, preset
 from benchmark.datasets.fields import AngleField, SphereField
 from benchmark.datasets.repeats import Repeats
 from benchmark.seeds import generator
-from benchmark.simulator import SIMULATOR_VERSION
 from benchmark.simulator.light.environment import Earth, Irradiance
 from benchmark.simulator.light.sun_disc import from_angles
 from benchmark.simulator.optics.assembly import Assembly
-from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
 
 LIGHT = Irradiance(spread=0.1, stray=0.3, stray_spread=0.02)
@@ -81,58 +77,6 @@ def nothing_asked():
 # Streams
 
 
-@pytest.mark.parametrize("condition", ["nominal", "brighter"])
-@pytest.mark.parametrize("split", ["calibration", "test"])
-def test_every_stream_is_named_after_what_it_is_for(condition: str, split: str) -> None:
-    one = fake()
-    found = one.generate(condition, split)
-    names = ("fake-teller", 3, split)
-    count = {"calibration": 25, "test": 11}[split]
-    sun = one.directions.sun(split, generator(*names, "sun"))
-    np.testing.assert_array_equal(found.truth, sun)
-    light, stray = LIGHT.draw(count, generator(*names, "irradiance"))
-    if split == "calibration":
-        light = STANDARD_BENCH.light(sun, "fake-teller", 3, "bench")
-        reported = STANDARD_BENCH.report(sun, "fake-teller", 3, "bench")
-        np.testing.assert_array_equal(found.sun, reported)
-    origin = generator(*names, "window").integers(0, 1000, (count, 2))
-    level = {"nominal": 1.0, "brighter": 2.0}[condition]
-    unit = level * len(repr(("fake-teller", 3, "unit")))
-    noise = generator("fake-teller", 3, condition, split, "gaussian").standard_normal(count)
-    expected = np.column_stack([sun, light, stray, origin, np.full(count, unit), noise])
-    np.testing.assert_array_equal(found.observations, expected)
-    np.testing.assert_array_equal(found.origin_px, origin)
-
-
-def test_another_unit_has_its_own_pattern_noise_and_assembly_and_the_same_suns() -> None:
-    one, other = fake(), fake().for_unit(7)
-    assert other.unit == 7
-    assert other.fixed_pattern("nominal")["names"] == repr(("fake-teller", 3, "unit", 7))
-    found, standard = other.generate("nominal", "test"), one.generate("nominal", "test")
-    np.testing.assert_array_equal(found.observations[:, :7], standard.observations[:, :7])
-    named = ("fake-teller", 3, "nominal", "test", "unit", 7, "gaussian")
-    noise = generator(*named).standard_normal(11)
-    np.testing.assert_array_equal(found.observations[:, -1], noise)
-    sensor: Any = other.condition("nominal").sensor
-    drawn = generator("fake-teller", 3, "unit", 7, "assembly", ".assembly").random(6)
-    share = 2.0 * drawn - 1.0
-    limit = math.sqrt(3.0) * np.array([0.3, 0.3, 0.0, 0.0, 0.02, 0.02])
-    built = sensor.assembly
-    assert built == Assembly(*(share * limit).tolist())
-    assert units.tolerances(Teller()) == {"assembly": Assembly(*limit.tolist())}
-
-
-def test_units_are_numbered_from_0_and_drawn_from_it() -> None:
-    one = fake()
-    assert one.for_unit(0) is one
-    assert one.for_unit(1).unit == 1
-    for wrong in (-1, -2):
-        with pytest.raises(ValueError, match=f"numbered from 0; got {wrong}"):
-            one.for_unit(wrong)
-    with pytest.raises(ValueError, match="this is unit 1"):
-        one.for_unit(1).for_unit(0)
-
-
 # Batches
 
 
@@ -191,37 +135,10 @@ def test_poses_stand_in_the_middle_of_equal_parts(
     assert (card["samples"], card["poses"], card["passes"]) == (2 * len(chosen), len(chosen), 2)
 
 
-@pytest.mark.parametrize(("poses", "passes", "right"), [(1, 2, True), (0, 2, False), (1, 1, False)])
-def test_a_repeat_is_one_pose_twice_at_least(poses: int, passes: int, right: bool) -> None:
-    if right:
-        assert Repeats(poses, passes).passes == 2
-    else:
-        with pytest.raises(ValueError, match=f"got {poses} and {passes}"):
-            Repeats(poses, passes)
-
-
 @pytest.mark.parametrize("n", [0, -1])
 def test_less_than_one_sample_is_refused(n: int) -> None:
     with pytest.raises(ValueError, match=rf"^n\b.*\b1\b.* {n}$"):
         fake().generate("nominal", "test", n)
-
-
-@pytest.mark.parametrize("batch", [None, 4])
-def test_the_bound_is_of_the_first_samples_as_the_condition_shows_them(
-    batch: int | None, monkeypatch: Any
-) -> None:
-    calls = []
-    monkeypatch.setattr(preset, "cramer_rao", lambda *given: calls.append(given) or "bound")
-    one = fake(batch=batch, bound_step_rad=1e-3)
-    assert one.bound("brighter", "calibration", 6) == "bound"
-    ((sensor, scene, pattern, light, step, size, references),) = calls
-    assert (sensor, light, step) == (Teller(level=2.0), LIGHT, 1e-3)
-    assert references == one.offered == References()
-    assert size == (batch or preset.BATCH)
-    np.testing.assert_array_equal(scene.sun, one.scene("brighter", "calibration").sun[:6])
-    assert pattern["names"] == repr(("fake-teller", 3, "unit"))
-    one.bound("nominal")
-    np.testing.assert_array_equal(calls[1][1].sun, one.scene("nominal", "test").sun)
 
 
 def test_a_sensor_without_elements_of_its_own_has_no_references() -> None:
@@ -233,62 +150,6 @@ def test_a_sensor_without_elements_of_its_own_has_no_references() -> None:
 
 
 # Cards
-
-
-def test_parameters_are_all_that_the_numbers_depend_on() -> None:
-    found = fake().parameters("longer")
-    assert found == {
-        "simulator_version": SIMULATOR_VERSION,
-        "dataset": "fake-teller",
-        "dataset_version": 3,
-        "condition": "longer",
-        "sensor": {
-            "type": "Teller",
-            "level": 1.0,
-            "assembly": {
-                "type": "Assembly", "tilt_x_deg": 0.1, "tilt_y_deg": -0.3, "rotation_deg": 0.0,
-                "focal_length_error_mm": 0.0, "offset_x_mm": 0.02, "offset_y_mm": 0.0,
-            },
-        },
-        "irradiance": {"type": "Irradiance", "spread": 0.1, "stray": 0.3, "stray_spread": 0.02},
-        "earth": None,
-        "bench": {"type": "Bench", **asdict(STANDARD_BENCH)},
-        "directions": {
-            "type": "AngleField", "half_fov_deg": 20.0, "steps": 5, "test_samples": 11,
-        },
-        # of the fields that later architectures added only those that are there
-        "geometry": {
-            "type": "SensorGeometry", "focal_length_mm": 2.0, "pixel_pitch_mm": None,
-            "centre_px": None, "aperture_width_mm": None, "aperture_shape": None,
-            "face_normals": None, "half_fov_deg": None,
-        },
-        "bound_step_rad": 5e-4,
-        "offered": {"type": "References", "flats": 16, "darks": 16, "level": 0.5},
-        "repeats": {"type": "Repeats", "poses": 3, "passes": 4},
-        "unit": 0,
-        "spin": None,
-    }  # fmt: skip
-    lines = fake(geometry=SensorGeometry(line_axes=("x", "y")))
-    assert lines.parameters("nominal")["geometry"]["line_axes"] == ["x", "y"]
-
-
-def test_a_card_says_of_each_condition_what_is_its_own() -> None:
-    card = fake().card()
-    assert card["parameters"]["condition"] == "nominal"
-    assert "geometry" not in card["parameters"]
-    own = {name: about["parameters"] for name, about in card["conditions"].items()}
-    assert own == {
-        "nominal": {},
-        "brighter": {"condition": "brighter", "sensor": {"level": 2.0}},
-        "longer": {"condition": "longer"},
-    }
-    assert [("geometry" in about) for about in card["conditions"].values()] == [False, False, True]
-    for name in card["conditions"]:
-        assert parameters_of(card, name) == fake().parameters(name)
-    assert card["splits"]["calibration"]["samples"] == 25
-    assert card["splits"]["test"]["samples"] == 11
-    assert card["splits"]["repeat"]["samples"] == 12
-    assert card["observation"] == "currents"
 
 
 def test_a_sensor_that_sees_no_earth_is_refused_one() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import subprocess
 import sys
 from pathlib import Path
@@ -13,7 +12,7 @@ import pytest
 
 from api.previews import published_preview
 from benchmark import datasets
-from benchmark.datasets.preview import FIRST_SAMPLES, incidence_deg, preview_png
+from benchmark.datasets.preview import FIRST_SAMPLES, preview_png
 
 ROOT = Path(datasets.__file__).parents[2]
 PAPER = (255, 255, 255)
@@ -53,21 +52,6 @@ def test_a_picture_is_the_same_each_time_and_another_one_for_another_condition()
         preview_png(preset, "warm")
 
 
-@pytest.mark.slow
-def test_frames_are_drawn_from_the_first_samples_only(monkeypatch):
-    preset = datasets.get("cmos-single-aperture")
-    asked = []
-    generate = type(preset).generate
-
-    def watched(self, condition, split, n=None):
-        asked.append(n)
-        return generate(self, condition, split, n)
-
-    monkeypatch.setattr(type(preset), "generate", watched)
-    preview_png(preset)
-    assert asked == [FIRST_SAMPLES]
-
-
 def test_a_spot_is_drawn_where_it_is():
     """The brightest part of a tile is the spot of the sample with the smallest incidence."""
     preset = datasets.get("cmos-single-aperture")
@@ -103,9 +87,3 @@ def test_matplotlib_is_loaded_by_pictures_alone():
         "assert 'matplotlib' not in sys.modules\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, timeout=600)
-
-
-def test_incidence_is_the_angle_off_the_boresight():
-    sun = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.0, 1.0, 0.0], [0.0, -0.6, -0.8]])
-    expected = [0.0, math.degrees(math.atan(0.75)), 90.0, 180.0 - math.degrees(math.atan(0.75))]
-    np.testing.assert_allclose(incidence_deg(sun), expected, rtol=1e-12)

@@ -19,8 +19,6 @@ from benchmark import datasets
 from benchmark.datasets import Samples, UnknownDatasetError, samples_hash
 from benchmark.datasets.card import differences, merge
 from benchmark.datasets.conditions.full_frames import FullFramePreset
-from benchmark.simulator.sensors.diffractive_frames import DiffractiveFrameSensor
-from benchmark.simulator.sensors.events import EventSensor
 from benchmark.simulator.sensors.frames import FrameSensor
 
 ROOT = Path(__file__).parents[3]
@@ -40,16 +38,6 @@ def first(name: str, condition: str, split: str) -> Samples:
 @functools.cache
 def card_of(name: str) -> dict[str, Any]:
     return datasets.get(name).card()  # a second for masks of a thousand holes
-
-
-def test_every_module_of_the_package_is_a_dataset() -> None:
-    files = sorted((ROOT / "benchmark" / "datasets" / "standard").glob("[!_]*.py"))
-    assert [f.stem.replace("_", "-") for f in files] == list(datasets.names())
-    assert set(datasets.names()) >= {
-        "cmos-single-aperture",
-        "qpd-single-aperture",
-        "pd-maskless-cube",
-    }
 
 
 def test_unknown_names_are_answered_with_the_nearest() -> None:
@@ -101,22 +89,6 @@ def test_samples_are_what_the_card_says(name: str, condition: str) -> None:
             assert not missing[:, 0].any()
         else:
             assert np.isfinite(samples.observations).all()
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_cards_say_shared_things_once(name: str) -> None:
-    """A mask of a thousand holes is 140 kB; written for every condition it made 1.2 MB."""
-    card = card_of(name)
-    assert len(json.dumps(card)) < 250_000
-    first, *others = card["conditions"].values()
-    assert not first["parameters"]
-    for about in others:
-        assert about["parameters"].keys() >= {"condition"}
-        # a sensor of another class stands whole, with a mask of up to a hundred holes
-        whole = "type" in about["parameters"].get("sensor", {})
-        assert len(json.dumps(about)) < (20_000 if whole else 10_000)
-    with pytest.raises(KeyError):
-        datasets.parameters_of(card, "no such condition")
 
 
 def test_differences_of_objects_are_taken_back_by_merging() -> None:
@@ -235,20 +207,6 @@ def test_all_samples_begin_with_the_first_and_do_not_depend_on_the_batch(
     assert samples_hash(again) == samples_hash(everything)
 
 
-def test_digest_sees_values_shapes_and_types() -> None:
-    base = np.arange(6.0)
-    sun = np.ones((2, 3))
-    digests = {
-        samples_hash(Samples(array, sun, origin))
-        for array in (base, base.reshape(2, 3), base.astype(np.float32), base + 1)
-        for origin in (None, np.zeros((2, 2), dtype=np.int64))
-    }
-    assert len(digests) == 8
-    assert samples_hash(Samples(base[::1], sun, None)) == samples_hash(
-        Samples(np.repeat(base, 2)[::2], sun.copy(), None)
-    )
-
-
 def test_the_window_says_little_about_the_spot() -> None:
     preset = datasets.get("cmos-single-aperture")
     sensor = preset.setups["nominal"].sensor
@@ -305,37 +263,3 @@ def test_bounds_order_with_the_noise(name: str, monkeypatch: pytest.MonkeyPatch)
     assert seen.mean() > 0.8
     assert (low[seen] <= nominal[seen]).all()
     assert (nominal[seen] <= high[seen]).all()
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_frames_and_events_behind_apertures_are_diffracted(name: str) -> None:
-    preset = datasets.get(name)
-    regime = card_of(name)["regime"]
-    assert regime["reason"]
-    sensors = [setup.sensor for setup in preset.setups.values()]
-    if all(isinstance(s, DiffractiveFrameSensor | EventSensor) for s in sensors):
-        assert regime["propagation"] == "diffraction"
-        assert len(regime["wavelengths_nm"]) == len(regime["weights"]) >= 6
-    elif regime["propagation"] == "lens":
-        assert preset.mask == "Lens"
-
-
-@pytest.mark.slow
-def test_earth_shines_on_test_samples_only_and_turns_the_estimate_by_degrees() -> None:
-    preset = datasets.get("pd-maskless-cube")
-    assert preset.scene("albedo", "calibration").albedo is None
-    albedo = preset.scene("albedo", "test").albedo
-    assert albedo is not None
-    assert albedo.min() >= 0
-    assert 0.1 < albedo.max() < 0.4
-    # maximum currents (eq:albedo1): the larger of each pair, signed
-    error = {}
-    for condition in ("nominal", "albedo"):
-        samples = preset.generate(condition, "test")
-        plus, minus = samples.observations[:, ::2], samples.observations[:, 1::2]
-        found = np.where(plus >= minus, plus, -minus)
-        found /= np.linalg.norm(found, axis=1)[:, None]
-        apart = np.clip(np.sum(found * samples.sun, axis=1), -1, 1)
-        error[condition] = np.degrees(np.arccos(apart))
-    assert error["nominal"].max() < 10
-    assert 10 < error["albedo"].max() < 60

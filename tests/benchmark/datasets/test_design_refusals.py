@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from fake_atlas import Diodes, FakeSetup
 
 from benchmark import datasets
 from benchmark.datasets.conditions.flight_bounds import MAGNETOMETER, posterior_bound
-from benchmark.datasets.corrected import correction
 from benchmark.simulator.flight.gyro import Gyro
 
 SLIT = "from benchmark.datasets.standard.pd_slit import PRESET\n"
@@ -44,41 +41,6 @@ def test_a_module_without_a_data_set_of_its_own_name_is_refused(
     monkeypatch.setattr(datasets, "standard", there)
     with pytest.raises(error, match=message):
         datasets._presets.__wrapped__()
-
-
-@dataclass(frozen=True)
-class Wrapped:
-    """What moves or ages a sensor."""
-
-    sensor: Any
-
-
-@dataclass(frozen=True)
-class Pixels:
-    detector: Any
-
-
-@dataclass(frozen=True)
-class Scale:
-    full_scale_dn: int = 4095
-
-
-class Referred(Diodes):
-    """Pixels with references, inside of something that moves them."""
-
-    def condition(self, name: str) -> FakeSetup:
-        return FakeSetup(sensor=Wrapped(Wrapped(Pixels(Scale()))))
-
-    def references(self, condition: str) -> dict[str, Any]:
-        return {"dark_dn": np.full(4, 10.0), "flat_dn": np.full(4, 2010.0)}
-
-
-def test_references_are_scaled_by_the_sensor_inside_of_what_moves_it() -> None:
-    preset: Any = Referred(name="fake-referred")
-    by = correction(preset, "quiet")
-    assert by is not None
-    assert by.full_scale == 4095.0
-    np.testing.assert_allclose(by.dark, 10.0)
 
 
 COUNT = 6

@@ -223,22 +223,3 @@ def test_full_frame_bounds_do_not_depend_on_the_batch(monkeypatch: pytest.Monkey
     again = few.bound("nominal")
     assert again.angle_deg == pytest.approx(first.angle_deg, rel=1e-9)
     assert len(again.angle_deg) == 5
-
-
-def test_full_frame_presets_hold_full_frame_sensors() -> None:
-    data = preset("cmos-encoded")
-    other = preset("cmos-slit").setups["nominal"]
-    mixed = replace(data, setups={"nominal": other})
-    with pytest.raises(TypeError, match="must hold a MultiSpotSensor; got DiffractiveFrameSensor"):
-        mixed.bound("nominal")
-
-
-def test_generation_depends_on_neither_batch_nor_order(monkeypatch: pytest.MonkeyPatch) -> None:
-    data = preset("cmos-encoded")
-    few = replace(data, directions=replace(data.directions, steps=3, test_samples=7))
-    first = few.generate("missing-apertures", "test")
-    few.generate("nominal", "calibration")
-    monkeypatch.setattr("benchmark.datasets.preset.BATCH", 3)
-    again = few.generate("missing-apertures", "test")
-    assert np.array_equal(first.observations, again.observations)
-    assert np.array_equal(first.origin_px, np.zeros((7, 2)))

@@ -11,7 +11,6 @@ import pytest
 
 from benchmark import datasets
 from benchmark.metrics.bounds import cramer_rao
-from benchmark.plan import combinations as plan
 from benchmark.simulator.light.environment import Irradiance
 from benchmark.simulator.light.sun_disc import SolarDisc, from_angles
 from benchmark.simulator.masks.apertures import Mask
@@ -345,12 +344,6 @@ def test_light_of_the_dial_is_conserved_over_the_field() -> None:
             assert (added >= -1e-12).all()
             assert (added <= share * light[:, None] + 1e-12).all()
             assert (added.max() > 0.0) == (share > 0.0)
-
-
-def test_quadrant_balances_are_not_planned_on_a_code_dial() -> None:
-    assert not plan.cells("pd-code-dial", extractors="voltage-balance")
-    refused = plan.list_exclusions("pd-code-dial", extractors="voltage-balance")
-    assert any("the sensor has a code dial" in pair.reason for pair in refused)
 
 
 def test_bound_of_a_reticle_falls_with_the_square_root_of_its_slits() -> None:

@@ -150,11 +150,6 @@ def test_gains_and_displaced_rows_are_in_the_series_and_partly_in_the_one_term()
     assert uneven["fourier-phase"] < 0.05 * uneven["periodic"]
 
 
-@pytest.mark.parametrize("name", ["pd-maskless-pyramid", "pva-maskless-sphere", DIAL])
-def test_every_dataset_with_a_direct_extractor_has_a_model(name: str) -> None:
-    assert plan.cells(name, "nominal")
-
-
 def test_models_of_other_bodies_say_why_they_cannot_read_a_dataset() -> None:
     direct = plan.list_exclusions(extractors=["direct", "dial-tracks"])
     reasons = {(r.dataset, r.model): r.reason for r in direct if r.model}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,8 +12,6 @@ from benchmark import datasets
 from benchmark.datasets.conditions.motion import TUMBLING
 from benchmark.seeds import generator
 from benchmark.simulator.flight.spin import Spin
-from benchmark.simulator.light.stray_slope import UnevenScene
-from benchmark.simulator.sensors.rolling_frames import RollingDiffractiveSensor
 
 #: By the time between rows, seconds.
 SETS = {
@@ -21,16 +19,6 @@ SETS = {
     "ccd-single-aperture": 0.0,
 }
 NAMES = tuple(SETS)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_it_is_the_nominal_sensor_that_turns(name: str) -> None:
-    preset = datasets.get(name)
-    still, moving = (preset.setups[c].sensor for c in ("nominal", "spinning"))
-    assert isinstance(moving, RollingDiffractiveSensor)
-    for field in fields(still):
-        assert getattr(moving, field.name) == getattr(still, field.name)
-    assert moving.row_time_s == pytest.approx(SETS[name], abs=1e-9)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -80,22 +68,6 @@ def test_axes_of_a_tumbling_body_are_uniform_over_the_sphere() -> None:
     assert np.square(axes).mean(axis=0) == pytest.approx(1 / 3, abs=4 * math.sqrt(4 / 45 / count))
     with pytest.raises(ValueError, match="rate_deg_s must be finite and positive"):
         Spin(0.0)
-
-
-def test_cards_tell_the_motion_where_there_is_one() -> None:
-    preset = datasets.get("cmos-single-aperture")
-    card = preset.card()
-    spins = {name: datasets.parameters_of(card, name).get("spin") for name in preset.conditions}
-    assert spins.pop("spinning") == {"type": "Spin", "rate_deg_s": TUMBLING.rate_deg_s}
-    assert set(spins.values()) == {None}
-    assert datasets.parameters_of(card, "spinning") == preset.parameters("spinning")
-
-
-def test_scenes_of_other_kinds_keep_the_rates() -> None:
-    scene = datasets.get("cmos-single-aperture").scene("spinning", "test").part(0, 3)
-    uneven = UnevenScene.of(scene, np.zeros((3, 2)))
-    assert uneven.rate_deg_s is scene.rate_deg_s
-    assert np.array_equal(uneven.rows(np.array([2])).rate_deg_s, scene.rate_deg_s[2:])
 
 
 def test_a_sensor_that_is_not_exposed_over_time_is_refused_a_motion() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import replace
 
 import numpy as np
@@ -11,9 +10,7 @@ import pytest
 from benchmark import datasets
 from benchmark.datasets import Samples
 from benchmark.datasets.conditions.flight import Flight, FlightPreset, Span
-from benchmark.datasets.samples import samples_hash
 from benchmark.metrics.bounds import cramer_rao
-from benchmark.metrics.score import score
 from benchmark.simulator.flight.orbit import CircularOrbit
 from benchmark.simulator.light.environment import Earth
 from benchmark.simulator.sensors.faces import FaceSensor
@@ -125,23 +122,6 @@ def test_the_direction_is_not_observable_in_eclipse(made, name: str) -> None:
     assert bound.observable[~eclipse[part]].mean() > 0.8
 
 
-def test_eclipse_is_scored_as_not_observable() -> None:
-    """NaN in eclipse costs nothing; a made-up direction is a false Sun and no error."""
-    sun = np.tile([0.0, 0.0, 1.0], (4, 1))
-    seen = np.array([True, True, False, False])
-    bound = np.where(seen, 0.01, np.inf)
-    silent = sun.copy()
-    silent[~seen] = np.nan
-    honest = score(silent, sun, bound, seen)
-    assert (honest.availability, honest.false_sun, honest.rms_deg) == (1.0, 0.0, 0.0)
-    assert honest.bound_deg == pytest.approx(0.01)
-    made_up = sun.copy()
-    made_up[~seen] = [1.0, 0.0, 0.0]
-    wrong = score(made_up, sun, bound, seen)
-    assert (wrong.availability, wrong.false_sun) == (1.0, 1.0)
-    assert wrong.max_deg == wrong.over_bound == honest.over_bound == 0.0
-
-
 @pytest.mark.parametrize("name", ["pd-orbit", pytest.param("ccd-orbit", marks=pytest.mark.slow)])
 def test_other_instruments_agree_with_the_truth(made, name: str) -> None:
     """Nadir and field in both frames, with the true Sun, are one rotation apart."""
@@ -201,36 +181,6 @@ def test_albedo_vanishes_in_eclipse_by_geometry(made) -> None:
         Earth(), leg.sun_body[eclipse], leg.nadir_body[eclipse], preset.fixed_pattern("nominal")
     )
     assert np.abs(dark).max() < 1e-12
-
-
-@each
-def test_first_samples_are_those_of_the_whole(made, name: str) -> None:
-    whole, part = made[name, "test"], PRESETS[name].generate("nominal", "test", 70)
-    assert np.array_equal(part.observations, whole.observations[:70])
-    assert {k: len(v) for k, v in part.context.items()} == dict.fromkeys(whole.context, 70)
-    assert np.array_equal(part.context["nadir"], whole.context["nadir"][:70])
-    assert samples_hash(part) == samples_hash(PRESETS[name].generate("nominal", "test", 70))
-
-
-def test_hashes_without_context_are_what_they_were_and_cover_it_otherwise() -> None:
-    observations, sun = np.arange(6.0), np.ones((2, 3))
-    old = hashlib.sha256(
-        b"observations [('', '<f8')] (6,)\n" + observations.tobytes()
-        + b"sun [('', '<f8')] (2, 3)\n" + sun.tobytes() + b"origin_px none\n"
-    ).hexdigest()[:32]  # fmt: skip
-    plain = Samples(observations, sun, None)
-    assert samples_hash(plain) == old
-    time = np.array([0.0, 1.0])
-    others = [
-        replace(plain, context={"time_s": time}),
-        replace(plain, context={"time_s": time + 1}),
-        replace(plain, context={"clock_s": time}),
-        replace(plain, context={"time_s": time, "eclipse": time > 0}),
-    ]
-    assert len({samples_hash(samples) for samples in [plain, *others]}) == 5
-    assert samples_hash(replace(plain, context={})) == samples_hash(plain)
-    backwards = {"eclipse": time > 0, "time_s": time}
-    assert samples_hash(replace(plain, context=backwards)) == samples_hash(others[3])
 
 
 def test_a_flight_that_does_not_fit_is_refused() -> None:

@@ -87,15 +87,6 @@ def test_the_gyroscopes_noise_is_that_of_its_data_sheet() -> None:
         Gyro(bias_deg_h=-1.0)
 
 
-@pytest.mark.slow
-def test_a_version_drawn_as_another_has_its_observations(flown) -> None:
-    samples = flown["nominal"][1]
-    later = replace(CUBE, version=CUBE.version + 7).generate("nominal", "test", n=50)
-    assert np.array_equal(later.observations, samples.observations[:50])
-    own = replace(CUBE, drawn_as=None).generate("nominal", "test", n=50)
-    assert not np.array_equal(own.observations, samples.observations[:50])
-
-
 def test_every_filter_is_planned_on_every_flight_and_nowhere_else() -> None:
     flights = [d for d in datasets.names() if "rate_deg_s" in datasets.get(d).context_columns]
     assert {"pd-orbit", "ccd-orbit"} <= set(flights)

@@ -160,41 +160,6 @@ def few(name: str, steps: int = 3) -> Preset:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(n, marks=[pytest.mark.slow] if n == "cmos-l-slit" else []) for n in NAMES],
-)
-def test_samples_have_the_sizes_of_the_card(name: str) -> None:
-    data = few(name)
-    shape = {
-        "ccd-multi-aperture": (512, 512),
-        "cmos-l-slit": (96, 96),
-        "cmos-n-slit": (2048,),
-        "pda-n-slit": (256,),
-    }[name]
-    for split, count in (("calibration", 9), ("test", 7)):
-        samples = data.generate("nominal", split)
-        assert data.card()["splits"][split]["samples"] == count
-        assert samples.observations.shape == (count, *shape)
-        assert samples.observations.dtype == np.uint16
-        assert samples.sun.shape == (count, 3)
-        assert (samples.origin_px is None) == name.endswith("n-slit")
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
-def test_bounds_are_finite_everywhere_and_order_with_the_noise(name: str) -> None:
-    data = few(name, steps=2)  # the field's corners
-    found = {c: data.bound(c, "calibration") for c in ("low-noise", "nominal", "high-noise")}
-    for bound in found.values():
-        assert bound.observable.all()
-        assert np.isfinite(bound.angle_deg).all()
-    low, nominal, high = (bound.angle_deg for bound in found.values())
-    assert (low < nominal).all()
-    assert (nominal < high).all()
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_all_light_falls_on_the_pixels_read_out_and_saturates_none(name: str) -> None:
     """Also in the field's corners, in every condition: windows cut a skirt of light at most."""

@@ -10,7 +10,6 @@ import pytest
 from benchmark import datasets
 from benchmark.datasets.repeats import Repeats
 from benchmark.datasets.units import assemble, tolerance_of, tolerances
-from benchmark.simulator.optics.assembly import Assembly
 from benchmark.simulator.sensors.frames import FrameSensor
 
 PRESETS = {name: datasets.get(name) for name in datasets.names()}
@@ -59,14 +58,6 @@ def test_repeats_of_a_flight_carry_the_context_of_their_moments() -> None:
     assert repeat.context.keys() == test.context.keys()
     for name, column in repeat.context.items():
         assert (column == test.context[name][again]).all(), name
-
-
-@pytest.mark.parametrize("count", [1, 7, 24, 25, 1000])
-def test_poses_are_spread_over_the_test_split(count: int) -> None:
-    chosen = Repeats().pose_indices(count)
-    assert len(chosen) == min(25, count) == len(set(chosen.tolist()))
-    assert 0 <= chosen.min() <= chosen.max() < count
-    assert np.ptp(np.diff(chosen)) <= 1 if len(chosen) > 2 else True
 
 
 def test_unit_0_is_the_dataset_itself() -> None:
@@ -147,20 +138,3 @@ def test_a_mask_that_lies_on_its_glass_takes_it_along() -> None:
     glass = np.array([camera.glass.thickness_mm for camera in cameras])
     assert (gaps < 0.5).any()
     np.testing.assert_allclose(glass, np.minimum(gaps, 0.5), rtol=1e-12)
-
-
-def test_a_perfect_assembly_has_no_tolerance() -> None:
-    assert astuple(tolerance_of(Assembly())) == (0.0,) * 6
-    card = PRESETS["pd-maskless-cube"].card()
-    assert set(card["conditions"]["nominal"]["tolerances"]["assembly"].values()) <= {
-        0.0,
-        "Assembly",
-    }
-
-
-def test_cards_say_what_is_repeated_and_the_tolerances() -> None:
-    card = PRESETS["cmos-multi-aperture"].card()
-    assert (card["splits"]["repeat"]["poses"], card["splits"]["repeat"]["samples"]) == (10, 50)
-    limit = card["conditions"]["nominal"]["tolerances"]["camera.assembly"]
-    assert limit["tilt_x_deg"] == pytest.approx(0.05 * np.sqrt(3))
-    assert PRESETS["cmos-multi-aperture"].for_unit(2).parameters("nominal")["unit"] == 2

@@ -21,11 +21,6 @@ CHAMBER: Any = datasets.get("pd-maskless-two-pyramids")
 CAMERAS = [name for name in NAMES if name.startswith("cmos-single-aperture-")]
 
 
-def test_they_are_no_standard_data_sets() -> None:
-    assert len(NAMES) == 5
-    assert set(NAMES).isdisjoint(datasets.names())
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_each_is_made_after_a_study_and_says_what_is_assumed(name: str) -> None:
     preset = datasets.get(name)
@@ -91,12 +86,6 @@ def test_a_chamber_has_the_temperatures_that_it_says(
     assert CHAMBER.context_columns == ("temperature_K",)
 
 
-def test_fewer_samples_are_the_first_ones() -> None:
-    whole, part = CHAMBER.generate("hot", "test"), CHAMBER.generate("hot", "test", 5)
-    np.testing.assert_array_equal(part.observations, whole.observations[:5])
-    np.testing.assert_array_equal(part.context["temperature_K"], whole.context["temperature_K"][:5])
-
-
 def test_the_temperature_coefficients_are_those_of_the_unit() -> None:
     """What the compensation learns of readings without noise is what the unit was drawn with."""
     ground = CHAMBER.condition("nominal")
@@ -135,10 +124,3 @@ def test_a_chamber_refuses_what_it_cannot_heat() -> None:
     chambers = dict.fromkeys(still.conditions, CHAMBER.chambers["nominal"])
     with pytest.raises(TypeError, match="FaceSensor"):
         ThermalChamberPreset.of(still, chambers)
-
-
-def test_the_card_tells_the_column_and_the_chamber() -> None:
-    card = CHAMBER.card()
-    assert "temperature_K" in card["context"]
-    hot = datasets.parameters_of(card, "hot")["chamber"]
-    assert hot["tested_c"] == [60.0, 80.0]

@@ -201,15 +201,6 @@ def test_what_differs_is_named_by_its_sample(copy):
     assert what.startswith("bound_alpha_deg[4] is ")
 
 
-def test_pins_tell_without_making_anything_again(copy, monkeypatch):
-    monkeypatch.setattr(export_verification, "export", None)
-    changed(copy / "nominal" / "test.npz", lambda a: a["observations"].__imul__(1.001))
-    fit(copy, json.loads((copy / CARD).read_text()))
-    ((_, what),) = verify(copy, pins=PINS, anew=False)
-    assert re.match(r"hash\D* 4 \D", what)
-    assert verify(copy, anew=False) == []  # no pins, and nothing made again
-
-
 def test_a_card_that_asks_for_nothing_known_is_refused(copy):
     card = json.loads((copy / CARD).read_text())
     for asked in ({"conditions": [], "splits": []}, {"first_samples": "six"}):
