@@ -18,11 +18,11 @@ import pytest
 from api.deposit.derived_tables import resolution
 from benchmark.contract import Cell
 from benchmark.error_budget.record import RECORD as ERROR_BUDGET
-from benchmark.leaderboard.findings import KEYS, Finding, Record, findings_of
+from benchmark.leaderboard.findings import Finding, Record, findings_of
 from benchmark.leaderboard.findings.benches import benches
 from benchmark.leaderboard.findings.constants import constants
 from benchmark.leaderboard.findings.finding import number
-from benchmark.leaderboard.findings.methods import is_drawn, methods
+from benchmark.leaderboard.findings.methods import methods
 from benchmark.leaderboard.findings.poses import poses
 from benchmark.leaderboard.findings.sources import sources
 from benchmark.metrics.ranking import UnitErrors
@@ -81,19 +81,6 @@ def test_the_cost_of_drawn_constants_comes_out_the_same_by_another_way(
     ratio, *_ = published["constants"].estimates
     assert [ratio.value, ratio.low, ratio.high] == pytest.approx(again["constants"][:3], rel=1e-9)
     assert (ratio.n, len(published["constants"].pairs)) == (again["constants"][3], again["pairs"])
-
-
-def test_every_finding_has_pairs_intervals_and_a_command(
-    published: Mapping[str, Finding],
-) -> None:
-    assert tuple(published) == KEYS
-    for one in published.values():
-        assert one.pairs
-        assert len({tuple(pair) for pair in one.pairs}) == 1, "columns are the same in every row"
-        for estimate in one.estimates:
-            assert estimate.low <= estimate.value <= estimate.high
-            assert estimate.n >= 6
-        assert f"`{one.command}`" in one.markdown
 
 
 def test_where_the_extractor_limits_noise_is_the_smaller_part(
@@ -191,14 +178,6 @@ def test_a_pipeline_that_studies_share_counts_once_and_each_is_told_why_it_is_le
     assert found.estimates[0].n == 2
 
 
-@pytest.mark.parametrize(
-    ("model", "drawn"),
-    [("spm", True), ("basic", True), ("optical + spm", True), ("pinhole", False), ("lut", False)],
-)
-def test_a_model_without_fitted_constants_is_known(model: str, drawn: bool) -> None:
-    assert is_drawn(model) is drawn
-
-
 def test_a_data_set_counts_once_however_many_extractors_it_has() -> None:
     errors: dict[tuple[str, str, str], list[float]] = {}
     for extractor, drawn in (("a", 0.3), ("b", 0.4), ("c", 9.0)):
@@ -267,11 +246,3 @@ def test_a_bias_is_what_the_true_places_remove() -> None:
     assert distance.value == pytest.approx(2.0)
     assert near.value == pytest.approx(2 / 3)
     assert biased.value == 0.5
-
-
-@pytest.mark.parametrize(
-    ("value", "said"),
-    [(1.7252, "1.7"), (71.0, "71"), (21.5, "22"), (0.0158, "0.016"), (2.0, "2"), (0.0, "0")],
-)
-def test_numbers_have_two_digits(value: float, said: str) -> None:
-    assert number(value) == said

@@ -9,11 +9,10 @@ import pytest
 
 from benchmark.contract import Cell
 from benchmark.leaderboard import fresh_units
-from benchmark.leaderboard.fresh_units import FRESH, FreshUnitResult, first_groups
+from benchmark.leaderboard.fresh_units import FRESH, first_groups
 from benchmark.leaderboard.scope import UNITS
 from benchmark.plan.parts import Parts, installed_parts
 from benchmark.results.store import PUBLISHED, Store
-from benchmark.running.runner import RunInterruptedError
 
 NAME = "qpd-single-aperture"
 
@@ -48,29 +47,3 @@ def test_leaders_are_scored_on_units_that_no_board_has(parts: Parts) -> None:
     assert found.first <= found.pipelines
     assert found.over >= 1.0
     assert found.holds or found.over > 1.0
-
-
-@pytest.mark.parametrize(("behind", "code"), [(2, 0), (3, 1)])
-def test_it_fails_where_more_than_a_twentieth_of_the_leaders_are_behind(
-    behind: int, code: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    cell = Cell("d", "nominal", "e", "m")
-    boards = [FreshUnitResult(f"d{n}", 20, 1, cell, n >= behind, 1.25) for n in range(40)]
-    monkeypatch.setattr(fresh_units, "score_fresh_units", lambda *_: boards)
-    assert fresh_units.main([]) == code
-    said = capsys.readouterr().out
-    assert "d0: 1 of 20 in the first group; e + m is behind on fresh units, 1.250" in said
-    assert f"{40 - behind} of 40 leaders" in said
-    with pytest.raises(SystemExit):
-        fresh_units.main(["--workers", "0"])
-
-
-def test_ctrl_c_says_that_nothing_is_kept(parts: Parts, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What was measured lay in a temporary store."""
-
-    def interrupted(*_arguments: object, **_options: object) -> None:
-        raise RunInterruptedError("interrupted; what was measured is kept")
-
-    monkeypatch.setattr(fresh_units, "run", interrupted)
-    with pytest.raises(RunInterruptedError, match=r"^interrupted; nothing of it is kept$"):
-        fresh_units.score_fresh_units(Store(PUBLISHED), parts=parts)

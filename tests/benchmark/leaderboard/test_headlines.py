@@ -108,17 +108,6 @@ def test_what_is_not_measured_has_no_ratio_and_stands_first() -> None:
     assert [row.difference for row in rows] == ["", "", "", "Alike."]
 
 
-def test_ranks_that_fall_together_correlate() -> None:
-    known = [study(f"S{n}", {("accuracy", "rms"): n + 1.0}) for n in range(4)]
-    ours = (0.1, 0.3, 0.2, 0.9)
-    scores = {(f"S{n}", "nominal", "e", "m"): score(rms_deg=our) for n, our in enumerate(ours)}
-    rows = headlines(scores, known, {s.key: resolution((s.key, "nominal")) for s in known}, {})
-    correlation, count = rank_correlation(rows)
-    by_hand = 1 - 6 * (0 + 1 + 1 + 0) / (4 * 15)
-    assert correlation == pytest.approx(by_hand)
-    assert count == 4
-
-
 @pytest.fixture(scope="module")
 def published() -> Sequence[Headline]:
     known = Knowledge()

@@ -16,11 +16,10 @@ from fake_results import copied
 from benchmark.contract import ON_BENCH
 from benchmark.leaderboard import scope
 from benchmark.leaderboard.board import board_of
-from benchmark.leaderboard.pages import FORMATS, PAGE, page, render
+from benchmark.leaderboard.pages import FORMATS, PAGE, render
 from benchmark.leaderboard.scope import UNITS
 from benchmark.leaderboard.update import update, write_page
 from benchmark.progress import silent
-from benchmark.results.digests import stage_digests
 from benchmark.results.store import Store
 from benchmark.results.times import Machine, Time, Times
 from benchmark.running import condition_data
@@ -86,13 +85,6 @@ def test_everything_planned_is_measured_and_the_leading_on_other_units(made):
     assert {place[0] for place in store.pins()} == {preset.name for preset in PRESETS}
 
 
-def test_what_is_committed_is_tables_pins_digests_and_one_page(made):
-    assert set(states(made)) == {
-        "scores/fake-diodes.csv", "scores/fake-second.csv", "sweeps.csv", "sweeps.json",
-        "pins.csv", "components.json", "checksums-sha256.txt", PAGE,
-    }  # fmt: skip
-
-
 def test_bringing_up_to_date_what_is_up_to_date_writes_and_generates_nothing(published, log):
     before = states(published)
     summary = update(published, progress=silent, parts=PARTS)
@@ -101,15 +93,6 @@ def test_bringing_up_to_date_what_is_up_to_date_writes_and_generates_nothing(pub
     assert states(published) == before
     assert log() == []
     assert not write_page(Store(published))
-
-
-@pytest.mark.slow
-def test_two_workers_give_the_same_record(published, tmp_path):
-    again = tmp_path / "again"
-    update(again, 2, progress=silent, parts=PARTS)
-    assert {name: content for name, (content, _) in states(again).items()} == {
-        name: content for name, (content, _) in states(published).items()
-    }
 
 
 @pytest.fixture
@@ -164,25 +147,6 @@ def test_an_extractor_s_new_code_renews_its_own_rows_and_its_digest_alone(tmp_pa
     assert all("/fake-plugged" in line for line in moved["sweeps.json"])
 
 
-@pytest.mark.slow
-def test_a_changed_model_or_stage_renews_what_they_are_in(published, monkeypatch):
-    about = dataclasses.replace(LeastSquares.about, version=2)
-    newer = type("Newer", (LeastSquares,), {"about": about, "__module__": "fake_atlas"})
-    parts = fake_plan.parts(newer, presets=PRESETS)
-    before = states(published)
-    done = update(published, progress=silent, parts=parts)
-    assert done.computed == done.planned
-    assert list(changed_lines(before, states(published))) == ["components.json"]
-    now = stage_digests()
-    monkeypatch.setattr(
-        "benchmark.results.components.stage_digests", lambda *_: {**now, "scores": "another"}
-    )
-    done = update(published, progress=silent, parts=parts)
-    assert done.computed == done.planned
-    (line,) = changed_lines(before, states(published))["components.json"][:1]
-    assert line == '"scores": "another"'
-
-
 def test_data_that_change_in_silence_are_an_error_before_anything_is_measured(published, log):
     before = states(published)
     silent_change = fake_plan.parts(presets=(Diodes(), Diodes(name="fake-second", seed=8)))
@@ -193,23 +157,6 @@ def test_data_that_change_in_silence_are_an_error_before_anything_is_measured(pu
     assert not [line for line in log() if line.startswith("extract")]
     assert all(" first " in line for line in log() if line.startswith("generate"))
     assert {line.split()[1] for line in log()} == {"fake-second"}, "the other's code is as it was"
-
-
-@pytest.mark.parametrize(
-    "changed",
-    [{"late": 0.1}, {"looseness": 1.01}, pytest.param({"seed": 8}, marks=pytest.mark.slow)],
-)
-def test_a_change_of_data_or_bound_needs_a_new_version(published, changed):
-    before = states(published)
-    second = Diodes(name="fake-second", **changed)
-    with pytest.raises(UnversionedChangeError, match="fake-second"):
-        update(published, progress=silent, parts=fake_plan.parts(presets=(Diodes(), second)))
-    assert states(published) == before
-    newer = fake_plan.parts(presets=(Diodes(), dataclasses.replace(second, version=2)))
-    assert update(published, progress=silent, parts=newer).computed > 0
-    moved = changed_lines(before, states(published))
-    assert set(moved) <= {"scores/fake-second.csv", "pins.csv", "components.json", PAGE}
-    assert {pin.version for pin in Store(published).pins().values()} == {1, 2}
 
 
 def test_what_is_no_longer_planned_goes(published):
@@ -226,17 +173,6 @@ def test_units_that_lead_no_more_go(published, monkeypatch):
     update(published, progress=silent, parts=PARTS)
     others = Store(published).rows(unit=1)
     assert {row["extractor"] for row in others} == {"fake-currents"}
-
-
-def test_a_pipeline_that_is_silent_too_often_does_not_lead(made):
-    """The gaps' errors are those of the other: half of the boards would have it first."""
-    for dataset in board_of(Store(made))["datasets"]:
-        found = [(row["condition"], row["rank"], row["extractor"]) for row in dataset["rows"]]
-        assert found == [
-            (condition, rank, name)
-            for condition in ("noisy", "quiet")
-            for rank, name in ((1, "fake-currents"), (2, "fake-gaps"))
-        ]
 
 
 def test_pipelines_that_differ_less_than_units_share_a_rank_in_every_form(tmp_path):
@@ -356,25 +292,3 @@ def test_a_reason_cannot_break_the_page_and_failures_are_shown(tmp_path):
     assert "&lt;script&gt;" in FORMATS["leaderboard.html"](board)
     said = "No score: fake-diodes/quiet/fake-gaps/fake-broken: ValueError"
     assert said in FORMATS["leaderboard.md"](board)
-
-
-def test_the_committed_page_has_the_best_of_each_extractor_in_the_first_condition(made):
-    """Of the nominal one where there is one; here the first by name."""
-    text = (made / PAGE).read_text()
-    assert text == page(board_of(Store(made)))
-    rows = [line for line in text.splitlines() if line.startswith("| fake-")]
-    assert [line.split(" | ")[:2] for line in rows] == [
-        [f"| {name}", f"{extractor} + fake-least-squares"]
-        for name in ("fake-diodes", "fake-second")
-        for extractor in ("fake-currents", "fake-gaps")
-    ]
-    row = Store(made).query(dataset="fake-diodes", condition="noisy", extractor="fake-currents")[0]
-    assert f"| {row['rms_deg']:#.4g} |" in rows[0]
-
-
-def test_sweeps_stand_in_every_form(made):
-    board = board_of(Store(made))
-    assert json.loads(FORMATS["leaderboard.json"](board))["sweeps"] == swept(made)
-    for name in ("leaderboard.md", "leaderboard.html"):
-        assert "fake-currents" in FORMATS[name](board).partition("Sweeps")[2], name
-    assert "faces,noise,50,fake-currents" in FORMATS["sweeps.csv"](board)

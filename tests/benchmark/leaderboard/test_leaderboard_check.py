@@ -10,14 +10,13 @@ from fake_results import copied
 
 from benchmark.contract import Cell
 from benchmark.leaderboard import check as checking
-from benchmark.leaderboard.check import NATIVE, OLDER, Difference
+from benchmark.leaderboard.check import NATIVE, Difference
 from benchmark.leaderboard.pages import PAGE
 from benchmark.leaderboard.update import update, write_page
 from benchmark.progress import silent
 from benchmark.results.csv_tables import StoreError
 from benchmark.results.store import Store
 from benchmark.running import condition_data
-from benchmark.running.runner import RunInterruptedError
 from benchmark.sweeps.record import RECORD as SWEEPS
 
 pytestmark = pytest.mark.usefixtures("readings_only", "log")
@@ -73,11 +72,6 @@ def test_a_number_changed_by_hand_is_named_by_its_file(made, tmp_path):
         update(directory, progress=silent, parts=PARTS)
 
 
-def test_without_measuring_nothing_is_generated_or_extracted(published, log):
-    assert check(published, stored_only=True) == []
-    assert log() == []
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("column", "value"),
@@ -112,15 +106,6 @@ def test_an_error_that_contradicts_its_ratio_to_the_bound_is_found_without_measu
         f"{CELL}/over_bound", f"{CELL}/over_bound_unit"
     }  # fmt: skip
     assert Difference(SCORES, f"{CELL}/rms_deg", "0.123", str(right), NATIVE) in check(published)
-
-
-@pytest.mark.slow
-def test_a_number_of_another_unit_is_named_with_its_unit(published):
-    cell = dataclasses.replace(CELL, condition="quiet", unit=3)
-    altered(published, cell, max_deg=9.0)
-    [difference] = check(published)
-    assert difference.cell == f"{cell}/max_deg"
-    assert "/unit 3/" in difference.cell
 
 
 def test_an_altered_number_of_the_page_is_found_without_measuring(published):
@@ -162,48 +147,6 @@ def test_a_row_too_much_is_named(published):
     write_page(Store(published))
     [difference] = check(published, stored_only=True)
     assert difference == Difference("scores", f"{extra}/row", "present", "not planned")
-
-
-@pytest.mark.slow
-def test_a_missing_pin_is_named_and_an_altered_one_by_what_differs(published):
-    store = Store(published)
-    first, *rest = store.pins().values()
-    place = "/".join(first.place)
-
-    def with_pins(*pins):
-        store.write(store.scores(), pins, store.components())
-        write_page(store)
-
-    with_pins(*rest)
-    [difference] = check(published, stored_only=True)
-    assert difference == Difference("pins.csv", f"{place}/row", "absent", "pinned")
-    with_pins(*rest, dataclasses.replace(first, data_hash="0" * 32))
-    assert check(published, stored_only=True) == []
-    [difference] = check(published)
-    assert (difference.file, difference.cell) == ("pins.csv", place)
-    assert "data_hash" in difference.measured
-    assert "0" * 32 in difference.measured
-    with_pins(*rest, dataclasses.replace(first, version=4))
-    [unmeasured] = check(published, stored_only=True)
-    assert unmeasured == Difference("pins.csv", f"{place}/version", "4", "1")
-    known, difference = check(published)
-    assert known == unmeasured
-    assert (difference.committed, difference.measured) == ("version 4", "version 1")
-
-
-@pytest.mark.slow
-def test_a_changed_bound_is_named_by_its_data_set(published):
-    store = Store(published)
-    pins = store.pins()
-    test = pins["fake-second", "quiet", "test"]
-    moved = dataclasses.replace(test, bound_deg=test.bound_deg * 1.001)
-    store.write(store.scores(), [*(pins | {test.place: moved}).values()], store.components())
-    [unmeasured] = check(published, stored_only=True)
-    assert (unmeasured.file, unmeasured.cell) == ("pins.csv", "fake-second/quiet/test/bound_deg")
-    assert unmeasured.measured == f"{test.bound_deg:g}, as the scores have it"
-    _, difference = check(published)
-    assert (difference.file, difference.cell) == ("pins.csv", "fake-second/quiet/test")
-    assert "bound_deg" in difference.measured
 
 
 @pytest.mark.parametrize(
@@ -324,30 +267,3 @@ def test_a_changed_sweep_is_named_by_its_point(published):
     [difference] = check(published)
     assert (difference.file, difference.cell) == ("sweeps.csv", f"{POINT}/rms")
     assert (difference.committed, difference.measured) == (str(row["rms"]), str(right))
-
-
-@pytest.mark.slow
-def test_both_kernels_are_measured_with_and_each_difference_says_with_which(published, monkeypatch):
-    """Older kernels by a stand-in that finds one number otherwise: their process takes all."""
-
-    def measured_elsewhere(directory, workers):
-        update(directory, workers, silent, parts=PARTS)
-        altered(directory, CELL, rms_deg=0.123)
-
-    monkeypatch.setattr(checking, "update_with_older_kernels", measured_elsewhere)
-    right = str(Store(published).scores()[CELL]["rms_deg"])
-    assert checking.check(published, 1, silent, parts=PARTS) == [
-        Difference(SCORES, f"{CELL}/rms_deg", right, "0.123", OLDER)
-    ]
-    assert check(published, kernels=(NATIVE,)) == []
-
-
-@pytest.mark.parametrize("kernels", [NATIVE, OLDER])
-def test_a_check_that_is_broken_off_says_that_nothing_is_kept(published, monkeypatch, kernels):
-    def interrupted(*_arguments, **_options):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(checking, "update", interrupted)
-    monkeypatch.setattr(checking, "update_with_older_kernels", interrupted)
-    with pytest.raises(RunInterruptedError, match="keeps nothing"):
-        check(published, kernels=(kernels,))

@@ -1,20 +1,14 @@
 """The committed results: of the code as it is, and in line with what is known of the methods."""
 
-import shutil
-from itertools import groupby, product
+from itertools import groupby
 
 import numpy as np
 import pytest
 
 from benchmark import datasets
-from benchmark.contract import ON_BENCH
-from benchmark.datasets import Preset
 from benchmark.leaderboard.check import check, compare_scores
-from benchmark.leaderboard.scope import BEHIND, CLOSE, MOST, UNITS, UNITS_BEHIND
-from benchmark.leaderboard.update import update
 from benchmark.plan import combinations as plan
 from benchmark.plan.parts import Parts, installed_parts
-from benchmark.progress import silent
 from benchmark.results.store import PUBLISHED, Store
 from benchmark.running import condition_data, pinning, runner
 
@@ -139,75 +133,9 @@ def test_nothing_that_answers_too_seldom_is_before_anything_that_answers(boards)
             assert ranked[0]["availability"] >= 0.95, (name, condition)
 
 
-def test_the_leading_pipelines_of_each_first_condition_carry_the_spread_of_units(boards):
-    """As many units as the rule says, and a rank is shared within a group and nowhere else."""
-    shared = 0
-    for name, condition, rows in boards:
-        ranked = [row for row in rows if row["rank"] is not None]
-        if condition != datasets.get(name).conditions[0]:
-            assert {len(row["unit_rms_deg"]) for row in ranked} == {1}
-            continue
-        answering = [row for row in ranked if (row["availability"] or 0.0) >= 0.95] or ranked
-        least = min(row["charged_deg"] for row in answering)
-        # the standard unit's order decides, the first of which there is room for
-        of_units = {UNITS: 0, UNITS_BEHIND: 0, 1: 0}
-        for row in sorted(answering, key=lambda row: row["charged_deg"]):
-            times, number = row["charged_deg"] / least, len(row["unit_rms_deg"])
-            able = [UNITS] * (times <= CLOSE) + [UNITS_BEHIND] * (times <= BEHIND)
-            assert number == next((n for n in able if of_units[n] < MOST), 1), (name, row)
-            of_units[number] += 1
-        for row in ranked:
-            of_rank = [one for one in ranked if one["rank"] == row["rank"]]
-            assert {one["group"] for one in of_rank} == {row["group"]}
-            assert row["tied"] == (len(of_rank) > 1)
-            shared += row["tied"]
-    assert shared, "sensors built alike decide every rank"
-
-
-@pytest.mark.parametrize("name", ["pd-orbit", "ccd-orbit"])
-def test_flights_say_their_error_in_sunlight_and_their_suns_in_eclipse(published, name):
-    rows = published.query(dataset=name, condition="nominal", status="ok")
-    assert rows
-    for row in rows:
-        assert 0 < row["n_observable"] < row["n_test"]
-        assert row["false_sun"] is not None
-        assert row["availability"] is not None
-    assert any(row["rms_deg"] < 5 and row["availability"] >= 0.95 for row in rows)
-
-
 def test_no_planned_pipeline_fails(published):
     failed = published.query(status="failed")
     assert [(r["dataset"], r["extractor"], r["model"], r["reason"]) for r in failed] == []
-
-
-def unreadable():
-    """Datasets of which no installed pipeline can measure anything, by the plan's own reasons."""
-    parts = installed_parts()
-    why_not = {(i.dataset, i.extractor, i.model): i.reason for i in plan.list_exclusions()}
-
-    def refused(dataset, extractor, model):
-        return why_not.get((dataset, extractor, "")) or why_not.get((dataset, extractor, model))
-
-    return {
-        dataset
-        for dataset in parts.presets
-        if all(refused(dataset, *pair) for pair in product(parts.extractors, parts.models))
-    }
-
-
-def test_every_dataset_and_condition_is_scored_that_an_implemented_pipeline_can_read(published):
-    """The others are said to be unscored: by the plan with reasons, and by their pins alone."""
-    unscored = unreadable()
-    places = {(row["dataset"], row["condition"]) for row in published.query(status="ok")}
-    presets = [datasets.get(name) for name in datasets.names()]
-    on_benches = {place for place in places if place[1] == ON_BENCH}
-    assert len(on_benches) >= len(presets) - len(unscored)
-    assert places - on_benches == {
-        (p.name, condition) for p in presets for condition in p.conditions if p.name not in unscored
-    }
-    assert not unscored & {row["dataset"] for row in published.rows()}
-    assert not unscored & {cell.dataset for cell in plan.cells()}
-    assert unscored <= {dataset for dataset, _, _ in published.pins()}
 
 
 @pytest.mark.slow
@@ -217,25 +145,6 @@ def test_measured_now_is_what_is_committed(published, fresh):
     measured = {cell: row for cell, row in fresh.scores().items() if cell in scores}
     assert len(measured) > 20
     assert compare_scores({cell: scores[cell] for cell in measured}, measured, counts) == []
-
-
-@pytest.mark.slow
-def test_bringing_an_up_to_date_record_up_to_date_renders_nothing(tmp_path, monkeypatch):
-    def refuse(*arguments):
-        raise AssertionError("a dataset was rendered")
-
-    for path in files():
-        target = tmp_path / path.relative_to(PUBLISHED)
-        target.parent.mkdir(exist_ok=True)
-        shutil.copy(path, target)
-    before = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.*") if path.is_file()}
-    monkeypatch.setattr(Preset, "generate", refuse)
-    monkeypatch.setattr(Preset, "bound", refuse)
-    done = update(tmp_path, progress=silent)
-    assert (done.computed, done.warnings) == (0, ())
-    shutil.rmtree(Store(tmp_path).work_directory)
-    after = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.*") if path.is_file()}
-    assert after == before
 
 
 @pytest.mark.parametrize("source", ["published", pytest.param("fresh", marks=pytest.mark.slow)])

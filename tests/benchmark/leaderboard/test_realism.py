@@ -12,10 +12,8 @@ from hypothesis import strategies as st
 from benchmark import datasets
 from benchmark.datasets.realism import (
     COLUMNS,
-    UNNAMED,
     HardwareMatch,
     RealismError,
-    hardware_match,
     hardware_matches,
 )
 from benchmark.leaderboard.realism import FACTOR, nearest_ratio, realism, unexplained_differences
@@ -63,16 +61,6 @@ def test_a_sensor_stands_beside_data_of_its_own_kind() -> None:
     different = {pair for pair in masks if pair[0] != pair[1]}
     # a vernier is encoded or of several slits; several apertures beside one another are heads
     assert different <= {("Encoded", "Multi-Slit"), ("Single-Ap.", "Multi-Ap.")}
-
-
-def test_cards_say_what_a_dataset_stands_for() -> None:
-    built = datasets.get("qpd-single-aperture").card()["stands_for"]
-    assert built["idealisation"] is None
-    assert [sensor["id"] for sensor in built["sensors"]][:2] == ["C01", "C02"]
-    ideal = datasets.get("oi-maskless-pyramid").card()["stands_for"]
-    assert ideal["sensors"] == []
-    assert "Wang2019" in ideal["idealisation"]
-    assert hardware_match("not-of-the-table") == HardwareMatch("not-of-the-table", (), UNNAMED, "")
 
 
 def test_the_best_answering_pipeline_of_the_standard_unit_is_compared() -> None:

@@ -4,7 +4,6 @@ import dataclasses
 import math
 
 import fake_plan
-import pytest
 from fake_atlas import Currents, Diodes, LeastSquares
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -100,12 +99,3 @@ def test_nothing_is_scored_twice_nor_outside_the_plan():
     assert {cell for cell in own if not cell.unit} <= set(planned)
     pairs = {(cell.dataset, cell.extractor, cell.model) for cell in first}
     assert pairs == {(cell.dataset, cell.extractor, cell.model) for cell in planned}
-
-
-@pytest.mark.slow
-def test_each_extractor_is_seen_under_every_condition():
-    scores, parts = Store(PUBLISHED).scores(), installed_parts()
-    planned = {(cell.dataset, cell.extractor) for cell in scope.first(parts)}
-    found = {(c.dataset, c.condition, c.extractor) for c in scope.published_scope(scores, parts)}
-    for dataset, extractor in planned:
-        assert {(dataset, c, extractor) for c in parts.presets[dataset].conditions} <= found
