@@ -170,17 +170,6 @@ def test_read_noise_makes_finer_pixels_worse_in_proportion() -> None:
     assert fine / middle == pytest.approx(2.0, rel=0.03)
 
 
-def test_the_near_test_of_observability_agrees_with_the_far_one() -> None:
-    """Where both can be asked: a deviation just below and just above the step."""
-    setup, pattern = setup_of("cmos-single-aperture", "high-noise")
-    scene = scene_at(setup, [0.0, 30.0, -50.0], [0.0, -40.0, 20.0])
-    sigma = np.radians(cramer_rao(setup.sensor, scene, pattern, setup.irradiance).angle_deg)
-    for factor in (0.3, 3.0):  # the far test below, the near one above
-        step = float(factor * sigma.max())
-        bound = cramer_rao(setup.sensor, scene, pattern, setup.irradiance, step)
-        assert bound.observable.all()
-
-
 def test_a_signal_that_ends_within_the_step_is_not_observed() -> None:
     """A face that the Sun is about to leave: derivatives promise what one side does not keep."""
     setup, _ = setup_of("pd-maskless-cube")
@@ -264,27 +253,3 @@ def test_bound_does_not_depend_on_the_batch(monkeypatch: pytest.MonkeyPatch) -> 
     whole = preset.bound("nominal", "calibration")
     monkeypatch.setattr("benchmark.metrics.bounds.BATCH", 7)
     assert np.array_equal(preset.bound("nominal", "calibration").angle_deg, whole.angle_deg)
-
-
-def test_axis_angles_are_undefined_behind_the_sensor() -> None:
-    setup, pattern = setup_of("pd-maskless-cube")
-    sun = np.array([[0.48, 0.6, -0.64]])
-    bound = cramer_rao(setup.sensor, still(setup, sun), pattern, setup.irradiance)
-    assert np.isfinite(bound.angle_deg[0])
-    assert np.isnan(bound.alpha_deg[0])
-    assert np.isnan(bound.beta_deg[0])
-
-
-def test_near_the_axis_angle_and_axes_agree() -> None:
-    setup, pattern = setup_of("cmos-single-aperture")
-    scene = scene_at(setup, [0.5], [0.3])
-    bound = cramer_rao(setup.sensor, scene, pattern, setup.irradiance)
-    both = math.hypot(bound.alpha_deg[0], bound.beta_deg[0])
-    assert bound.angle_deg[0] == pytest.approx(both, rel=1e-3)
-
-
-def test_nuisances_without_spread_are_refused() -> None:
-    setup, pattern = setup_of("pd-maskless-cube")
-    scene = scene_at(setup, [10.0], [10.0])
-    with pytest.raises(ValueError, match=r"stray_spread.*0.*0\.02.*0\.0"):
-        cramer_rao(setup.sensor, scene, pattern, Irradiance(spread=0.02))

@@ -15,7 +15,7 @@ from benchmark import datasets
 from benchmark.metrics.bounds import cramer_rao
 from benchmark.metrics.noise_products import noise_products
 from benchmark.simulator.light.sun_disc import from_angles, tangent_axes
-from benchmark.simulator.readout.column_noise import CommonNoise, column_deviation_e
+from benchmark.simulator.readout.column_noise import CommonNoise
 from benchmark.simulator.readout.pixel_errors import PixelErrors
 from benchmark.simulator.readout.references import References
 from benchmark.simulator.scene import Scene
@@ -130,15 +130,3 @@ def test_common_noise_costs_more_than_nothing_and_less_than_noise_of_pixels() ->
     # columns lie along y: alpha is determined by differences within them
     assert shared_alpha / alpha < 1.05 < own_alpha / alpha
     assert own_beta > beta
-
-
-def test_readings_bring_an_offset_down_to_the_noise_they_share() -> None:
-    detector = window(NOISY)[1].detector
-    assert column_deviation_e(detector, None) == 40.0
-    unknown = column_deviation_e(detector, References(flats=0, darks=0))
-    assert unknown == pytest.approx(math.hypot(40.0, 60.0))
-    known = [column_deviation_e(detector, References(n, n)) for n in (1, 10, 10**6)]
-    assert known == sorted(known, reverse=True)
-    assert known[-1] == pytest.approx(40.0, rel=1e-5)
-    quiet = replace(detector, errors=PixelErrors(column_offset_e=60.0))
-    assert column_deviation_e(quiet, OFFERED) == 0.0

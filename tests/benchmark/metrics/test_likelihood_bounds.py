@@ -167,13 +167,6 @@ def test_sensors_whose_elements_do_not_differ_each_by_itself_have_no_second_boun
     assert math.isnan(found.unit_rms_deg)
 
 
-def test_what_is_not_asked_for_is_not_told() -> None:
-    setup = setup_of("pd-maskless-pyramid")
-    pattern = setup.sensor.fixed_pattern("test")
-    found = cramer_rao(setup.sensor, seen_at(setup, 5.0, 3.0), pattern, setup.irradiance)
-    assert found.unit_angle_deg is None
-
-
 def test_more_flats_bring_the_second_bound_to_the_first() -> None:
     setup = setup_of("pd-maskless-pyramid")
     one = seen_at(setup, 22.0, -31.0)
@@ -187,14 +180,3 @@ def test_more_flats_bring_the_second_bound_to_the_first() -> None:
     assert by_flats == sorted(by_flats, reverse=True)
     assert by_flats[-1] == pytest.approx(known[0], rel=1e-3)
     assert by_flats[-1] > known[0]
-
-
-def test_bounds_joined_are_those_of_all_their_samples() -> None:
-    half = Bound(
-        np.ones(2), np.ones(2), np.ones(2), np.array([True, False]), np.array([2.0, np.inf])
-    )
-    whole = Bound.join([half, half])
-    assert whole.unit_angle_deg is not None
-    assert whole.unit_angle_deg.tolist() == [2.0, math.inf, 2.0, math.inf]
-    assert (whole.rms_deg, whole.unit_rms_deg) == (1.0, 2.0)
-    assert Bound.join([half, replace(half, unit_angle_deg=None)]).unit_angle_deg is None

@@ -7,7 +7,7 @@ import pytest
 
 from benchmark.contract import Cell
 from benchmark.leaderboard.beside import expected_on_bench, on_bench, twins_of
-from benchmark.metrics.ranking import UnitErrors, order, rank_board, spreads
+from benchmark.metrics.ranking import UnitErrors, order, rank_board
 from benchmark.metrics.score import METRICS
 
 
@@ -87,19 +87,6 @@ def test_answers_too_few_come_behind_and_without_an_error_last():
 def test_false_suns_cost_the_rank():
     honest, false = row("a", 2.0, rms_deg=2.0), row("b", 9.0, rms_deg=1.0)
     assert order(honest, "a") < order(false, "b")
-
-
-def test_errors_by_unit_are_those_of_each_pipeline_under_each_condition():
-    rows = [
-        row("a", 1.0),
-        row("a", 2.0, unit=1),
-        row("a", 9.0, condition="hot"),
-        row("b", 3.0, unit=1),
-    ]
-    assert spreads(rows) == {
-        Cell("d", "nominal", "e", "a"): UnitErrors((1.0, 2.0)),
-        Cell("d", "hot", "e", "a"): UnitErrors((9.0,)),
-    }
 
 
 def test_an_error_on_a_bench_is_measured_on_ten_units_or_estimated():

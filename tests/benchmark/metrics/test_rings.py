@@ -109,11 +109,6 @@ def test_the_error_over_a_field_weights_rings_by_their_solid_angle(errors, edge)
     assert field_error(row_of(*errors), edge) == pytest.approx(expected, rel=1e-5)
 
 
-@pytest.mark.parametrize("edge", EDGES_DEG[1:])
-def test_an_error_that_is_the_same_everywhere_is_that_of_every_field(edge):
-    assert field_error(row_of(*[0.3] * 9), edge) == pytest.approx(0.3)
-
-
 def test_how_samples_are_spread_over_the_field_does_not_matter():
     """Two data sets of the same sensor, one crowded at the centre, one at the rim."""
     fields = []

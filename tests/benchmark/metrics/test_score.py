@@ -130,29 +130,6 @@ def test_the_bound_is_taken_over_samples_both_found_and_observable():
     assert (result.availability, result.false_sun) == (pytest.approx(2 / 3), 1.0)
 
 
-def test_the_second_bound_is_over_the_same_samples():
-    sun = np.array([[0.0, 0.0, 1.0]] * 4)
-    predicted = rotated(sun, [1, 0, 0], 3.0)
-    predicted[0] = np.nan
-    seen = np.array([True, True, True, False])
-    bounds = {"bound_deg": np.ones(4), "bound_unit_deg": np.array([100.0, 1.0, 2.0, np.inf])}
-    result = score(predicted, sun, observable=seen, **bounds)
-    unit = np.sqrt((1 + 4) / 2)
-    assert (result.bound_deg, result.over_bound) == (1.0, pytest.approx(3.0))
-    assert result.bound_unit_deg == pytest.approx(unit)
-    assert result.over_bound_unit == pytest.approx(3 / unit)
-
-
-def test_without_the_second_bound_the_first_stands():
-    sun = np.array([[0.0, 0.0, 1.0]] * 2)
-    row = score(sun, sun, np.ones(2), np.ones(2, bool)).row()
-    assert [row[name] for name in ("bound_deg", "bound_unit_deg", "over_bound_unit")] == [
-        1.0,
-        None,
-        None,
-    ]
-
-
 def test_a_misalignment_is_all_that_alignment_takes_away():
     rng = np.random.default_rng(3)
     sun = cone(rng, 300)
@@ -297,11 +274,6 @@ def test_wrong_shapes_are_named(changed, message):
     given = {"predicted": sun, "sun": sun, "bound_deg": None, "observable": np.ones(2, bool)}
     with pytest.raises(ValueError, match=message):
         score(**{**given, **changed})
-
-
-def test_a_bound_of_zero_gives_no_ratio():
-    sun = np.array([[0.0, 0.0, 1.0]] * 3)
-    assert score(sun, sun, np.zeros(3), np.ones(3, bool)).row()["over_bound"] is None
 
 
 def test_numbers_are_stored_with_five_significant_digits_and_rings_with_four():

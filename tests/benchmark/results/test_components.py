@@ -1,7 +1,5 @@
 """What results are of: one line a component, and the key that tells what is out of date."""
 
-import json
-from dataclasses import replace
 from itertools import pairwise
 
 import fake_plan
@@ -28,14 +26,6 @@ def test_components_are_read_back_as_they_were_written(tmp_path):
     path.write_text(Components().text())
     assert Components.read(path) == Components()
     assert Components.read(tmp_path / "nothing.json") == Components()
-
-
-def test_a_component_is_a_line_so_that_a_change_of_one_is_a_change_of_one():
-    before, after = components().text().splitlines(), components(e="other").text().splitlines()
-    assert len(before) == len(after)
-    changed = [(one, two) for one, two in zip(before, after, strict=True) if one != two]
-    assert [one.partition(":")[0] for one, _ in changed] == ['"e"']
-    assert json.loads("\n".join(before))["schema"] == SCHEMA_VERSION
 
 
 @pytest.mark.parametrize("changed", [*STAGES, "d", "e", "m"])
@@ -87,39 +77,6 @@ def test_a_condition_s_digest_is_its_own_and_drawn_benches_read_the_first():
     assert known.condition_digest("d", "gone") == ""
     with pytest.raises(ComponentsError, match="'nobody'"):
         known.condition_digest("nobody", "c")
-
-
-def test_differences_name_kind_and_component():
-    one, two = components(), components(data="x", e="y")
-    assert one.differences(one) == []
-    assert one.differences(two) == [("stages/data", "of data", "x"), ("extractors/e", "of e", "y")]
-    fewer = replace(one, models={})
-    assert fewer.differences(one)[0] == ("models/a", "", "of a")
-    assert one.differences(fewer)[0] == ("models/a", "of a", "")
-
-
-def test_modules_that_are_new_or_changed_are_named():
-    before, now = components(), components(module="x")
-    assert now.changed_modules(before) == ["package.module"]
-    assert now.changed_modules(now) == []
-    assert before.update(now).modules == now.modules
-    more = replace(now, modules={**before.modules, "package.new": "y"})
-    assert more.changed_modules(before) == ["package.new"]
-    assert more.update(before).modules == more.modules
-
-
-def test_some_are_renewed_and_the_others_stay():
-    known = components().update(replace(components(data="x", d="y"), models={}))
-    assert known.stages["data"] == "x"
-    assert known.condition_digest("d", "c") == "yc"
-    assert known.models == components().models
-
-
-def test_only_what_cells_are_of_is_taken():
-    known = components().only([cell("a"), cell("b")])
-    assert [list(kind) for kind in (known.datasets, known.extractors, known.models)] == [
-        ["d"], ["e"], ["a", "b"],
-    ]  # fmt: skip
 
 
 def test_current_components_are_of_the_code_as_it_is():

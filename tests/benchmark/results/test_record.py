@@ -64,24 +64,6 @@ def test_errors_sample_by_sample_survive_a_kill_and_follow_their_scores(store):
     assert samples.datasets(store.directory) == ()
 
 
-def test_what_was_measured_with_other_code_is_not_of_the_code_as_it_is(store):
-    record = Record(store)
-    keep_all(record)
-    for name, scored, pinned in (
-        ("data", False, False),
-        ("features", False, True),
-        ("predictions", False, True),
-        ("scores", False, True),
-        ("d", False, False),
-        ("e", False, True),
-        ("a", False, True),
-        ("z", True, True),
-    ):
-        other = components(**{name: "x"})
-        assert record.is_scored(cell("a"), other) is scored, name
-        assert record.is_pinned(pin().place, other) is pinned, name
-
-
 def test_a_failure_is_never_what_need_not_be_measured_again_and_a_refusal_is(store):
     record = Record(store)
     record.keep(
@@ -94,18 +76,6 @@ def test_a_failure_is_never_what_need_not_be_measured_again_and_a_refusal_is(sto
     for one in (record, Record(store)):
         assert not one.is_scored(cell("a"), components())
         assert one.is_scored(cell("b"), components())
-
-
-def test_writing_makes_files_of_the_journal_and_forgets_it(store):
-    with open_record(store) as record:
-        keep_all(record)
-        record.write(components())
-        assert not record.journal.exists()
-    assert set(store.scores()) == {cell("a"), cell("b")}
-    assert store.pins() == {pin().place: pin()}
-    known = store.components()
-    assert list(known.models) == ["a", "b"], "what nothing names is left out"
-    assert list(known.datasets) == ["d"]
 
 
 def test_what_other_code_measured_is_left_out_where_the_new_one_says_anything_of_it(store):
@@ -128,15 +98,6 @@ def test_what_other_code_measured_is_left_out_where_the_new_one_says_anything_of
     assert store.pins() == {pin().place: pin()}
 
 
-def test_what_is_dropped_is_what_is_not_wanted(store):
-    with open_record(store) as record:
-        keep_all(record)
-        record.drop(scores=lambda one: one.model == "a", pins=lambda place: False)
-        record.write(components())
-    assert set(store.scores()) == {cell("a")}
-    assert store.pins() == {}
-
-
 def test_numbers_that_change_are_written_though_what_they_are_of_does_not(store):
     """A failure tried again, and a row no longer wanted: the components are those of before."""
     with open_record(store) as record:
@@ -156,17 +117,6 @@ def test_numbers_that_change_are_written_though_what_they_are_of_does_not(store)
         record.drop(scores=lambda one: one.condition == "c")
         record.write(components())
     assert set(store.scores()) == {cell("a")}
-
-
-def test_a_record_nothing_was_done_to_is_not_written_again(store, monkeypatch):
-    with open_record(store) as record:
-        keep_all(record)
-        record.write(components())
-    monkeypatch.setattr(Store, "write", lambda *_arguments: pytest.fail("written"))
-    with open_record(store) as record:
-        record.drop(scores=lambda one: True, pins=lambda one: True)
-        record.keep(components())
-        record.write(components().only([]))
 
 
 def test_the_journal_adds_to_the_store_and_loses_only_a_torn_last_line(store):
@@ -238,17 +188,6 @@ def test_lines_lost_at_the_end_are_measured_again(store):
     lines = record.journal.read_text().splitlines(keepends=True)
     record.journal.write_text("".join(lines[:-1]))
     assert set(Record(store).scores) == {cell("a")}
-
-
-def test_every_line_is_json_of_its_own(store):
-    record = Record(store)
-    keep_all(record)
-    kept = [json.loads(line) for line in record.journal.read_text().splitlines()]
-    assert [sorted(one) for one in kept] == [
-        ["chain", "key", "pin"],
-        ["cell", "chain", "key", "score"],
-        ["cell", "chain", "key", "score"],
-    ]
 
 
 def test_a_second_runner_is_refused_with_the_first_ones_process(store):

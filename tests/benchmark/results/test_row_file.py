@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from fake_results import pin
-from pyarrow import parquet
 from pydantic import BaseModel
 
 from benchmark.results import record_manifest
 from benchmark.results.csv_tables import StoreError, number, word
-from benchmark.results.parquet_tables import parquet_bytes
 from benchmark.results.pins import pins_text, read_pins
 from benchmark.results.row_file import Row, TableFile
 
@@ -95,24 +91,6 @@ def test_a_pin_that_contradicts_itself_is_refused_by_its_line(
     path.write_text(pins_text([pin(**changed)]))
     with pytest.raises(StoreError, match=f"line 2.*{said}"):
         read_pins(path)
-
-
-@pytest.mark.parametrize(("observable", "right"), [(0, False), (1, True), (3, True)])
-def test_a_bound_needs_a_sample_that_can_be_observed(
-    observable: int, right: bool, tmp_path: Path
-) -> None:
-    path, one = tmp_path / "pins.csv", pin(observable=observable)
-    path.write_text(pins_text([one]))
-    if right:
-        assert read_pins(path) == {one.place: one}
-    else:
-        with pytest.raises(StoreError, match="line 2: a bound and no observable samples"):
-            read_pins(path)
-
-
-def test_no_column_of_a_parquet_file_may_be_null() -> None:
-    written = parquet_bytes({"a": np.array([1, 2], np.int32)}, {"a": "int32"})
-    assert not parquet.read_schema(io.BytesIO(written)).field("a").nullable
 
 
 def test_a_record_is_of_its_files_alone(tmp_path: Path) -> None:

@@ -1,7 +1,6 @@
 """Errors sample by sample: what is written is read back, by us and by pandas."""
 
 import math
-import re
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -62,18 +61,6 @@ def test_pandas_reads_what_the_samples_are(record: Path) -> None:
     np.testing.assert_allclose(found["bound_deg"], [0.01, 0.02, 0.03, math.nan], rtol=1e-7)
 
 
-def test_what_is_read_equals_what_pandas_reads(record: Path) -> None:
-    for read, name in (
-        (samples.read_samples, "lamp"),
-        (samples.read_directions, "lamp.directions"),
-    ):
-        expected = pd.read_parquet(record / "samples" / f"{name}.parquet")
-        pd.testing.assert_frame_equal(
-            read("lamp", record), expected, check_dtype=False, check_categorical=False
-        )
-    assert samples.datasets(record) == ("lamp",)
-
-
 @pytest.mark.parametrize("size", [1e-9, 3e-5, 0.0021, 0.5, 7.3, 179.99])
 def test_an_error_is_kept_to_a_part_in_two_thousand(size: float) -> None:
     values = size * np.random.default_rng(0).uniform(0.1, 1.0, 500)
@@ -90,13 +77,6 @@ def test_two_records_of_the_same_numbers_have_the_same_bytes(tmp_path: Path) -> 
         )
     assert len(data[0]) == 2
     assert data[0] == data[1]
-
-
-def test_the_manifest_names_a_changed_file(record: Path) -> None:
-    assert not record_manifest.changes(record, required=True)
-    path = record / "samples" / "lamp.parquet"
-    path.write_bytes(path.read_bytes() + b"\n")
-    assert [problem.file for problem in record_manifest.changes(record)] == ["samples/lamp.parquet"]
 
 
 def test_cells_not_measured_now_stay_and_unwanted_ones_go(record: Path) -> None:
@@ -196,65 +176,6 @@ def test_errors_that_are_none_are_refused(error: list[float], found: list[bool])
         CellErrors.of(error, found)
 
 
-@pytest.mark.parametrize(
-    ("sun", "observable", "bound"),
-    [(SUN, FOUND[:3], ERRORS), (SUN.T, FOUND, ERRORS), (SUN, FOUND, ERRORS[1:]),
-     (SUN[:0], FOUND[:0], ERRORS[:0]), (SUN, FOUND[:, None], ERRORS)],
-)  # fmt: skip
-def test_directions_of_unlike_numbers_of_samples_are_refused(
-    sun: Any, observable: Any, bound: Any
-) -> None:
-    shapes = ", ".join(str(one.shape) for one in (sun, observable, bound))
-    with pytest.raises(ValueError, match=rf"\(N, 3\), \(N,\) and \(N,\); got {re.escape(shapes)}"):
-        Directions(sun, observable, bound)
-
-
-@pytest.mark.parametrize(
-    ("read", "name", "said"),
-    [
-        (samples.read_samples, "lamp", r"extractor \(string\)"),
-        (samples.read_directions, "lamp.directions", r"sample \(int16\)"),
-    ],
-)
-def test_a_table_without_rows_and_what_is_no_file_are_refused(
-    record: Path, read: Any, name: str, said: str
-) -> None:
-    path = record / "samples" / f"{name}.parquet"
-    parquet.write_table(parquet.read_table(path).slice(0, 0), path)
-    with pytest.raises(StoreError, match=rf"{name}\.parquet: expected 1 to 10000000 rows, got 0"):
-        read("lamp", record)
-    path.unlink()
-    path.mkdir()
-    with pytest.raises(StoreError, match=rf"{name}\.parquet: expected a file"):
-        read("lamp", record)
-    path.rmdir()
-    pd.DataFrame({"x": [1.0]}).to_parquet(path)
-    with pytest.raises(StoreError, match=rf"expected the columns {said}.*got x \(double\)"):
-        read("lamp", record)
-
-
 def test_only_the_first_condition_is_kept() -> None:
     with pytest.raises(ValueError, match="nominal"):
         SampleErrors().add(Cell("lamp", "hot", "a", "x"), [0.1], [True])
-
-
-def test_cells_need_the_samples_that_directions_say(tmp_path: Path) -> None:
-    wrong = collected()
-    wrong.add(Cell("lamp", "nominal", "c", "x"), [0.1], [True])
-    with pytest.raises(ValueError, match="has 1 samples; expected 4"):
-        wrong.write(tmp_path, everything)
-    wrong.directions.clear()  # nor may cells differ from each other
-    with pytest.raises(ValueError, match="has 1 samples; expected 4"):
-        wrong.write(tmp_path, everything)
-
-
-def test_other_units_alone_are_kept_and_get_their_directions_later(tmp_path: Path) -> None:
-    record_manifest.write(tmp_path, {"pins.csv": "dataset\n"}, start=True)
-    other, standard = Cell("lamp", "nominal", "a", "x", 3), Cell("lamp", "nominal", "a", "x", 0)
-    first = collected(other)
-    first.directions.clear()
-    assert first.write(tmp_path, everything)
-    assert not samples.has_samples("lamp", tmp_path)
-    assert collected(standard).write(tmp_path, everything)
-    assert samples.has_samples("lamp", tmp_path)
-    assert set(samples.read_samples("lamp", tmp_path)["unit"]) == {0, 3}

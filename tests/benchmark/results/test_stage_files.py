@@ -1,11 +1,8 @@
 """Results of stages on disk: the last bit comes back, the damaged does not, and room is made."""
 
 import os
-import pickle
 import time
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import nullcontext
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -64,30 +61,6 @@ def test_a_damaged_file_is_as_one_that_is_not_there(files):
         assert files.get(key(1)) is None
     path.write_bytes(whole)
     assert files.get(key(1)).tolist() == list(range(1000))
-
-
-def test_a_class_that_is_no_longer_there_is_as_nothing(files, monkeypatch):
-    files.put(key(1), Samples(np.eye(3), np.eye(3), None), 1.0)
-
-    def gone(*_):
-        raise AttributeError("no such class")
-
-    monkeypatch.setattr(pickle, "load", gone)
-    assert files.get(key(1)) is None
-
-
-@pytest.mark.parametrize("error", [OSError, KeyboardInterrupt])
-def test_nothing_half_written_is_left(files, monkeypatch, error):
-    """As a full disk or Ctrl-C would leave it."""
-
-    def broken(*_):
-        raise error
-
-    monkeypatch.setattr(Path, "replace", broken)
-    with pytest.raises(error) if error is KeyboardInterrupt else nullcontext():
-        files.put(key(1), np.arange(3), 1.0)
-    assert files.keys() == set()
-    assert not [path for path in files.directory.rglob("*") if path.is_file()]
 
 
 def test_what_costs_most_a_byte_is_kept_longest(files, tmp_path):

@@ -5,11 +5,10 @@ from fake_results import cell, components, numbers, pin
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchmark.datasets.pins import bounds_agree
 from benchmark.metrics.score import METRICS
 from benchmark.results.components import ComponentsError
-from benchmark.results.csv_tables import StoreError, format_cell, number, read_csv, text_of
-from benchmark.results.store import NUMBERS, Store, UnknownFieldError
+from benchmark.results.csv_tables import StoreError, number, read_csv, text_of
+from benchmark.results.store import Store, UnknownFieldError
 
 TEXT = st.text(st.characters(exclude_categories=("Cc", "Cs", "Zl", "Zp"))).map(
     lambda text: " ".join(text.split())
@@ -74,37 +73,6 @@ def test_a_table_reads_back_every_number_and_word(rows, tmp_path_factory):
     path = tmp_path_factory.mktemp("table") / "t.csv"
     path.write_text(text_of(["a", "b", "text"], rows), encoding="utf-8", newline="")
     assert [row for _, row in read_csv(path, {"a": number, "b": number, "text": str})] == rows
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (None, ""),
-        (0.0, "0"),
-        (-3.0, "-3"),
-        (0.1, "0.1"),
-        (999999999999999.0, "999999999999999"),
-        (1e15, "1000000000000000.0"),  # from here on not all whole numbers are floats' neighbours
-        (-1e15, "-1000000000000000.0"),
-        (1e300, "1e+300"),
-        (7, "7"),
-        ("7.0", "7.0"),
-    ],
-)
-def test_a_number_is_spelt_with_the_fewest_digits_that_read_back(value, text):
-    assert format_cell(value) == text
-    assert value is None or isinstance(value, str) or float(text) == value
-
-
-def test_rows_of_numbers_are_short(store):
-    write(store, {cell("m"): numbers(0.5, max_deg=2.0, p95_deg=None)})
-    header, line = (store.scores_directory / "d.csv").read_text().splitlines()
-    assert header == ",".join(("condition", "extractor", "model", "unit", *NUMBERS))
-    values = dict(zip(header.split(","), line.split(","), strict=True))
-    assert {name: value for name, value in values.items() if value} == {
-        "condition": "c", "extractor": "e", "model": "m", "unit": "0", "status": "ok",
-        "rms_deg": "0.5", "charged_deg": "0.5", "max_deg": "2", "availability": "1",
-    }  # fmt: skip
 
 
 def test_a_data_set_without_scores_has_no_file_any_more(store):
@@ -235,9 +203,3 @@ def test_a_corrupt_pin_is_named_too(store):
 )
 def test_pins_differ_in_hashes_exactly_and_in_bounds_beyond_rounding(changed, said):
     assert pin().difference(pin(**changed)) == said
-
-
-def test_no_bound_is_like_no_bound_alone():
-    assert bounds_agree(None, None)
-    assert not bounds_agree(None, 0.0)
-    assert not bounds_agree(0.0, None)

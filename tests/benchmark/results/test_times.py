@@ -43,12 +43,6 @@ def test_times_are_multiples_of_the_loop_of_a_named_machine(published: Times) ->
             assert published.latency_us[place] == pytest.approx(time.ratio * machine.loop_us, 0.006)
 
 
-def test_what_is_not_there_is_not_timed(tmp_path: Path) -> None:
-    found = read_times(tmp_path)
-    assert (found.rows, found.machine) == ({}, None)
-    assert found.columns_of("a", "b", "c") == {"latency_us": None, "time_ratio": None}
-
-
 @pytest.mark.parametrize(
     ("lines", "said"),
     [
